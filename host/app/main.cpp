@@ -1,0 +1,2 @@
+// sundog's command line.
+int main() { return 0; }

@@ -1,0 +1,40 @@
+// The few exceptions of sundog. Library code throws them; main() catches them once and turns them into an
+// exit status. Each message is one line: the place, what was wanted, what was found, the mend.
+#pragma once
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace sundog {
+
+/// The command line is wrong (exit 2).
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The scene or a file it names is bad (exit 3). `place` is a JSON pointer, "line 12", or "byte 80".
+struct SceneError : std::runtime_error {
+  SceneError(std::string file_, std::string place_, std::string what_)
+      : std::runtime_error(file_ + (place_.empty() ? "" : ": " + place_) + ": " + what_),
+        file(std::move(file_)), place(std::move(place_)), reason(std::move(what_)) {}
+  std::string file, place, reason;
+};
+
+/// No such device, or the device failed (exit 4). `status` is the OpenCL error code, 0 when there is none.
+struct DeviceError : std::runtime_error {
+  explicit DeviceError(const std::string& what, int status_ = 0) : std::runtime_error(what), status(status_) {}
+  int status;
+};
+
+/// A kernel did not build (exit 5). `log` is the compiler's, with file and line.
+struct BuildError : std::runtime_error {
+  BuildError(const std::string& what, std::string log_) : std::runtime_error(what), log(std::move(log_)) {}
+  std::string log;
+};
+
+/// A file could not be read or written (exit 1).
+struct IoError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace sundog

@@ -1,0 +1,50 @@
+// CompiledScene: the flat tables that the kernels read. Indices only, no device, no pointers.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "scene/description.h"
+#include "shared/bvh.h"
+#include "shared/scene.h"
+
+namespace sundog {
+
+/// What a scene uses: kernels are specialised to it, so only what a scene needs is built.
+struct SceneFeatures {
+  std::array<bool, SHAPE_COUNT> shapes{};
+  bool secondary_rays = false;    // some material reflects or transmits
+  bool media = false;             // some material has an interior medium
+  bool shadow_filters = false;    // shadow rays must look through transmissive things
+  bool camera_inside = false;
+  bool unbounded = false;         // there are planes
+};
+
+struct BvhFigures {
+  std::size_t nodes = 0, blocks = 0, triangles = 0, instances = 0;
+  double sah_cost = 0;         // expected cost of a ray that crosses the root: node visits + block visits, area-weighted
+  double build_seconds = 0;    // not part of the pure result's bytes
+  double mean_block_fill = 0;  // triangles a block, 1..8
+  std::size_t bytes = 0;
+};
+
+struct CompiledScene {
+  SceneInfo info{};
+  std::vector<Bvh8Node> nodes;
+  std::vector<TriangleBlock> blocks;
+  std::vector<TriangleShading> triangles;
+  std::vector<Vertex> vertices;
+  std::vector<Instance> instances;
+  std::vector<Material> materials;
+  std::vector<Medium> media;
+  std::vector<Light> lights;
+  SceneFeatures features;
+  BvhFigures figures;
+};
+
+/// Pure: the same description gives the same bytes, whatever the number of threads (figures' times apart).
+/// Throws SceneError for what cannot be compiled (empty image, too many triangles for the index width).
+CompiledScene compile(const SceneDescription& scene);
+
+}  // namespace sundog

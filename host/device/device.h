@@ -1,0 +1,140 @@
+// An opened device: its context and queue, memory, programs and launches. The only folder that knows OpenCL; the types
+// here are thin, and the kernels' argument types are part of the call.
+#pragma once
+#include <CL/opencl.hpp>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/devices.h"
+
+namespace sundog {
+
+/// `-D` definitions, sorted by name: part of the kernel cache's key.
+using KernelDefines = std::map<std::string, std::string>;
+
+struct BuildReport {
+  bool cached = false;
+  double seconds = 0;
+  std::string log;
+};
+
+/// Global and local size of a launch. The global size is padded to whole work-groups; kernels check their index against the
+/// count they are given. local = {0, 0}: the driver's own choice.
+struct LaunchSize {
+  std::size_t x = 1, y = 1;
+  std::size_t local_x = 64, local_y = 1;
+};
+
+/// Sum of the launches of one kernel on one device. device_ms comes from events and is 0 where the driver gives none.
+struct KernelTimes {
+  std::uint64_t launches = 0;
+  double device_ms = 0, host_ms = 0;
+  std::size_t local_x = 0, local_y = 0;
+};
+
+template <class T>
+struct Buffer {
+  cl::Buffer memory;
+  std::size_t count = 0;  // elements of T
+};
+
+class Device;
+
+/// A kernel whose arguments have the types Args: Buffer<T> for a __global T*, or a plain 4-byte or 16-byte value.
+template <class... Args>
+struct Kernel {
+  cl::Kernel kernel;
+  std::string name;
+};
+
+/// A built kernel file. Throws BuildError for a kernel that is not in it.
+class Program {
+ public:
+  Program() = default;
+  explicit Program(cl::Program program) : program_(std::move(program)) {}
+  template <class... Args>
+  Kernel<Args...> kernel(const std::string& name) const {
+    return {make_kernel(name), name};
+  }
+
+ private:
+  cl::Kernel make_kernel(const std::string& name) const;
+  cl::Program program_;
+};
+
+/// Not shared between threads: one host thread a device.
+class Device {
+ public:
+  /// Opens the device (a sub-device when info.sub_units > 0). Throws DeviceError.
+  explicit Device(DeviceInfo info);
+  Device(Device&&) noexcept;
+  ~Device();
+
+  const DeviceInfo& info() const { return info_; }
+
+  /// Builds `entry` ("entry/whitted.cl", embedded) with `defines`, from the binary cache when it holds it.
+  /// Throws BuildError with the compiler's log.
+  Program build(const std::string& entry, const KernelDefines& defines, BuildReport* report = nullptr);
+
+  /// A device array with a copy of `values` (never zero bytes: an empty span gives one unused element).
+  template <class T>
+  Buffer<T> upload(std::span<const T> values) {
+    return {allocate(values.size_bytes(), values.data()), values.size()};
+  }
+  template <class T>
+  Buffer<T> make(std::size_t count) {  // contents undefined
+    return {allocate(count * sizeof(T), nullptr), count};
+  }
+  template <class T>
+  void write(Buffer<T>& buffer, std::span<const T> values, std::size_t first = 0) {
+    write_bytes(buffer.memory, values.data(), values.size_bytes(), first * sizeof(T));
+  }
+  /// Blocking; also the only reliable way to wait on every driver.
+  template <class T>
+  void read(const Buffer<T>& buffer, std::span<T> values, std::size_t first = 0) {
+    read_bytes(buffer.memory, values.data(), values.size_bytes(), first * sizeof(T));
+  }
+
+  /// Enqueues a launch. Throws DeviceError with the OpenCL status.
+  template <class... Args>
+  cl::Event run(Kernel<Args...>& kernel, const LaunchSize& size, const std::type_identity_t<Args>&... args) {
+    cl_uint index = 0;
+    (set_argument(kernel.kernel, index++, args), ...);
+    return enqueue(kernel.kernel, kernel.name, size);
+  }
+
+  /// Waits for all launches so far and adds their times to `times()`.
+  void finish();
+  const std::map<std::string, KernelTimes>& times() const { return times_; }
+
+ private:
+  template <class T>
+  void set_argument(cl::Kernel& kernel, cl_uint index, const Buffer<T>& buffer) {
+    check_argument(kernel.setArg(index, buffer.memory), index);
+  }
+  template <class T>
+  void set_argument(cl::Kernel& kernel, cl_uint index, const T& value) {
+    static_assert(sizeof(T) == 4 || sizeof(T) == 16, "kernel values are 4-byte scalars or 16-byte vectors");
+    check_argument(kernel.setArg(index, sizeof(T), &value), index);
+  }
+  static void check_argument(cl_int status, cl_uint index);
+  cl::Buffer allocate(std::size_t bytes, const void* data);
+  void write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset);
+  void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset);
+  cl::Event enqueue(cl::Kernel& kernel, const std::string& name, const LaunchSize& size);
+
+  DeviceInfo info_;
+  cl::Device device_;
+  cl::Context context_;
+  cl::CommandQueue queue_;
+  struct Pending;
+  std::vector<Pending> pending_;
+  std::map<std::string, KernelTimes> times_;
+};
+
+}  // namespace sundog

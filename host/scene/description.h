@@ -1,0 +1,120 @@
+// SceneDescription: the scene as plain values, exactly what the file says after names are resolved to indices.
+// The loaders of this folder make it; compile() reads it.
+#pragma once
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace sundog {
+
+using glm::dmat4;
+using glm::dvec2;
+using glm::dvec3;
+
+/// A pinhole camera. `fov` is the vertical angle of view in degrees, (0, 180). near/far clip by depth along the view.
+struct Camera {
+  dvec3 position{0, 0, 5}, target{0, 0, 0}, up{0, 1, 0};
+  double fov = 45;
+  double near = 0, far = std::numeric_limits<double>::infinity();
+};
+
+struct ImageSettings {
+  int width = 640, height = 480;
+  dvec3 background_bottom{0, 0, 0}, background_top{0, 0, 0};  // equal: one colour
+};
+
+enum class Tracer { automatic, wide, compact };
+
+struct RenderSettings {
+  int max_depth = 8;       // 1..64; 1 = the camera's rays alone
+  int samples = 1;         // per pixel, 1..65536; 1 = the pixel's centre
+  double cutoff = 1e-3;    // throughput below which a ray ends, [0, 1]
+  std::string integrator = "whitted";
+  Tracer tracer = Tracer::automatic;
+};
+
+enum class LightType { ambient, directional, point, spot };
+
+struct LightDescription {
+  LightType type = LightType::point;
+  dvec3 color{1, 1, 1};
+  double intensity = 1;
+  dvec3 position{0, 0, 0};
+  dvec3 direction{0, -1, 0};               // the way the light travels; normalised by compile()
+  double inner_angle = 20, outer_angle = 30;  // spot: half angles in degrees, 0 <= inner <= outer < 90
+  dvec3 falloff{1, 0, 0};                  // constant, linear, quadratic
+};
+
+struct MediumDescription {
+  std::string name;
+  double ior = 1;
+  dvec3 absorption{0, 0, 0};  // per unit of world length
+  int priority = 0;
+};
+
+enum class MaterialType { phong, dielectric };
+
+/// Coefficients follow brief 1: ka, kd, ks, kr, kt in [0, inf) (kr, kt in [0, 1]), each times a colour.
+struct MaterialDescription {
+  std::string name;
+  MaterialType type = MaterialType::phong;
+  dvec3 ambient{0.1}, diffuse{0.8}, specular{0};  // colour times coefficient
+  double exponent = 32;
+  bool blinn = false;
+  dvec3 reflection{0}, transmission{0};  // a dielectric's tints default to 1 (set by the loader)
+  int medium = -1;                       // index into media of what is inside; -1: transmits straight through (thin)
+  bool shadow_opaque = false;
+  bool checker = false;
+  dvec3 checker_color{0};  // factor on ambient and diffuse in odd cells
+  double checker_size = 1;
+  bool vertex_color = false;
+};
+
+/// Triangles with shared vertices. `normals` and `uvs` are empty or as long as `positions`; all colours linear.
+struct Mesh {
+  std::string name;
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;
+  std::vector<glm::vec2> uvs;
+  std::vector<glm::vec3> colors;
+  std::vector<glm::uvec3> triangles;
+  std::vector<int> materials;  // per triangle, index into SceneDescription::materials; empty: the object's
+};
+
+struct MeshShape { int mesh = 0; };           // index into meshes
+struct SphereShape { double radius = 1; };
+struct PlaneShape {};                          // y = 0, normal +y, inside below
+struct BoxShape { dvec3 half{1, 1, 1}; };
+struct CylinderShape { double radius = 1, half_height = 1; bool capped = true; };  // about y, centred
+struct ConeShape { double bottom_radius = 1, top_radius = 0, half_height = 1; bool capped = true; };
+struct DiskShape { double radius = 1, inner_radius = 0; };  // in y = 0
+struct TorusShape { double major_radius = 1, minor_radius = 0.25; };  // about y
+struct RoundBoxShape { dvec3 half{1, 1, 1}; double radius = 0.1; };  // outer half sizes, edge radius
+using Shape = std::variant<MeshShape, SphereShape, PlaneShape, BoxShape, CylinderShape, ConeShape, DiskShape,
+                           TorusShape, RoundBoxShape>;
+
+/// One placed thing. Groups are already flattened: the transform is the product of the group's and the object's.
+struct Object {
+  std::string name;
+  Shape shape = SphereShape{};
+  int material = -1;  // -1: the mesh's own materials
+  dmat4 world_from_object{1};
+  std::string place;  // JSON pointer, for messages
+};
+
+struct SceneDescription {
+  std::filesystem::path file;
+  Camera camera;
+  ImageSettings image;
+  RenderSettings render;
+  std::vector<LightDescription> lights;
+  std::vector<MediumDescription> media;  // [0] is the world's
+  std::vector<MaterialDescription> materials;
+  std::vector<Mesh> meshes;
+  std::vector<Object> objects;
+};
+
+}  // namespace sundog

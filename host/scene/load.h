@@ -1,0 +1,17 @@
+// The one door into the scene layer: a file of any supported format becomes a SceneDescription.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/description.h"
+
+namespace sundog {
+
+/// Loads sundog's .json, or .gltf .glb .obj .ply .stl .nff (each also .gz) as a scene by itself: a camera that frames the
+/// bounds, a key light and a grey material are made up where the file has none.
+/// `overrides` are "JSON_POINTER=VALUE" settings, applied in turn before the scene is checked (for a model file they apply to
+/// the scene that is made of it). Throws SceneError{file, place, what}.
+SceneDescription load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+
+}  // namespace sundog

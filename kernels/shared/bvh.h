@@ -1,0 +1,115 @@
+// The flattened two-level BVH. One node array holds the scene BVH (`tlas`, over instances) and every mesh BVH
+// (`blas`, over triangle blocks); child indices are absolute in it.
+#ifndef SUNDOG_SHARED_BVH_H
+#define SUNDOG_SHARED_BVH_H
+#include "shared/types.h"
+SUNDOG_SHARED_BEGIN
+
+#define BVH_WIDTH 8
+
+// A child word is an inner node's index, or BVH_LEAF | (count - 1) << BVH_LEAF_SHIFT | first:
+// in a mesh BVH `count` blocks from block `first`; in the scene BVH `count` instances from instance `first`.
+// An empty slot holds BVH_EMPTY, and bounds of lower = +inf, upper = -inf.
+#define BVH_LEAF 0x80000000u
+#define BVH_LEAF_SHIFT 27u
+#define BVH_LEAF_COUNT_MASK 0xFu
+#define BVH_FIRST_MASK 0x07FFFFFFu
+#define BVH_EMPTY 0xFFFFFFFFu
+
+// 256 bytes: bounds as structure of arrays, so that one vector instruction tests eight children.
+typedef struct Bvh8Node {
+  float lower_x[8], lower_y[8], lower_z[8];
+  float upper_x[8], upper_y[8], upper_z[8];
+  u32 child[8];
+  u32 valid;    // bit i is set when slot i holds a child; filled slots come first
+  u32 pad[7];
+} Bvh8Node;
+SUNDOG_SHARED_SIZE(Bvh8Node, 256)
+
+// 320 bytes: eight triangles as first vertex and two edges (Moeller and Trumbore 1997), object space.
+// `prim` indexes TriangleShading; an unused lane holds zeros and NO_PRIM (its determinant is zero: never hit).
+typedef struct TriangleBlock {
+  float v0_x[8], v0_y[8], v0_z[8];
+  float e1_x[8], e1_y[8], e1_z[8];
+  float e2_x[8], e2_y[8], e2_z[8];
+  u32 prim[8];
+} TriangleBlock;
+SUNDOG_SHARED_SIZE(TriangleBlock, 320)
+
+#define NO_PRIM 0xFFFFFFFFu
+#define NO_INSTANCE 0xFFFFFFFFu
+
+// 16 bytes: what shading needs of a triangle: three indices into the Vertex array, and its material.
+typedef struct TriangleShading {
+  u32 vertex[3];
+  u32 material;
+} TriangleShading;
+SUNDOG_SHARED_SIZE(TriangleShading, 16)
+
+// 32 bytes: a mesh vertex's attributes. Normals are unit length, object space.
+typedef struct Vertex {
+  float nx, ny, nz;
+  float u, v;
+  float r, g, b;   // vertex colour, linear; 1 where the file has none
+} Vertex;
+SUNDOG_SHARED_SIZE(Vertex, 32)
+
+// What an instance places. Exact solids are unit shapes; their transform scales them, `parameters` holds what
+// a transform cannot (all in object space, y is the axis):
+//   SPHERE    radius 1 at the origin                 PLANE     y = 0, inside is y < 0; unbounded
+//   BOX       [-1, 1]^3                              CYLINDER  radius 1, y in [-1, 1]; parameters.x: 1 = capped
+//   CONE      radius parameters.x at y = -1, parameters.y at y = 1 (>= 0, not both 0); parameters.z: 1 = capped
+//   DISK      radius 1 in y = 0, normal +y; parameters.x: inner radius (0 <= x < 1)
+//   TORUS     major radius 1 about y, minor radius parameters.x (0 < x < 1)
+//   ROUNDBOX  half sizes parameters.xyz, edges rounded with radius parameters.w (<= the smallest half size)
+#define SHAPE_MESH 0u
+#define SHAPE_SPHERE 1u
+#define SHAPE_PLANE 2u
+#define SHAPE_BOX 3u
+#define SHAPE_CYLINDER 4u
+#define SHAPE_CONE 5u
+#define SHAPE_DISK 6u
+#define SHAPE_TORUS 7u
+#define SHAPE_ROUNDBOX 8u
+#define SHAPE_SDF 9u
+#define SHAPE_COUNT 10u
+
+// 112 bytes. Instances [0, bounded_count) are leaves of the scene BVH in leaf order; the rest are unbounded and
+// are tried one by one. A ray is taken into object space without renormalising, so t is the same in both;
+// a normal goes to world space by the transpose of object_from_world's linear part.
+typedef struct Instance {
+  float4 object_from_world[3];  // rows of the affine matrix
+  float4 parameters;
+  u32 shape;     // SHAPE_*
+  u32 root;      // SHAPE_MESH: the mesh BVH's first node
+  u32 material;  // of a solid; a mesh's triangles carry their own unless material != NO_MATERIAL
+  u32 flags;     // INSTANCE_*
+  u32 object;    // index of the scene object it came from, for AOVs and messages
+  u32 pad0, pad1, pad2;
+  float4 world_center;  // of the bounds; w = half the diagonal (0 when unbounded)
+} Instance;
+SUNDOG_SHARED_SIZE(Instance, 112)
+
+#define NO_MATERIAL 0xFFFFFFFFu
+#define INSTANCE_IDENTITY 1u     // object_from_world is the identity
+#define INSTANCE_FILTERS 2u      // a shadow ray may pass (some material of it transmits and lets light through)
+#define INSTANCE_TRANSMITS 4u    // some material of it has an interior medium
+
+// 32 bytes: the raw intersection. ng is the geometric normal in object space, outward, not normalised.
+typedef struct Hit {
+  float t, u, v;     // t along the ray; u, v barycentric (triangles) or surface parameters
+  u32 prim;          // TriangleShading index; for a solid the face or part
+  u32 instance;      // NO_INSTANCE: nothing was hit
+  float ng_x, ng_y, ng_z;
+} Hit;
+SUNDOG_SHARED_SIZE(Hit, 32)
+
+// 32 bytes. direction need not be unit length.
+typedef struct Ray {
+  float ox, oy, oz, t_min;
+  float dx, dy, dz, t_max;
+} Ray;
+SUNDOG_SHARED_SIZE(Ray, 32)
+
+SUNDOG_SHARED_END
+#endif

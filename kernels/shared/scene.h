@@ -1,0 +1,100 @@
+// Materials, media, lights, the camera and the frame: the tables that shading reads. Colours are linear RGB.
+#ifndef SUNDOG_SHARED_SCENE_H
+#define SUNDOG_SHARED_SCENE_H
+#include "shared/types.h"
+SUNDOG_SHARED_BEGIN
+
+#define MATERIAL_PHONG 0u       // local terms and constant kr, kt
+#define MATERIAL_DIELECTRIC 1u  // kr, kt from the Fresnel equations; local terms are added when not zero
+
+#define MATERIAL_BLINN 1u          // Blinn's half vector in place of Phong's reflected ray
+#define MATERIAL_SHADOW_OPAQUE 2u  // shadow rays stop here even when the material transmits
+#define MATERIAL_CHECKER 4u        // ambient and diffuse alternate with `checker`
+#define MATERIAL_TRANSMITS 8u      // kt or Fresnel transmission is not zero
+#define MATERIAL_REFLECTS 16u
+#define MATERIAL_THIN 32u          // no interior: transmits straight through and changes no medium
+#define MATERIAL_VERTEX_COLOR 64u  // ambient and diffuse are multiplied by the vertex colour
+#define MATERIAL_FLAT 128u         // shades with the geometric normal
+
+// 112 bytes. Each colour is already multiplied by its coefficient.
+typedef struct Material {
+  float4 ambient;       // ka
+  float4 diffuse;       // kd
+  float4 specular;      // ks; w = exponent
+  float4 reflection;    // kr (a dielectric's tint, normally 1)
+  float4 transmission;  // kt (a dielectric's tint, normally 1)
+  float4 checker;       // rgb the factor on ambient and diffuse in odd cells; w = 1 / cell size (object space)
+  u32 kind;             // MATERIAL_PHONG, MATERIAL_DIELECTRIC
+  u32 flags;
+  u32 medium;           // index of the medium inside the surface
+  u32 pad;
+} Material;
+SUNDOG_SHARED_SIZE(Material, 112)
+
+// 32 bytes. Medium 0 is the world's.
+typedef struct Medium {
+  float4 absorption;  // Beer-Lambert, per unit of world length; w = index of refraction
+  i32 priority;       // the highest wins where solids overlap; equal: the one entered last (Schmidt and Budge 2002)
+  u32 pad0, pad1, pad2;
+} Medium;
+SUNDOG_SHARED_SIZE(Medium, 32)
+
+#define LIGHT_DIRECTIONAL 0u
+#define LIGHT_POINT 1u
+#define LIGHT_SPOT 2u
+
+// 64 bytes. Ambient lights are summed into SceneInfo.ambient.
+typedef struct Light {
+  float4 position;   // world
+  float4 direction;  // unit, the way the light travels; w = cosine of the cone's outer half angle
+  float4 color;      // times intensity; w = cosine of the cone's inner half angle
+  float falloff_constant, falloff_linear, falloff_quadratic;  // intensity / (c + l d + q d^2), d in world units
+  u32 kind;
+} Light;
+SUNDOG_SHARED_SIZE(Light, 64)
+
+// 240 bytes: the scene's constants. The pixel (x, y), y down, sample offset (a, b) in [0, 1)^2, looks along
+// camera_corner + (x + a) camera_dx + (y + b) camera_dy, which has length 1 along camera_forward.
+typedef struct SceneInfo {
+  float4 camera_position;
+  float4 camera_corner;
+  float4 camera_dx;
+  float4 camera_dy;
+  float4 camera_forward;     // unit; w = near clipping depth
+  float4 background_bottom;  // w = far clipping depth (may be infinite)
+  float4 background_top;     // by the image's height: row 0 is top, the last row bottom
+  float4 ambient;            // sum of the ambient lights
+  u32 width, height;
+  u32 tlas_root;             // first node of the scene BVH
+  u32 bounded_count;         // instances in the scene BVH (0: the BVH is empty)
+  u32 instance_count;
+  u32 light_count;
+  u32 material_count, medium_count;
+  u32 max_depth;             // 1 = no secondary rays; the camera's ray has depth 1
+  u32 samples;               // per pixel
+  float cutoff;              // a ray whose greatest throughput component is below it ends
+  u32 camera_inside;         // 1: the camera may be inside a solid with a medium; its media stack must be found
+  float4 scene_center;       // bounding sphere of the bounded instances; w = radius
+  float4 pad1, pad2, pad3;
+} SceneInfo;
+SUNDOG_SHARED_SIZE(SceneInfo, 240)
+
+// Ray counts of a launch, added with integer atomics (any order gives the same sum).
+#define COUNT_PRIMARY 0
+#define COUNT_REFLECTION 1
+#define COUNT_REFRACTION 2
+#define COUNT_SHADOW 3
+#define COUNT_MARCH_STEPS 4
+#define COUNT_PRIMARY_HIT 5
+#define COUNT_CUT_OFF 6             // rays not spawned because of their throughput
+#define COUNT_DEPTH_LIMIT 7         // rays not spawned because of max_depth
+#define COUNT_RAY_STACK_OVERFLOW 8
+#define COUNT_MEDIA_STACK_OVERFLOW 9
+#define COUNT_NON_FINITE 10         // samples dropped
+#define COUNT_STRAY_EXIT 11         // a medium was left that had not been entered (an open mesh)
+#define COUNT_SHADOW_LIMIT 12       // shadow rays given up after too many filters
+#define COUNT_MARCH_LIMIT 13
+#define COUNTERS 16
+
+SUNDOG_SHARED_END
+#endif

@@ -1,0 +1,28 @@
+// The scalar and vector types that host and kernels share: 4-byte scalars and 16-byte vectors only, so that
+// every OpenCL compiler lays the structs of this folder out as the host does (a probe kernel checks it).
+#ifndef SUNDOG_SHARED_TYPES_H
+#define SUNDOG_SHARED_TYPES_H
+
+#ifdef __OPENCL_VERSION__
+typedef uint u32;
+typedef int i32;
+#define SUNDOG_SHARED_BEGIN
+#define SUNDOG_SHARED_END
+#define SUNDOG_SHARED_SIZE(type, bytes)
+#else
+#include <cstdint>
+#define SUNDOG_SHARED_BEGIN namespace sundog {
+#define SUNDOG_SHARED_END }
+#define SUNDOG_SHARED_SIZE(type, bytes) static_assert(sizeof(type) == (bytes), #type " must be " #bytes " bytes");
+namespace sundog {
+using u32 = std::uint32_t;
+using i32 = std::int32_t;
+using u64 = std::uint64_t;
+struct alignas(16) float4 {
+  float x = 0, y = 0, z = 0, w = 0;
+  friend bool operator==(const float4&, const float4&) = default;
+};
+}  // namespace sundog
+#endif
+
+#endif
