@@ -68,8 +68,8 @@ struct MaterialDescription {
   int medium = -1;                       // index into media of what is inside; -1: transmits straight through (thin)
   bool shadow_opaque = false;
   bool checker = false;
-  dvec3 checker_color{0};  // factor on ambient and diffuse in odd cells
-  double checker_size = 1;
+  dvec3 checker_ambient{0}, checker_diffuse{0};  // ka and kd in odd cells, absolute (colour times coefficient)
+  double checker_size = 1;                       // edge of a cell, object space
   bool vertex_color = false;
 };
 

@@ -9,27 +9,28 @@ SUNDOG_SHARED_BEGIN
 
 #define MATERIAL_BLINN 1u          // Blinn's half vector in place of Phong's reflected ray
 #define MATERIAL_SHADOW_OPAQUE 2u  // shadow rays stop here even when the material transmits
-#define MATERIAL_CHECKER 4u        // ambient and diffuse alternate with `checker`
+#define MATERIAL_CHECKER 4u        // ambient and diffuse alternate with checker_ambient and checker_diffuse
 #define MATERIAL_TRANSMITS 8u      // kt or Fresnel transmission is not zero
 #define MATERIAL_REFLECTS 16u
 #define MATERIAL_THIN 32u          // no interior: transmits straight through and changes no medium
 #define MATERIAL_VERTEX_COLOR 64u  // ambient and diffuse are multiplied by the vertex colour
 #define MATERIAL_FLAT 128u         // shades with the geometric normal
 
-// 112 bytes. Each colour is already multiplied by its coefficient.
+// 128 bytes. Each colour is already multiplied by its coefficient.
 typedef struct Material {
   float4 ambient;       // ka
   float4 diffuse;       // kd
   float4 specular;      // ks; w = exponent
   float4 reflection;    // kr (a dielectric's tint, normally 1)
   float4 transmission;  // kt (a dielectric's tint, normally 1)
-  float4 checker;       // rgb the factor on ambient and diffuse in odd cells; w = 1 / cell size (object space)
+  float4 checker_ambient;  // ka in odd cells
+  float4 checker_diffuse;  // kd in odd cells; w = 1 / cell size (object space)
   u32 kind;             // MATERIAL_PHONG, MATERIAL_DIELECTRIC
   u32 flags;
   u32 medium;           // index of the medium inside the surface
   u32 pad;
 } Material;
-SUNDOG_SHARED_SIZE(Material, 112)
+SUNDOG_SHARED_SIZE(Material, 128)
 
 // 32 bytes. Medium 0 is the world's.
 typedef struct Medium {
