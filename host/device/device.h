@@ -17,6 +17,9 @@ namespace sundog {
 /// `-D` definitions, sorted by name: part of the kernel cache's key.
 using KernelDefines = std::map<std::string, std::string>;
 
+/// Kernel text that the host writes (formulas): path as the kernels include it -> text.
+using GeneratedFiles = std::map<std::string, std::string>;
+
 struct BuildReport {
   bool cached = false;
   double seconds = 0;
@@ -78,8 +81,10 @@ class Device {
   const DeviceInfo& info() const { return info_; }
 
   /// Builds `entry` ("entry/whitted.cl", embedded) with `defines`, from the binary cache when it holds it.
+  /// `generated` are further files (path -> text, such as "generated/sdf.cl") that the kernels may include.
   /// Throws BuildError with the compiler's log.
-  Program build(const std::string& entry, const KernelDefines& defines, BuildReport* report = nullptr);
+  Program build(const std::string& entry, const KernelDefines& defines, BuildReport* report = nullptr,
+                const GeneratedFiles& generated = {});
 
   /// A device array with a copy of `values` (never zero bytes: an empty span gives one unused element).
   template <class T>
