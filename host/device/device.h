@@ -1,9 +1,10 @@
 // An opened device: its context and queue, memory, programs and launches. The only folder that knows OpenCL; the types
 // here are thin, and the kernels' argument types are part of the call.
 #pragma once
+#define CL_HPP_MINIMUM_OPENCL_VERSION 120
+#define CL_HPP_TARGET_OPENCL_VERSION 120
 #include <CL/opencl.hpp>
 #include <chrono>
-#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -21,9 +22,10 @@ using KernelDefines = std::map<std::string, std::string>;
 using GeneratedFiles = std::map<std::string, std::string>;
 
 struct BuildReport {
-  bool cached = false;
+  bool cached = false;  // from the binary cache: nothing was compiled
   double seconds = 0;
-  std::string log;
+  std::string log;      // the compiler's, its warnings included
+  std::string note;     // why the binary cache could not be used; empty when it could
 };
 
 /// Global and local size of a launch. The global size is padded to whole work-groups; kernels check their index against the
@@ -34,6 +36,8 @@ struct LaunchSize {
 };
 
 /// Sum of the launches of one kernel on one device. device_ms comes from events and is 0 where the driver gives none.
+/// host_ms is by the host's clock, from the first enqueue of a batch to the end of finish(), shared among the batch's launches
+/// as their event times are (equally where there are none). The local sizes are those of the last launch; 0: the driver's.
 struct KernelTimes {
   std::uint64_t launches = 0;
   double device_ms = 0, host_ms = 0;
@@ -46,29 +50,33 @@ struct Buffer {
   std::size_t count = 0;  // elements of T
 };
 
-class Device;
+struct ProgramRecord;  // what the binary cache must know of a built program (program.h)
 
 /// A kernel whose arguments have the types Args: Buffer<T> for a __global T*, or a plain 4-byte or 16-byte value.
 template <class... Args>
 struct Kernel {
   cl::Kernel kernel;
   std::string name;
+  std::shared_ptr<ProgramRecord> program;
 };
 
 /// A built kernel file. Throws BuildError for a kernel that is not in it.
 class Program {
  public:
   Program() = default;
-  explicit Program(cl::Program program) : program_(std::move(program)) {}
+  explicit Program(std::shared_ptr<ProgramRecord> record) : record_(std::move(record)) {}
   template <class... Args>
   Kernel<Args...> kernel(const std::string& name) const {
-    return {make_kernel(name), name};
+    return {make_kernel(name), name, record_};
   }
 
  private:
   cl::Kernel make_kernel(const std::string& name) const;
-  cl::Program program_;
+  std::shared_ptr<ProgramRecord> record_;
 };
+
+/// The types of a kernel's parameters as its source spells them: {"Ray*", "u32"}.
+std::vector<std::string> argument_types(const cl::Kernel& kernel);
 
 /// Not shared between threads: one host thread a device.
 class Device {
@@ -80,7 +88,7 @@ class Device {
 
   const DeviceInfo& info() const { return info_; }
 
-  /// Builds `entry` ("entry/whitted.cl", embedded) with `defines`, from the binary cache when it holds it.
+  /// Builds `entry` ("entry/whitted.cl", embedded or generated) with `defines`, from the binary cache when it holds it.
   /// `generated` are further files (path -> text, such as "generated/sdf.cl") that the kernels may include.
   /// Throws BuildError with the compiler's log.
   Program build(const std::string& entry, const KernelDefines& defines, BuildReport* report = nullptr,
@@ -109,36 +117,43 @@ class Device {
   template <class... Args>
   cl::Event run(Kernel<Args...>& kernel, const LaunchSize& size, const std::type_identity_t<Args>&... args) {
     cl_uint index = 0;
-    (set_argument(kernel.kernel, index++, args), ...);
-    return enqueue(kernel.kernel, kernel.name, size);
+    (set_argument(kernel.kernel, kernel.name, index++, args), ...);
+    return enqueue(kernel.kernel, kernel.name, kernel.program.get(), size);
   }
 
   /// Waits for all launches so far and adds their times to `times()`.
   void finish();
   const std::map<std::string, KernelTimes>& times() const { return times_; }
 
+  /// Stores in the binary cache what has been compiled since the last call (some drivers compile at the first launch of
+  /// each local size). The destructor does it too. Never throws.
+  void save_programs() noexcept;
+
  private:
   template <class T>
-  void set_argument(cl::Kernel& kernel, cl_uint index, const Buffer<T>& buffer) {
-    check_argument(kernel.setArg(index, buffer.memory), index);
+  void set_argument(cl::Kernel& kernel, const std::string& name, cl_uint index, const Buffer<T>& buffer) {
+    check_argument(kernel.setArg(index, buffer.memory), name, index);
   }
   template <class T>
-  void set_argument(cl::Kernel& kernel, cl_uint index, const T& value) {
+  void set_argument(cl::Kernel& kernel, const std::string& name, cl_uint index, const T& value) {
     static_assert(sizeof(T) == 4 || sizeof(T) == 16, "kernel values are 4-byte scalars or 16-byte vectors");
-    check_argument(kernel.setArg(index, sizeof(T), &value), index);
+    check_argument(kernel.setArg(index, sizeof(T), &value), name, index);
   }
-  static void check_argument(cl_int status, cl_uint index);
+  void check_argument(cl_int status, const std::string& name, cl_uint index) const;
   cl::Buffer allocate(std::size_t bytes, const void* data);
   void write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset);
   void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset);
-  cl::Event enqueue(cl::Kernel& kernel, const std::string& name, const LaunchSize& size);
+  cl::Event enqueue(cl::Kernel& kernel, const std::string& name, ProgramRecord* program, const LaunchSize& size);
 
   DeviceInfo info_;
   cl::Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;
+  cl::Buffer fence_;
   struct Pending;
   std::vector<Pending> pending_;
+  std::chrono::steady_clock::time_point batch_start_;
+  std::vector<std::shared_ptr<ProgramRecord>> programs_;
   std::map<std::string, KernelTimes> times_;
 };
 

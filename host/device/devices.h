@@ -17,12 +17,12 @@ struct DeviceInfo {
   std::string type;  // "cpu", "gpu", "accelerator", "custom"
   unsigned compute_units = 0, clock_mhz = 0, native_vector_width = 0, preferred_vector_width = 0;
   std::uint64_t global_memory = 0, max_allocation = 0, local_memory = 0, cache = 0;
-  std::size_t max_work_group = 0;
+  std::size_t max_work_group = 0, timer_resolution_ns = 0;
   unsigned max_sub_devices = 0;
   bool little_endian = true, compiler_available = true, available = true;
   DeviceClass device_class = DeviceClass::cpu;
   std::string problem;      // empty: usable
-  double estimate = 0;      // relative speed, units * clock * lanes: for the default choice
+  double estimate = 0;      // relative speed (estimate.cpp): for the default choice
   unsigned sub_units = 0;   // not 0: a sub-device of that many compute units was asked for (/N)
   void* handle = nullptr;   // cl_device_id
 
