@@ -74,7 +74,7 @@ SUNDOG_SHARED_SIZE(Vertex, 32)
 #define SHAPE_SDF 9u
 #define SHAPE_COUNT 10u
 
-// 112 bytes. Instances [0, bounded_count) are leaves of the scene BVH in leaf order; the rest are unbounded and
+// 128 bytes. Instances [0, bounded_count) are leaves of the scene BVH in leaf order; the rest are unbounded and
 // are tried one by one. A ray is taken into object space without renormalising, so t is the same in both;
 // a normal goes to world space by the transpose of object_from_world's linear part.
 typedef struct Instance {
@@ -86,9 +86,10 @@ typedef struct Instance {
   u32 flags;     // INSTANCE_*
   u32 object;    // index of the scene object it came from, for AOVs and messages
   u32 pad0, pad1, pad2;
-  float4 world_center;  // of the bounds; w = half the diagonal (0 when unbounded)
+  float4 world_center;   // of the bounds; w = half the diagonal (0 when unbounded)
+  float4 pattern_scale;  // xyz: object space times this is the scene file's object space, where patterns are measured
 } Instance;
-SUNDOG_SHARED_SIZE(Instance, 112)
+SUNDOG_SHARED_SIZE(Instance, 128)
 
 #define NO_MATERIAL 0xFFFFFFFFu
 #define INSTANCE_IDENTITY 1u     // object_from_world is the identity

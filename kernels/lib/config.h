@@ -1,0 +1,70 @@
+// Every constant a kernel is specialised by, with its default. The host's KernelConfig writes the -D options.
+#ifndef SUNDOG_LIB_CONFIG_H
+#define SUNDOG_LIB_CONFIG_H
+
+#pragma OPENCL FP_CONTRACT OFF
+
+// Rays a work-item carries together: TILE_W x TILE_H pixels of the image. 16 on CPU-class devices, 1 on GPU-class ones.
+#ifndef TILE_W
+#define TILE_W 4
+#endif
+#ifndef TILE_H
+#define TILE_H 4
+#endif
+#define BATCH (TILE_W * TILE_H)
+
+// Pending rays of a work-item: enough for a full binary tree of max_depth levels walked BATCH rays at a time.
+#ifndef RAY_STACK
+#define RAY_STACK (BATCH * 9)
+#endif
+// Solids that a ray may be inside of at once.
+#ifndef MEDIA_STACK
+#define MEDIA_STACK 8
+#endif
+// Nodes that wait during a traversal; the host computes what the scene needs.
+#ifndef BVH_STACK
+#define BVH_STACK 128
+#endif
+// Invisible interfaces (overruled by priority) that one ray may cross between two visible ones.
+#ifndef MAX_CROSSINGS
+#define MAX_CROSSINGS 64
+#endif
+
+#ifndef HAS_MESH
+#define HAS_MESH 1
+#endif
+#ifndef HAS_SPHERE
+#define HAS_SPHERE 1
+#endif
+#ifndef HAS_PLANE
+#define HAS_PLANE 1
+#endif
+#ifndef HAS_BOX
+#define HAS_BOX 1
+#endif
+#ifndef HAS_CYLINDER
+#define HAS_CYLINDER 1
+#endif
+#ifndef HAS_CONE
+#define HAS_CONE 1
+#endif
+#ifndef HAS_DISK
+#define HAS_DISK 1
+#endif
+#ifndef HAS_TORUS
+#define HAS_TORUS 1
+#endif
+#ifndef HAS_ROUNDBOX
+#define HAS_ROUNDBOX 1
+#endif
+#ifndef HAS_SECONDARY
+#define HAS_SECONDARY 1
+#endif
+#ifndef HAS_MEDIA
+#define HAS_MEDIA 1
+#endif
+#ifndef HAS_SHADOW_FILTERS
+#define HAS_SHADOW_FILTERS 1
+#endif
+
+#endif
