@@ -63,7 +63,7 @@ typedef struct SceneInfo {
   float4 camera_dy;
   float4 camera_forward;     // unit; w = near clipping depth
   float4 background_bottom;  // w = far clipping depth (may be infinite)
-  float4 background_top;     // by the image's height: row 0 is top, the last row bottom
+  float4 background_top;     // a ray that meets nothing sees bottom..top, linear in the sine of its elevation towards `up`
   float4 ambient;            // sum of the ambient lights
   u32 width, height;
   u32 tlas_root;             // first node of the scene BVH
@@ -76,7 +76,8 @@ typedef struct SceneInfo {
   float cutoff;              // a ray whose greatest throughput component is below it ends
   u32 camera_inside;         // 1: the camera may be inside a solid with a medium; its media stack must be found
   float4 scene_center;       // bounding sphere of the bounded instances; w = radius
-  float4 pad1, pad2, pad3;
+  float4 up;                 // unit: the scene's up
+  float4 pad2, pad3;
 } SceneInfo;
 SUNDOG_SHARED_SIZE(SceneInfo, 240)
 

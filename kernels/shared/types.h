@@ -3,7 +3,7 @@
 #ifndef SUNDOG_SHARED_TYPES_H
 #define SUNDOG_SHARED_TYPES_H
 
-#ifdef __OPENCL_VERSION__
+#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
 typedef uint u32;
 typedef int i32;
 #define SUNDOG_SHARED_BEGIN
