@@ -1,0 +1,57 @@
+// Recipes of generated meshes: reads their parameters and calls the generator of their type.
+#include "scene/procedural/procedural.h"
+
+#include "scene/procedural/ice_block.h"
+
+namespace sundog {
+
+namespace {
+
+IceSurface read_surface(JsonObject& object, IceSurface surface) {
+  surface.size = object.vec3("size", surface.size, {.low = 1e-6, .high = 1e6});
+  surface.chips = object.integer("chips", surface.chips, 0, 1000);
+  surface.dents = object.integer("dents", surface.dents, 0, 1000);
+  surface.softness = object.integer("softness", surface.softness, 0, 4);
+  surface.tilt = object.number("tilt", surface.tilt, {.low = 0, .high = 0.5});
+  surface.roughness = object.number("roughness", surface.roughness, {.low = 0, .high = 0.2});
+  return surface;
+}
+
+IceSurface read_cavity(JsonObject& object, const IceSurface& outer) {
+  // Without a word on it the cavity is like the outside, a little more than half its size.
+  IceSurface cavity = outer;
+  cavity.size *= 0.6;
+  cavity = read_surface(object, cavity);
+  cavity.offset = object.vec3("offset", cavity.offset);
+  return cavity;
+}
+
+Mesh read_ice_block(JsonObject& object) {
+  static constexpr std::string_view types[] = {"ice_block"}, parts[] = {"ice", "liquid"};
+  object.choice("type", "ice_block", types);
+  IceBlock block;
+  block.seed = static_cast<std::uint64_t>(object.integer("seed", 1, 0, 2147483647));
+  block.subdivision = object.integer("subdivision", block.subdivision, 4, 1024);
+  block.outer = read_surface(object, block.outer);
+  if (const auto cavity = object.find("cavity")) {
+    block.hollow = true;
+    block.cavity = cavity->object("generate_ice_cavity",
+                                  [&](JsonObject& inner) { return read_cavity(inner, block.outer); });
+  }
+  if (object.choice("part", "ice", parts) == "ice") return make_ice(block);
+  return make_ice_liquid(block, object.at("level", "the height of the liquid's surface").number());
+}
+
+}  // namespace
+
+Mesh generate_mesh(const JsonValue& recipe) {
+  static constexpr std::string_view types[] = {"ice_block"};
+  recipe.member("type", "a recipe with a \"type\"").choice(types);
+  try {
+    return recipe.object("generate_ice_block", read_ice_block);
+  } catch (const GenerateError& error) {
+    recipe.fail(error.what());
+  }
+}
+
+}  // namespace sundog
