@@ -9,7 +9,7 @@ typedef struct CameraRay {
   float t_min, t_max;
 } CameraRay;
 
-inline CameraRay camera_ray(__global const SceneInfo* restrict info, float x, float y) {
+static inline CameraRay camera_ray(__global const SceneInfo* restrict info, float x, float y) {
   CameraRay ray;
   const float3 along = info->camera_corner.xyz + x * info->camera_dx.xyz + y * info->camera_dy.xyz;
   const float depth_to_t = sqrt(dot(along, along));  // `along` has length 1 along the view
@@ -21,7 +21,7 @@ inline CameraRay camera_ray(__global const SceneInfo* restrict info, float x, fl
 }
 
 // What a ray sees that meets nothing, by its unit direction.
-inline float3 background_along(__global const SceneInfo* restrict info, float3 d) {
+static inline float3 background_along(__global const SceneInfo* restrict info, float3 d) {
   const float s = clamp(0.5f + 0.5f * dot(d, info->up.xyz), 0.0f, 1.0f);
   const float3 bottom = info->background_bottom.xyz, top = info->background_top.xyz;
   return bottom + s * (top - bottom);

@@ -4,7 +4,8 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 
-// Rays a work-item carries together: TILE_W x TILE_H pixels of the image. 16 on CPU-class devices, 1 on GPU-class ones.
+// Rays a work-item carries together: TILE_W x TILE_H pixels of the image. 16 on CPU-class devices, 1 on
+// GPU-class ones.
 #ifndef TILE_W
 #define TILE_W 4
 #endif

@@ -1,5 +1,6 @@
-// The stack of media that travels with a ray. Where solids overlap, the medium of the highest priority is the one light is in; of
-// equal priorities the one entered last (Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced Images").
+// The stack of media that travels with a ray. Where solids overlap, the medium of the highest priority is the
+// one light is in; of equal priorities the one entered last (Schmidt and Budge 2002, "Simple Nested
+// Dielectrics in Ray Traced Images").
 #ifndef SUNDOG_LIB_MEDIA_CL
 #define SUNDOG_LIB_MEDIA_CL
 #include "lib/config.h"
@@ -11,15 +12,16 @@ typedef struct MediaStack {
 } MediaStack;
 
 // Index of the medium that light is in; 0 is the world's.
-inline u32 current_medium(__global const Medium* restrict media, const MediaStack* stack) {
+static inline u32 current_medium(__global const Medium* restrict media, const MediaStack* stack) {
   u32 best = 0;
   for (u32 i = 0; i < stack->count; ++i)
     if (i == 0u || media[stack->medium[i]].priority >= media[best].priority) best = stack->medium[i];
   return best;
 }
 
-// Enters or leaves `medium`. Returns false when that cannot be: the stack is full, or the medium was never entered.
-inline bool cross_boundary(MediaStack* stack, u32 medium, bool entering) {
+// Enters or leaves `medium`. Returns false when that cannot be: the stack is full, or the medium was never
+// entered.
+static inline bool cross_boundary(MediaStack* stack, u32 medium, bool entering) {
   if (entering) {
     if (stack->count == MEDIA_STACK) return false;
     stack->medium[stack->count++] = medium;
@@ -35,7 +37,7 @@ inline bool cross_boundary(MediaStack* stack, u32 medium, bool entering) {
 }
 
 // Beer-Lambert: what is left of light after `distance` in the medium.
-inline float3 absorb(__global const Medium* restrict media, u32 medium, float distance) {
+static inline float3 absorb(__global const Medium* restrict media, u32 medium, float distance) {
   const float3 a = media[medium].absorption.xyz;
   // A colour that is not absorbed keeps its bits, over infinite distances too.
   return (float3)(a.x == 0.0f ? 1.0f : exp(-a.x * distance), a.y == 0.0f ? 1.0f : exp(-a.y * distance),

@@ -4,19 +4,22 @@
 #include "shared/types.h"
 
 // PCG's output permutation on a counter (O'Neill 2014; Jarzynski and Olano 2020).
-inline u32 hash_u32(u32 x) {
+static inline u32 hash_u32(u32 x) {
   const u32 state = x * 747796405u + 2891336453u;
   const u32 word = ((state >> ((state >> 28) + 4u)) ^ state) * 277803737u;
   return (word >> 22) ^ word;
 }
 
-inline u32 hash_pixel(u32 x, u32 y, u32 dimension) { return hash_u32(x + hash_u32(y + hash_u32(dimension))); }
+static inline u32 hash_pixel(u32 x, u32 y, u32 dimension) {
+  return hash_u32(x + hash_u32(y + hash_u32(dimension)));
+}
 
 // [0, 1), 24 bits.
-inline float unit_float(u32 bits) { return (float)(bits >> 8) * 0x1p-24f; }
+static inline float unit_float(u32 bits) { return (float)(bits >> 8) * 0x1p-24f; }
 
-// Offset of a sample in its pixel: the centre for one sample, else a Hammersley set shifted per pixel (Cranley and Patterson 1976).
-inline float2 sample_offset(u32 x, u32 y, u32 sample, u32 samples) {
+// Offset of a sample in its pixel: the centre for one sample, else a Hammersley set shifted per pixel
+// (Cranley and Patterson 1976).
+static inline float2 sample_offset(u32 x, u32 y, u32 sample, u32 samples) {
   if (samples <= 1u) return (float2)(0.5f);
   u32 r = sample;  // radical inverse in base two
   r = (r << 16) | (r >> 16);

@@ -1,5 +1,5 @@
-// The exact solids in object space: nearest t in (t_min, t_max] and the outward normal. One function a shape; add a new shape
-// here, in SHAPE_* and in the host's compile step. Directions need not be unit length.
+// The exact solids in object space: nearest t in (t_min, t_max] and the outward normal. One function a shape;
+// add a new shape here, in SHAPE_* and in the host's compile step. Directions need not be unit length.
 #ifndef SUNDOG_LIB_SOLIDS_CL
 #define SUNDOG_LIB_SOLIDS_CL
 #include "lib/config.h"
@@ -13,7 +13,7 @@ typedef struct SolidHit {
 } SolidHit;
 
 // Takes t as the hit when it is the nearest so far.
-inline bool offer(float t, float3 ng, u32 part, float t_min, float* t_max, SolidHit* hit) {
+static inline bool offer(float t, float3 ng, u32 part, float t_min, float* t_max, SolidHit* hit) {
   if (!(t > t_min && t <= *t_max)) return false;
   *t_max = t;
   hit->t = t;
@@ -22,9 +22,10 @@ inline bool offer(float t, float3 ng, u32 part, float t_min, float* t_max, Solid
   return true;
 }
 
-// Roots of |o + t d|^2 = r^2 in the space of the given vectors (2-D when a component is zero in both), robust where the origin is far
-// off (Haines et al. 2019, Ray Tracing Gems, chapter 7). Returns false when there are none.
-inline bool round_roots(float3 o, float3 d, float r, float2* roots) {
+// Roots of |o + t d|^2 = r^2 in the space of the given vectors (2-D when a component is zero in both), robust
+// where the origin is far off (Haines et al. 2019, Ray Tracing Gems, chapter 7). Returns false when there are
+// none.
+static inline bool round_roots(float3 o, float3 d, float r, float2* roots) {
   const float a = dot(d, d);
   if (!(a > 0.0f)) return false;
   const float b = -dot(o, d);
@@ -39,23 +40,24 @@ inline bool round_roots(float3 o, float3 d, float r, float2* roots) {
 }
 
 #if HAS_SPHERE
-inline void closest_in_sphere(float3 o, float3 d, float t_min, float* t_max, SolidHit* hit) {
+static inline void closest_in_sphere(float3 o, float3 d, float t_min, float* t_max, SolidHit* hit) {
   float2 roots;
   if (!round_roots(o, d, 1.0f, &roots)) return;
-  if (!offer(roots.x, o + roots.x * d, 0u, t_min, t_max, hit)) offer(roots.y, o + roots.y * d, 0u, t_min, t_max, hit);
+  if (!offer(roots.x, o + roots.x * d, 0u, t_min, t_max, hit))
+    offer(roots.y, o + roots.y * d, 0u, t_min, t_max, hit);
 }
 #endif
 
 #if HAS_PLANE
-inline void closest_in_plane(float3 o, float3 d, float t_min, float* t_max, SolidHit* hit) {
+static inline void closest_in_plane(float3 o, float3 d, float t_min, float* t_max, SolidHit* hit) {
   if (d.y != 0.0f) offer(-o.y / d.y, (float3)(0.0f, 1.0f, 0.0f), 0u, t_min, t_max, hit);
 }
 #endif
 
 #if HAS_BOX || HAS_ROUNDBOX
-// Interval in which the line is inside |x| <= h, with the axis of entry and of exit. A direction without a component along an axis
-// is inside it always or never.
-inline bool box_interval(float3 o, float3 d, float3 h, float2* t, u32* axis_in, u32* axis_out) {
+// Interval in which the line is inside |x| <= h, with the axis of entry and of exit. A direction without a
+// component along an axis is inside it always or never.
+static inline bool box_interval(float3 o, float3 d, float3 h, float2* t, u32* axis_in, u32* axis_out) {
   const float oo[3] = {o.x, o.y, o.z}, dd[3] = {d.x, d.y, d.z}, hh[3] = {h.x, h.y, h.z};
   *t = (float2)(-INFINITY, INFINITY);
   *axis_in = 0u;
@@ -79,19 +81,20 @@ inline bool box_interval(float3 o, float3 d, float3 h, float2* t, u32* axis_in, 
   return t->x <= t->y;
 }
 
-inline float3 axis_normal(u32 axis, float side) {
+static inline float3 axis_normal(u32 axis, float side) {
   return (float3)(axis == 0u ? side : 0.0f, axis == 1u ? side : 0.0f, axis == 2u ? side : 0.0f);
 }
 
-inline float component(float3 v, u32 axis) { return axis == 0u ? v.x : axis == 1u ? v.y : v.z; }
+static inline float component(float3 v, u32 axis) { return axis == 0u ? v.x : axis == 1u ? v.y : v.z; }
 #endif
 
 #if HAS_BOX
-inline void closest_in_box(float3 o, float3 d, float t_min, float* t_max, SolidHit* hit) {
+static inline void closest_in_box(float3 o, float3 d, float t_min, float* t_max, SolidHit* hit) {
   float2 t;
   u32 axis_in, axis_out;
   if (!box_interval(o, d, (float3)(1.0f), &t, &axis_in, &axis_out)) return;
-  const float side_in = -copysign(1.0f, component(d, axis_in)), side_out = copysign(1.0f, component(d, axis_out));
+  const float side_in = -copysign(1.0f, component(d, axis_in)),
+              side_out = copysign(1.0f, component(d, axis_out));
   if (!offer(t.x, axis_normal(axis_in, side_in), axis_in, t_min, t_max, hit))
     offer(t.y, axis_normal(axis_out, side_out), axis_out, t_min, t_max, hit);
 }
@@ -99,18 +102,20 @@ inline void closest_in_box(float3 o, float3 d, float t_min, float* t_max, SolidH
 
 #if HAS_DISK || HAS_CYLINDER || HAS_CONE
 // A ring in the plane y = height, inner <= radius <= outer, normal towards `side` of y.
-inline void offer_ring(float3 o, float3 d, float height, float inner, float outer, float side, u32 part, float t_min,
-                       float* t_max, SolidHit* hit) {
+static inline void offer_ring(float3 o, float3 d, float height, float inner, float outer, float side,
+                              u32 part, float t_min, float* t_max, SolidHit* hit) {
   if (d.y == 0.0f) return;
   const float t = (height - o.y) / d.y;
   const float x = fma(t, d.x, o.x), z = fma(t, d.z, o.z);
   const float r2 = fma(x, x, z * z);
-  if (r2 <= outer * outer && r2 >= inner * inner) offer(t, (float3)(0.0f, side, 0.0f), part, t_min, t_max, hit);
+  if (r2 <= outer * outer && r2 >= inner * inner)
+    offer(t, (float3)(0.0f, side, 0.0f), part, t_min, t_max, hit);
 }
 #endif
 
 #if HAS_CYLINDER
-inline void closest_in_cylinder(float4 parameters, float3 o, float3 d, float t_min, float* t_max, SolidHit* hit) {
+static inline void closest_in_cylinder(float4 parameters, float3 o, float3 d, float t_min, float* t_max,
+                                       SolidHit* hit) {
   float2 roots;
   if (round_roots((float3)(o.x, 0.0f, o.z), (float3)(d.x, 0.0f, d.z), 1.0f, &roots)) {
     for (u32 i = 0; i < 2u; ++i) {
@@ -128,7 +133,8 @@ inline void closest_in_cylinder(float4 parameters, float3 o, float3 d, float t_m
 
 #if HAS_CONE
 // The side: x^2 + z^2 = (m + k y)^2 with the mean radius m and slope k, |y| <= 1.
-inline void closest_in_cone(float4 parameters, float3 o, float3 d, float t_min, float* t_max, SolidHit* hit) {
+static inline void closest_in_cone(float4 parameters, float3 o, float3 d, float t_min, float* t_max,
+                                   SolidHit* hit) {
   const float m = 0.5f * (parameters.x + parameters.y), k = 0.5f * (parameters.y - parameters.x);
   // Measured from the point of the ray nearest to the origin, the coefficients keep their digits.
   const float shift = -dot(o, d) / dot(d, d);
@@ -156,8 +162,10 @@ inline void closest_in_cone(float4 parameters, float3 o, float3 d, float t_min, 
 #endif
 
 #if HAS_TORUS
-// (|p|^2 + 1 - r^2)^2 = 4 (x^2 + z^2), major radius 1. All four roots are isolated by the extrema of the quartic.
-inline void closest_in_torus(float4 parameters, float3 o, float3 d, float t_min, float* t_max, SolidHit* hit) {
+// (|p|^2 + 1 - r^2)^2 = 4 (x^2 + z^2), major radius 1. All four roots are isolated by the extrema of the
+// quartic.
+static inline void closest_in_torus(float4 parameters, float3 o, float3 d, float t_min, float* t_max,
+                                    SolidHit* hit) {
   const float r = parameters.x, length_d = sqrt(dot(d, d));
   const float3 e = d / length_d;
   const float shift = -dot(o, e);  // the line's point nearest to the centre, in units of length
@@ -175,10 +183,12 @@ inline void closest_in_torus(float4 parameters, float3 o, float3 d, float t_min,
   for (u32 i = 0; i < count; ++i) {
     float x = roots[i];
     float3 p = s + x * e;
-    for (u32 step = 0; step < 2u; ++step) {  // Newton on the distance itself, which keeps more digits than the quartic
+    for (u32 step = 0; step < 2u;
+         ++step) {  // Newton on the distance itself, which keeps more digits than the quartic
       const float rho = sqrt(fma(p.x, p.x, p.z * p.z));
       const float ring = rho - 1.0f, tube = sqrt(fma(ring, ring, p.y * p.y));
-      const float slope = ((p.x * e.x + p.z * e.z) * (ring / fmax(rho, 1e-12f)) + p.y * e.y) / fmax(tube, 1e-12f);
+      const float slope =
+          ((p.x * e.x + p.z * e.z) * (ring / fmax(rho, 1e-12f)) + p.y * e.y) / fmax(tube, 1e-12f);
       if (fabs(slope) < 0.05f) break;
       x -= (tube - r) / slope;
       p = s + x * e;
@@ -190,9 +200,10 @@ inline void closest_in_torus(float4 parameters, float3 o, float3 d, float t_min,
 #endif
 
 #if HAS_ROUNDBOX
-// A rounded box is convex, and the union of three boxes, twelve cylinders along the edges and eight spheres at the corners: the line
-// is inside from the least entry to the greatest exit of any of them.
-inline void closest_in_roundbox(float4 parameters, float3 o, float3 d, float t_min, float* t_max, SolidHit* hit) {
+// A rounded box is convex, and the union of three boxes, twelve cylinders along the edges and eight spheres
+// at the corners: the line is inside from the least entry to the greatest exit of any of them.
+static inline void closest_in_roundbox(float4 parameters, float3 o, float3 d, float t_min, float* t_max,
+                                       SolidHit* hit) {
   const float3 half_size = parameters.xyz;
   const float r = parameters.w;
   float2 t, span = (float2)(INFINITY, -INFINITY);
@@ -201,15 +212,18 @@ inline void closest_in_roundbox(float4 parameters, float3 o, float3 d, float t_m
   const float3 core = half_size - r;
   for (u32 i = 0; i < 3u; ++i) {
     const float3 slab = core + axis_normal(i, r);
-    if (box_interval(o, d, slab, &t, &axis_in, &axis_out)) span = (float2)(fmin(span.x, t.x), fmax(span.y, t.y));
+    if (box_interval(o, d, slab, &t, &axis_in, &axis_out))
+      span = (float2)(fmin(span.x, t.x), fmax(span.y, t.y));
   }
   for (u32 corner = 0; corner < 8u; ++corner) {
-    const float3 center = (float3)(corner & 1u ? core.x : -core.x, corner & 2u ? core.y : -core.y, corner & 4u ? core.z : -core.z);
+    const float3 center = (float3)(corner & 1u ? core.x : -core.x, corner & 2u ? core.y : -core.y,
+                                   corner & 4u ? core.z : -core.z);
     const float3 c = o - center;
     if (round_roots(c, d, r, &t)) span = (float2)(fmin(span.x, t.x), fmax(span.y, t.y));
     for (u32 axis = 0; axis < 3u; ++axis) {  // each edge once: from the corner on its negative end
       if (corner & (1u << axis)) continue;
-      const float3 keep = (float3)(axis == 0u ? 0.0f : 1.0f, axis == 1u ? 0.0f : 1.0f, axis == 2u ? 0.0f : 1.0f);
+      const float3 keep =
+          (float3)(axis == 0u ? 0.0f : 1.0f, axis == 1u ? 0.0f : 1.0f, axis == 2u ? 0.0f : 1.0f);
       if (!round_roots(c * keep, d * keep, r, &t)) continue;
       const float extent = component(core, axis), oa = component(o, axis), da = component(d, axis);
       if (fabs(fma(t.x, da, oa)) <= extent) span.x = fmin(span.x, t.x);
@@ -226,35 +240,53 @@ inline void closest_in_roundbox(float4 parameters, float3 o, float3 d, float t_m
 }
 #endif
 
-inline bool closest_in_solid(u32 shape, float4 parameters, float3 o, float3 d, float t_min, float t_max, SolidHit* hit) {
+static inline bool closest_in_solid(u32 shape, float4 parameters, float3 o, float3 d, float t_min,
+                                    float t_max, SolidHit* hit) {
   hit->part = NO_PRIM;
   float limit = t_max;
   switch (shape) {
 #if HAS_SPHERE
-    case SHAPE_SPHERE: closest_in_sphere(o, d, t_min, &limit, hit); break;
+    case SHAPE_SPHERE:
+      closest_in_sphere(o, d, t_min, &limit, hit);
+      break;
 #endif
 #if HAS_PLANE
-    case SHAPE_PLANE: closest_in_plane(o, d, t_min, &limit, hit); break;
+    case SHAPE_PLANE:
+      closest_in_plane(o, d, t_min, &limit, hit);
+      break;
 #endif
 #if HAS_BOX
-    case SHAPE_BOX: closest_in_box(o, d, t_min, &limit, hit); break;
+    case SHAPE_BOX:
+      closest_in_box(o, d, t_min, &limit, hit);
+      break;
 #endif
 #if HAS_CYLINDER
-    case SHAPE_CYLINDER: closest_in_cylinder(parameters, o, d, t_min, &limit, hit); break;
+    case SHAPE_CYLINDER:
+      closest_in_cylinder(parameters, o, d, t_min, &limit, hit);
+      break;
 #endif
 #if HAS_CONE
-    case SHAPE_CONE: closest_in_cone(parameters, o, d, t_min, &limit, hit); break;
+    case SHAPE_CONE:
+      closest_in_cone(parameters, o, d, t_min, &limit, hit);
+      break;
 #endif
 #if HAS_DISK
-    case SHAPE_DISK: offer_ring(o, d, 0.0f, parameters.x, 1.0f, 1.0f, 0u, t_min, &limit, hit); break;
+    case SHAPE_DISK:
+      offer_ring(o, d, 0.0f, parameters.x, 1.0f, 1.0f, 0u, t_min, &limit, hit);
+      break;
 #endif
 #if HAS_TORUS
-    case SHAPE_TORUS: closest_in_torus(parameters, o, d, t_min, &limit, hit); break;
+    case SHAPE_TORUS:
+      closest_in_torus(parameters, o, d, t_min, &limit, hit);
+      break;
 #endif
 #if HAS_ROUNDBOX
-    case SHAPE_ROUNDBOX: closest_in_roundbox(parameters, o, d, t_min, &limit, hit); break;
+    case SHAPE_ROUNDBOX:
+      closest_in_roundbox(parameters, o, d, t_min, &limit, hit);
+      break;
 #endif
-    default: break;
+    default:
+      break;
   }
   return hit->part != NO_PRIM;
 }

@@ -1,7 +1,7 @@
-// The CPU-class tracer: one ray through the two-level BVH, eight children or eight triangles an instruction. In: a ray and the
-// tables. Out: the nearest hit, or whether there is any. This file is the narrow interface that shading sees.
-// Slabs are widened to be conservative (Ize 2013), so the nearest hit does not depend on the order of visits; children are
-// visited by a key that packs the entry distance and the slot.
+// The CPU-class tracer: one ray through the two-level BVH, eight children or eight triangles an instruction.
+// In: a ray and the tables. Out: the nearest hit, or whether there is any. This file is the narrow interface
+// that shading sees. Slabs are widened to be conservative (Ize 2013), so the nearest hit does not depend on
+// the order of visits; children are visited by a key that packs the entry distance and the slot.
 #ifndef SUNDOG_LIB_TRAVERSE_CL
 #define SUNDOG_LIB_TRAVERSE_CL
 #include "lib/config.h"
@@ -17,9 +17,9 @@ typedef struct SlabRay {
 } SlabRay;
 
 // A component too small to divide by stands for a slope that never crosses a slab within a float's range.
-inline float safe_reciprocal(float d) { return 1.0f / (fabs(d) < 1e-18f ? copysign(1e-18f, d) : d); }
+static inline float safe_reciprocal(float d) { return 1.0f / (fabs(d) < 1e-18f ? copysign(1e-18f, d) : d); }
 
-inline SlabRay make_slab_ray(float3 o, float3 d) {
+static inline SlabRay make_slab_ray(float3 o, float3 d) {
   SlabRay ray;
   const float3 rcp = (float3)(safe_reciprocal(d.x), safe_reciprocal(d.y), safe_reciprocal(d.z));
   ray.rcp_near = rcp * 0.9999997f;
@@ -36,15 +36,23 @@ inline SlabRay make_slab_ray(float3 o, float3 d) {
   return ray;
 }
 
-// Entry distances of the eight children (as the bits of non-negative floats, which order like integers), and which are crossed.
-inline u32 cross_children(__global const Bvh8Node* node, const SlabRay* ray, float t_min, float t_max, int8* entry) {
+// Entry distances of the eight children (as the bits of non-negative floats, which order like integers), and
+// which are crossed.
+static inline u32 cross_children(__global const Bvh8Node* node, const SlabRay* ray, float t_min, float t_max,
+                                 int8* entry) {
   __global const float* bounds = node->lower_x;
-  const int8 near_x = as_int8(fma(vload8(0, bounds + ray->near_x), (float8)(ray->rcp_near.x), (float8)(ray->shift_near.x)));
-  const int8 near_y = as_int8(fma(vload8(0, bounds + ray->near_y), (float8)(ray->rcp_near.y), (float8)(ray->shift_near.y)));
-  const int8 near_z = as_int8(fma(vload8(0, bounds + ray->near_z), (float8)(ray->rcp_near.z), (float8)(ray->shift_near.z)));
-  const int8 far_x = as_int8(fma(vload8(0, bounds + ray->far_x), (float8)(ray->rcp_far.x), (float8)(ray->shift_far.x)));
-  const int8 far_y = as_int8(fma(vload8(0, bounds + ray->far_y), (float8)(ray->rcp_far.y), (float8)(ray->shift_far.y)));
-  const int8 far_z = as_int8(fma(vload8(0, bounds + ray->far_z), (float8)(ray->rcp_far.z), (float8)(ray->shift_far.z)));
+  const int8 near_x =
+      as_int8(fma(vload8(0, bounds + ray->near_x), (float8)(ray->rcp_near.x), (float8)(ray->shift_near.x)));
+  const int8 near_y =
+      as_int8(fma(vload8(0, bounds + ray->near_y), (float8)(ray->rcp_near.y), (float8)(ray->shift_near.y)));
+  const int8 near_z =
+      as_int8(fma(vload8(0, bounds + ray->near_z), (float8)(ray->rcp_near.z), (float8)(ray->shift_near.z)));
+  const int8 far_x =
+      as_int8(fma(vload8(0, bounds + ray->far_x), (float8)(ray->rcp_far.x), (float8)(ray->shift_far.x)));
+  const int8 far_y =
+      as_int8(fma(vload8(0, bounds + ray->far_y), (float8)(ray->rcp_far.y), (float8)(ray->shift_far.y)));
+  const int8 far_z =
+      as_int8(fma(vload8(0, bounds + ray->far_z), (float8)(ray->rcp_far.z), (float8)(ray->shift_far.z)));
   const int8 near = max(max(near_x, near_y), max(near_z, (int8)(as_int(t_min))));
   const int8 far = min(min(far_x, far_y), min(far_z, (int8)(as_int(t_max))));
   *entry = near;
@@ -53,14 +61,15 @@ inline u32 cross_children(__global const Bvh8Node* node, const SlabRay* ray, flo
 
 #define KEY_SLOT 7
 
-inline void order_pair(u32* a, u32* b) {
+static inline void order_pair(u32* a, u32* b) {
   const u32 low = min(*a, *b), high = max(*a, *b);
   *a = low;
   *b = high;
 }
 
 // Pushes the crossed children, farthest first, and returns the nearest one's word.
-inline u32 push_children(__global const Bvh8Node* node, u32 crossed, int8 entry, u32* stack, float* stack_t, u32* top) {
+static inline u32 push_children(__global const Bvh8Node* node, u32 crossed, int8 entry, u32* stack,
+                                float* stack_t, u32* top) {
   u32 keys[8];
   vstore8((as_uint8(entry) & ~(u32)KEY_SLOT) | (uint8)(0, 1, 2, 3, 4, 5, 6, 7), 0, keys);
   u32 a = keys[lowest_bit(crossed)];
@@ -105,13 +114,14 @@ inline u32 push_children(__global const Bvh8Node* node, u32 crossed, int8 entry,
 
 #if HAS_MESH
 // Nearest hit in one mesh BVH. o, d in object space; the stack is used from *stack on.
-inline void closest_in_mesh(TRACE_PARAMETERS, u32 root, float3 o, float3 d, float t_min, u32 instance, u32* stack,
-                            float* stack_t, Hit* hit) {
+static inline void closest_in_mesh(TRACE_PARAMETERS, u32 root, float3 o, float3 d, float t_min, u32 instance,
+                                   u32* stack, float* stack_t, Hit* hit) {
   const SlabRay slabs = make_slab_ray(o, d);
   u32 top = 0, word = root;
   for (;;) {
     if (word & BVH_LEAF) {
-      const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+      const u32 first = word & BVH_FIRST_MASK,
+                last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
       for (u32 i = first; i <= last; ++i) closest_in_block(blocks + i, o, d, t_min, instance, hit);
     } else {
       int8 entry;
@@ -131,8 +141,8 @@ inline void closest_in_mesh(TRACE_PARAMETERS, u32 root, float3 o, float3 d, floa
 #endif
 
 // Nearest hit with one instance in (t_min, hit->t]; world-space ray.
-inline void closest_in_instance(TRACE_PARAMETERS, u32 index, float3 o, float3 d, float t_min, u32* stack,
-                                float* stack_t, Hit* hit) {
+static inline void closest_in_instance(TRACE_PARAMETERS, u32 index, float3 o, float3 d, float t_min,
+                                       u32* stack, float* stack_t, Hit* hit) {
   __global const Instance* instance = instances + index;
   const float3 oo = object_point(instance, o), dd = object_vector(instance, d);
 #if HAS_MESH
@@ -154,11 +164,11 @@ inline void closest_in_instance(TRACE_PARAMETERS, u32 index, float3 o, float3 d,
   hit->ng_z = solid.ng.z;
 }
 
-inline bool finite3(float3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
+static inline bool finite3(float3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
 
-// The nearest hit in (t_min, t_max]; without one, hit.instance is NO_INSTANCE. With `any` set the search ends at the first hit
-// found. A ray with a component that is not finite, or with no direction, hits nothing.
-inline Hit trace_ray(TRACE_PARAMETERS, float3 o, float3 d, float t_min, float t_max, bool any) {
+// The nearest hit in (t_min, t_max]; without one, hit.instance is NO_INSTANCE. With `any` set the search ends
+// at the first hit found. A ray with a component that is not finite, or with no direction, hits nothing.
+static inline Hit trace_ray(TRACE_PARAMETERS, float3 o, float3 d, float t_min, float t_max, bool any) {
   Hit hit = {t_max, 0.0f, 0.0f, NO_PRIM, NO_INSTANCE, 0.0f, 0.0f, 0.0f};
   if (!(finite3(o) && finite3(d) && t_max > t_min && (d.x != 0.0f || d.y != 0.0f || d.z != 0.0f))) return hit;
 #if HAS_PLANE

@@ -1,12 +1,13 @@
-// Eight triangles against one ray (Moeller and Trumbore 1997): no division before a hit, and tests against zero that are
-// free of scale. The result does not depend on the order in which blocks are visited: equal t goes to the lower index.
+// Eight triangles against one ray (Moeller and Trumbore 1997): no division before a hit, and tests against
+// zero that are free of scale. The result does not depend on the order in which blocks are visited: equal t
+// goes to the lower index.
 #ifndef SUNDOG_LIB_TRIANGLES_CL
 #define SUNDOG_LIB_TRIANGLES_CL
 #include "lib/config.h"
 #include "shared/bvh.h"
 
 // Bit i of the result is lane i's sign bit.
-inline u32 lane_mask(int8 lanes) {
+static inline u32 lane_mask(int8 lanes) {
 #if defined(__AVX__) && !defined(SUNDOG_PORTABLE)
   return (u32)__builtin_ia32_movmskps256(as_float8(lanes));
 #else
@@ -16,7 +17,7 @@ inline u32 lane_mask(int8 lanes) {
 #endif
 }
 
-inline u32 lowest_bit(u32 mask) { return 31u - clz(mask & (0u - mask)); }
+static inline u32 lowest_bit(u32 mask) { return 31u - clz(mask & (0u - mask)); }
 
 // What the eight lanes have in common with the hit test: sign-corrected, not divided by |det|.
 typedef struct BlockTest {
@@ -24,7 +25,8 @@ typedef struct BlockTest {
   int8 hit;
 } BlockTest;
 
-inline BlockTest test_block(__global const TriangleBlock* block, float3 o, float3 d, float t_min, float t_max) {
+static inline BlockTest test_block(__global const TriangleBlock* block, float3 o, float3 d, float t_min,
+                                   float t_max) {
   const float8 e1_x = vload8(0, block->e1_x), e1_y = vload8(0, block->e1_y), e1_z = vload8(0, block->e1_z);
   const float8 e2_x = vload8(0, block->e2_x), e2_y = vload8(0, block->e2_y), e2_z = vload8(0, block->e2_z);
   const float8 s_x = o.x - vload8(0, block->v0_x), s_y = o.y - vload8(0, block->v0_y),
@@ -47,8 +49,8 @@ inline BlockTest test_block(__global const TriangleBlock* block, float3 o, float
 }
 
 // Nearest hit of the block in (t_min, hit->t]; updates *hit, of which instance must be set for a hit so far.
-inline void closest_in_block(__global const TriangleBlock* block, float3 o, float3 d, float t_min, u32 instance,
-                             Hit* hit) {
+static inline void closest_in_block(__global const TriangleBlock* block, float3 o, float3 d, float t_min,
+                                    u32 instance, Hit* hit) {
   const BlockTest test = test_block(block, o, d, t_min, hit->t);
   u32 lanes = lane_mask(test.hit);
   if (!lanes) return;
@@ -61,8 +63,9 @@ inline void closest_in_block(__global const TriangleBlock* block, float3 o, floa
     const u32 i = lowest_bit(lanes);
     lanes &= lanes - 1u;
     const u32 prim = block->prim[i];
-    const bool nearer = t[i] < hit->t || (t[i] == hit->t && (hit->instance == NO_INSTANCE || instance < hit->instance ||
-                                                              (instance == hit->instance && prim < hit->prim)));
+    const bool nearer =
+        t[i] < hit->t || (t[i] == hit->t && (hit->instance == NO_INSTANCE || instance < hit->instance ||
+                                             (instance == hit->instance && prim < hit->prim)));
     if (!(nearer && t[i] > t_min)) continue;
     hit->t = t[i];
     hit->u = u[i] / det[i];
