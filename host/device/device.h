@@ -1,10 +1,10 @@
-// An opened device: its context and queue, memory, programs and launches. The only folder that knows OpenCL; the types
-// here are thin, and the kernels' argument types are part of the call.
+// An opened device: its context and queue, memory, programs and launches. The only folder that knows OpenCL;
+// the types here are thin, and the kernels' argument types are part of the call.
 #pragma once
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120
 #define CL_HPP_TARGET_OPENCL_VERSION 120
-#include <CL/opencl.hpp>
 #include <chrono>
+#include <CL/opencl.hpp>
 #include <map>
 #include <memory>
 #include <span>
@@ -24,20 +24,21 @@ using GeneratedFiles = std::map<std::string, std::string>;
 struct BuildReport {
   bool cached = false;  // from the binary cache: nothing was compiled
   double seconds = 0;
-  std::string log;      // the compiler's, its warnings included
-  std::string note;     // why the binary cache could not be used; empty when it could
+  std::string log;   // the compiler's, its warnings included
+  std::string note;  // why the binary cache could not be used; empty when it could
 };
 
-/// Global and local size of a launch. The global size is padded to whole work-groups; kernels check their index against the
-/// count they are given. local = {0, 0}: the driver's own choice.
+/// Global and local size of a launch. The global size is padded to whole work-groups; kernels check their
+/// index against the count they are given. local = {0, 0}: the driver's own choice.
 struct LaunchSize {
   std::size_t x = 1, y = 1;
   std::size_t local_x = 64, local_y = 1;
 };
 
-/// Sum of the launches of one kernel on one device. device_ms comes from events and is 0 where the driver gives none.
-/// host_ms is by the host's clock, from the first enqueue of a batch to the end of finish(), shared among the batch's launches
-/// as their event times are (equally where there are none). The local sizes are those of the last launch; 0: the driver's.
+/// Sum of the launches of one kernel on one device. device_ms comes from events and is 0 where the driver
+/// gives none. host_ms is by the host's clock, from the first enqueue of a batch to the end of finish(),
+/// shared among the batch's launches as their event times are (equally where there are none). The local sizes
+/// are those of the last launch; 0: the driver's.
 struct KernelTimes {
   std::uint64_t launches = 0;
   double device_ms = 0, host_ms = 0;
@@ -52,7 +53,8 @@ struct Buffer {
 
 struct ProgramRecord;  // what the binary cache must know of a built program (program.h)
 
-/// A kernel whose arguments have the types Args: Buffer<T> for a __global T*, or a plain 4-byte or 16-byte value.
+/// A kernel whose arguments have the types Args: Buffer<T> for a __global T*, or a plain 4-byte or 16-byte
+/// value.
 template <class... Args>
 struct Kernel {
   cl::Kernel kernel;
@@ -88,9 +90,9 @@ class Device {
 
   const DeviceInfo& info() const { return info_; }
 
-  /// Builds `entry` ("entry/whitted.cl", embedded or generated) with `defines`, from the binary cache when it holds it.
-  /// `generated` are further files (path -> text, such as "generated/sdf.cl") that the kernels may include.
-  /// Throws BuildError with the compiler's log.
+  /// Builds `entry` ("entry/whitted.cl", embedded or generated) with `defines`, from the binary cache when it
+  /// holds it. `generated` are further files (path -> text, such as "generated/sdf.cl") that the kernels may
+  /// include. Throws BuildError with the compiler's log.
   Program build(const std::string& entry, const KernelDefines& defines, BuildReport* report = nullptr,
                 const GeneratedFiles& generated = {});
 
@@ -125,8 +127,8 @@ class Device {
   void finish();
   const std::map<std::string, KernelTimes>& times() const { return times_; }
 
-  /// Stores in the binary cache what has been compiled since the last call (some drivers compile at the first launch of
-  /// each local size). The destructor does it too. Never throws.
+  /// Stores in the binary cache what has been compiled since the last call (some drivers compile at the first
+  /// launch of each local size). The destructor does it too. Never throws.
   void save_programs() noexcept;
 
  private:
@@ -143,7 +145,8 @@ class Device {
   cl::Buffer allocate(std::size_t bytes, const void* data);
   void write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset);
   void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset);
-  cl::Event enqueue(cl::Kernel& kernel, const std::string& name, ProgramRecord* program, const LaunchSize& size);
+  cl::Event enqueue(cl::Kernel& kernel, const std::string& name, ProgramRecord* program,
+                    const LaunchSize& size);
 
   DeviceInfo info_;
   cl::Device device_;

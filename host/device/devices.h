@@ -10,7 +10,8 @@ namespace sundog {
 /// How a device wants to be fed (design: by what it reports, never by its name).
 enum class DeviceClass { cpu, gpu };  // explicit vectors in a work-item; one ray a lane
 
-/// What one device reports. A row exists for every device, and for every platform that has none (device = -1).
+/// What one device reports. A row exists for every device, and for every platform that has none (device =
+/// -1).
 struct DeviceInfo {
   int platform = 0, device = -1;  // as `clinfo -l` prints them
   std::string platform_name, platform_version, name, vendor, driver, version, c_version, extensions;
@@ -19,12 +20,12 @@ struct DeviceInfo {
   std::uint64_t global_memory = 0, max_allocation = 0, local_memory = 0, cache = 0;
   std::size_t max_work_group = 0, timer_resolution_ns = 0;
   unsigned max_sub_devices = 0;
-  bool little_endian = true, compiler_available = true, available = true;
+  bool little_endian = true, compiler_available = true, available = true, host_unified_memory = false;
   DeviceClass device_class = DeviceClass::cpu;
-  std::string problem;      // empty: usable
-  double estimate = 0;      // relative speed (estimate.cpp): for the default choice
-  unsigned sub_units = 0;   // not 0: a sub-device of that many compute units was asked for (/N)
-  void* handle = nullptr;   // cl_device_id
+  std::string problem;     // empty: usable
+  double estimate = 0;     // relative speed (estimate.cpp): for the default choice
+  unsigned sub_units = 0;  // not 0: a sub-device of that many compute units was asked for (/N)
+  void* handle = nullptr;  // cl_device_id
 
   bool usable() const { return problem.empty() && device >= 0; }
   /// "0:1 Portable Computing Language / pthread-...".
@@ -34,9 +35,11 @@ struct DeviceInfo {
 /// Every platform and device, each failure a row with its `problem`; never throws for one driver.
 std::vector<DeviceInfo> enumerate_devices();
 
-/// The devices that `specs` mean, in the order first matched, without doubles. No specs: the usable device with the greatest
-/// estimate. Grammar: P:D | cpu | gpu | accelerator | all | part of "platform/device" (any case) | !SPEC, each with /N.
-/// Throws DeviceError with the list of candidates when nothing matches, UsageError for a malformed SPEC.
-std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all, const std::vector<std::string>& specs);
+/// The devices that `specs` mean, in the order first matched, without doubles. No specs: the usable device
+/// with the greatest estimate. Grammar: P:D | cpu | gpu | accelerator | all | part of "platform/device" (any
+/// case) | !SPEC, each with /N. Throws DeviceError with the list of candidates when nothing matches,
+/// UsageError for a malformed SPEC.
+std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all,
+                                       const std::vector<std::string>& specs);
 
 }  // namespace sundog

@@ -7,8 +7,10 @@
 #include <cstdio>
 
 #include "assets.h"
+#include "devices.h"
 
 int main(int argc, char** argv) {
+  prepare_opencl_environment();
   if (const auto assets = assets_directory(); assets.empty())
     std::printf("no test assets (SUNDOG_ASSETS or ../shared/assets): the tests of real models did without\n");
   return Catch::Session().run(argc, argv);

@@ -1,0 +1,15 @@
+// OpenCL's status codes by name, and the one way a failed call becomes a DeviceError.
+#pragma once
+#include <string>
+
+namespace sundog {
+
+struct DeviceInfo;
+
+/// "CL_OUT_OF_RESOURCES"; "OpenCL status -9999" for a code that no header names.
+std::string cl_status_name(int status);
+
+/// Throws DeviceError "0:1 platform / device: WHAT: CL_OUT_OF_RESOURCES" unless `status` is CL_SUCCESS.
+void check_cl(int status, const DeviceInfo& device, const std::string& what);
+
+}  // namespace sundog

@@ -1,0 +1,178 @@
+// Opening a device, its memory, launches and their times.
+#include "device/device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "device/cl_status.h"
+#include "device/kernel_source.h"
+#include "device/program.h"
+
+namespace sundog {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds(Clock::duration time) { return std::chrono::duration<double, std::milli>(time).count(); }
+
+std::size_t padded(std::size_t size, std::size_t local) {
+  return local ? (size + local - 1) / local * local : size;
+}
+
+/// One part of `units` compute units; the other parts are released.
+cl::Device sub_device(cl::Device parent, const DeviceInfo& info) {
+  // Asked first: a driver that cannot split may crash in clCreateSubDevices (rusticl 22.3.6 does).
+  if (info.max_sub_devices == 0)
+    throw DeviceError(fmt::format("{}: cannot be split: drop the /{}", info.label(), info.sub_units));
+  const auto units = static_cast<cl_device_partition_property>(info.sub_units);
+  const auto kinds = parent.getInfo<CL_DEVICE_PARTITION_PROPERTIES>();
+  const bool by_counts =
+      std::ranges::count(kinds, cl_device_partition_property{CL_DEVICE_PARTITION_BY_COUNTS}) > 0;
+  const cl_device_partition_property counts[] = {CL_DEVICE_PARTITION_BY_COUNTS, units,
+                                                 CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
+  const cl_device_partition_property equally[] = {CL_DEVICE_PARTITION_EQUALLY, units, 0};
+  std::vector<cl::Device> parts;
+  check_cl(parent.createSubDevices(by_counts ? counts : equally, &parts), info,
+           fmt::format("clCreateSubDevices for {} compute units", info.sub_units));
+  return parts.at(0);
+}
+
+/// An event's time on the device; 0 where the driver does not measure.
+double event_ms(const cl::Event& event) {
+  cl_int started = CL_SUCCESS, ended = CL_SUCCESS;
+  const cl_ulong start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>(&started);
+  const cl_ulong end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>(&ended);
+  if (started != CL_SUCCESS || ended != CL_SUCCESS || end <= start) return 0;
+  return static_cast<double>(end - start) * 1e-6;
+}
+
+}  // namespace
+
+struct Device::Pending {
+  cl::Event event;
+  std::string name;
+  LaunchSize size;
+};
+
+Device::Device(DeviceInfo info) : info_(std::move(info)) {
+  if (!info_.usable()) throw DeviceError(fmt::format("{}: {}", info_.label(), info_.problem));
+  device_ = cl::Device(static_cast<cl_device_id>(info_.handle), true);
+  if (info_.sub_units > 0) device_ = sub_device(device_, info_);
+  cl_int status = CL_SUCCESS;
+  context_ = cl::Context(device_, nullptr, nullptr, nullptr, &status);
+  check_cl(status, info_, "clCreateContext");
+  queue_ = cl::CommandQueue(context_, device_, CL_QUEUE_PROFILING_ENABLE, &status);
+  check_cl(status, info_, "clCreateCommandQueue");
+  fence_ = allocate(4, "\0\0\0");
+}
+
+Device::Device(Device&&) noexcept = default;
+
+Device::~Device() { save_programs(); }
+
+Program Device::build(const std::string& entry, const KernelDefines& defines, BuildReport* report,
+                      const GeneratedFiles& generated) {
+  const auto start = Clock::now();
+  BuildReport own;
+  BuildReport& result = report ? *report : own;
+  result = {};
+  const std::string source = expand_kernel(entry, defines, generated);
+  programs_.push_back(build_program(context_, device_, info_, entry, source, result));
+  result.seconds = milliseconds(Clock::now() - start) * 1e-3;
+  return Program(programs_.back());
+}
+
+void Device::save_programs() noexcept {
+  for (const auto& program : programs_) {
+    try {
+      save_program(*program);
+    } catch (const std::exception&) {
+      program->cache_file.clear();  // the cache only saves time: without it everything works
+    }
+  }
+}
+
+void Device::check_argument(cl_int status, const std::string& name, cl_uint index) const {
+  if (status != CL_SUCCESS) check_cl(status, info_, fmt::format("argument {} of kernel {}", index, name));
+}
+
+cl::Buffer Device::allocate(std::size_t bytes, const void* data) {
+  constexpr std::size_t unused = 16;  // OpenCL has no empty buffers
+  if (bytes > info_.max_allocation)
+    check_cl(CL_MEM_OBJECT_ALLOCATION_FAILURE, info_,
+             fmt::format("a buffer of {} bytes where {} is the limit", bytes, info_.max_allocation));
+  cl_int status = CL_SUCCESS;
+  const bool copy = bytes > 0 && data;
+  cl::Buffer buffer(context_, CL_MEM_READ_WRITE | (copy ? CL_MEM_COPY_HOST_PTR : 0u), std::max(bytes, unused),
+                    copy ? const_cast<void*>(data) : nullptr, &status);
+  check_cl(status, info_, fmt::format("a buffer of {} bytes", bytes));
+  return buffer;
+}
+
+void Device::write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset) {
+  if (bytes == 0) return;
+  check_cl(queue_.enqueueWriteBuffer(buffer, CL_TRUE, offset, bytes, data), info_, "clEnqueueWriteBuffer");
+}
+
+void Device::read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset) {
+  if (bytes == 0) return;
+  check_cl(queue_.enqueueReadBuffer(buffer, CL_TRUE, offset, bytes, data), info_, "clEnqueueReadBuffer");
+}
+
+cl::Event Device::enqueue(cl::Kernel& kernel, const std::string& name, ProgramRecord* program,
+                          const LaunchSize& size) {
+  cl::Event event;
+  if (size.x == 0 || size.y == 0) return event;
+  const bool driver_chooses = size.local_x == 0;
+  const LaunchSize grid{padded(size.x, size.local_x), driver_chooses ? size.y : padded(size.y, size.local_y),
+                        size.local_x, size.local_y};
+  const bool flat = grid.y == 1 && size.local_y <= 1;
+  const cl::NDRange global = flat ? cl::NDRange(grid.x) : cl::NDRange(grid.x, grid.y);
+  const cl::NDRange local = driver_chooses ? cl::NullRange
+                            : flat         ? cl::NDRange(size.local_x)
+                                           : cl::NDRange(size.local_x, size.local_y);
+  if (pending_.empty()) batch_start_ = Clock::now();
+  const cl_int status = queue_.enqueueNDRangeKernel(kernel, cl::NullRange, global, local, nullptr, &event);
+  if (status != CL_SUCCESS)
+    check_cl(status, info_,
+             fmt::format("launch of {} over {}x{} in groups of {}x{}", name, grid.x, grid.y, size.local_x,
+                         size.local_y));
+  check_cl(queue_.flush(), info_, "clFlush");
+  pending_.push_back({event, name, size});
+  // PoCL compiles a kernel once for each local size, and once more for grids below 65536 (its "smallgrid"
+  // variant).
+  const char* extent = std::max(grid.x, grid.y) < 65536 ? "small" : "large";
+  if (program)
+    program->launched_variants.insert(fmt::format("{} {}x{} {}", name, size.local_x, size.local_y, extent));
+  return event;
+}
+
+void Device::finish() {
+  if (pending_.empty()) return;
+  const std::vector<Pending> batch = std::exchange(pending_, {});
+  char ignored[4];
+  // Not clFinish: rusticl's returns early. The queue is in order, so this read comes after every launch.
+  read_bytes(fence_, ignored, sizeof ignored, 0);
+  const double host_ms = milliseconds(Clock::now() - batch_start_);
+  std::vector<double> device_ms;
+  double total_ms = 0;
+  for (const Pending& launch : batch) {
+    const cl_int status = launch.event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>();
+    if (status < 0) check_cl(status, info_, fmt::format("kernel {}", launch.name));
+    device_ms.push_back(event_ms(launch.event));
+    total_ms += device_ms.back();
+  }
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    const double share = total_ms > 0 ? device_ms[i] / total_ms : 1.0 / static_cast<double>(batch.size());
+    KernelTimes& times = times_[batch[i].name];
+    ++times.launches;
+    times.device_ms += device_ms[i];
+    times.host_ms += host_ms * share;
+    times.local_x = batch[i].size.local_x;
+    times.local_y = batch[i].size.local_y;
+  }
+}
+
+}  // namespace sundog

@@ -1,0 +1,149 @@
+// Building: from the binary cache where it can be trusted, else by the driver's compiler.
+#include "device/program.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "device/cl_status.h"
+#include "device/program_cache.h"
+
+namespace sundog {
+namespace {
+
+// Argument information is asked for always, so that the tests check the very program that renders.
+constexpr const char* build_options = "-cl-std=CL1.2 -cl-kernel-arg-info";
+
+/// Everything that may change what the compiler makes. PoCL reads the named variables when it compiles.
+std::string program_key(const DeviceInfo& info, const std::string& source) {
+  std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n", info.platform_name, info.platform_version,
+                                info.name, info.driver, info.version, build_options);
+  for (const char* name :
+       {"POCL_EXTRA_BUILD_FLAGS", "POCL_WORK_GROUP_METHOD", "POCL_WORK_GROUP_SPECIALIZATION"}) {
+    const char* value = std::getenv(name);
+    key += fmt::format("{}={}\n", name, value ? value : "");
+  }
+  return key + source;
+}
+
+/// SUNDOG_DUMP_KERNELS=folder keeps each program's final text there.
+void dump_source(const std::string& entry, const std::string& source) {
+  const char* folder = std::getenv("SUNDOG_DUMP_KERNELS");
+  if (!folder || !*folder) return;
+  std::filesystem::create_directories(folder);
+  const std::string stem = std::filesystem::path(entry).stem().string();
+  write_file(std::filesystem::path(folder) / fmt::format("{}-{:.8}.cl", stem, hash128(source)), source);
+}
+
+std::string build_log(const cl::Program& program, const cl::Device& device) {
+  std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
+  while (!log.empty() && (log.back() == '\0' || log.back() == '\n')) log.pop_back();
+  return log;
+}
+
+/// The log's first line that speaks of an error, else its first line.
+std::string first_error(const std::string& log) {
+  std::istringstream in(log);
+  std::string first;
+  for (std::string line; std::getline(in, line);) {
+    if (line.find("error") != std::string::npos) return line;
+    if (first.empty()) first = line;
+  }
+  return first.empty() ? "the compiler gave no reason" : first;
+}
+
+/// The program of a cached binary; null when the driver will not have it.
+cl::Program program_from_binary(const cl::Context& context, const cl::Device& device,
+                                const std::string& binary) {
+  const cl::Program::Binaries binaries{{binary.begin(), binary.end()}};
+  std::vector<cl_int> statuses;
+  cl_int status = CL_SUCCESS;
+  cl::Program program(context, {device}, binaries, &statuses, &status);
+  if (status != CL_SUCCESS || std::ranges::any_of(statuses, [](cl_int s) { return s != CL_SUCCESS; }))
+    return {};
+  return program.build({device}, build_options) == CL_SUCCESS ? program : cl::Program();
+}
+
+void compile(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
+             const std::string& source, BuildReport& report) {
+  cl_int status = CL_SUCCESS;
+  record.program = cl::Program(context, source, false, &status);
+  check_cl(status, record.device, fmt::format("{}: clCreateProgramWithSource", record.entry));
+  status = record.program.build({device}, build_options);
+  report.log = build_log(record.program, device);
+  if (status == CL_SUCCESS) return;
+  if (status != CL_BUILD_PROGRAM_FAILURE && report.log.empty())
+    check_cl(status, record.device, fmt::format("{}: clBuildProgram", record.entry));
+  throw BuildError(
+      fmt::format("{} did not build on {}: {}", record.entry, record.device.label(), first_error(report.log)),
+      report.log);
+}
+
+}  // namespace
+
+std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const cl::Device& device,
+                                             const DeviceInfo& info, const std::string& entry,
+                                             const std::string& source, BuildReport& report) {
+  dump_source(entry, source);
+  auto record = std::make_shared<ProgramRecord>();
+  record->device = info;
+  record->entry = entry;
+  record->key = program_key(info, source);
+  record->cache_file = program_cache_file(record->key);
+  if (const auto cached = load_program(record->cache_file, record->key)) {
+    record->program = program_from_binary(context, device, cached->binary);
+    if (record->program()) {
+      report.cached = true;
+      record->stored = true;
+      record->stored_variants = cached->variants;
+      return record;
+    }
+    report.note = fmt::format("{}: the driver refused the cached binary", record->cache_file.string());
+  }
+  compile(*record, context, device, source, report);
+  return record;
+}
+
+void save_program(ProgramRecord& record) {
+  const bool complete = std::ranges::includes(record.stored_variants, record.launched_variants);
+  if (record.cache_file.empty() || (record.stored && complete)) return;
+  cl_int status = CL_SUCCESS;
+  const auto binaries = record.program.getInfo<CL_PROGRAM_BINARIES>(&status);
+  check_cl(status, record.device, fmt::format("{}: CL_PROGRAM_BINARIES", record.entry));
+  if (binaries.empty() || binaries.front().empty()) return;
+  record.stored_variants.insert(record.launched_variants.begin(), record.launched_variants.end());
+  store_program(record.cache_file, record.key,
+                {{binaries.front().begin(), binaries.front().end()}, record.stored_variants});
+  record.stored = true;
+}
+
+cl::Kernel Program::make_kernel(const std::string& name) const {
+  cl_int status = CL_INVALID_PROGRAM;
+  if (record_) {
+    cl::Kernel kernel(record_->program, name.c_str(), &status);
+    if (status == CL_SUCCESS) return kernel;
+  }
+  throw BuildError(fmt::format("{} has no kernel {}: {}", record_ ? record_->entry : "an empty program", name,
+                               cl_status_name(status)),
+                   "");
+}
+
+std::vector<std::string> argument_types(const cl::Kernel& kernel) {
+  std::vector<std::string> types;
+  for (cl_uint i = 0; i < kernel.getInfo<CL_KERNEL_NUM_ARGS>(); ++i) {
+    cl_int status = CL_SUCCESS;
+    std::string type = kernel.getArgInfo<CL_KERNEL_ARG_TYPE_NAME>(i, &status);
+    if (status != CL_SUCCESS)
+      throw DeviceError(fmt::format("CL_KERNEL_ARG_TYPE_NAME of argument {}: {}", i, cl_status_name(status)),
+                        status);
+    while (!type.empty() && type.back() == '\0') type.pop_back();
+    types.push_back(std::move(type));
+  }
+  return types;
+}
+
+}  // namespace sundog

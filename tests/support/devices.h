@@ -1,0 +1,39 @@
+// The devices that tests run on, and a short way to run a device function there.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/device.h"
+#include "shared/types.h"
+
+/// Sets RUSTICL_ENABLE=llvmpipe unless it is set, so that a second implementation is tested where Mesa is
+/// installed. To be called before the first OpenCL call.
+void prepare_opencl_environment();
+
+/// Every usable device, or those of SUNDOG_TEST_DEVICES (a comma-separated list of --device SPECs). Fails the
+/// test when there is none. For use as
+///     for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) { Device device(info); ...
+///     }
+const std::vector<sundog::DeviceInfo>& test_devices();
+
+/// Builds kernels from text, which may `#include "lib/..."` and `"shared/..."`.
+sundog::Program build_text(sundog::Device& device, const std::string& text,
+                           const sundog::KernelDefines& defines = {});
+
+/// Runs `kernel void run(global const In* in, global Out* out, u32 count)` of `text` over `inputs`, one
+/// work-item an input.
+template <class Out, class In>
+std::vector<Out> run_text(sundog::Device& device, const std::string& text, const std::vector<In>& inputs,
+                          const sundog::KernelDefines& defines = {}) {
+  const auto count = static_cast<sundog::u32>(inputs.size());
+  auto kernel =
+      build_text(device, text, defines).kernel<sundog::Buffer<In>, sundog::Buffer<Out>, sundog::u32>("run");
+  const auto in = device.upload<In>(inputs);
+  const auto out = device.make<Out>(inputs.size());
+  device.run(kernel, {.x = inputs.size()}, in, out, count);
+  std::vector<Out> outputs(inputs.size());
+  device.read(out, std::span<Out>(outputs));
+  device.finish();
+  return outputs;
+}
