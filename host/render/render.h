@@ -31,7 +31,6 @@ struct RenderOptions {
   int tile = 0;                   // tile edge in pixels, rounded up to a multiple of 4; 0: chosen
   std::vector<std::string> aovs;  // of aov_names()
   std::filesystem::path resume;   // checkpoint: read when it exists, written on interrupt, removed at the end
-  std::uint64_t scene_hash = 0;   // identifies scene and settings in the checkpoint
   std::function<void(const RenderProgress&)> on_progress;  // called by one thread at a time
   const std::atomic<bool>* stop = nullptr;                 // set: finish what runs, return what there is
 };
@@ -56,7 +55,7 @@ struct RenderTimes {
 };
 
 struct RenderResult {
-  Image image;     // linear RGBA; alpha is coverage: 0 where only background was seen or nothing was rendered
+  Image image;  // linear RGBA; alpha is coverage: 0 where only background was seen or nothing was rendered
   AovImages aovs;
   bool complete = true;  // false: stopped before the end
   RayCounts counts{};
@@ -67,8 +66,9 @@ struct RenderResult {
 /// The AOVs `render` can make: depth, normal, position, albedo, object, material.
 const std::vector<std::string>& aov_names();
 
-/// Renders on all `devices` at once. Throws DeviceError when every device failed, BuildError when the kernels build on none,
-/// IoError for an unreadable checkpoint, UsageError for a checkpoint of another scene or unknown AOVs.
+/// Renders on all `devices` at once. Throws DeviceError when every device failed, BuildError when the kernels
+/// build on none, IoError for an unreadable checkpoint, UsageError for a checkpoint of another scene or
+/// unknown AOVs.
 RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options = {});
 

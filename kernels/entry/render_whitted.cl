@@ -24,7 +24,7 @@ static inline u32 lane_pixel(u32 item, u32 lane, u32 x0, u32 y0, u32 width, u32 
 __kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const u32* restrict camera_media,
                              __global float4* restrict film, __global float* restrict weights,
                              __global u32* restrict counters, u32 x0, u32 y0, u32 width, u32 height,
-                             u32 item_count, u32 first_sample, u32 sample_count) {
+                             u32 item_count, u32 film_first, u32 first_sample, u32 sample_count) {
   const u32 item = get_global_id(0);
   if (item >= item_count) return;
   u32 counts[COUNTERS];
@@ -62,8 +62,8 @@ __kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const 
         counts[COUNT_NON_FINITE] += 1u;
         continue;
       }
-      film[pixel] += radiance[lane];
-      weights[pixel] += 1.0f;
+      film[film_first + pixel] += radiance[lane];
+      weights[film_first + pixel] += 1.0f;
     }
   }
   add_counts(counters, counts);

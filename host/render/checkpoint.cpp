@@ -1,0 +1,80 @@
+// Checkpoints: the film of an interrupted frame. The file is a header, then the film's arrays, then a
+// checksum, in the machine's own byte order (sundog runs on little-endian hosts).
+#include <bit>
+#include <cstring>
+#include <string>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "render/film.h"
+#include "render/hash.h"
+
+namespace sundog {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+constexpr char magic[8] = {'S', 'U', 'N', 'D', 'O', 'G', 'C', '1'};
+
+struct Header {
+  char magic[8];
+  std::uint64_t key;
+  std::int32_t width, height;
+  std::uint64_t has_aovs;
+};
+
+template <class T>
+void append(std::string& out, const std::vector<T>& values) {
+  out.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+
+template <class T>
+void take(const std::string& in, std::size_t& at, std::vector<T>& values) {
+  std::memcpy(values.data(), in.data() + at, values.size() * sizeof(T));
+  at += values.size() * sizeof(T);
+}
+
+}  // namespace
+
+void write_checkpoint(const std::filesystem::path& path, const Film& film, std::uint64_t key) {
+  Header header{};
+  std::memcpy(header.magic, magic, sizeof magic);
+  header.key = key;
+  header.width = film.width;
+  header.height = film.height;
+  header.has_aovs = !film.aovs.empty();
+  std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
+  append(bytes, film.sums);
+  append(bytes, film.weights);
+  append(bytes, film.aovs);
+  append(bytes, film.done);
+  const std::uint64_t checksum = hash_bytes(bytes.data(), bytes.size());
+  bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
+  write_file(path, bytes);
+}
+
+void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_t key) {
+  const std::string bytes = read_file(path);
+  Header header{};
+  std::uint64_t checksum = 0;
+  const std::string damaged =
+      path.string() + ": is no sundog checkpoint, or is damaged; remove it to start anew";
+  if (bytes.size() < sizeof header + sizeof checksum) throw IoError(damaged);
+  std::memcpy(&header, bytes.data(), sizeof header);
+  const std::size_t body = bytes.size() - sizeof checksum;
+  std::memcpy(&checksum, bytes.data() + body, sizeof checksum);
+  if (std::memcmp(header.magic, magic, sizeof magic) != 0 || checksum != hash_bytes(bytes.data(), body))
+    throw IoError(damaged);
+  const std::size_t expected = sizeof header + film.sums.size() * sizeof(float4) +
+                               film.weights.size() * sizeof(float) + film.aovs.size() * sizeof(float4) +
+                               film.done.size();
+  if (header.key != key || header.width != film.width || header.height != film.height || body != expected)
+    throw UsageError(path.string() +
+                     ": is a checkpoint of another scene or of other settings; remove it to start anew");
+  std::size_t at = sizeof header;
+  take(bytes, at, film.sums);
+  take(bytes, at, film.weights);
+  take(bytes, at, film.aovs);
+  take(bytes, at, film.done);
+}
+
+}  // namespace sundog

@@ -1,0 +1,48 @@
+// DeviceScene: a compiled scene's tables in one device's memory. A buffer has the same name here, in
+// CompiledScene and in the kernels.
+#pragma once
+#include "compile/compiled_scene.h"
+#include "device/device.h"
+
+namespace sundog {
+
+struct DeviceScene {
+  Buffer<SceneInfo> info;
+  Buffer<Bvh8Node> nodes;
+  Buffer<TriangleBlock> blocks;
+  Buffer<Instance> instances;
+  Buffer<TriangleShading> triangles;
+  Buffer<Vertex> vertices;
+  Buffer<Material> materials;
+  Buffer<Medium> media;
+  Buffer<Light> lights;
+  Buffer<u32> camera_media;  // count, then the media that the camera is in, by order of entry
+};
+
+/// Bytes that upload_scene will take.
+std::size_t scene_bytes(const CompiledScene& scene);
+
+/// Throws DeviceError when the device cannot hold the scene. camera_media is empty (count 0).
+DeviceScene upload_scene(Device& device, const CompiledScene& scene);
+
+/// A kernel that reads the scene: its table parameters, then Args.
+template <class... Args>
+using SceneKernel =
+    Kernel<Buffer<SceneInfo>, Buffer<Bvh8Node>, Buffer<TriangleBlock>, Buffer<Instance>,
+           Buffer<TriangleShading>, Buffer<Vertex>, Buffer<Material>, Buffer<Medium>, Buffer<Light>, Args...>;
+
+template <class... Args>
+SceneKernel<Args...> scene_kernel(const Program& program, const std::string& name) {
+  return program.kernel<Buffer<SceneInfo>, Buffer<Bvh8Node>, Buffer<TriangleBlock>, Buffer<Instance>,
+                        Buffer<TriangleShading>, Buffer<Vertex>, Buffer<Material>, Buffer<Medium>,
+                        Buffer<Light>, Args...>(name);
+}
+
+template <class... Args>
+cl::Event run_scene_kernel(Device& device, SceneKernel<Args...>& kernel, const LaunchSize& size,
+                           const DeviceScene& scene, const std::type_identity_t<Args>&... args) {
+  return device.run(kernel, size, scene.info, scene.nodes, scene.blocks, scene.instances, scene.triangles,
+                    scene.vertices, scene.materials, scene.media, scene.lights, args...);
+}
+
+}  // namespace sundog

@@ -1,0 +1,15 @@
+// A 64-bit hash of bytes and of a compiled scene, to recognise a checkpoint's scene. Not cryptographic.
+#pragma once
+#include <cstdint>
+
+#include "compile/compiled_scene.h"
+
+namespace sundog {
+
+/// Mixes eight bytes at a time by multiplication and rotation; `seed` chains calls.
+std::uint64_t hash_bytes(const void* data, std::size_t bytes, std::uint64_t seed = 0);
+
+/// Everything that the image depends on.
+std::uint64_t hash_scene(const CompiledScene& scene);
+
+}  // namespace sundog

@@ -1,0 +1,78 @@
+#include "render/kernel_config.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+#include <vector>
+
+namespace sundog {
+namespace {
+
+constexpr unsigned camera_media_capacity = 8;
+
+// Children that wait below each node, bottom-up. A node that is visited leaves all its children but one on
+// the stack; a child's own need adds to its waiting siblings. Nodes of one tree may lie in any order, so the
+// walk keeps its own stack.
+unsigned tree_stack_size(const std::vector<Bvh8Node>& nodes, u32 root) {
+  struct Visit {
+    u32 node;
+    unsigned waiting;
+  };
+  std::vector<Visit> visits{{root, 0}};
+  unsigned most = 0;
+  while (!visits.empty()) {
+    const Visit visit = visits.back();
+    visits.pop_back();
+    const Bvh8Node& node = nodes[visit.node];
+    const unsigned children = static_cast<unsigned>(std::popcount(node.valid));
+    const unsigned waiting = visit.waiting + (children > 0 ? children - 1 : 0);
+    most = std::max(most, waiting);
+    for (unsigned i = 0; i < 8; ++i)
+      if ((node.valid >> i & 1u) && !(node.child[i] & BVH_LEAF)) visits.push_back({node.child[i], waiting});
+  }
+  return most;
+}
+
+}  // namespace
+
+unsigned traversal_stack_size(const CompiledScene& scene) {
+  if (scene.info.bounded_count == 0) return 1;
+  unsigned meshes = 0;
+  std::vector<u32> roots;
+  for (const Instance& instance : scene.instances)
+    if (instance.shape == SHAPE_MESH) roots.push_back(instance.root);
+  std::sort(roots.begin(), roots.end());
+  roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
+  for (const u32 root : roots)
+    if (!(root & BVH_LEAF)) meshes = std::max(meshes, tree_stack_size(scene.nodes, root));
+  const bool leaf_root = scene.info.tlas_root & BVH_LEAF;
+  return std::max(1u, meshes + (leaf_root ? 0 : tree_stack_size(scene.nodes, scene.info.tlas_root)));
+}
+
+KernelConfig make_kernel_config(const CompiledScene& scene, DeviceClass device_class) {
+  KernelConfig config;
+  if (device_class == DeviceClass::gpu) config.tile_w = config.tile_h = 1;
+  const unsigned batch = config.tile_w * config.tile_h;
+  KernelDefines& defines = config.defines;
+  const auto define = [&](const char* name, unsigned value) { defines[name] = std::to_string(value); };
+  define("TILE_W", config.tile_w);
+  define("TILE_H", config.tile_h);
+  // Depth first, `batch` rays at a time, at most that many wait on each level, and one batch of children
+  // more. Beyond 32 levels the kernel counts what does not fit, and the frame reports it.
+  define("RAY_STACK",
+         scene.features.secondary_rays ? batch * (std::min(scene.info.max_depth, 32u) + 2u) : batch);
+  define("MEDIA_STACK", camera_media_capacity);
+  // Rounded up, so that similar scenes share their kernels.
+  define("BVH_STACK", (traversal_stack_size(scene) + 32u) / 32u * 32u);
+  static constexpr const char* shape_names[SHAPE_SDF] = {"HAS_MESH", "HAS_SPHERE",   "HAS_PLANE",
+                                                         "HAS_BOX",  "HAS_CYLINDER", "HAS_CONE",
+                                                         "HAS_DISK", "HAS_TORUS",    "HAS_ROUNDBOX"};
+  for (unsigned shape = 0; shape < SHAPE_SDF; ++shape)
+    define(shape_names[shape], scene.features.shapes[shape]);
+  define("HAS_SECONDARY", scene.features.secondary_rays);
+  define("HAS_MEDIA", scene.features.media);
+  define("HAS_SHADOW_FILTERS", scene.features.shadow_filters);
+  return config;
+}
+
+}  // namespace sundog

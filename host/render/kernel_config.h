@@ -1,0 +1,21 @@
+// What the kernels are specialised to: the scene's features and the device's class, as sorted -D definitions.
+#pragma once
+#include "compile/compiled_scene.h"
+#include "device/device.h"
+
+namespace sundog {
+
+/// The shape of a work-item's pixels, and the definitions that the kernels are built with
+/// (kernels/lib/config.h has their defaults).
+struct KernelConfig {
+  unsigned tile_w = 4, tile_h = 4;
+  KernelDefines defines;
+};
+
+/// Pure. CPU-class devices take 4x4 pixels a work-item, GPU-class ones a pixel.
+KernelConfig make_kernel_config(const CompiledScene& scene, DeviceClass device_class);
+
+/// Most nodes that wait at once in a traversal of the scene: the BVH stack's size.
+unsigned traversal_stack_size(const CompiledScene& scene);
+
+}  // namespace sundog
