@@ -21,11 +21,11 @@ struct Range {
   double low = -1e18, high = 1e18;
   bool low_open = false, high_open = false;
 };
-constexpr Range any_number{};
-constexpr Range at_least_0{.low = 0};
-constexpr Range above_0{.low = 0, .low_open = true};
-constexpr Range zero_to_one{.low = 0, .high = 1};
-constexpr Range color_range{.low = 0, .high = 1e6};
+inline constexpr Range any_number{};
+inline constexpr Range at_least_0{.low = 0};
+inline constexpr Range above_0{.low = 0, .low_open = true};
+inline constexpr Range zero_to_one{.low = 0, .high = 1};
+inline constexpr Range color_range{.low = 0, .high = 1e6};
 
 /// What the values of one file share. `asked`, when set, collects the keys asked for, by kind of object: a
 /// test compares them with the JSON Schema.

@@ -1,0 +1,182 @@
+// A SAX handler that builds the document and knows at every moment where in it the text stands.
+#include "scene/json/parse.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "scene/json/value.h"
+
+namespace sundog {
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+std::string line_and_column(std::string_view text, std::size_t offset) {
+  const std::string_view before = text.substr(0, std::min(offset, text.size()));
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const std::size_t last_break = before.rfind('\n');
+  const std::size_t column = before.size() - (last_break == std::string_view::npos ? 0 : last_break + 1);
+  return fmt::format("line {}, column {}", line, std::max<std::size_t>(column, 1));
+}
+
+/// The library's message without its own tag and place: "[json.exception...] parse error at line 1, column 2:
+/// what".
+std::string bare_message(std::string message) {
+  if (const auto tag = message.find("] "); message.starts_with('[') && tag != std::string::npos)
+    message.erase(0, tag + 2);
+  if (message.starts_with("parse error"))
+    if (const auto place = message.find(": "); place != std::string::npos) message.erase(0, place + 2);
+  return message;
+}
+
+/// Bytes of a well-formed UTF-8 sequence at `at`, 0 if it is ill-formed (RFC 3629: no surrogates, no overlong
+/// forms).
+std::size_t utf8_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) {
+    return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0u;
+  };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  const std::size_t length = lead >= 0xC2 && lead <= 0xDF   ? 2
+                             : (lead & 0xF0) == 0xE0        ? 3
+                             : lead >= 0xF0 && lead <= 0xF4 ? 4
+                                                            : 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  const bool overlong = (lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xF0 && byte(1) < 0x90);
+  const bool beyond = (lead == 0xED && byte(1) > 0x9F) || (lead == 0xF4 && byte(1) > 0x8F);
+  return overlong || beyond ? 0 : length;
+}
+
+void check_bytes(std::string_view text, const fs::path& file) {
+  const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
+  if (std::all_of(text.begin(), text.end(), is_space))
+    throw SceneError(file.string(), "", "wanted a JSON object, found an empty file");
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw SceneError(file.string(), "", "wanted UTF-8 text, found UTF-16: save it as UTF-8");
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    if (length == 0 || text[at] == '\0')
+      throw SceneError(
+          file.string(), line_and_column(text, at + 1),
+          fmt::format("wanted UTF-8 text, found the byte 0x{:02X}", static_cast<unsigned char>(text[at])));
+    at += length;
+  }
+}
+
+class DocumentBuilder : public nlohmann::json_sax<json> {
+ public:
+  DocumentBuilder(std::string_view text, const fs::path& file) : text_(text), file_(file) {}
+
+  json take() { return std::move(root_); }
+
+  bool null() override { return add(nullptr); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(number_integer_t value) override { return add(value); }
+  bool number_unsigned(number_unsigned_t value) override { return add(value); }
+  bool number_float(number_float_t value, const string_t&) override { return add(value); }
+  bool string(string_t& value) override { return add(std::move(value)); }
+  bool binary(binary_t&) override { return false; }
+  bool start_object(std::size_t) override { return open(json::object()); }
+  bool start_array(std::size_t) override { return open(json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+
+  bool key(string_t& name) override {
+    key_ = name;
+    if (open_.back()->contains(name))
+      throw SceneError(file_.string(), pointer(), "duplicate key: wanted each key once in an object");
+    return true;
+  }
+
+  bool parse_error(std::size_t position, const std::string& token,
+                   const nlohmann::detail::exception& error) override {
+    if (dynamic_cast<const json::out_of_range*>(&error))
+      throw SceneError(file_.string(), pointer(), fmt::format("wanted a finite number, found {}", token));
+    throw SceneError(file_.string(), line_and_column(text_, position), bare_message(error.what()));
+  }
+
+ private:
+  /// The place of the value that comes next.
+  std::string pointer() const {
+    std::string result;
+    for (std::size_t i = 0; i + 1 < open_.size(); ++i) result = join_pointer(result, tokens_[i + 1]);
+    if (open_.empty()) return result;
+    return join_pointer(result, open_.back()->is_array() ? std::to_string(open_.back()->size()) : key_);
+  }
+
+  json* place(json&& value) {
+    if (open_.empty()) return &(root_ = std::move(value));
+    if (open_.back()->is_array()) return &open_.back()->emplace_back(std::move(value));
+    return &((*open_.back())[key_] = std::move(value));
+  }
+
+  bool add(json&& value) {
+    place(std::move(value));
+    return true;
+  }
+
+  bool open(json&& container) {
+    if (open_.size() >= max_json_depth)
+      throw SceneError(file_.string(), pointer(),
+                       fmt::format("wanted at most {} nested arrays and objects", max_json_depth));
+    tokens_.push_back(open_.empty()              ? ""
+                      : open_.back()->is_array() ? std::to_string(open_.back()->size())
+                                                 : key_);
+    open_.push_back(place(std::move(container)));
+    return true;
+  }
+
+  bool close() {
+    open_.pop_back();
+    tokens_.pop_back();
+    return true;
+  }
+
+  std::string_view text_;
+  const fs::path& file_;
+  json root_;
+  std::vector<json*> open_;          // the containers around the place, outermost first
+  std::vector<std::string> tokens_;  // tokens_[i] leads from open_[i - 1] to open_[i]
+  std::string key_;                  // the latest key of the innermost object
+};
+
+}  // namespace
+
+json parse_json(std::string_view text, const fs::path& file) {
+  check_bytes(text, file);
+  DocumentBuilder builder(text, file);
+  json::sax_parse(text.begin(), text.end(), &builder, json::input_format_t::json, /*strict=*/true,
+                  /*ignore_comments=*/true);
+  return builder.take();
+}
+
+json read_json_file(const fs::path& file) {
+  require_readable(file, file, "");
+  return parse_json(read_file(file), file);
+}
+
+void require_readable(const fs::path& file, const fs::path& named_in, std::string_view place) {
+  const std::string name = file == named_in ? "this file" : fmt::format("\"{}\"", file.string());
+  const auto fail = [&](std::string_view what) {
+    throw SceneError(named_in.string(), std::string(place), fmt::format("{} {}", name, what));
+  };
+  std::error_code status;
+  const fs::file_status found = fs::status(file, status);
+  if (!fs::exists(found)) {
+    if (status && status != std::errc::no_such_file_or_directory) fail(status.message());
+    fail("does not exist");
+  }
+  if (fs::is_directory(found)) fail("is a folder, wanted a file");
+  if (::access(file.c_str(), R_OK) != 0) fail(fmt::format("cannot be read: {}", std::strerror(errno)));
+}
+
+}  // namespace sundog
