@@ -108,16 +108,16 @@ glm::dvec2 cavity_levels(const IceBlock& block) {
   return {-surface_distance(cavity, {0, -1, 0}), surface_distance(cavity, {0, 1, 0})};
 }
 
-Mesh make_ice_liquid(const IceBlock& block, double level) {
+Mesh make_ice_liquid(const IceBlock& block, double level, double wall) {
   if (!block.hollow) throw GenerateError("cavity: wanted one for the liquid to be in");
   const Shell shell = make_shell(block);
   const glm::dvec2 range = cavity_levels(block);
   if (!(level > range.x && level < range.y))
     throw GenerateError("level: wanted between the cavity's bottom and top");
-  std::vector<double> middle;
+  std::vector<double> ends;
   for (std::size_t i = 0; i < shell.outer.size(); i++)
-    middle.push_back((shell.outer[i] + shell.cavity[i]) * 0.5);
-  std::vector<dvec3> points = surface_points(shell.grid, middle);
+    ends.push_back(shell.cavity[i] + (shell.outer[i] - shell.cavity[i]) * wall);
+  std::vector<dvec3> points = surface_points(shell.grid, ends);
   cut_at_level(points, level, {0, std::min(0.0, (level + range.x) * 0.5), 0});
   Mesh mesh;
   append_surface(mesh, shell.grid, points, false);

@@ -39,7 +39,8 @@ Mesh read_ice_block(JsonObject& object) {
                                   [&](JsonObject& inner) { return read_cavity(inner, block.outer); });
   }
   if (object.choice("part", "ice", parts) == "ice") return make_ice(block);
-  return make_ice_liquid(block, object.at("level", "the height of the liquid's surface").number());
+  const double level = object.at("level", "the height of the liquid's surface").number();
+  return make_ice_liquid(block, level, object.number("wall", 0.5, {.low = 0.01, .high = 0.99}));
 }
 
 }  // namespace

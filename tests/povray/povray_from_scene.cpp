@@ -1,0 +1,201 @@
+// See povray_from_scene.h. POV-Ray's axes are left-handed only by its default camera: all its vectors are
+// given here, so that coordinates stay as they are.
+#include "povray_from_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "shapes.h"
+#include "text.h"
+
+namespace sundog::povray {
+
+namespace {
+
+constexpr double shrink = 1 - 1e-4;
+
+const MaterialDescription& material_of(const SceneDescription& scene, const Object& object) {
+  if (object.material < 0) throw Unsupported(object.place + ": a mesh with materials of its own");
+  return scene.materials.at(static_cast<std::size_t>(object.material));
+}
+
+bool is_dielectric(const MaterialDescription& m) { return m.type == MaterialType::dielectric; }
+
+const MediumDescription& medium_of(const SceneDescription& scene, const MaterialDescription& m) {
+  if (m.medium < 0) throw Unsupported(m.name + ": a thin dielectric");
+  return scene.media.at(static_cast<std::size_t>(m.medium));
+}
+
+// A body of the world's own medium is a hole in the others and nothing by itself.
+bool is_hole(const SceneDescription& scene, const Object& object) {
+  const MaterialDescription& m = material_of(scene, object);
+  if (!is_dielectric(m)) return false;
+  const MediumDescription& medium = medium_of(scene, m);
+  return medium.ior == scene.media[0].ior && medium.absorption == scene.media[0].absorption;
+}
+
+std::string camera(const SceneDescription& scene) {
+  const Camera& c = scene.camera;
+  const dvec3 forward = glm::normalize(c.target - c.position);
+  const dvec3 right = glm::normalize(glm::cross(forward, c.up)), up = glm::cross(right, forward);
+  const double height = 2 * std::tan(glm::radians(c.fov) / 2);
+  const double width = height * scene.image.width / scene.image.height;
+  return fmt::format("camera {{ perspective location {} direction {} right {} up {} }}\n", text(c.position),
+                     text(forward), text(right * width), text(up * height));
+}
+
+std::string background(const SceneDescription& scene) {
+  const ImageSettings& image = scene.image;
+  if (image.background_bottom == image.background_top)
+    return fmt::format("background {{ color {} }}\n", rgb(image.background_top));
+  const dvec3 up = glm::normalize(scene.camera.up);
+  return fmt::format(
+      "sky_sphere {{ pigment {{ function {{ min(0.9999999, 0.5 + 0.5 * ({} * x + {} * y + {} * z)) }} "
+      "color_map {{ [0 "
+      "color {}] [1 color {}] }} }} }}\n",
+      text(up.x), text(up.y), text(up.z), rgb(image.background_bottom), rgb(image.background_top));
+}
+
+// 1 / (c + q d^2) in POV-Ray's 2 / (1 + (d / distance)^2).
+std::string fading(const LightDescription& light, dvec3& color) {
+  if (light.falloff.y == 0 && light.falloff.z == 0) {
+    color /= light.falloff.x;
+    return "";
+  }
+  if (light.falloff.y != 0 || light.falloff.x == 0) throw Unsupported("falloff other than 1 / (c + q d^2)");
+  color /= 2 * light.falloff.x;
+  return fmt::format(" fade_distance {} fade_power 2", text(std::sqrt(light.falloff.x / light.falloff.z)));
+}
+
+std::string light_source(const LightDescription& light) {
+  dvec3 color = light.color * light.intensity;
+  const std::string fade = fading(light, color);
+  const dvec3 along = glm::normalize(light.direction);
+  switch (light.type) {
+    case LightType::point:
+      return fmt::format("light_source {{ {} color {}{} }}\n", text(light.position), rgb(color), fade);
+    case LightType::directional:
+      return fmt::format("light_source {{ {} color {} parallel point_at 0 }}\n", text(along * -1e5),
+                         rgb(color));
+    case LightType::spot:
+      return fmt::format(
+          "light_source {{ {} color {}{} spotlight point_at {} radius {} falloff {} tightness 0 }}\n",
+          text(light.position), rgb(color), fade, text(light.position + along), text(light.inner_angle),
+          text(light.outer_angle));
+    case LightType::ambient:
+      break;
+  }
+  return "";
+}
+
+std::string lights(const SceneDescription& scene) {
+  dvec3 ambient{0};
+  std::string out;
+  for (const LightDescription& light : scene.lights) {
+    if (light.type == LightType::ambient) ambient += light.color * light.intensity;
+    out += light_source(light);
+  }
+  return fmt::format(
+             "global_settings {{ assumed_gamma 1.0 max_trace_level {} adc_bailout 0 ambient_light {} }}\n",
+             scene.render.max_depth, rgb(ambient)) +
+         out;
+}
+
+double grey(const dvec3& color, const std::string& what) {
+  if (color.x != color.y || color.y != color.z) throw Unsupported(what + ": a coloured highlight");
+  return color.x;
+}
+
+std::string highlight(const MaterialDescription& m) {
+  if (m.specular == dvec3(0)) return "";
+  if (m.blinn) throw Unsupported(m.name + ": Blinn's highlight");
+  return fmt::format(" phong {} phong_size {}", text(grey(m.specular, m.name)), text(m.exponent));
+}
+
+// POV-Ray's ambient term is multiplied by the pigment, so it is divided here.
+std::string opaque_texture(const MaterialDescription& m, const dvec3& ambient, const dvec3& diffuse) {
+  const dvec3 pigment = glm::max(diffuse, dvec3(1e-6));
+  return fmt::format(
+      "texture {{ pigment {{ color {} }} finish {{ ambient {} diffuse 1{} reflection {{ {} }} }} }}",
+      rgb(pigment), rgb(ambient / pigment), highlight(m), rgb(m.reflection));
+}
+
+std::string glass_texture(const MaterialDescription& m) {
+  if (m.ambient != dvec3(0) || m.diffuse != dvec3(0))
+    throw Unsupported(m.name + ": a dielectric with a diffuse term");
+  if (m.reflection != dvec3(1)) throw Unsupported(m.name + ": a tinted reflection");
+  return fmt::format(
+      "texture {{ pigment {{ color rgbf <{},{},{},1> }} finish {{ ambient 0 diffuse 0{} reflection {{ 0, 1 "
+      "fresnel on }} "
+      "conserve_energy }} }}",
+      text(m.transmission.x), text(m.transmission.y), text(m.transmission.z), highlight(m));
+}
+
+std::string texture(const MaterialDescription& m) {
+  if (is_dielectric(m)) return glass_texture(m);
+  if (m.transmission != dvec3(0)) throw Unsupported(m.name + ": constant transmission");
+  const std::string even = opaque_texture(m, m.ambient, m.diffuse);
+  if (!m.checker) return even;
+  return fmt::format("texture {{ checker {} {} scale {} }}", even,
+                     opaque_texture(m, m.checker_ambient, m.checker_diffuse), text(m.checker_size));
+}
+
+std::string interior(const MediumDescription& medium, Absorption absorption) {
+  const dvec3& a = medium.absorption;
+  std::string inside;
+  if (a != dvec3(0)) {
+    if (absorption == Absorption::media) {
+      inside = fmt::format(" media {{ absorption {} }}", rgb(a));
+    } else {
+      const double distance = 1 / std::max({a.x, a.y, a.z});
+      inside = fmt::format(" fade_distance {} fade_power 1001 fade_color {}", text(distance),
+                           rgb(dvec3(1) - a * distance));
+    }
+  }
+  return fmt::format("interior {{ ior {}{} }}", text(medium.ior), inside);
+}
+
+// The object's shape less what overrules it, in world space, open for modifiers.
+std::string open_region(const SceneDescription& scene, const Object& object) {
+  const std::string own = open_shape(object.shape) + matrix(object.world_from_object) + ' ';
+  const MaterialDescription& m = material_of(scene, object);
+  if (!is_dielectric(m) || std::holds_alternative<MeshShape>(object.shape)) return own;
+  const int priority = medium_of(scene, m).priority;
+  const Bounds bounds = world_bounds(scene, object);
+  std::string cuts;
+  for (const Object& other : scene.objects) {
+    if (!is_dielectric(material_of(scene, other)) || std::holds_alternative<MeshShape>(other.shape)) continue;
+    if (medium_of(scene, material_of(scene, other)).priority <= priority) continue;
+    if (!bounds.overlaps(world_bounds(scene, other))) continue;
+    const std::string scale = is_hole(scene, other) ? "" : fmt::format("scale {} ", text(shrink));
+    cuts += open_shape(other.shape) + scale + matrix(other.world_from_object) + " } ";
+  }
+  return cuts.empty() ? own : "difference { " + own + "} " + cuts;
+}
+
+std::string write_object(const SceneDescription& scene, const Object& object, Absorption absorption) {
+  const MaterialDescription& m = material_of(scene, object);
+  if (is_hole(scene, object)) return "";
+  if (!is_dielectric(m))  // a pattern moves with its object
+    return open_shape(object.shape) + texture(m) + ' ' + matrix(object.world_from_object) + " }\n";
+  std::string out =
+      open_region(scene, object) + texture(m) + ' ' + interior(medium_of(scene, m), absorption) + " hollow";
+  if (!m.shadow_opaque) return out + " }\n";
+  return out + " no_shadow }\n" + open_shape(object.shape) + matrix(object.world_from_object) +
+         " pigment { color rgb 0 } no_image no_reflection }\n";
+}
+
+}  // namespace
+
+std::string from_scene(const SceneDescription& scene, Absorption absorption) {
+  std::string out = "#version 3.7;\n" + lights(scene) + camera(scene) + background(scene);
+  std::set<int> meshes;
+  for (const Object& object : scene.objects)
+    if (const auto* mesh = std::get_if<MeshShape>(&object.shape))
+      if (meshes.insert(mesh->mesh).second) out += declare_mesh(scene, mesh->mesh);
+  for (const Object& object : scene.objects) out += write_object(scene, object, absorption);
+  return out;
+}
+
+}  // namespace sundog::povray

@@ -1,0 +1,126 @@
+// See shapes.h.
+#include "shapes.h"
+
+#include <limits>
+
+#include "text.h"
+
+namespace sundog::povray {
+
+namespace {
+
+// Three boxes, twelve cylinders along the edges and eight balls at the corners.
+std::string open_round_box(const RoundBoxShape& s) {
+  const dvec3 inner = s.half - dvec3(s.radius);
+  std::string out = "merge { ";
+  for (int axis = 0; axis < 3; axis++) {
+    dvec3 half = inner;
+    half[axis] = s.half[axis];
+    out += fmt::format("box {{ {}, {} }} ", text(-half), text(half));
+  }
+  for (int corner = 0; corner < 8; corner++) {
+    const dvec3 at{corner & 1 ? inner.x : -inner.x, corner & 2 ? inner.y : -inner.y,
+                   corner & 4 ? inner.z : -inner.z};
+    out += fmt::format("sphere {{ {}, {} }} ", text(at), text(s.radius));
+    for (int axis = 0; axis < 3; axis++) {
+      if (corner & (1 << axis)) continue;
+      dvec3 end = at;
+      end[axis] = -at[axis];
+      out += fmt::format("cylinder {{ {}, {}, {} }} ", text(at), text(end), text(s.radius));
+    }
+  }
+  return out;
+}
+
+struct OpenShape {
+  std::string operator()(const MeshShape& s) const { return "object { " + mesh_name(s.mesh) + " "; }
+  std::string operator()(const SphereShape& s) const {
+    return fmt::format("sphere {{ 0, {} ", text(s.radius));
+  }
+  std::string operator()(const PlaneShape&) const { return "plane { y, 0 "; }
+  std::string operator()(const BoxShape& s) const {
+    return fmt::format("box {{ {}, {} ", text(-s.half), text(s.half));
+  }
+  std::string operator()(const CylinderShape& s) const {
+    return fmt::format("cylinder {{ <0,{},0>, <0,{},0>, {}{} ", text(-s.half_height), text(s.half_height),
+                       text(s.radius), s.capped ? "" : " open");
+  }
+  std::string operator()(const ConeShape& s) const {
+    return fmt::format("cone {{ <0,{},0>, {}, <0,{},0>, {}{} ", text(-s.half_height), text(s.bottom_radius),
+                       text(s.half_height), text(s.top_radius), s.capped ? "" : " open");
+  }
+  std::string operator()(const DiskShape& s) const {
+    return fmt::format("disc {{ 0, y, {}, {} ", text(s.radius), text(s.inner_radius));
+  }
+  std::string operator()(const TorusShape& s) const {
+    return fmt::format("torus {{ {}, {} sturm ", text(s.major_radius), text(s.minor_radius));
+  }
+  std::string operator()(const RoundBoxShape& s) const { return open_round_box(s); }
+};
+
+struct HalfSize {
+  dvec3 operator()(const MeshShape&) const { return dvec3(0); }  // has bounds of its own
+  dvec3 operator()(const SphereShape& s) const { return dvec3(s.radius); }
+  dvec3 operator()(const PlaneShape&) const { return dvec3(std::numeric_limits<double>::infinity()); }
+  dvec3 operator()(const BoxShape& s) const { return s.half; }
+  dvec3 operator()(const CylinderShape& s) const { return {s.radius, s.half_height, s.radius}; }
+  dvec3 operator()(const ConeShape& s) const {
+    const double radius = std::max(s.bottom_radius, s.top_radius);
+    return {radius, s.half_height, radius};
+  }
+  dvec3 operator()(const DiskShape& s) const { return {s.radius, 0, s.radius}; }
+  dvec3 operator()(const TorusShape& s) const {
+    return {s.major_radius + s.minor_radius, s.minor_radius, s.major_radius + s.minor_radius};
+  }
+  dvec3 operator()(const RoundBoxShape& s) const { return s.half; }
+};
+
+void extend(Bounds& bounds, const dvec3& p) {
+  bounds.lower = glm::min(bounds.lower, p);
+  bounds.upper = glm::max(bounds.upper, p);
+}
+
+}  // namespace
+
+std::string mesh_name(int mesh) { return fmt::format("Mesh{}", mesh); }
+
+std::string declare_mesh(const SceneDescription& scene, int index) {
+  const Mesh& mesh = scene.meshes.at(static_cast<std::size_t>(index));
+  std::string out =
+      fmt::format("#declare {} = mesh2 {{\nvertex_vectors {{ {}", mesh_name(index), mesh.positions.size());
+  for (const glm::vec3& p : mesh.positions) out += ',' + text(p);
+  if (!mesh.normals.empty()) {
+    out += fmt::format(" }}\nnormal_vectors {{ {}", mesh.normals.size());
+    for (const glm::vec3& n : mesh.normals) out += ',' + text(n);
+  }
+  out += fmt::format(" }}\nface_indices {{ {}", mesh.triangles.size());
+  for (const glm::uvec3& t : mesh.triangles) out += fmt::format(",<{},{},{}>", t.x, t.y, t.z);
+  return out + " }\ninside_vector <0.31,0.85,0.42> }\n";
+}
+
+std::string open_shape(const Shape& shape) { return std::visit(OpenShape{}, shape); }
+
+bool Bounds::overlaps(const Bounds& other) const {
+  for (int axis = 0; axis < 3; axis++)
+    if (upper[axis] <= other.lower[axis] || other.upper[axis] <= lower[axis]) return false;
+  return true;
+}
+
+Bounds world_bounds(const SceneDescription& scene, const Object& object) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (std::holds_alternative<PlaneShape>(object.shape)) return {dvec3(-infinity), dvec3(infinity)};
+  Bounds bounds{dvec3(infinity), dvec3(-infinity)};
+  const auto add = [&](const dvec3& p) {
+    extend(bounds, dvec3(object.world_from_object * glm::dvec4(p, 1)));
+  };
+  if (const auto* mesh = std::get_if<MeshShape>(&object.shape)) {
+    for (const glm::vec3& p : scene.meshes.at(static_cast<std::size_t>(mesh->mesh)).positions) add(dvec3(p));
+    return bounds;
+  }
+  const dvec3 half = std::visit(HalfSize{}, object.shape);
+  for (int corner = 0; corner < 8; corner++)
+    add({corner & 1 ? half.x : -half.x, corner & 2 ? half.y : -half.y, corner & 4 ? half.z : -half.z});
+  return bounds;
+}
+
+}  // namespace sundog::povray
