@@ -5,6 +5,8 @@
 
 #include <cctype>
 #include <cstdio>
+#include <cstdlib>
+#include <mutex>
 #include <thread>
 
 #include "device/cl_status.h"
@@ -145,9 +147,18 @@ void list_platform(DeviceInfo platform, cl_platform_id id, std::vector<DeviceInf
   }
 }
 
+/// Drivers' settings that must stand before the first OpenCL call; what the user set stays.
+void prepare_drivers() {
+  // PoCL compiles a kernel for each local size and again for grids below 65536, and once more to give its
+  // binary out. One version for all was as fast in every kernel measured, so each kernel is compiled once.
+  static std::once_flag once;
+  std::call_once(once, [] { setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0); });
+}
+
 }  // namespace
 
 std::vector<DeviceInfo> enumerate_devices() {
+  prepare_drivers();
   cl_uint count = 0;
   // No platform at all is an error status too (CL_PLATFORM_NOT_FOUND_KHR): an empty list says the same.
   if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};
