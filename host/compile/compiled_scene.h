@@ -14,16 +14,18 @@ namespace sundog {
 /// What a scene uses: kernels are specialised to it, so only what a scene needs is built.
 struct SceneFeatures {
   std::array<bool, SHAPE_COUNT> shapes{};
-  bool secondary_rays = false;    // some material reflects or transmits
-  bool media = false;             // some material has an interior medium
-  bool shadow_filters = false;    // shadow rays must look through transmissive things
+  bool secondary_rays = false;  // some material reflects or transmits
+  bool media = false;           // some material has an interior medium, or the world's absorbs
+  bool shadow_filters = false;  // shadow rays must look through transmissive things
   bool camera_inside = false;
-  bool unbounded = false;         // there are planes
+  bool unbounded = false;  // there are planes
+  u32 bvh_stack = 1;       // entries a traversal stack needs at most (scene BVH and the mesh BVH below it)
 };
 
 struct BvhFigures {
   std::size_t nodes = 0, blocks = 0, triangles = 0, instances = 0;
-  double sah_cost = 0;         // expected cost of a ray that crosses the root: node visits + block visits, area-weighted
+  double sah_cost =
+      0;  // expected cost of a ray that crosses the root: node visits + block visits, area-weighted
   double build_seconds = 0;    // not part of the pure result's bytes
   double mean_block_fill = 0;  // triangles a block, 1..8
   std::size_t bytes = 0;

@@ -1,0 +1,123 @@
+// The recursive build, a task a subtree, and the dynamic programme of the collapse on the way back up.
+#include "compile/binary_bvh.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+
+#include "compile/split.h"
+
+namespace sundog {
+namespace {
+
+constexpr std::size_t task_size = 1u << 12;  // subtrees of fewer members are one task
+constexpr int depth_limit = 64;              // below it, sets are halved: recursion stays shallow
+
+/// Hands out nodes from chunks; one a thread.
+class NodePool {
+ public:
+  BinaryNode* make() {
+    if (used_ == chunk) {
+      chunks_.push_back(std::make_unique<std::array<BinaryNode, chunk>>());
+      used_ = 0;
+    }
+    return &(*chunks_.back())[used_++];
+  }
+
+ private:
+  static constexpr std::size_t chunk = 256;
+  std::vector<std::unique_ptr<std::array<BinaryNode, chunk>>> chunks_;
+  std::size_t used_ = chunk;
+};
+
+}  // namespace
+
+struct BinaryTree::Builder {
+  const WideBvhSettings& settings;
+  const bool balanced;
+  SplitSettings split;
+  std::span<Ref> refs;
+  std::vector<u32>& members;
+  tbb::enumerable_thread_specific<NodePool> pools;
+
+  BinaryNode* build(const RefSet& set, int depth, NodePool& pool);
+  void make_leaf(BinaryNode& node) const;
+  void collapse(BinaryNode& node) const;
+  float blocks(u32 count) const {
+    return static_cast<float>((count + settings.block_width - 1) / settings.block_width);
+  }
+};
+
+BinaryTree::BinaryTree(std::span<Ref> refs, const WideBvhSettings& settings, bool balanced)
+    : members_(refs.size()) {
+  const RefSet all = make_ref_set(refs);
+  SplitSettings split{settings.block_width, 1.0f};
+  const Lanes extent = all.box.upper - all.box.lower;
+  const float longest = std::max({extent[0], extent[1], extent[2]});
+  if (longest > 0) split.area_scale = std::min(1 / longest, std::numeric_limits<float>::max());
+  builder_.reset(new Builder{settings, balanced, split, refs, members_, {}});
+  root_ = builder_->build(all, 0, builder_->pools.local());
+}
+
+BinaryTree::~BinaryTree() = default;
+
+BinaryNode* BinaryTree::Builder::build(const RefSet& set, int depth, NodePool& pool) {
+  BinaryNode* node = pool.make();
+  node->box = set.box;
+  node->first = static_cast<u32>(set.refs.data() - refs.data());
+  node->count = static_cast<u32>(set.refs.size());
+  if (set.refs.size() <= settings.block_width) {
+    make_leaf(*node);
+    return node;
+  }
+  const RefSplit parts = balanced || depth >= depth_limit ? split_by_median(set) : split_by_area(set, split);
+  if (set.refs.size() < task_size) {
+    node->left = build(parts.left, depth + 1, pool);
+    node->right = build(parts.right, depth + 1, pool);
+  } else {
+    tbb::parallel_invoke([&] { node->left = build(parts.left, depth + 1, pools.local()); },
+                         [&] { node->right = build(parts.right, depth + 1, pools.local()); });
+  }
+  collapse(*node);
+  return node;
+}
+
+void BinaryTree::Builder::make_leaf(BinaryNode& node) const {
+  const auto first = members.begin() + node.first;
+  for (u32 i = 0; i < node.count; ++i) members[node.first + i] = refs[node.first + i].prim();
+  std::sort(first, first + node.count);
+  node.leaf = true;
+  node.cost.fill(half_area(node.box, split.area_scale) * settings.block_cost * blocks(node.count));
+}
+
+void BinaryTree::Builder::collapse(BinaryNode& node) const {
+  const BinaryNode &left = *node.left, &right = *node.right;
+  std::array<float, 9> shared;
+  for (std::size_t i = 2; i <= 8; ++i) {
+    shared[i] = std::numeric_limits<float>::infinity();
+    for (std::size_t k = 1; k < i; ++k)
+      if (const float cost = left.cost[k] + right.cost[i - k]; cost < shared[i]) {
+        shared[i] = cost;
+        node.share[i] = static_cast<std::uint8_t>(k);
+      }
+  }
+  const float area = half_area(node.box, split.area_scale);
+  node.cost[1] = shared[8] + area * settings.node_cost;
+  if (node.count <= settings.block_width * settings.max_leaf_blocks) {
+    const float as_leaf = area * settings.block_cost * blocks(node.count);
+    if (as_leaf <= node.cost[1]) {
+      node.cost[1] = as_leaf;
+      node.leaf = true;
+    }
+  }
+  for (std::size_t i = 2; i < 8; ++i) {
+    node.cost[i] = shared[i];
+    if (node.cost[i - 1] <= shared[i]) {
+      node.cost[i] = node.cost[i - 1];
+      node.share[i] = 0;
+    }
+  }
+}
+
+}  // namespace sundog

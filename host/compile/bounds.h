@@ -1,0 +1,61 @@
+// Axis-aligned boxes of the builder: four lanes a corner, so that one instruction serves x, y and z.
+#pragma once
+#include <bit>
+#include <limits>
+
+#include "shared/types.h"
+
+namespace sundog {
+
+using Lanes = float __attribute__((vector_size(16)));
+using IntLanes = i32 __attribute__((vector_size(16)));
+
+inline Lanes lanes(float value) { return Lanes{value, value, value, value}; }
+inline Lanes lanes_min(Lanes a, Lanes b) { return a < b ? a : b; }
+inline Lanes lanes_max(Lanes a, Lanes b) { return a > b ? a : b; }
+
+/// A box; empty when made. The fourth lane of each corner is free for the owner.
+struct Bounds {
+  Lanes lower = lanes(std::numeric_limits<float>::infinity());
+  Lanes upper = lanes(-std::numeric_limits<float>::infinity());
+
+  void extend(const Bounds& other) {
+    lower = lanes_min(lower, other.lower);
+    upper = lanes_max(upper, other.upper);
+  }
+  void extend(Lanes point) {
+    lower = lanes_min(lower, point);
+    upper = lanes_max(upper, point);
+  }
+  bool empty() const { return !(lower[0] <= upper[0]); }
+};
+
+/// Half the surface area of a box that is not empty, its edges first multiplied by `scale` (no overflow at
+/// 1e30). A trace of the edges' sum is added, so that flat and thin boxes can still be told from each other.
+inline float half_area(const Bounds& box, float scale) {
+  const Lanes edge = (box.upper - box.lower) * lanes(scale);
+  return edge[0] * (edge[1] + edge[2]) + edge[1] * edge[2] + 1e-6f * (edge[0] + edge[1] + edge[2]);
+}
+
+/// What the builder sorts: a primitive's box with its number in the fourth lane of `lower`.
+/// The number is kept as a normal float's bits, so that arithmetic on the spare lane costs nothing.
+struct Ref {
+  Bounds box;
+
+  static constexpr u32 bias = 0x40000000u;
+  static Ref of(const Bounds& bounds, u32 prim) {
+    Ref ref{bounds};
+    // -0 becomes +0: a minimum over both would depend on their order
+    ref.box.lower = ref.box.lower + lanes(0.0f);
+    ref.box.upper = ref.box.upper + lanes(0.0f);
+    ref.box.lower[3] = std::bit_cast<float>(prim + bias);
+    ref.box.upper[3] = 0;
+    return ref;
+  }
+  u32 prim() const { return std::bit_cast<u32>(float(box.lower[3])) - bias; }
+  /// Twice the box's centre.
+  Lanes center2() const { return box.lower + box.upper; }
+};
+static_assert(sizeof(Ref) == 32);
+
+}  // namespace sundog

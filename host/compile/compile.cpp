@@ -1,0 +1,80 @@
+// compile(): from the description to the tables, in the order of their dependence.
+#include <tbb/parallel_for.h>
+
+#include <chrono>
+
+#include "base/error.h"
+#include "compile/camera.h"
+#include "compile/compiled_scene.h"
+#include "compile/instances.h"
+#include "compile/materials.h"
+#include "compile/mesh_bvh.h"
+
+namespace sundog {
+namespace {
+
+/// Indices that the loaders promise; a scene made by hand may break them.
+void check_objects(const SceneDescription& scene) {
+  const auto fits = [](int index, std::size_t size) { return index < static_cast<int>(size); };
+  for (const Object& object : scene.objects) {
+    const auto* shape = std::get_if<MeshShape>(&object.shape);
+    if (shape && (shape->mesh < 0 || !fits(shape->mesh, scene.meshes.size())))
+      throw SceneError(scene.file.string(), object.place,
+                       "object \"" + object.name + "\" places a mesh that does not exist");
+    if (!fits(object.material, scene.materials.size()))
+      throw SceneError(scene.file.string(), object.place,
+                       "object \"" + object.name + "\" names a material that does not exist");
+  }
+  for (const MaterialDescription& material : scene.materials)
+    if (!fits(material.medium, scene.media.size()))
+      throw SceneError(scene.file.string(), "",
+                       "material \"" + material.name + "\" names a medium that does not exist");
+}
+
+void set_counts(CompiledScene& out) {
+  out.info.instance_count = static_cast<u32>(out.instances.size());
+  out.info.light_count = static_cast<u32>(out.lights.size());
+  out.info.material_count = static_cast<u32>(out.materials.size());
+  out.info.medium_count = static_cast<u32>(out.media.size());
+  out.info.camera_inside = out.features.camera_inside ? 1 : 0;
+}
+
+template <class T>
+std::size_t bytes(const std::vector<T>& table) {
+  return table.size() * sizeof(T);
+}
+
+void set_figures(CompiledScene& out) {
+  BvhFigures& figures = out.figures;
+  figures.nodes = out.nodes.size();
+  figures.blocks = out.blocks.size();
+  figures.triangles = out.triangles.size();
+  figures.instances = out.instances.size();
+  if (!out.blocks.empty())
+    figures.mean_block_fill =
+        static_cast<double>(out.triangles.size()) / static_cast<double>(out.blocks.size());
+  figures.bytes = sizeof(SceneInfo) + bytes(out.nodes) + bytes(out.blocks) + bytes(out.triangles) +
+                  bytes(out.vertices) + bytes(out.instances) + bytes(out.materials) + bytes(out.media) +
+                  bytes(out.lights);
+}
+
+}  // namespace
+
+CompiledScene compile(const SceneDescription& scene) {
+  const auto start = std::chrono::steady_clock::now();
+  CompiledScene out;
+  check_objects(scene);
+  set_camera(scene, out.info);
+  add_lights(scene, out);
+  const u32 default_material = add_materials(scene, out);
+  const float4& world = out.media[0].absorption;
+  out.features.media = world.x != 0 || world.y != 0 || world.z != 0;
+  const std::vector<PlacedMesh> meshes = add_meshes(scene, default_material, out);
+  add_instances(scene, meshes, default_material, out);
+  set_counts(out);
+  set_figures(out);
+  out.figures.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+}  // namespace sundog

@@ -1,0 +1,262 @@
+// See instances.h.
+#include "compile/instances.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "compile/shapes.h"
+#include "compile/wide_bvh.h"
+
+namespace sundog {
+namespace {
+
+/// An instance and its bounds in the world; `cost` is that of a ray that crosses them.
+struct Placed {
+  Instance instance{};
+  Bounds box;
+  double cost = 1;
+  bool bounded() const { return instance.shape != SHAPE_PLANE; }
+};
+
+float round_down(double value) {
+  const auto rounded = static_cast<float>(value);
+  return double(rounded) > value ? std::nextafter(rounded, -std::numeric_limits<float>::infinity()) : rounded;
+}
+
+float round_up(double value) { return -round_down(-value); }
+
+[[noreturn]] void fail_transform(const SceneDescription& scene, const Object& object) {
+  throw SceneError(scene.file.string(), object.place,
+                   fmt::format("object \"{}\": its transform cannot be inverted in single precision; "
+                               "wanted scales that are neither zero nor extreme",
+                               object.name));
+}
+
+/// Writes the rows of the inverse of `world_from_unit`; returns the transform that a kernel then really uses.
+dmat4 set_transform(const SceneDescription& scene, const Object& object, const dmat4& world_from_unit,
+                    Instance& instance) {
+  if (world_from_unit == dmat4(1)) instance.flags |= INSTANCE_IDENTITY;
+  const dmat4 inverse = glm::inverse(world_from_unit);
+  dmat4 used(1);
+  for (int row = 0; row < 3; ++row) {
+    std::array<float, 4> values;
+    for (int column = 0; column < 4; ++column) {
+      const auto value = static_cast<float>(inverse[column][row]);
+      if (!std::isfinite(value)) fail_transform(scene, object);
+      values[static_cast<std::size_t>(column)] = value;
+      used[column][row] = double(value);
+    }
+    instance.object_from_world[row] = {values[0], values[1], values[2], values[3]};
+  }
+  const dmat4 back = glm::inverse(used);
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 3; ++row)
+      if (!std::isfinite(static_cast<float>(back[column][row]))) fail_transform(scene, object);
+  return back;
+}
+
+/// How far the shape reaches along `direction` (unit space): of a mesh, the boxes of its root's
+/// grandchildren.
+double reach(const UnitShape& unit, const std::vector<Bounds>& boxes, const dvec3& d) {
+  if (unit.shape != SHAPE_MESH) return reach(unit, d);
+  double most = -std::numeric_limits<double>::infinity();
+  for (const Bounds& box : boxes) {
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      sum += d[axis] * double(d[axis] > 0 ? box.upper[axis] : box.lower[axis]);
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
+std::vector<Bounds> two_levels(const std::vector<Bvh8Node>& nodes, u32 root) {
+  std::vector<Bounds> boxes;
+  const auto visit = [&](const auto& self, u32 index, int level) -> void {
+    const Bvh8Node& node = nodes[index];
+    for (u32 slot = 0; slot < BVH_WIDTH && (node.valid >> slot & 1u); ++slot)
+      if (level == 0 || node.child[slot] & BVH_LEAF)
+        boxes.push_back(child_bounds(node, slot));
+      else
+        self(self, node.child[slot], level - 1);
+  };
+  visit(visit, root, 1);
+  return boxes;
+}
+
+/// World bounds, rounded outwards and widened by what a kernel's transform of a ray may round.
+Bounds world_bounds(const UnitShape& unit, const std::vector<Bounds>& boxes, const dmat4& world_from_unit,
+                    bool exact) {
+  Bounds bounds;
+  for (int axis = 0; axis < 3; ++axis) {
+    const dvec3 row(world_from_unit[0][axis], world_from_unit[1][axis], world_from_unit[2][axis]);
+    const double offset = world_from_unit[3][axis];
+    double lower = offset - reach(unit, boxes, -row), upper = offset + reach(unit, boxes, row);
+    const double slack = exact ? 0 : 0x1p-22 * std::max({std::abs(lower), std::abs(upper), std::abs(offset)});
+    bounds.lower[axis] = round_down(lower - slack);
+    bounds.upper[axis] = round_up(upper + slack);
+  }
+  bounds.lower[3] = bounds.upper[3] = 0;
+  return bounds;
+}
+
+u32 surface_flags(const Material& material) {
+  u32 flags = 0;
+  if (material.flags & MATERIAL_TRANSMITS && !(material.flags & MATERIAL_SHADOW_OPAQUE))
+    flags |= INSTANCE_FILTERS;
+  if (material.flags & MATERIAL_TRANSMITS && !(material.flags & MATERIAL_THIN)) flags |= INSTANCE_TRANSMITS;
+  return flags;
+}
+
+class Placer {
+ public:
+  Placer(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, u32 default_material,
+         CompiledScene& out)
+      : scene_(scene), meshes_(meshes), default_material_(default_material), out_(out) {}
+
+  Placed place(const Object& object, u32 index) {
+    Placed placed;
+    Instance& instance = placed.instance;
+    const UnitShape unit = unit_shape(scene_, object);
+    instance.shape = unit.shape;
+    instance.parameters = unit.parameters;
+    instance.object = index;
+    instance.material = object.material >= 0 ? static_cast<u32>(object.material) : NO_MATERIAL;
+    instance.pattern_scale = {static_cast<float>(unit.scale.x), static_cast<float>(unit.scale.y),
+                              static_cast<float>(unit.scale.z), 0};
+    std::vector<Bounds> boxes;
+    if (const auto* shape = std::get_if<MeshShape>(&object.shape)) {
+      const PlacedMesh& mesh = meshes_[static_cast<std::size_t>(shape->mesh)];
+      instance.root = mesh.root;
+      placed.cost = mesh.cost;
+      boxes = two_levels(out_.nodes, mesh.root);
+    }
+    set_surface(object, instance);
+    set_place(object, unit, boxes, placed);
+    return placed;
+  }
+
+ private:
+  void set_place(const Object& object, const UnitShape& unit, const std::vector<Bounds>& boxes,
+                 Placed& placed) {
+    const dmat4 world_from_unit =
+        set_transform(scene_, object,
+                      object.world_from_object *
+                          dmat4(glm::dmat3x3(unit.scale.x, 0, 0, 0, unit.scale.y, 0, 0, 0, unit.scale.z)),
+                      placed.instance);
+    if (!placed.bounded()) return;
+    const bool exact = placed.instance.flags & INSTANCE_IDENTITY;
+    placed.box = world_bounds(unit, boxes, world_from_unit, exact);
+    placed.instance.world_center = sphere_around(placed.box);
+  }
+
+  void set_surface(const Object& object, Instance& instance) {
+    const auto* shape = std::get_if<MeshShape>(&object.shape);
+    if (instance.material == NO_MATERIAL && shape) {
+      const PlacedMesh& mesh = meshes_[static_cast<std::size_t>(shape->mesh)];
+      for (u32 i = 0; i < mesh.triangle_count; ++i)
+        use(out_.triangles[mesh.first_triangle + i].material, instance);
+      return;
+    }
+    if (instance.material == NO_MATERIAL) instance.material = default_material_;
+    use(instance.material, instance);
+  }
+
+  void use(u32 index, Instance& instance) {
+    const Material& material = out_.materials.at(index);
+    const u32 flags = surface_flags(material);
+    instance.flags |= flags;
+    if (material.flags & (MATERIAL_TRANSMITS | MATERIAL_REFLECTS)) out_.features.secondary_rays = true;
+    if (flags & INSTANCE_TRANSMITS) out_.features.media = true;
+    if (flags & INSTANCE_FILTERS) out_.features.shadow_filters = true;
+  }
+
+ public:
+  static float4 sphere_around(const Bounds& box) {
+    const auto edge = [&](int axis) { return double(box.upper[axis]) - double(box.lower[axis]); };
+    const auto middle = [&](int axis) {
+      return static_cast<float>(0.5 * (double(box.upper[axis]) + double(box.lower[axis])));
+    };
+    const double half_diagonal = 0.5 * std::sqrt(edge(0) * edge(0) + edge(1) * edge(1) + edge(2) * edge(2));
+    return {middle(0), middle(1), middle(2), round_up(half_diagonal)};
+  }
+
+ private:
+  const SceneDescription& scene_;
+  const std::vector<PlacedMesh>& meshes_;
+  u32 default_material_;
+  CompiledScene& out_;
+};
+
+/// Whether the camera may be inside a solid with a medium.
+bool may_contain(const Placed& placed, const dvec3& camera) {
+  if (!(placed.instance.flags & INSTANCE_TRANSMITS)) return false;
+  if (!placed.bounded()) {
+    const float4& row = placed.instance.object_from_world[1];
+    const dvec3 normal(row.x, row.y, row.z);
+    return glm::dot(normal, camera) + double(row.w) <=
+           1e-6 * (glm::length(normal) * glm::length(camera) + std::abs(double(row.w)));
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    if (camera[axis] < double(placed.box.lower[axis]) || camera[axis] > double(placed.box.upper[axis]))
+      return false;
+  return true;
+}
+
+/// The scene BVH over the bounded instances, which are put in its leaf order.
+void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_stack) {
+  std::vector<Ref> refs;
+  for (std::size_t i = 0; i < bounded.size(); ++i)
+    refs.push_back(Ref::of(bounded[i].box, static_cast<u32>(i)));
+  WideBvh tree =
+      build_wide_bvh(refs, {.block_width = 1, .max_leaf_blocks = 16, .node_cost = 1, .block_cost = 3});
+
+  const auto root = static_cast<u32>(out.nodes.size());
+  for (Bvh8Node node : tree.nodes) {
+    for (u32& child : node.child)
+      if (!(child & BVH_LEAF)) child += root;
+    out.nodes.push_back(node);
+  }
+  std::vector<Placed> sorted;
+  for (const WideBvh::Block& block : tree.blocks) sorted.push_back(bounded[tree.members[block.first]]);
+  bounded = std::move(sorted);
+
+  out.info.tlas_root = root;
+  out.info.bounded_count = static_cast<u32>(bounded.size());
+  out.info.scene_center = bounded.empty() ? float4{} : Placer::sphere_around(tree.box);
+  out.features.bvh_stack = std::max(1u, stack_need(tree.nodes, 0) + mesh_stack);
+  out.figures.sah_cost = expected_cost(tree.nodes, 0, [&](u32 first, u32 count) {
+    double sum = 0;
+    for (u32 i = first; i < first + count; ++i) sum += bounded[i].cost;
+    return sum;
+  });
+}
+
+}  // namespace
+
+void add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, u32 default_material,
+                   CompiledScene& out) {
+  std::vector<Placed> bounded, unbounded;
+  u32 mesh_stack = 0;
+  Placer placer(scene, meshes, default_material, out);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    if (const auto* shape = std::get_if<MeshShape>(&object.shape)) {
+      const PlacedMesh& mesh = meshes[static_cast<std::size_t>(shape->mesh)];
+      if (mesh.triangle_count == 0) continue;
+      mesh_stack = std::max(mesh_stack, mesh.stack);
+    }
+    const Placed placed = placer.place(object, static_cast<u32>(i));
+    out.features.shapes[placed.instance.shape] = true;
+    out.features.camera_inside |= may_contain(placed, scene.camera.position);
+    (placed.bounded() ? bounded : unbounded).push_back(placed);
+  }
+  add_scene_bvh(bounded, out, mesh_stack);
+  for (const Placed& placed : bounded) out.instances.push_back(placed.instance);
+  for (const Placed& placed : unbounded) out.instances.push_back(placed.instance);
+  out.features.unbounded = !unbounded.empty();
+}
+
+}  // namespace sundog

@@ -1,0 +1,16 @@
+// Objects to instances: transforms as the kernels use them, flags, and bounds in the world.
+#pragma once
+#include <vector>
+
+#include "compile/compiled_scene.h"
+#include "compile/mesh_bvh.h"
+
+namespace sundog {
+
+/// Appends one instance an object to `out.instances` (bounded ones first, in leaf order), the scene BVH to
+/// `out.nodes`, and fills the parts of `out.info` and `out.features` that speak of them. Meshes without
+/// triangles are left out. Throws SceneError for a transform that cannot be inverted in single precision.
+void add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, u32 default_material,
+                   CompiledScene& out);
+
+}  // namespace sundog

@@ -1,0 +1,134 @@
+// See materials.h.
+#include "compile/materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.h"
+
+namespace sundog {
+namespace {
+
+float4 pack(const dvec3& v, double w = 0) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w)};
+}
+
+bool is_zero(const dvec3& color) { return color == dvec3(0); }
+
+Medium make_medium(const MediumDescription& medium) {
+  Medium packed{};
+  packed.absorption = pack(medium.absorption, medium.ior);
+  packed.priority = medium.priority;
+  return packed;
+}
+
+bool same(const Medium& a, const Medium& b) {
+  return a.absorption == b.absorption && a.priority == b.priority;
+}
+
+/// The media without duplicates, and for each of the description its index there.
+std::vector<u32> add_media(const SceneDescription& scene, std::vector<Medium>& media) {
+  media.push_back(make_medium(scene.media.empty() ? MediumDescription{} : scene.media[0]));
+  std::vector<u32> index_of(scene.media.size(), 0);
+  for (std::size_t i = 1; i < scene.media.size(); ++i) {
+    const Medium medium = make_medium(scene.media[i]);
+    auto found =
+        std::find_if(media.begin() + 1, media.end(), [&](const Medium& m) { return same(m, medium); });
+    if (found == media.end()) found = media.insert(found, medium);
+    index_of[i] = static_cast<u32>(found - media.begin());
+  }
+  return index_of;
+}
+
+u32 material_flags(const MaterialDescription& material) {
+  u32 flags = 0;
+  if (material.blinn) flags |= MATERIAL_BLINN;
+  if (material.shadow_opaque) flags |= MATERIAL_SHADOW_OPAQUE;
+  if (material.checker) flags |= MATERIAL_CHECKER;
+  if (!is_zero(material.transmission)) flags |= MATERIAL_TRANSMITS;
+  if (!is_zero(material.reflection)) flags |= MATERIAL_REFLECTS;
+  if (material.medium < 0) flags |= MATERIAL_THIN;
+  if (material.vertex_color) flags |= MATERIAL_VERTEX_COLOR;
+  return flags;
+}
+
+Material make_material(const MaterialDescription& material, const std::vector<u32>& media) {
+  Material packed{};
+  packed.ambient = pack(material.ambient);
+  packed.diffuse = pack(material.diffuse);
+  packed.specular = pack(material.specular, material.exponent);
+  packed.reflection = pack(material.reflection);
+  packed.transmission = pack(material.transmission);
+  packed.checker_ambient = pack(material.checker_ambient);
+  packed.checker_diffuse = pack(material.checker_diffuse, 1 / material.checker_size);
+  packed.kind = material.type == MaterialType::dielectric ? MATERIAL_DIELECTRIC : MATERIAL_PHONG;
+  packed.flags = material_flags(material);
+  packed.medium = material.medium < 0 ? 0 : media.at(static_cast<std::size_t>(material.medium));
+  return packed;
+}
+
+bool lacks_material(const SceneDescription& scene, const Object& object) {
+  if (object.material >= 0) return false;
+  const auto* shape = std::get_if<MeshShape>(&object.shape);
+  if (!shape) return true;
+  const auto& materials = scene.meshes[static_cast<std::size_t>(shape->mesh)].materials;
+  return materials.empty() || std::any_of(materials.begin(), materials.end(), [](int m) { return m < 0; });
+}
+
+dvec3 unit_direction(const SceneDescription& scene, const LightDescription& light, std::size_t index) {
+  const double length = glm::length(light.direction);
+  if (!(length > 0) || !std::isfinite(length))
+    throw SceneError(scene.file.string(), fmt::format("/lights/{}/direction", index),
+                     fmt::format("wanted a direction, found ({}, {}, {}); give the way the light travels",
+                                 light.direction.x, light.direction.y, light.direction.z));
+  return light.direction / length;
+}
+
+double cosine(double degrees) { return std::cos(degrees * std::numbers::pi / 180); }
+
+}  // namespace
+
+u32 add_materials(const SceneDescription& scene, CompiledScene& out) {
+  const std::vector<u32> media = add_media(scene, out.media);
+  for (const MaterialDescription& material : scene.materials)
+    out.materials.push_back(make_material(material, media));
+  if (std::none_of(scene.objects.begin(), scene.objects.end(),
+                   [&](const Object& object) { return lacks_material(scene, object); }))
+    return NO_MATERIAL;
+  out.materials.push_back(make_material(MaterialDescription{}, media));
+  return static_cast<u32>(out.materials.size() - 1);
+}
+
+void add_lights(const SceneDescription& scene, CompiledScene& out) {
+  dvec3 ambient(0);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const LightDescription& light = scene.lights[i];
+    const dvec3 color = light.color * light.intensity;
+    if (light.type == LightType::ambient) {
+      ambient += color;
+      continue;
+    }
+    Light packed{};
+    packed.kind = LIGHT_POINT;
+    packed.position = pack(light.position);
+    packed.color = pack(color);
+    packed.falloff_constant = static_cast<float>(light.falloff.x);
+    packed.falloff_linear = static_cast<float>(light.falloff.y);
+    packed.falloff_quadratic = static_cast<float>(light.falloff.z);
+    if (light.type == LightType::directional) {
+      packed.kind = LIGHT_DIRECTIONAL;
+      packed.direction = pack(unit_direction(scene, light, i));
+    } else if (light.type == LightType::spot) {
+      packed.kind = LIGHT_SPOT;
+      packed.direction = pack(unit_direction(scene, light, i), cosine(light.outer_angle));
+      packed.color.w = static_cast<float>(cosine(light.inner_angle));
+    }
+    out.lights.push_back(packed);
+  }
+  out.info.ambient = pack(ambient);
+}
+
+}  // namespace sundog

@@ -1,0 +1,17 @@
+// Materials, media and lights as the kernels read them.
+#pragma once
+#include <vector>
+
+#include "compile/compiled_scene.h"
+
+namespace sundog {
+
+/// Fills `out.media` (the same medium under several names becomes one; the world's stays alone at 0) and
+/// `out.materials`. When some object or mesh is without a material, a default one is appended. Returns its
+/// index, or NO_MATERIAL.
+u32 add_materials(const SceneDescription& scene, CompiledScene& out);
+
+/// Fills `out.lights` and `out.info.ambient`. Throws SceneError for a direction of length zero.
+void add_lights(const SceneDescription& scene, CompiledScene& out);
+
+}  // namespace sundog

@@ -1,0 +1,168 @@
+// See mesh_bvh.h.
+#include "compile/mesh_bvh.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "compile/vertices.h"
+
+namespace sundog {
+namespace {
+
+constexpr float farthest = 1e36f;  // beyond, sums of coordinates leave the float's range
+
+[[noreturn]] void fail(const SceneDescription& scene, std::size_t mesh, const std::string& what) {
+  std::string place;
+  for (const Object& object : scene.objects)
+    if (const auto* shape = std::get_if<MeshShape>(&object.shape);
+        shape && std::size_t(shape->mesh) == mesh) {
+      place = object.place;
+      break;
+    }
+  throw SceneError(scene.file.string(), place, fmt::format("mesh \"{}\": {}", scene.meshes[mesh].name, what));
+}
+
+bool in_range(const glm::vec3& p) {
+  return std::abs(p.x) <= farthest && std::abs(p.y) <= farthest && std::abs(p.z) <= farthest;
+}
+
+bool attribute_fits(std::size_t count, std::size_t wanted) { return count == 0 || count == wanted; }
+
+void check_mesh(const SceneDescription& scene, std::size_t index) {
+  const Mesh& mesh = scene.meshes[index];
+  const auto bad = std::find_if_not(mesh.positions.begin(), mesh.positions.end(), in_range);
+  if (bad != mesh.positions.end())
+    fail(scene, index,
+         fmt::format("vertex {} is ({}, {}, {}); wanted finite numbers up to {:g}; mend the model",
+                     bad - mesh.positions.begin(), bad->x, bad->y, bad->z, farthest));
+  const std::size_t n = mesh.positions.size();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int corner = 0; corner < 3; ++corner)
+      if (mesh.triangles[t][corner] >= n)
+        fail(scene, index,
+             fmt::format("triangle {} names vertex {}; wanted less than {}; mend the model", t,
+                         mesh.triangles[t][corner], n));
+  if (!attribute_fits(mesh.normals.size(), n) || !attribute_fits(mesh.uvs.size(), n) ||
+      !attribute_fits(mesh.colors.size(), n) || !attribute_fits(mesh.materials.size(), mesh.triangles.size()))
+    fail(scene, index, "normals, uvs or colours are not one a vertex, or materials not one a triangle");
+  for (const int material : mesh.materials)
+    if (material >= static_cast<int>(scene.materials.size()))
+      fail(scene, index, fmt::format("material {} of {}", material, scene.materials.size()));
+}
+
+std::vector<Ref> make_refs(const Mesh& mesh) {
+  std::vector<Ref> refs(mesh.triangles.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, refs.size(), 4096), [&](const auto& range) {
+    for (std::size_t t = range.begin(); t != range.end(); ++t) {
+      Bounds box;
+      for (int corner = 0; corner < 3; ++corner) {
+        const glm::vec3& p = mesh.positions[mesh.triangles[t][corner]];
+        box.extend(Lanes{p.x, p.y, p.z, 0});
+      }
+      refs[t] = Ref::of(box, static_cast<u32>(t));
+    }
+  });
+  return refs;
+}
+
+TriangleBlock make_block(const Mesh& mesh, std::span<const u32> members, u32 first_triangle) {
+  TriangleBlock block{};
+  std::fill(std::begin(block.prim), std::end(block.prim), NO_PRIM);
+  for (std::size_t lane = 0; lane < members.size(); ++lane) {
+    const glm::uvec3& triangle = mesh.triangles[members[lane]];
+    const glm::vec3& v0 = mesh.positions[triangle.x];
+    const glm::vec3 e1 = mesh.positions[triangle.y] - v0, e2 = mesh.positions[triangle.z] - v0;
+    block.v0_x[lane] = v0.x, block.v0_y[lane] = v0.y, block.v0_z[lane] = v0.z;
+    block.e1_x[lane] = e1.x, block.e1_y[lane] = e1.y, block.e1_z[lane] = e1.z;
+    block.e2_x[lane] = e2.x, block.e2_y[lane] = e2.y, block.e2_z[lane] = e2.z;
+    block.prim[lane] = first_triangle + members[lane];
+  }
+  return block;
+}
+
+/// Copies the tree behind what the tables hold already, its indices made absolute.
+void append_tree(const WideBvh& tree, const Mesh& mesh, u32 first_triangle, std::span<Bvh8Node> nodes,
+                 u32 first_node, std::span<TriangleBlock> blocks, u32 first_block) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.nodes.size(), 1024), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      nodes[i] = tree.nodes[i];
+      for (u32& child : nodes[i].child)
+        if (child != BVH_EMPTY) child += child & BVH_LEAF ? first_block : first_node;
+    }
+  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.blocks.size(), 512), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i)
+      blocks[i] = make_block(
+          mesh, std::span(tree.members).subspan(tree.blocks[i].first, tree.blocks[i].count), first_triangle);
+  });
+}
+
+struct TableSizes {
+  std::size_t nodes = 0, blocks = 0, triangles = 0, vertices = 0;
+};
+
+void check_sizes(const SceneDescription& scene, const TableSizes& sizes) {
+  if (sizes.blocks > BVH_FIRST_MASK || sizes.nodes >= BVH_LEAF || sizes.triangles >= NO_PRIM ||
+      sizes.vertices >= NO_PRIM)
+    throw SceneError(
+        scene.file.string(), "",
+        fmt::format("{} triangles in {} blocks are more than the tables can index; use smaller meshes",
+                    sizes.triangles, sizes.blocks));
+}
+
+}  // namespace
+
+std::vector<PlacedMesh> add_meshes(const SceneDescription& scene, u32 default_material, CompiledScene& out) {
+  std::vector<PlacedMesh> placed(scene.meshes.size());
+  for (const Object& object : scene.objects)
+    if (const auto* shape = std::get_if<MeshShape>(&object.shape))
+      placed[std::size_t(shape->mesh)].used = true;
+
+  std::vector<WideBvh> trees(placed.size());
+  tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
+    if (!placed[i].used) return;
+    check_mesh(scene, i);
+    std::vector<Ref> refs = make_refs(scene.meshes[i]);
+    trees[i] = build_wide_bvh(refs, WideBvhSettings{});
+  });
+
+  std::vector<TableSizes> first(placed.size());
+  TableSizes sum;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    first[i] = sum;
+    if (!placed[i].used) continue;
+    sum.nodes += trees[i].nodes.size();
+    sum.blocks += trees[i].blocks.size();
+    sum.triangles += scene.meshes[i].triangles.size();
+    sum.vertices += vertex_count(scene.meshes[i]);
+  }
+  check_sizes(scene, sum);
+  out.nodes.resize(sum.nodes);
+  out.blocks.resize(sum.blocks);
+  out.triangles.resize(sum.triangles);
+  out.vertices.resize(sum.vertices);
+
+  tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
+    if (!placed[i].used) return;
+    const Mesh& mesh = scene.meshes[i];
+    const auto node = static_cast<u32>(first[i].nodes), block = static_cast<u32>(first[i].blocks);
+    const auto triangle = static_cast<u32>(first[i].triangles), vertex = static_cast<u32>(first[i].vertices);
+    placed[i].root = node;
+    placed[i].first_triangle = triangle;
+    placed[i].triangle_count = static_cast<u32>(mesh.triangles.size());
+    placed[i].cost = expected_cost(trees[i].nodes, 0, [](u32, u32 count) { return double(count); });
+    placed[i].stack = stack_need(trees[i].nodes, 0);
+    append_tree(trees[i], mesh, triangle, std::span(out.nodes).subspan(node), node,
+                std::span(out.blocks).subspan(block), block);
+    fill_vertices(mesh, vertex, default_material, std::span(out.vertices).subspan(vertex, vertex_count(mesh)),
+                  std::span(out.triangles).subspan(triangle, mesh.triangles.size()));
+  });
+  return placed;
+}
+
+}  // namespace sundog

@@ -1,0 +1,24 @@
+// Meshes to tables: triangle blocks under a wide BVH, and the vertices and triangles that shading reads.
+#pragma once
+#include <vector>
+
+#include "compile/compiled_scene.h"
+#include "compile/wide_bvh.h"
+
+namespace sundog {
+
+/// Where a mesh lies in the tables.
+struct PlacedMesh {
+  bool used = false;  // some object places it
+  u32 root = 0;       // its first node
+  u32 first_triangle = 0, triangle_count = 0;
+  double cost = 0;  // expected cost of a ray that crosses its box
+  u32 stack = 0;    // entries its traversal may need
+};
+
+/// Appends the meshes that `scene`'s objects use to nodes, blocks, triangles and vertices of `out`; one
+/// PlacedMesh a mesh. `default_material` is for triangles that neither the mesh nor an object gives one.
+/// Throws SceneError for a vertex that is not finite or too far out, and for an index out of range.
+std::vector<PlacedMesh> add_meshes(const SceneDescription& scene, u32 default_material, CompiledScene& out);
+
+}  // namespace sundog

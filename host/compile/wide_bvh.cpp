@@ -1,0 +1,161 @@
+// Lays the collapsed tree out as Bvh8Nodes and leaf blocks; see wide_bvh.h.
+#include "compile/wide_bvh.h"
+
+#include <algorithm>
+
+#include "compile/binary_bvh.h"
+
+namespace sundog {
+namespace {
+
+void set_bounds(Bvh8Node& node, u32 slot, const Bounds& box) {
+  node.lower_x[slot] = box.lower[0];
+  node.lower_y[slot] = box.lower[1];
+  node.lower_z[slot] = box.lower[2];
+  node.upper_x[slot] = box.upper[0];
+  node.upper_y[slot] = box.upper[1];
+  node.upper_z[slot] = box.upper[2];
+}
+
+/// The members of a wide node: up to eight binary nodes.
+struct Children {
+  std::array<const BinaryNode*, BVH_WIDTH> node;
+  std::size_t count = 0;
+
+  void gather(const BinaryNode& binary, std::size_t slots) {
+    while (slots > 1 && slots < 8 && binary.left && binary.share[slots] == 0) --slots;
+    if (slots == 1 || !binary.left) {
+      node[count++] = &binary;
+      return;
+    }
+    gather(*binary.left, binary.share[slots]);
+    gather(*binary.right, slots - binary.share[slots]);
+  }
+};
+
+class Layout {
+ public:
+  Layout(WideBvh& tree, u32 block_width) : tree_(tree), block_width_(block_width) {}
+
+  void root(const BinaryNode& binary) {
+    tree_.nodes.emplace_back();
+    Children children;
+    if (binary.leaf)
+      children.gather(binary, 1);
+    else
+      children.gather(binary, 8);
+    node(0, children);
+  }
+
+ private:
+  void node(u32 index, const Children& children) {
+    Bvh8Node wide = empty_node();
+    const auto first_inner = static_cast<u32>(tree_.nodes.size());
+    u32 inner = 0;
+    for (u32 slot = 0; slot < children.count; ++slot) {
+      const BinaryNode& child = *children.node[slot];
+      set_bounds(wide, slot, child.box);
+      wide.child[slot] = child.leaf ? leaf(child) : first_inner + inner++;
+      wide.valid |= 1u << slot;
+    }
+    tree_.nodes.resize(tree_.nodes.size() + inner);
+    tree_.nodes[index] = wide;
+    inner = 0;
+    for (u32 slot = 0; slot < children.count; ++slot)
+      if (!children.node[slot]->leaf) {
+        Children grandchildren;
+        grandchildren.gather(*children.node[slot], 8);
+        node(first_inner + inner++, grandchildren);
+      }
+  }
+
+  u32 leaf(const BinaryNode& binary) {
+    const auto first = static_cast<u32>(tree_.blocks.size());
+    for (u32 i = 0; i < binary.count; i += block_width_)
+      tree_.blocks.push_back({binary.first + i, std::min(block_width_, binary.count - i)});
+    const auto count = static_cast<u32>(tree_.blocks.size()) - first;
+    return BVH_LEAF | (count - 1) << BVH_LEAF_SHIFT | first;
+  }
+
+  WideBvh& tree_;
+  u32 block_width_;
+};
+
+double area(const Bounds& box) {
+  const double x = double(box.upper[0]) - double(box.lower[0]);
+  const double y = double(box.upper[1]) - double(box.lower[1]);
+  const double z = double(box.upper[2]) - double(box.lower[2]);
+  return x * (y + z) + y * z;
+}
+
+}  // namespace
+
+Bvh8Node empty_node() {
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  Bvh8Node node{};
+  for (u32 slot = 0; slot < BVH_WIDTH; ++slot) {
+    node.lower_x[slot] = node.lower_y[slot] = node.lower_z[slot] = inf;
+    node.upper_x[slot] = node.upper_y[slot] = node.upper_z[slot] = -inf;
+    node.child[slot] = BVH_EMPTY;
+  }
+  return node;
+}
+
+Bounds child_bounds(const Bvh8Node& node, u32 slot) {
+  return {Lanes{node.lower_x[slot], node.lower_y[slot], node.lower_z[slot], 0},
+          Lanes{node.upper_x[slot], node.upper_y[slot], node.upper_z[slot], 0}};
+}
+
+Bounds node_bounds(const Bvh8Node& node) {
+  Bounds box;
+  for (u32 slot = 0; slot < BVH_WIDTH && (node.valid >> slot & 1u); ++slot)
+    box.extend(child_bounds(node, slot));
+  return box;
+}
+
+WideBvh build_wide_bvh(std::span<Ref> refs, const WideBvhSettings& settings) {
+  WideBvh tree;
+  if (refs.empty()) {
+    tree.nodes.push_back(empty_node());
+    return tree;
+  }
+  // A tree so lopsided that a traversal's stack would not hold is built again, balanced.
+  for (const bool balanced : {false, true}) {
+    BinaryTree binary(refs, settings, balanced);
+    tree = WideBvh{};
+    tree.box = binary.root().box;
+    Layout(tree, settings.block_width).root(binary.root());
+    tree.members = binary.take_members();
+    if (stack_need(tree.nodes, 0) <= stack_limit) break;
+  }
+  return tree;
+}
+
+double expected_cost(std::span<const Bvh8Node> nodes, u32 root,
+                     const std::function<double(u32 first, u32 count)>& leaf_cost) {
+  const double root_area = area(node_bounds(nodes[root]));
+  const std::function<double(u32, double)> cost = [&](u32 index, double share) {
+    const Bvh8Node& node = nodes[index];
+    double sum = share;
+    for (u32 slot = 0; slot < BVH_WIDTH && (node.valid >> slot & 1u); ++slot) {
+      const double part = root_area > 0 ? area(child_bounds(node, slot)) / root_area : 1.0;
+      const u32 child = node.child[slot];
+      if (child & BVH_LEAF)
+        sum += part * leaf_cost(child & BVH_FIRST_MASK, (child >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK) + 1);
+      else
+        sum += cost(child, part);
+    }
+    return sum;
+  };
+  return cost(root, 1.0);
+}
+
+u32 stack_need(std::span<const Bvh8Node> nodes, u32 root) {
+  const Bvh8Node& node = nodes[root];
+  u32 count = 0, deepest = 0;
+  for (; count < BVH_WIDTH && (node.valid >> count & 1u); ++count)
+    if (!(node.child[count] & BVH_LEAF)) deepest = std::max(deepest, stack_need(nodes, node.child[count]));
+  return count == 0 ? 0 : count - 1 + deepest;
+}
+
+}  // namespace sundog

@@ -1,0 +1,53 @@
+// From boxes to an 8-wide tree: a binary tree by surface area (split.h), collapsed by cost to nodes of eight
+// children (Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed
+// Wide BVHs", section 3.2).
+#pragma once
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "compile/bounds.h"
+#include "shared/bvh.h"
+
+namespace sundog {
+
+/// A tree whose traversal could need a deeper stack than this is built again, balanced.
+constexpr u32 stack_limit = 96;
+
+struct WideBvhSettings {
+  u32 block_width = 8;       // members of a leaf block (triangles: 8; instances: 1)
+  u32 max_leaf_blocks = 16;  // blocks of a leaf
+  float node_cost = 1, block_cost = 1;
+};
+
+/// The tree's shape. Child words count from node 0 and block 0 of this tree. The inner children of a node are
+/// consecutive, and so are the blocks of its leaves.
+struct WideBvh {
+  struct Block {
+    u32 first, count;  // members[first, first + count)
+  };
+  std::vector<Bvh8Node> nodes;  // [0] is the root; never empty
+  std::vector<Block> blocks;
+  std::vector<u32> members;  // primitive numbers in leaf order
+  Bounds box;                // empty when there are no members
+};
+
+/// Builds the tree over `refs` (reordered), whose numbers are below 2^27. Deterministic at any number of
+/// threads.
+WideBvh build_wide_bvh(std::span<Ref> refs, const WideBvhSettings& settings);
+
+/// Expected cost of a ray that crosses the root's box: 1 a node visited, and `leaf_cost` of the first and the
+/// count that a leaf word holds.
+double expected_cost(std::span<const Bvh8Node> nodes, u32 root,
+                     const std::function<double(u32 first, u32 count)>& leaf_cost);
+
+Bvh8Node empty_node();
+Bounds child_bounds(const Bvh8Node& node, u32 slot);
+/// Bounds of all children.
+Bounds node_bounds(const Bvh8Node& node);
+
+/// Entries that a traversal stack needs in the worst case, when each visited node pushes all but one of its
+/// children.
+u32 stack_need(std::span<const Bvh8Node> nodes, u32 root);
+
+}  // namespace sundog

@@ -1,0 +1,39 @@
+// A slow, plain tracer of the compiled tables in double precision: what kernels and the BVH are held against.
+#pragma once
+#include <glm/glm.hpp>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "compile/compiled_scene.h"
+
+namespace sundog {
+
+struct HostRay {
+  glm::dvec3 origin, direction;
+  double t_min = 0, t_max = std::numeric_limits<double>::infinity();
+};
+
+struct HostHit {
+  double t = 0, u = 0, v = 0;  // u, v: barycentric, of triangles only
+  u32 prim = 0;                // TriangleShading index; 0 for solids
+  u32 instance = 0;
+  glm::dvec3 ng{0};  // object space, outward, not normalised
+};
+
+/// Nearest hit with t in (t_min, t_max), through the two-level BVH.
+std::optional<HostHit> trace_host(const CompiledScene& scene, const HostRay& ray);
+
+/// The same without the BVH: every instance, every block of its mesh.
+std::optional<HostHit> trace_brute_force(const CompiledScene& scene, const HostRay& ray);
+
+/// Every crossing of one instance's surface, nearest first, t in (t_min, t_max).
+std::vector<HostHit> crossings(const CompiledScene& scene, u32 instance, const HostRay& ray);
+
+/// The ray in an instance's object space (t unchanged).
+HostRay object_ray(const Instance& instance, const HostRay& ray);
+
+/// Children that a node holds, and the blocks or instances below a node or leaf word.
+std::vector<u32> leaf_items(const CompiledScene& scene, u32 word);
+
+}  // namespace sundog
