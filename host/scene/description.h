@@ -1,6 +1,7 @@
 // SceneDescription: the scene as plain values, exactly what the file says after names are resolved to indices.
 // The loaders of this folder make it; compile() reads it.
 #pragma once
+#include <cstddef>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <limits>
@@ -73,7 +74,8 @@ struct MaterialDescription {
   bool vertex_color = false;
 };
 
-/// Triangles with shared vertices. `normals` and `uvs` are empty or as long as `positions`; all colours linear.
+/// Triangles with shared vertices. `normals` (empty: flat shading), `uvs` and `colors` are empty or as long as
+/// `positions`; all colours linear.
 struct Mesh {
   std::string name;
   std::vector<glm::vec3> positions;
@@ -82,6 +84,7 @@ struct Mesh {
   std::vector<glm::vec3> colors;
   std::vector<glm::uvec3> triangles;
   std::vector<int> materials;  // per triangle, index into SceneDescription::materials; empty: the object's
+  std::size_t source_vertex_count = 0;  // as the file stores them: before vertices are split or dropped
 };
 
 struct MeshShape { int mesh = 0; };           // index into meshes

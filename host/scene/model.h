@@ -1,33 +1,44 @@
-// Models: what a mesh file holds, before it is placed in a scene.
+// Models: what a model file holds, before it is placed in a scene.
 #pragma once
+#include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "scene/description.h"
 
 namespace sundog {
 
-/// A model file's content. Indices (mesh, material, medium) are local to it: MeshShape::mesh into `meshes`, and so on;
-/// media have no world entry (index 0 is the first medium). Objects hold the node transforms (instances share a mesh).
+/// A model file's content. Indices (mesh, material, medium) are local to it: MeshShape::mesh into `meshes`,
+/// and so on; media have no world entry (index 0 is the first medium). Objects hold the node transforms
+/// (instances share a mesh). A mesh has one triangle or more. Where the file names no material,
+/// Object::material is -1 and Mesh::materials is empty (a file without any), or the triangle's index is that
+/// of an added material "default".
 struct Model {
   std::vector<Mesh> meshes;
   std::vector<MaterialDescription> materials;
   std::vector<MediumDescription> media;
   std::vector<Object> objects;
+  /// glTF's candela, lux and inverse squares become: intensity = value / pi (the phong model has no 1/pi in
+  /// kd), falloff {0, 0, 1} for point and spot lights. NFF: each light and an ambient one by SPD's sqrt(n) /
+  /// (2 n).
   std::vector<LightDescription> lights;
-  std::optional<Camera> camera;
+  std::optional<Camera> camera;        // the first one of the default scene (glTF), or the view (NFF)
   std::optional<ImageSettings> image;  // NFF: resolution and background
+  std::size_t dropped_polygons = 0;    // faces with fewer than three corners
+  std::vector<std::string> warnings;  // what was read past: missing material files, orthographic cameras, ...
 };
 
 struct ModelOptions {
   /// Angle in degrees up to which made-up normals are smoothed across an edge; nullopt: the format's own rule
-  /// (glTF and STL flat, OBJ and PLY 45).
+  /// (glTF and STL flat, OBJ and PLY 45). 0 is flat.
   std::optional<double> crease_angle;
 };
 
-/// Reads .gltf .glb .obj .ply .stl .nff, each also gzipped (.gz). Polygons come triangulated, normals made where missing.
-/// Throws SceneError{file, "line N" or a JSON pointer, what}.
+/// Reads .gltf .glb .obj .ply .stl .nff, each also gzipped (.gz). Polygons come triangulated (n corners make
+/// n - 2 triangles, those without area too), normals made where missing. Textures are not read. Throws
+/// SceneError{file, "line N", "byte N" or a JSON pointer, what}.
 Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});
 
 /// True when `path` has the extension of a model file (with or without .gz).

@@ -1,0 +1,60 @@
+// load_model(): one reader for each format.
+#include "scene/model.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <new>
+
+#include "base/error.h"
+#include "scene/models/readers.h"
+
+namespace sundog {
+namespace models {
+
+void add_mesh(Model& model, Mesh mesh) {
+  if (mesh.triangles.empty()) return;
+  Object object;
+  object.name = mesh.name;
+  object.shape = MeshShape{static_cast<int>(model.meshes.size())};
+  model.objects.push_back(std::move(object));
+  model.meshes.push_back(std::move(mesh));
+}
+
+float linear_from_srgb(double value) {
+  return static_cast<float>(value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4));
+}
+
+}  // namespace models
+
+namespace {
+
+Model load(const models::Source& source, const std::string& extension, const ModelOptions& options) {
+  if (source.bytes.empty()) models::fail(source, "", "the file is empty");
+  if (extension == ".obj") return models::load_obj(source, options);
+  if (extension == ".ply") return models::load_ply(source, options);
+  if (extension == ".stl") return models::load_stl(source, options);
+  return models::load_nff(source);
+}
+
+}  // namespace
+
+bool is_model_file(const std::filesystem::path& path) {
+  const std::string extension = models::model_extension(path);
+  for (const char* known : {".obj", ".ply", ".stl", ".nff"})
+    if (extension == known) return true;
+  return false;
+}
+
+Model load_model(const std::filesystem::path& path, const ModelOptions& options) {
+  if (!is_model_file(path))
+    throw SceneError(path.string(), "",
+                     "not a model file: the name must end in .obj .ply .stl or .nff (or that and .gz)");
+  try {
+    return load(models::read_source(path), models::model_extension(path), options);
+  } catch (const std::bad_alloc&) {
+    throw SceneError(path.string(), "", "the model does not fit into memory");
+  }
+}
+
+}  // namespace sundog

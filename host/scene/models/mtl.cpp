@@ -1,0 +1,154 @@
+// MTL material libraries (Wavefront, "MTL material format", 1995). Colours are taken as they stand, as linear
+// ones. In: a library's text. Out: phong materials, dielectrics and their media.
+#include "scene/models/mtl.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "scene/models/text.h"
+
+namespace sundog::models {
+namespace fs = std::filesystem;
+namespace {
+
+// A material as MTL states it.
+struct Statements {
+  std::string name;
+  std::optional<dvec3> ambient, diffuse, specular, filter;
+  double exponent = 32, ior = 1, opacity = 1;
+  int illumination = 2;
+};
+
+// "Kd r g b", or "Kd r" for grey. Spectral files and CIE XYZ are left at the default.
+std::optional<dvec3> read_color(TextReader& text) {
+  TextReader peek = text;
+  const std::string_view form = peek.word();
+  if (form == "spectral" || form == "xyz") return std::nullopt;
+  const double red = text.number("red");
+  if (text.at_line_end()) return glm::max(dvec3(red), dvec3(0));
+  const double green = text.number("green"), blue = text.number("blue");
+  return glm::max(dvec3(red, green, blue), dvec3(0));
+}
+
+double read_opacity(TextReader& text) {
+  TextReader peek = text;
+  if (peek.word() == "-halo") text.word();
+  return std::clamp(text.number("d"), 0.0, 1.0);
+}
+
+void read_statement(TextReader& text, std::string_view key, Statements& m) {
+  if (key == "Ka") m.ambient = read_color(text);
+  if (key == "Kd") m.diffuse = read_color(text);
+  if (key == "Ks") m.specular = read_color(text);
+  if (key == "Tf") m.filter = read_color(text);
+  if (key == "Ns") m.exponent = std::max(text.number("Ns"), 0.0);
+  if (key == "Ni") m.ior = text.number("Ni");
+  if (key == "d") m.opacity = read_opacity(text);
+  if (key == "Tr") m.opacity = 1 - std::clamp(text.number("Tr"), 0.0, 1.0);
+  if (key == "illum")
+    m.illumination = static_cast<int>(std::clamp<std::int64_t>(text.integer("illum"), 0, 10));
+}
+
+// Illumination models: 3 to 8 trace reflections; 4, 6, 7 and 9 are glass; 5 and 7 have Fresnel's equations.
+void add_material(const Statements& m, Model& model) {
+  const int illum = m.illumination;
+  const bool traced = illum >= 4 && illum <= 7, fresnel = illum == 5 || illum == 7;
+  const bool glass = m.opacity < 1 || (m.filter && (traced || illum == 9) && *m.filter != dvec3(0));
+  MaterialDescription out;
+  out.name = m.name;
+  out.ambient = m.ambient.value_or(out.ambient);
+  out.diffuse = m.diffuse.value_or(out.diffuse);
+  out.specular = m.specular.value_or(out.specular);
+  out.exponent = m.exponent;
+  if (illum >= 3 && illum <= 8) out.reflection = glm::min(out.specular, dvec3(1));
+  if (glass) {
+    const dvec3 filter = glm::min(m.filter.value_or(dvec3(1)), dvec3(1));
+    out.transmission = m.opacity < 1 && !(fresnel && m.filter) ? (1 - m.opacity) * filter : filter;
+    out.ambient *= m.opacity;
+    out.diffuse *= m.opacity;
+    if (traced && m.ior > 0 && m.ior != 1) {
+      MediumDescription medium;
+      medium.name = m.name;
+      medium.ior = m.ior;
+      out.medium = static_cast<int>(model.media.size());
+      model.media.push_back(medium);
+    }
+    if (fresnel && out.medium >= 0) {
+      out.type = MaterialType::dielectric;
+      out.reflection = dvec3(1);
+    }
+  }
+  model.materials.push_back(out);
+}
+
+// An mtllib line holds one name with blanks, or several names: those end in ".mtl".
+std::vector<std::string> split_names(std::string_view names) {
+  std::vector<std::string> parts;
+  while (!names.empty()) {
+    const std::size_t end = names.find(".mtl ");
+    parts.emplace_back(names.substr(0, end == names.npos ? end : end + 4));
+    names.remove_prefix(end == names.npos ? names.size() : end + 5);
+    names.remove_prefix(std::min(names.find_first_not_of(" \t"), names.size()));
+  }
+  return parts;
+}
+
+fs::path beside(const fs::path& obj, std::string name) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return obj.parent_path() / fs::path(name);
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+}  // namespace
+
+void MaterialLibrary::load(const fs::path& obj, std::string_view names) {
+  const fs::path whole = beside(obj, std::string(names));
+  if (is_file(whole)) return read(whole);
+  for (const std::string& name : split_names(names)) {
+    const fs::path path = beside(obj, name);
+    if (is_file(path)) {
+      read(path);
+    } else {
+      model_.warnings.push_back(
+          fmt::format("{}: the material library {} is missing", obj.string(), path.string()));
+    }
+  }
+}
+
+void MaterialLibrary::read(const fs::path& path) {
+  const Source source = read_source(path);
+  TextReader text(source, {});
+  Statements material;
+  const auto finish = [&] {
+    if (material.name.empty()) return;
+    const auto at = static_cast<int>(model_.materials.size());
+    if (index_.try_emplace(material.name, at).second) add_material(material, model_);
+  };
+  while (text.next_line()) {
+    const std::string_view key = text.word();
+    if (key == "newmtl") {
+      finish();
+      material = {};
+      material.name = text.rest();
+      if (material.name.empty()) text.fail("newmtl without a name");
+    } else if (!material.name.empty()) {
+      read_statement(text, key, material);
+    }
+  }
+  finish();
+}
+
+int MaterialLibrary::find(std::string_view name) {
+  if (const auto found = index_.find(name); found != index_.end()) return found->second;
+  index_.emplace(name, -1);
+  model_.warnings.push_back(fmt::format("the material '{}' is not defined; the default one is used", name));
+  return -1;
+}
+
+}  // namespace sundog::models

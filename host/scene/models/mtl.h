@@ -1,0 +1,30 @@
+// MTL material libraries.
+#pragma once
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "scene/model.h"
+
+namespace sundog::models {
+
+/// The materials that an OBJ file has at hand, by name.
+class MaterialLibrary {
+ public:
+  explicit MaterialLibrary(Model& model) : model_(model) {}
+
+  /// Reads the files that an mtllib statement names, beside `obj`. One that is missing leaves a warning.
+  /// Throws SceneError with the MTL file's line.
+  void load(const std::filesystem::path& obj, std::string_view names);
+
+  /// The material's index; for an unknown name -1, and a warning at the first time.
+  int find(std::string_view name);
+
+ private:
+  void read(const std::filesystem::path& path);
+
+  Model& model_;
+  std::map<std::string, int, std::less<>> index_;
+};
+
+}  // namespace sundog::models

@@ -1,0 +1,207 @@
+// Wavefront OBJ: polygons with texture coordinates, normals, vertex colours and MTL materials, as one mesh.
+// Lines, points, curves and surfaces are left aside; so are objects and groups, which are names alone.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "scene/models/mtl.h"
+#include "scene/models/normals.h"
+#include "scene/models/polygon.h"
+#include "scene/models/readers.h"
+#include "scene/models/text.h"
+
+namespace sundog::models {
+namespace {
+
+constexpr std::uint32_t none = 0xFFFFFFFFu;
+
+struct Corner {
+  std::uint32_t position = none, uv = none, normal = none;
+  bool operator==(const Corner&) const = default;
+};
+
+class ObjReader {
+ public:
+  ObjReader(const Source& source, Model& model)
+      : text_(source, {.hash_comments = true, .continuations = true}),
+        path_(source.path),
+        model_(model),
+        library_(model) {}
+
+  void read() {
+    while (text_.next_line()) read_statement(text_.word());
+    if (positions_.empty()) text_.fail("no vertices: not an OBJ file");
+  }
+
+  Mesh take_mesh(double crease_degrees) {
+    mesh_.name = path_.stem().string();
+    mesh_.source_vertex_count = positions_.size();
+    if (!any_uv_) mesh_.uvs.clear();
+    if (!any_color_) mesh_.colors.clear();
+    settle_materials();
+    complete_normals(mesh_, std::move(has_normal_), crease_degrees, std::move(points_));
+    return std::move(mesh_);
+  }
+
+ private:
+  void read_statement(std::string_view key) {
+    if (key == "v") {
+      read_position();
+    } else if (key == "vn") {
+      const float x = text_.real("x"), y = text_.real("y"), z = text_.real("z");
+      normals_.emplace_back(x, y, z);
+    } else if (key == "vt") {
+      const float u = text_.real("u");
+      uvs_.emplace_back(u, text_.at_line_end() ? 0.0f : text_.real("v"));
+    } else if (key == "f" || key == "fo") {
+      read_face();
+    } else if (key == "usemtl") {
+      material_ = library_.find(text_.rest());
+    } else if (key == "mtllib") {
+      library_.load(path_, text_.rest());
+    }
+  }
+
+  // "v x y z", "v x y z w", or "v x y z r g b".
+  void read_position() {
+    const float x = text_.real("x"), y = text_.real("y"), z = text_.real("z");
+    positions_.emplace_back(x, y, z);
+    glm::vec3 color{1};
+    if (!text_.at_line_end()) {
+      color.x = text_.real("w or red");
+      if (text_.at_line_end()) {
+        color = glm::vec3(1);
+      } else {
+        color.y = text_.real("green");
+        color.z = text_.real("blue");
+        any_color_ = true;
+      }
+    }
+    colors_.push_back(glm::max(color, glm::vec3(0)));
+    newest_.push_back(none);
+  }
+
+  // One index: 1 is the first, -1 the newest.
+  std::uint32_t resolve(std::string_view digits, std::size_t count, std::string_view what) const {
+    std::int64_t index = 0;
+    const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+    const auto size = static_cast<std::int64_t>(count);
+    if (code != std::errc() || end != digits.data() + digits.size())
+      text_.fail(fmt::format("a face's {} index wanted, as in 1/2/3", what));
+    if (index == 0 || index > size || index < -size)
+      text_.fail(fmt::format("{} {} does not exist: {} are defined so far", what, index, count));
+    return static_cast<std::uint32_t>(index > 0 ? index - 1 : size + index);
+  }
+
+  Corner read_corner(std::string_view word) const {
+    const std::size_t first = word.find('/');
+    const std::size_t second = first == word.npos ? first : word.find('/', first + 1);
+    Corner corner;
+    corner.position = resolve(word.substr(0, first), positions_.size(), "vertex");
+    if (first != word.npos) {
+      const std::string_view uv = word.substr(first + 1, second == word.npos ? second : second - first - 1);
+      if (!uv.empty()) corner.uv = resolve(uv, uvs_.size(), "texture coordinate");
+    }
+    if (second != word.npos) {
+      const std::string_view normal = word.substr(second + 1);
+      if (!normal.empty()) corner.normal = resolve(normal, normals_.size(), "normal");
+    }
+    return corner;
+  }
+
+  void read_face() {
+    corners_.clear();
+    places_.clear();
+    pieces_.clear();
+    while (!text_.at_line_end()) {
+      corners_.push_back(read_corner(text_.word()));
+      places_.push_back(positions_[corners_.back().position]);
+    }
+    if (corners_.empty()) text_.fail("a face without corners");
+    if (corners_.size() < 3) {
+      ++model_.dropped_polygons;
+      return;
+    }
+    if (!triangulate(places_, pieces_))
+      text_.fail(fmt::format("a concave polygon of {} corners; at most {} are triangulated", corners_.size(),
+                             most_concave_corners));
+    vertices_.clear();
+    for (const Corner& corner : corners_) vertices_.push_back(vertex(corner));
+    for (const glm::uvec3 t : pieces_)
+      mesh_.triangles.emplace_back(vertices_[t.x], vertices_[t.y], vertices_[t.z]);
+    mesh_.materials.resize(mesh_.triangles.size(), material_);
+  }
+
+  // The mesh's vertex for a corner: an earlier one of the same three indices, else a new one. The search is
+  // bounded, so that a file cannot make it quadratic; a vertex too many does no harm.
+  std::uint32_t vertex(const Corner& corner) {
+    constexpr int most_steps = 32;
+    std::uint32_t at = newest_[corner.position];
+    for (int step = 0; at != none && step < most_steps; ++step, at = older_[at])
+      if (made_[at] == corner) return at;
+    const auto created = static_cast<std::uint32_t>(mesh_.positions.size());
+    const std::uint32_t sibling = newest_[corner.position];
+    points_.push_back(sibling == none ? created : points_[sibling]);
+    older_.push_back(sibling);
+    newest_[corner.position] = created;
+    made_.push_back(corner);
+    mesh_.positions.push_back(positions_[corner.position]);
+    mesh_.colors.push_back(colors_[corner.position]);
+    mesh_.uvs.push_back(corner.uv == none ? glm::vec2(0) : uvs_[corner.uv]);
+    mesh_.normals.push_back(corner.normal == none ? glm::vec3(0) : normals_[corner.normal]);
+    has_normal_.push_back(corner.normal != none);
+    any_uv_ = any_uv_ || corner.uv != none;
+    return created;
+  }
+
+  // Triangles without a material get an added default one, unless no triangle has any; vertex colours want
+  // materials that use them.
+  void settle_materials() {
+    const bool some =
+        std::any_of(mesh_.materials.begin(), mesh_.materials.end(), [](int m) { return m >= 0; });
+    if (!some && !any_color_) {
+      mesh_.materials.clear();
+      return;
+    }
+    const auto added = static_cast<int>(model_.materials.size());
+    bool wanted = false;
+    for (int& m : mesh_.materials) {
+      wanted = wanted || m < 0;
+      m = m < 0 ? added : m;
+    }
+    if (wanted) model_.materials.emplace_back().name = "default";
+    if (any_color_)
+      for (MaterialDescription& material : model_.materials) material.vertex_color = true;
+  }
+
+  TextReader text_;
+  std::filesystem::path path_;
+  Model& model_;
+  MaterialLibrary library_;
+  int material_ = -1;
+  std::vector<glm::vec3> positions_, normals_, colors_;  // as the file lists them
+  std::vector<glm::vec2> uvs_;
+  Mesh mesh_;
+  std::vector<Corner> made_;                   // per mesh vertex: its indices in the file
+  std::vector<std::uint32_t> newest_, older_;  // chains of mesh vertices: by file vertex, by mesh vertex
+  std::vector<std::uint32_t> points_;          // per mesh vertex: the first one of the same file vertex
+  std::vector<bool> has_normal_;
+  bool any_uv_ = false, any_color_ = false;
+  std::vector<Corner> corners_;  // of the face at hand
+  std::vector<glm::vec3> places_;
+  std::vector<glm::uvec3> pieces_;
+  std::vector<std::uint32_t> vertices_;
+};
+
+}  // namespace
+
+Model load_obj(const Source& source, const ModelOptions& options) {
+  Model model;
+  ObjReader reader(source, model);
+  reader.read();
+  add_mesh(model, reader.take_mesh(options.crease_angle.value_or(45)));
+  return model;
+}
+
+}  // namespace sundog::models

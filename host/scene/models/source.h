@@ -1,0 +1,23 @@
+// A model file's bytes, unpacked, and the errors that point into them.
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+namespace sundog::models {
+
+struct Source {
+  std::filesystem::path path;
+  std::string bytes;  // after gunzip
+};
+
+/// The file's bytes; a name that ends in .gz is unpacked (zlib), to 2 GiB at most. Throws SceneError.
+Source read_source(const std::filesystem::path& path);
+
+/// The extension in lower case, without a final .gz: ".obj" for "Box.OBJ.gz".
+std::string model_extension(const std::filesystem::path& path);
+
+[[noreturn]] void fail(const Source& source, const std::string& place, const std::string& what);
+[[noreturn]] void fail_at_byte(const Source& source, std::size_t byte, const std::string& what);
+
+}  // namespace sundog::models

@@ -1,0 +1,110 @@
+// STL, ASCII and binary. Its facet normals are left aside: the corners' order says the same, and is always
+// there.
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "scene/models/normals.h"
+#include "scene/models/readers.h"
+#include "scene/models/text.h"
+
+namespace sundog::models {
+namespace {
+
+constexpr std::size_t header_bytes = 84, facet_bytes = 50;
+
+std::uint32_t little_word(const std::string& bytes, std::size_t at) {
+  std::uint32_t word = 0;
+  for (std::size_t i = 4; i-- > 0;) word = word << 8 | static_cast<unsigned char>(bytes[at + i]);
+  return word;
+}
+
+std::size_t binary_facets(const Source& source) {
+  return source.bytes.size() < header_bytes ? 0 : little_word(source.bytes, 80);
+}
+
+// Binary files may begin with "solid" too; a size that fits the facet count decides.
+bool is_binary(const Source& source) {
+  const std::size_t size = source.bytes.size();
+  if (size >= header_bytes && size == header_bytes + facet_bytes * binary_facets(source)) return true;
+  const std::size_t word = source.bytes.find_first_not_of(" \t\r\n");
+  return word == std::string::npos || source.bytes.compare(word, 5, "solid") != 0;
+}
+
+void add_triangle(Mesh& mesh) {
+  const auto n = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.triangles.emplace_back(n - 3, n - 2, n - 1);
+}
+
+void read_binary(const Source& source, Mesh& mesh) {
+  const std::size_t size = source.bytes.size(), facets = binary_facets(source);
+  if (size < header_bytes)
+    fail_at_byte(source, size, "neither 'solid' nor a binary STL's header of 84 bytes");
+  if (facets > (size - header_bytes) / facet_bytes)
+    fail_at_byte(source, 80,
+                 fmt::format("{} facets promised, but the file has room for {}", facets,
+                             (size - header_bytes) / facet_bytes));
+  mesh.positions.reserve(facets * 3);
+  mesh.triangles.reserve(facets);
+  for (std::size_t i = 0; i < facets; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      glm::vec3 p;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t at = header_bytes + facet_bytes * i + 12 * (k + 1) + 4 * axis;
+        p[static_cast<int>(axis)] = std::bit_cast<float>(little_word(source.bytes, at));
+        if (!std::isfinite(p[static_cast<int>(axis)])) fail_at_byte(source, at, "a coordinate is not finite");
+      }
+      mesh.positions.push_back(p);
+    }
+    add_triangle(mesh);
+  }
+}
+
+void read_corner(TextReader& text, Mesh& mesh) {
+  const float x = text.real("x"), y = text.real("y"), z = text.real("z");
+  text.expect_line_end("a vertex");
+  mesh.positions.emplace_back(x, y, z);
+}
+
+void read_ascii(const Source& source, Mesh& mesh) {
+  TextReader text(source, {.hash_comments = false, .continuations = false});
+  std::size_t corners = 0;
+  bool in_loop = false, ended = false;
+  while (text.next_line()) {
+    const std::string_view word = text.word();
+    ended = word == "endsolid" || (ended && word != "solid");
+    if (word == "outer") {
+      in_loop = true;
+      corners = 0;
+    } else if (word == "vertex") {
+      if (!in_loop || ++corners > 3) text.fail("a vertex outside a facet's loop of three");
+      read_corner(text, mesh);
+    } else if (word == "endloop") {
+      if (!in_loop || corners != 3) text.fail(fmt::format("a facet needs three vertices, found {}", corners));
+      in_loop = false;
+      add_triangle(mesh);
+    } else if (word != "solid" && word != "facet" && word != "endfacet" && word != "endsolid") {
+      text.fail("solid, facet, outer loop, vertex, endloop, endfacet or endsolid wanted");
+    }
+  }
+  if (!ended) text.fail("the file ends without 'endsolid'");
+}
+
+}  // namespace
+
+Model load_stl(const Source& source, const ModelOptions& options) {
+  Mesh mesh;
+  mesh.name = source.path.stem().string();
+  is_binary(source) ? read_binary(source, mesh) : read_ascii(source, mesh);
+  mesh.source_vertex_count = mesh.positions.size();
+  const double crease = options.crease_angle.value_or(0);
+  complete_normals(mesh, {}, crease, crease > 0 ? weld_positions(mesh) : std::vector<std::uint32_t>());
+  Model model;
+  add_mesh(model, std::move(mesh));
+  return model;
+}
+
+}  // namespace sundog::models

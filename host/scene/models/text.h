@@ -1,0 +1,56 @@
+// Line by line, word by word: the reader that the text formats (OBJ, MTL, PLY, STL, NFF) share.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "scene/models/source.h"
+
+namespace sundog::models {
+
+class TextReader {
+ public:
+  struct Syntax {
+    bool hash_comments = true;   // '#' ends the line
+    bool continuations = false;  // a '\' at a line's end joins the next line to it
+  };
+
+  /// Reads `source` from byte `start`, whose line is number `line`. `source` must outlive the reader.
+  TextReader(const Source& source, Syntax syntax, std::size_t start = 0, std::size_t line = 1);
+
+  /// Goes to the next line that holds a word; false at the file's end.
+  bool next_line();
+
+  /// The line's next word, empty at its end.
+  std::string_view word();
+  /// What is left of the line, without blanks around it.
+  std::string_view rest();
+  bool at_line_end();
+
+  /// The next word as a finite number; `what` names it in the error.
+  double number(std::string_view what);
+  /// As number(), within float's range.
+  float real(std::string_view what);
+  std::int64_t integer(std::string_view what);
+  std::uint64_t count(std::string_view what);
+  /// Fails when words are left on the line.
+  void expect_line_end(std::string_view what);
+
+  std::size_t line() const { return line_; }
+  std::size_t bytes_left() const { return source_.bytes.size() - next_; }
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  void take_line();
+
+  const Source& source_;
+  Syntax syntax_;
+  std::size_t next_;       // the byte after the current line
+  std::size_t line_;       // number of the current line's first part
+  std::size_t following_;  // number of the line at next_
+  std::string_view text_;  // what is left of the current line
+  std::string joined_;     // holds a line put together from several
+};
+
+}  // namespace sundog::models

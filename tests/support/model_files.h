@@ -1,0 +1,35 @@
+// Small files for the tests of the model readers.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "scene/model.h"
+
+/// A folder of its own, removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  std::filesystem::path write(const std::string& name, std::string_view bytes) const;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Loads `bytes` as a file of that name.
+sundog::Model load_text(const std::string& name, std::string_view bytes,
+                        const sundog::ModelOptions& options = {});
+
+/// The message of the SceneError that loading throws, without the folder; "" when it loads.
+std::string load_error(const std::string& name, std::string_view bytes);
+std::string load_error(const std::filesystem::path& path);
+
+/// `bytes` as gzip packs them.
+std::string gzipped(std::string_view bytes);
+
+/// The sum of the triangles' areas.
+double area_of(const sundog::Mesh& mesh);

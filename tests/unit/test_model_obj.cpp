@@ -1,0 +1,187 @@
+// Wavefront OBJ and MTL, from small files written here.
+#include "catch.h"
+#include "model_files.h"
+
+using namespace sundog;
+
+namespace {
+
+const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+MaterialDescription material_of(const std::string& mtl, Model* model = nullptr) {
+  const TemporaryFolder folder;
+  folder.write("m.mtl", "newmtl m\n" + mtl);
+  const Model loaded = load_model(folder.write("m.obj", "mtllib m.mtl\nusemtl m\n" + triangle));
+  if (model) *model = loaded;
+  REQUIRE(loaded.materials.size() == 1);
+  CHECK(loaded.materials[0].name == "m");
+  return loaded.materials[0];
+}
+
+}  // namespace
+
+TEST_CASE("an OBJ's faces may count from either end and carry any mix of indices", "[models]") {
+  const Model model = load_text("a.obj",
+                                "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0.5 9\nvn 0 0 2\n"
+                                "f 1/1/1 2/2/1 3//1\nf -4//-1 -2/2 -1\n");
+  const Mesh& mesh = model.meshes.at(0);
+  CHECK(mesh.source_vertex_count == 4);
+  CHECK(mesh.triangles.size() == 2);
+  CHECK(mesh.positions[mesh.triangles[1].z] == glm::vec3(0, 1, 0));
+  CHECK(mesh.uvs[mesh.triangles[0].y] == glm::vec2(1, 0.5f));
+  for (const glm::vec3& n : mesh.normals) CHECK(n == glm::vec3(0, 0, 1));
+  CHECK(mesh.materials.empty());
+  CHECK(model.objects.at(0).material == -1);
+}
+
+TEST_CASE("vertices shared in an OBJ stay shared where their indices agree", "[models]") {
+  const Model model = load_text("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n");
+  CHECK(model.meshes.at(0).positions.size() == 4);
+}
+
+TEST_CASE("normals smooth across an OBJ's texture seams", "[models]") {
+  const Model model = load_text("a.obj",
+                                "v 0 0 0\nv 1 0 .2\nv 1 1 0\nv 0 1 .2\nvt 0 0\nvt 1 1\n"
+                                "f 1/1 2/1 3/1\nf 1/2 3/2 4/2\n");
+  const Mesh& mesh = model.meshes.at(0);
+  REQUIRE(mesh.positions.size() == 6);
+  CHECK(glm::length(mesh.normals[mesh.triangles[0].x] - mesh.normals[mesh.triangles[1].x]) < 1e-6f);
+}
+
+TEST_CASE("OBJ normals of length 0 are made anew, longer ones made unit", "[models]") {
+  const Mesh mesh =
+      load_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 0\nvn 0 3 4\nf 1//1 2//2 3//1\n").meshes.at(0);
+  CHECK(mesh.normals[0] == glm::vec3(0, 0, 1));
+  CHECK(glm::length(mesh.normals[1] - glm::vec3(0, 0.6f, 0.8f)) < 1e-6f);
+}
+
+TEST_CASE("OBJ lines may be continued, commented, end in CR or CRLF and hold tabs", "[models]") {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    std::string text = "# head\nv 0 0 0 # here\n\tv\t1 0 \\\n0\nv +0 1e0 0\n\ns off\ng x\nf 1 \\\n 2 \\\n 3";
+    for (std::size_t at = 0; (at = text.find('\n', at)) != text.npos; at += end.size())
+      text.replace(at, 1, end);
+    const Model model = load_text("a.obj", text);
+    CHECK(area_of(model.meshes.at(0)) == 0.5);
+  }
+}
+
+TEST_CASE("OBJ vertex colours reach the mesh and its material", "[models]") {
+  const Model model = load_text("a.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 .5 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
+  CHECK(model.meshes.at(0).colors.at(1) == glm::vec3(0, 0.5f, 0));
+  REQUIRE(model.materials.size() == 1);
+  CHECK(model.materials[0].vertex_color);
+  CHECK(model.meshes[0].materials == std::vector<int>{0});
+}
+
+TEST_CASE("OBJ faces of one or two corners are dropped and counted", "[models]") {
+  const Model model = load_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1\nf 1 2\nf 1 2 3\nl 1 2\np 3\n");
+  CHECK(model.dropped_polygons == 2);
+  CHECK(model.meshes.at(0).triangles.size() == 1);
+}
+
+TEST_CASE("an OBJ without faces has no mesh", "[models]") {
+  CHECK(load_text("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n").meshes.empty());
+}
+
+TEST_CASE("a bad OBJ is refused with its line", "[models]") {
+  const auto error = [](const std::string& line) {
+    return load_error("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n" + line);
+  };
+  CHECK_THAT(error("f 1 2 4"), ContainsSubstring("line 4: vertex 4 does not exist: 3 are defined"));
+  CHECK_THAT(error("f 0 1 2"), ContainsSubstring("line 4: vertex 0"));
+  CHECK_THAT(error("f -4 1 2"), ContainsSubstring("line 4"));
+  CHECK_THAT(error("f 1/1 2/1 3/1"), ContainsSubstring("line 4: texture coordinate 1"));
+  CHECK_THAT(error("f 1//1 2//1 3//1"), ContainsSubstring("line 4: normal 1"));
+  CHECK_THAT(error("f 1 2 99999999999999999999"), ContainsSubstring("line 4"));
+  CHECK_THAT(error("f 1 2 x"), ContainsSubstring("line 4"));
+  CHECK_THAT(error("f"), ContainsSubstring("line 4: a face without corners"));
+  CHECK_THAT(error("\n\nv 1 2"), ContainsSubstring("line 6: z: a finite number wanted, found ''"));
+  CHECK_THAT(error("v 1 abc 2"), ContainsSubstring("found 'abc'"));
+  CHECK_THAT(error("v 1 nan 2"), ContainsSubstring("line 4"));
+  CHECK_THAT(error("v 1 1e39 2"), ContainsSubstring("single precision"));
+  CHECK_THAT(error("v 1 1e999 2"), ContainsSubstring("line 4"));
+  CHECK_THAT(error("vn 1 2"), ContainsSubstring("line 4"));
+  CHECK_THAT(load_error("a.obj", "hello\n"), ContainsSubstring("no vertices"));
+  CHECK_THAT(load_error("a.obj", ""), ContainsSubstring("the file is empty"));
+}
+
+TEST_CASE("missing material libraries and materials leave a warning and the default material", "[models]") {
+  const Model none = load_text("a.obj", "mtllib gone.mtl\nusemtl red\n" + triangle);
+  CHECK(none.warnings.size() == 2);
+  CHECK(none.meshes.at(0).materials.empty());
+  const TemporaryFolder folder;
+  folder.write("m.mtl", "newmtl red\nKd 1 0 0\n");
+  const Model some =
+      load_model(folder.write("a.obj", "mtllib m.mtl\nusemtl red\n" + triangle + "usemtl blue\nf 1 2 3"));
+  REQUIRE(some.materials.size() == 2);
+  CHECK(some.meshes.at(0).materials == std::vector<int>{0, 1});
+  CHECK(some.materials[1].name == "default");
+}
+
+TEST_CASE("material library names may hold blanks, lie in folders, and come several at once", "[models]") {
+  const TemporaryFolder folder;
+  folder.write("a b.mtl", "newmtl one\n");
+  folder.write("sub/c.mtl", "newmtl two\n");
+  folder.write("d.mtl", "newmtl three of them\n");
+  const Model model = load_model(folder.write(
+      "a.obj", "mtllib a b.mtl\nmtllib sub\\c.mtl d.mtl\nusemtl three of them # note\n" + triangle));
+  CHECK(model.warnings.empty());
+  CHECK(model.materials.size() == 3);
+  CHECK(model.meshes.at(0).materials == std::vector<int>{2});
+}
+
+TEST_CASE("MTL's opaque materials become phong", "[models]") {
+  const MaterialDescription m =
+      material_of("Ka .1 .2 .3\nKd .4 .5 .6\nKs .7\nNs 96\nillum 2\nmap_Kd none.png\n");
+  CHECK(m.type == MaterialType::phong);
+  CHECK(m.ambient == dvec3(.1, .2, .3));
+  CHECK(m.diffuse == dvec3(.4, .5, .6));
+  CHECK(m.specular == dvec3(.7));
+  CHECK(m.exponent == 96);
+  CHECK(m.reflection == dvec3(0));
+  CHECK(m.transmission == dvec3(0));
+}
+
+TEST_CASE("MTL's illumination 3 mirrors with Ks", "[models]") {
+  CHECK(material_of("Ks .5 .6 2\nillum 3").reflection == dvec3(.5, .6, 1));
+}
+
+TEST_CASE("MTL's dissolve lets light straight through", "[models]") {
+  for (const char* statement : {"d .25", "Tr .75", "d -halo .25"}) {
+    const MaterialDescription m = material_of(std::string("Kd .8 .8 .8\n") + statement);
+    CHECK(m.transmission == dvec3(.75));
+    CHECK(m.diffuse == dvec3(.8) * .25);
+    CHECK(m.medium == -1);
+    CHECK(m.type == MaterialType::phong);
+  }
+}
+
+TEST_CASE("MTL's glass with Fresnel is a dielectric with a medium, without Fresnel it is phong", "[models]") {
+  Model model;
+  const MaterialDescription fresnel = material_of("Kd 0 0 0\nKs 1 1 1\nTf 1 .9 .8\nNi 1.5\nillum 7", &model);
+  CHECK(fresnel.type == MaterialType::dielectric);
+  CHECK(fresnel.transmission == dvec3(1, .9, .8));
+  CHECK(fresnel.reflection == dvec3(1));
+  REQUIRE(fresnel.medium == 0);
+  CHECK(model.media.at(0).ior == 1.5);
+  const MaterialDescription plain = material_of("Ks .2 .2 .2\nd .1\nNi 1.3\nillum 6", &model);
+  CHECK(plain.type == MaterialType::phong);
+  CHECK(plain.transmission == dvec3(.9));
+  CHECK(plain.reflection == dvec3(.2));
+  CHECK(model.media.at(0).ior == 1.3);
+}
+
+TEST_CASE("MTL's Tf does not make a plain material transparent", "[models]") {
+  CHECK(material_of("Kd 1 1 1\nTf 1 1 1\nillum 2").transmission == dvec3(0));
+}
+
+TEST_CASE("a bad MTL is refused with its own name and line", "[models]") {
+  const TemporaryFolder folder;
+  folder.write("m.mtl", "newmtl m\nKd 1 x 1\n");
+  try {
+    load_model(folder.write("a.obj", "mtllib m.mtl\n" + triangle));
+    FAIL("it loaded");
+  } catch (const std::exception& error) {
+    CHECK_THAT(error.what(), ContainsSubstring("m.mtl: line 2: green: a finite number wanted, found 'x'"));
+  }
+}

@@ -1,0 +1,153 @@
+// PLY, from small files written here.
+#include <cstring>
+
+#include "catch.h"
+#include "model_files.h"
+
+using namespace sundog;
+
+namespace {
+
+std::string header(const std::string& format, const std::string& vertex, int vertices, int faces,
+                   const std::string& face = "") {
+  return "ply\nformat " + format + " 1.0\ncomment made here\nelement vertex " + std::to_string(vertices) +
+         "\n" + vertex + "element face " + std::to_string(faces) +
+         "\nproperty list uchar int vertex_indices\n" + face + "end_header\n";
+}
+
+const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+
+template <class Value>
+void put(std::string& bytes, Value value, bool big) {
+  char raw[sizeof(Value)];
+  std::memcpy(raw, &value, sizeof raw);
+  if (big) std::reverse(raw, raw + sizeof raw);
+  bytes.append(raw, sizeof raw);
+}
+
+// A quad with doubles for y, normals, and 8-bit colours, after an element that no one knows.
+std::string binary_quad(bool big) {
+  std::string bytes =
+      "ply\nformat binary_" + std::string(big ? "big" : "little") +
+      "_endian 1.0\nelement odd 2\nproperty list ushort double a\nproperty short b\n"
+      "element vertex 4\nproperty float x\nproperty double y\nproperty float z\nproperty uchar red\n"
+      "property uchar green\nproperty uchar blue\nproperty float nx\nproperty float ny\n"
+      "property float nz\nelement face 1\nproperty list uint8 uint16 vertex_index\nend_header\n";
+  for (int i = 0; i < 2; ++i) {
+    put(bytes, std::uint16_t(i), big);
+    for (int k = 0; k < i; ++k) put(bytes, 1.0, big);
+    put(bytes, std::int16_t(7), big);
+  }
+  for (int i = 0; i < 4; ++i) {
+    put(bytes, i == 1 || i == 2 ? 2.0f : 0.0f, big);
+    put(bytes, i >= 2 ? 3.0 : 0.0, big);
+    put(bytes, 1.0f, big);
+    bytes += std::string("\xff\x80\x00", 3);
+    for (const float n : {0.0f, 0.0f, 5.0f}) put(bytes, n, big);
+  }
+  bytes += '\4';
+  for (std::uint16_t i = 0; i < 4; ++i) put(bytes, i, big);
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("binary PLY files of both byte orders say the same", "[models]") {
+  for (const bool big : {false, true}) {
+    const Model model = load_text("a.ply", binary_quad(big));
+    const Mesh& mesh = model.meshes.at(0);
+    CHECK(mesh.source_vertex_count == 4);
+    CHECK(mesh.triangles.size() == 2);
+    CHECK(area_of(mesh) == 6);
+    CHECK(mesh.normals == std::vector<glm::vec3>(4, {0, 0, 1}));
+    CHECK(mesh.colors.at(0).x == 1);
+    CHECK(mesh.colors.at(0).y == Approx(0.21586).epsilon(1e-3));  // sRGB 128 as a linear value
+    CHECK(mesh.colors.at(0).z == 0);
+    CHECK(model.materials.at(0).vertex_color);
+  }
+}
+
+TEST_CASE("an ASCII PLY's polygons are triangulated and its normals made", "[models]") {
+  const Model model =
+      load_text("a.ply", header("ascii", xyz, 5, 2) +
+                             "0 0 0\n4 0 0\ncomment between\n1 1 0\n4 4 0\n0 4 0\n5 0 1 2 3 4\n2 0 1\n");
+  const Mesh& mesh = model.meshes.at(0);
+  CHECK(mesh.triangles.size() == 3);
+  CHECK(area_of(mesh) == Approx(10));
+  CHECK(model.dropped_polygons == 1);
+  CHECK(mesh.normals == std::vector<glm::vec3>(5, {0, 0, 1}));
+  CHECK(model.materials.empty());
+}
+
+TEST_CASE("PLY faces of different colour split the vertices between them, and still smooth", "[models]") {
+  const std::string colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const Model model =
+      load_text("a.ply", header("ascii", xyz, 4, 2, colors) +
+                             "0 0 0\n1 0 .1\n1 1 0\n0 1 .1\n3 0 1 2 255 0 0\n3 0 2 3 0 0 255\n");
+  const Mesh& mesh = model.meshes.at(0);
+  CHECK(mesh.source_vertex_count == 4);
+  REQUIRE(mesh.positions.size() == 6);
+  const glm::uvec3 a = mesh.triangles[0], b = mesh.triangles[1];
+  for (int k = 0; k < 3; ++k) {
+    CHECK(mesh.colors[a[k]] == glm::vec3(1, 0, 0));
+    CHECK(mesh.colors[b[k]] == glm::vec3(0, 0, 1));
+  }
+  CHECK(glm::length(mesh.normals[a.x] - mesh.normals[b.x]) < 1e-6f);
+}
+
+TEST_CASE("PLY triangle strips become triangles of one winding", "[models]") {
+  const Model model =
+      load_text("a.ply", "ply\nformat ascii 1.0\nelement vertex 5\n" + xyz +
+                             "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+                             "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n9 0 1 2 3 4 -1 0 1 2\n");
+  const Mesh& mesh = model.meshes.at(0);
+  REQUIRE(mesh.triangles.size() == 4);
+  for (const glm::uvec3 t : mesh.triangles)
+    CHECK(glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]).z >
+          0);
+}
+
+TEST_CASE("a PLY whose header promises more than the file holds is refused before anything is allocated",
+          "[models]") {
+  CHECK_THAT(load_error("a.ply", header("binary_little_endian", xyz, 2000000000, 1) + "abc"),
+             ContainsSubstring("2000000000 of 'vertex'"));
+  CHECK_THAT(load_error("a.ply", header("ascii", xyz, 2000000000, 1) + "0 0 0\n"),
+             ContainsSubstring("2000000000 of 'vertex'"));
+  CHECK_THAT(load_error("a.ply", "ply\nformat ascii 1.0\nelement none 4294967295\nelement vertex 1\n" + xyz +
+                                     "end_header\n0 0 0\n"),
+             ContainsSubstring("too many"));
+  std::string bytes = header("binary_little_endian", xyz, 1, 1, "property list uint float more\n");
+  for (int i = 0; i < 3; ++i) put(bytes, 0.0f, false);
+  bytes += std::string("\0\xff\xff\xff\xff", 5);
+  CHECK_THAT(load_error("a.ply", bytes), ContainsSubstring("the file ends within its data"));
+}
+
+TEST_CASE("a bad PLY is refused with its line or byte", "[models]") {
+  const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
+  const auto error = [&](const std::string& data) {
+    return load_error("a.ply", header("ascii", xyz, 3, 1) + data);
+  };
+  CHECK_THAT(error(points), ContainsSubstring("line 13: the header promises 1 of 'face'"));
+  CHECK_THAT(error(points + "3 0 1 3\n"),
+             ContainsSubstring("line 14") && ContainsSubstring("vertex 3, but there are 3"));
+  CHECK_THAT(error(points + "3 0 1 -1\n"), ContainsSubstring("line 14"));
+  CHECK_THAT(error(points + "3 0 1 0.5\n"),
+             ContainsSubstring("line 14") && ContainsSubstring("whole number"));
+  CHECK_THAT(error(points + "3 0 1\n"), ContainsSubstring("line 14"));
+  CHECK_THAT(error(points + "-3 0 1 2\n"), ContainsSubstring("line 14"));
+  CHECK_THAT(error(points + "3 0 1 2 9\n"), ContainsSubstring("line 14: face ends before '9'"));
+  CHECK_THAT(error("0 0 0\n1 0\n0 1 0\n3 0 1 2\n"), ContainsSubstring("line 12"));
+  CHECK_THAT(error("0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n"), ContainsSubstring("line 12"));
+  CHECK_THAT(error(points + "\n\n"), ContainsSubstring("the file ends before its last face"));
+  CHECK_THAT(load_error("a.ply", "plx\n"), ContainsSubstring("line 1"));
+  CHECK_THAT(load_error("a.ply", "ply\nformat ascii 1.0\n"), ContainsSubstring("end_header"));
+  CHECK_THAT(load_error("a.ply", "ply\nformat klingon 1.0\n"), ContainsSubstring("line 2"));
+  CHECK_THAT(load_error("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\n"),
+             ContainsSubstring("line 4"));
+  CHECK_THAT(load_error("a.ply", "ply\nformat ascii 1.0\nelement vertex -1\n"), ContainsSubstring("line 3"));
+  CHECK_THAT(load_error("a.ply", "ply\nformat ascii 1.0\nproperty int x\n"), ContainsSubstring("line 3"));
+  CHECK_THAT(load_error("a.ply", "ply\nformat ascii 1.0\nend_header\n"), ContainsSubstring("no vertices"));
+  const std::string whole = binary_quad(false);
+  CHECK_THAT(load_error("a.ply", std::string_view(whole).substr(0, whole.size() - 1)),
+             ContainsSubstring("byte"));
+}
