@@ -6,11 +6,15 @@
 
 namespace sundog {
 
-/// The file's bytes. Throws IoError.
+/// The file's bytes. Throws IoError "PATH: cannot be read: ...".
 std::string read_file(const std::filesystem::path& path);
 
 /// Writes a temporary beside `path` and renames it: the file appears whole or not at all. Throws IoError.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// Throws IoError when `write_file` would fail for want of a folder or a permission: call it before long
+/// work.
+void check_writable(const std::filesystem::path& path);
 
 /// $XDG_CACHE_HOME/sundog, else ~/.cache/sundog; empty when neither variable is set. Not created.
 std::filesystem::path cache_directory();

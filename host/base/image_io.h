@@ -1,4 +1,5 @@
-// Reading and writing images by file extension: .png (8-bit sRGB; 16-bit read), .exr, .hdr, .pfm.
+// Reading and writing images: by file extension .png (8-bit sRGB), .exr, .hdr, .pfm are written; the same,
+// 16-bit PNG and JPEG are read, whatever the file's name.
 #pragma once
 #include <filesystem>
 
@@ -6,16 +7,24 @@
 
 namespace sundog {
 
-/// Writes `image` (3 or 4 channels, linear) in the format of the extension; the file appears whole or not at all
-/// (temporary and rename). `aovs` become further channels of an EXR ("depth.Z", "normal.X"...); other formats refuse
-/// them. Throws UsageError for an unknown extension, IoError when the file cannot be written.
-void write_image(const Image& image, const std::filesystem::path& path, const AovImages& aovs = {});
+/// How an EXR keeps the colour channels (AOVs are always 32-bit floats).
+enum class ExrColor { half, full };
+
+/// Writes `image` (3 or 4 channels, linear) in the format of the extension; the file appears whole or not at
+/// all (temporary and rename). `aovs` become further channels of an EXR ("depth.Z", "normal.X"...); other
+/// formats refuse them. Throws UsageError for an unknown extension, IoError when the file cannot be written.
+void write_image(const Image& image, const std::filesystem::path& path, const AovImages& aovs = {},
+                 ExrColor color = ExrColor::half);
 
 /// Throws UsageError for an extension `write_image` would refuse: call it before a long render.
 void check_image_path(const std::filesystem::path& path, bool with_aovs);
 
-/// Reads an image as linear RGBA floats (8-bit and 16-bit PNG/JPEG are decoded from sRGB). Throws SceneError on a bad file.
+/// Reads an image as linear RGBA floats (8-bit and 16-bit PNG/JPEG are decoded from sRGB, unless a PNG states
+/// another gamma). Throws SceneError on a bad file.
 Image read_image(const std::filesystem::path& path);
+
+/// The extra images of an EXR, by name; empty for other formats. Throws SceneError on a bad file.
+AovImages read_aovs(const std::filesystem::path& path);
 
 float srgb_from_linear(float linear);
 float linear_from_srgb(float srgb);

@@ -1,0 +1,33 @@
+// One image format each: bytes in memory to and from an Image. Only image_io.cpp and the tests use these; a
+// decoder throws std::runtime_error with the reason alone, image_io.cpp adds the file's name.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/image_io.h"
+
+namespace sundog {
+
+/// 8 bits a channel, colours as sRGB, alpha as it is.
+std::string encode_png(const Image& image);
+/// PNG (8 or 16 bits) and JPEG as linear RGBA. A PNG's gAMA chunk is honoured when it has no sRGB or iCCP
+/// one.
+Image decode_png_or_jpeg(std::string_view bytes);
+/// The exponent that makes a PNG's samples linear; none: sRGB.
+std::optional<float> png_decoding_exponent(std::string_view bytes);
+
+/// Radiance RGBE: no alpha, nothing negative, about 1 % precision.
+std::string encode_hdr(const Image& image);
+Image decode_hdr(std::string_view bytes);
+
+/// Three floats a pixel, little-endian, rows bottom-up.
+std::string encode_pfm(const Image& image);
+Image decode_pfm(std::string_view bytes);
+
+/// Throws IoError only: there is nothing it refuses.
+std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color);
+Image decode_exr(std::string_view bytes);
+AovImages decode_exr_aovs(std::string_view bytes);
+
+}  // namespace sundog

@@ -1,0 +1,31 @@
+// Two images of one size against each other: figures, and a picture that shows where they differ.
+#pragma once
+#include <cstdint>
+
+#include "base/image.h"
+
+namespace sundog {
+
+/// Linear absolute differences of red, green and blue; alpha is left out, since not every format keeps it.
+/// The difference of a pixel is that of its worst channel. A value that is not finite differs by infinity
+/// from everything but itself (NaN equals NaN).
+struct ImageDifference {
+  double mean = 0, rms = 0;          // over all finite channel differences
+  double max = 0;                    // of the pixels' differences; may be infinite
+  double percentile_99 = 0;          // 99 % of the pixels differ by no more; may be infinite
+  double psnr = 0;                   // decibels, peak 1; infinite for equal images
+  std::uint64_t pixels = 0;          // of each image
+  std::uint64_t differing = 0;       // pixels that differ at all
+  std::uint64_t over_tolerance = 0;  // pixels that differ by more than the tolerance
+  std::uint64_t non_finite = 0;      // pixels where either image has a value that is not finite
+};
+
+/// Both images have the same size and 3 or 4 channels (std::invalid_argument otherwise).
+ImageDifference compare_images(const Image& a, const Image& b, double tolerance);
+
+/// `a` dimmed to grey; where the images differ, a colour for the size of the difference on a logarithmic
+/// scale: blue (1e-5 and less), cyan (3e-4), green, yellow (3e-2), red (1 and more), magenta for what is not
+/// finite.
+Image difference_image(const Image& a, const Image& b);
+
+}  // namespace sundog

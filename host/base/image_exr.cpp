@@ -1,0 +1,206 @@
+// OpenEXR: colour as R, G, B(, A), each AOV as a layer of 32-bit float channels ("depth.Z", "normal.X").
+#include <fmt/format.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfIO.h>
+#include <ImfOutputFile.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "base/image_codecs.h"
+
+namespace sundog {
+namespace {
+
+class MemoryOut : public Imf::OStream {
+ public:
+  explicit MemoryOut(std::string& bytes) : Imf::OStream("memory"), bytes_(bytes) {}
+  void write(const char c[], int n) override {
+    const auto size = static_cast<std::size_t>(n);
+    if (bytes_.size() < at_ + size) bytes_.resize(at_ + size);
+    std::memcpy(bytes_.data() + at_, c, size);
+    at_ += size;
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t position) override { at_ = position; }
+
+ private:
+  std::string& bytes_;
+  std::size_t at_ = 0;
+};
+
+class MemoryIn : public Imf::IStream {
+ public:
+  explicit MemoryIn(std::string_view bytes) : Imf::IStream("memory"), bytes_(bytes) {}
+  bool read(char c[], int n) override {
+    const auto size = static_cast<std::size_t>(n);
+    if (at_ > bytes_.size() || bytes_.size() - at_ < size)
+      throw std::runtime_error("the EXR file is cut short");
+    std::memcpy(c, bytes_.data() + at_, size);
+    at_ += size;
+    return at_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return at_; }
+  void seekg(std::uint64_t position) override { at_ = position; }
+
+ private:
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+};
+
+using Suffixes = std::vector<std::string>;
+
+/// How a layer's channels are called.
+Suffixes channel_suffixes(const std::string& aov, int channels) {
+  if (channels == 1) return {aov == "depth" ? "Z" : "Y"};
+  const bool color = aov == "albedo" || channels == 4;
+  const Suffixes all = color ? Suffixes{"R", "G", "B", "A"} : Suffixes{"X", "Y", "Z"};
+  return {all.begin(), all.begin() + channels};
+}
+
+/// Channels of one image, as OpenEXR wants them: a base address, the strides, and the value where the file
+/// has none.
+void add_slice(Imf::FrameBuffer& buffer, const std::string& name, Image& image, int channel, float fill = 0) {
+  const std::size_t pixel = sizeof(float) * static_cast<std::size_t>(image.channels);
+  char* base = reinterpret_cast<char*>(image.data.data() + channel);
+  buffer.insert(
+      name, Imf::Slice(Imf::FLOAT, base, pixel, pixel * static_cast<std::size_t>(image.width), 1, 1, fill));
+}
+
+/// A half overflows to infinity above 65504.
+float clamped_to_half(float value) { return value > 65504 ? 65504 : value < -65504 ? -65504 : value; }
+
+struct HalfImage {
+  std::vector<half> data;
+  explicit HalfImage(const Image& image) : data(image.data.size()) {
+    std::ranges::transform(image.data, data.begin(), [](float v) { return half(clamped_to_half(v)); });
+  }
+};
+
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : stream_(bytes), file_(stream_) {
+    const Imath::Box2i window = file_.header().dataWindow();
+    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+    const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+    // No compression of EXR packs 2000 pixels into a byte: the header of a broken file must not make this
+    // process ask for all the memory.
+    if (width <= 0 || height <= 0 || width > (1 << 24) || height > (1 << 24) ||
+        width * height / 2000 > static_cast<std::int64_t>(bytes.size()))
+      throw std::runtime_error(
+          fmt::format("the EXR file says {}x{} pixels in {} bytes", width, height, bytes.size()));
+    width_ = static_cast<int>(width);
+    height_ = static_cast<int>(height);
+    origin_ = window.min;
+  }
+
+  const Imf::ChannelList& channels() const { return file_.header().channels(); }
+  bool has(const std::string& name) const { return channels().findChannel(name) != nullptr; }
+
+  /// Reads the named channels into one image, in that order; absent ones get `fill`.
+  Image read(const Suffixes& names, const std::array<float, 4>& fill = {}) {
+    Image image(width_, height_, static_cast<int>(names.size()));
+    Imf::FrameBuffer buffer;
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      const Imf::Channel* channel = channels().findChannel(names[c]);
+      if (channel && (channel->xSampling != 1 || channel->ySampling != 1))
+        throw std::runtime_error("EXR channel " + names[c] + " is subsampled, which is not supported");
+      add_slice(buffer, names[c], image, static_cast<int>(c), fill[c]);
+    }
+    shift(buffer, image.channels);
+    file_.setFrameBuffer(buffer);
+    file_.readPixels(origin_.y, origin_.y + height_ - 1);
+    return image;
+  }
+
+ private:
+  /// The library addresses pixels by their place in the data window: the base is that of pixel (0, 0).
+  void shift(Imf::FrameBuffer& buffer, int channels) const {
+    const std::ptrdiff_t pixels = std::ptrdiff_t{origin_.y} * width_ + origin_.x;
+    for (auto slice = buffer.begin(); slice != buffer.end(); ++slice)
+      slice.slice().base -= pixels * channels * static_cast<std::ptrdiff_t>(sizeof(float));
+  }
+
+  MemoryIn stream_;
+  Imf::InputFile file_;
+  Imath::V2i origin_;
+  int width_ = 0, height_ = 0;
+};
+
+}  // namespace
+
+std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color) {
+  Imf::Header header(image.width, image.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::FrameBuffer buffer;
+  Image source = image;  // the library takes no const pixels
+  AovImages layers = aovs;
+  const HalfImage halves(image);
+  const Suffixes names = {"R", "G", "B", "A"};
+  for (int c = 0; c < image.channels; ++c) {
+    const std::string& name = names[static_cast<std::size_t>(c)];
+    header.channels().insert(name, Imf::Channel(color == ExrColor::half ? Imf::HALF : Imf::FLOAT));
+    if (color == ExrColor::half) {
+      const std::size_t pixel = sizeof(half) * static_cast<std::size_t>(image.channels);
+      char* base = reinterpret_cast<char*>(const_cast<half*>(halves.data.data() + c));
+      buffer.insert(name, Imf::Slice(Imf::HALF, base, pixel, pixel * static_cast<std::size_t>(image.width)));
+    } else {
+      add_slice(buffer, name, source, c);
+    }
+  }
+  for (auto& [aov, layer] : layers) {
+    const Suffixes suffixes = channel_suffixes(aov, layer.channels);
+    for (int c = 0; c < layer.channels; ++c) {
+      const std::string name = aov + "." + suffixes[static_cast<std::size_t>(c)];
+      header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+      add_slice(buffer, name, layer, c);
+    }
+  }
+  std::string bytes;
+  MemoryOut out(bytes);
+  {
+    Imf::OutputFile file(out, header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(image.height);
+  }
+  return bytes;
+}
+
+Image decode_exr(std::string_view bytes) {
+  Reader reader(bytes);
+  if (reader.has("R") || reader.has("G") || reader.has("B"))
+    return reader.read({"R", "G", "B", "A"}, {0, 0, 0, 1});
+  if (!reader.has("Y")) throw std::runtime_error("the EXR file has no channels R, G, B or Y");
+  const Image grey = reader.read({"Y", "A"}, {0, 1});
+  Image image(grey.width, grey.height, 4);
+  for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = grey.data[i / 4 * 2 + (i % 4 == 3)];
+  return image;
+}
+
+AovImages decode_exr_aovs(std::string_view bytes) {
+  Reader reader(bytes);
+  std::map<std::string, Suffixes> layers;
+  for (auto channel = reader.channels().begin(); channel != reader.channels().end(); ++channel) {
+    const std::string name = channel.name();
+    if (const auto dot = name.rfind('.'); dot != std::string::npos && dot > 0)
+      layers[name.substr(0, dot)].push_back(name);
+  }
+  constexpr std::string_view order = "RGBAXYZ";
+  AovImages aovs;
+  for (auto& [name, channels] : layers) {
+    std::ranges::sort(channels, {}, [&](const std::string& channel) { return order.find(channel.back()); });
+    channels.resize(std::min<std::size_t>(channels.size(), 4));
+    aovs[name] = reader.read(channels);
+  }
+  return aovs;
+}
+
+}  // namespace sundog

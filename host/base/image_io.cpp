@@ -1,0 +1,106 @@
+// The doors of the image formats: which one a file means, and errors with the file's name.
+#include "base/image_io.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <new>
+#include <stdexcept>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/image_codecs.h"
+
+namespace sundog {
+namespace fs = std::filesystem;
+namespace {
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+std::string read_input(const fs::path& path) {
+  try {
+    return read_file(path);
+  } catch (const IoError& error) {  // its message opens with the path, as SceneError's does
+    throw SceneError(path.string(), "", std::string(error.what()).substr(path.string().size() + 2));
+  }
+}
+
+bool is_exr(std::string_view bytes) { return bytes.starts_with("\x76\x2f\x31\x01"); }
+
+Image decode(std::string_view bytes) {
+  if (is_exr(bytes)) return decode_exr(bytes);
+  if (bytes.starts_with("PF") || bytes.starts_with("Pf")) return decode_pfm(bytes);
+  if (bytes.starts_with("#?")) return decode_hdr(bytes);
+  return decode_png_or_jpeg(bytes);
+}
+
+/// Calls `read(bytes)`; what goes wrong in it becomes a SceneError about the file.
+template <class Read>
+auto read_named(const fs::path& path, const Read& read) {
+  const std::string bytes = read_input(path);
+  try {
+    return read(std::string_view(bytes));
+  } catch (const std::bad_alloc&) {
+    throw SceneError(path.string(), "", "the image is too large for this machine's memory");
+  } catch (const std::exception& error) {
+    throw SceneError(path.string(), "", error.what());
+  }
+}
+
+}  // namespace
+
+float srgb_from_linear(float linear) {
+  if (linear <= 0.0031308f) return linear * 12.92f;
+  return 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
+float linear_from_srgb(float srgb) {
+  if (srgb <= 0.04045f) return srgb / 12.92f;
+  return std::pow((srgb + 0.055f) / 1.055f, 2.4f);
+}
+
+void check_image_path(const fs::path& path, bool with_aovs) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".exr") return;
+  if (extension != ".png" && extension != ".hdr" && extension != ".pfm")
+    throw UsageError(
+        fmt::format("{}: wanted an image file name that ends in .png, .exr, .hdr or .pfm, found {}",
+                    path.string(), extension.empty() ? "no extension" : extension));
+  if (with_aovs)
+    throw UsageError(
+        fmt::format("{}: only .exr files hold AOVs; use an .exr name or no --aov", path.string()));
+}
+
+void write_image(const Image& image, const fs::path& path, const AovImages& aovs, ExrColor color) {
+  check_image_path(path, !aovs.empty());
+  const std::string extension = lower_extension(path);
+  const auto encode = [&] {
+    if (extension == ".exr") return encode_exr(image, aovs, color);
+    if (extension == ".hdr") return encode_hdr(image);
+    if (extension == ".pfm") return encode_pfm(image);
+    return encode_png(image);
+  };
+  try {
+    write_file(path, encode());
+  } catch (const IoError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw IoError(fmt::format("{}: cannot be written: {}", path.string(), error.what()));
+  }
+}
+
+Image read_image(const fs::path& path) { return read_named(path, decode); }
+
+AovImages read_aovs(const fs::path& path) {
+  return read_named(
+      path, [](std::string_view bytes) { return is_exr(bytes) ? decode_exr_aovs(bytes) : AovImages(); });
+}
+
+}  // namespace sundog
