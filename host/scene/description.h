@@ -49,6 +49,9 @@ struct LightDescription {
   dvec3 falloff{1, 0, 0};                  // constant, linear, quadratic
 };
 
+/// The world's medium gives way to every other where solids overlap; a scene file's priorities are -1000..1000.
+inline constexpr int world_priority = -1'000'000;
+
 struct MediumDescription {
   std::string name;
   double ior = 1;
@@ -114,10 +117,11 @@ struct SceneDescription {
   ImageSettings image;
   RenderSettings render;
   std::vector<LightDescription> lights;
-  std::vector<MediumDescription> media;  // [0] is the world's
+  std::vector<MediumDescription> media;  // [0] is the world's, of priority world_priority
   std::vector<MaterialDescription> materials;
   std::vector<Mesh> meshes;
   std::vector<Object> objects;
+  std::vector<std::string> warnings;  // one line each: what a model file held that was read past
 };
 
 }  // namespace sundog

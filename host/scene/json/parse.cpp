@@ -165,9 +165,9 @@ json read_json_file(const fs::path& file) {
 }
 
 void require_readable(const fs::path& file, const fs::path& named_in, std::string_view place) {
-  const std::string name = file == named_in ? "this file" : fmt::format("\"{}\"", file.string());
+  const std::string name = file == named_in ? "" : fmt::format("\"{}\" ", file.string());
   const auto fail = [&](std::string_view what) {
-    throw SceneError(named_in.string(), std::string(place), fmt::format("{} {}", name, what));
+    throw SceneError(named_in.string(), std::string(place), fmt::format("{}{}", name, what));
   };
   std::error_code status;
   const fs::file_status found = fs::status(file, status);

@@ -1,0 +1,131 @@
+#include "scene/json/override.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <vector>
+
+#include "base/error.h"
+#include "scene/json/parse.h"
+#include "scene/json/value.h"
+
+namespace sundog {
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+/// The reference tokens of a JSON pointer that starts with "/", unescaped (RFC 6901).
+std::vector<std::string> split_pointer(std::string_view pointer) {
+  std::vector<std::string> tokens;
+  for (std::size_t i = 0; i < pointer.size(); ++i) {
+    if (pointer[i] == '/') {
+      tokens.emplace_back();
+    } else if (pointer[i] == '~') {
+      const char next = i + 1 < pointer.size() ? pointer[i + 1] : ' ';
+      if (next != '0' && next != '1')
+        throw UsageError(fmt::format("--set {}: wanted ~0 (for ~) or ~1 (for /) in a JSON pointer", pointer));
+      tokens.back() += next == '0' ? '~' : '/';
+      ++i;
+    } else {
+      tokens.back() += pointer[i];
+    }
+  }
+  return tokens;
+}
+
+std::optional<std::size_t> array_index(std::string_view token) {
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), index);
+  const bool canonical = token.size() == 1 || (!token.empty() && token[0] != '0');
+  if (error != std::errc() || end != token.data() + token.size() || !canonical) return std::nullopt;
+  return index;
+}
+
+json parse_value(std::string_view text, const fs::path& file) {
+  try {
+    return parse_json(text, file);
+  } catch (const SceneError&) {
+    return std::string(text);
+  }
+}
+
+/// One step along a pointer: the child of `parent`, added if it may be.
+class Step {
+ public:
+  Step(const std::vector<std::string>& tokens, std::string_view setting, const fs::path& file)
+      : tokens_(tokens), setting_(setting), file_(file) {}
+
+  json* go(json& parent, std::size_t depth) const {
+    if (parent.is_array()) return item(parent, depth);
+    if (!parent.is_object()) fail(depth, fmt::format("{} holds a single value", pointer(depth)));
+    const bool last = depth + 1 == tokens_.size();
+    if (!parent.contains(tokens_[depth]) && !last) may_add(parent, depth);
+    return &parent[tokens_[depth]];
+  }
+
+ private:
+  std::string pointer(std::size_t depth) const {
+    std::string result;
+    for (std::size_t i = 0; i < depth; ++i) result = join_pointer(result, tokens_[i]);
+    return result;
+  }
+
+  [[noreturn]] void fail(std::size_t depth, std::string_view why) const {
+    throw SceneError(file_.string(), pointer(depth + 1),
+                     fmt::format("--set {} leads nowhere: {}", setting_, why));
+  }
+
+  json* item(json& array, std::size_t depth) const {
+    if (tokens_[depth] == "-") return &array.emplace_back();
+    const auto index = array_index(tokens_[depth]);
+    if (!index || *index >= array.size())
+      fail(depth, fmt::format("{} has {} items, counted from 0", pointer(depth), array.size()));
+    return &array[*index];
+  }
+
+  /// Adds an object, unless the next step is into an array or this one names a thing that would have to be
+  /// there.
+  void may_add(json& parent, std::size_t depth) const {
+    const std::string& token = tokens_[depth];
+    const bool named =
+        depth == 1 && (tokens_[0] == "materials" || tokens_[0] == "media" || tokens_[0] == "meshes");
+    if (named || tokens_[depth + 1] == "-" || array_index(tokens_[depth + 1])) {
+      std::vector<std::string> known;
+      for (const auto& [key, value] : parent.items()) known.push_back(key);
+      const auto near = nearest_name(token, known);
+      fail(depth, fmt::format("there is no {}{}", pointer(depth + 1),
+                              near ? fmt::format(": did you mean \"{}\"?", *near) : std::string()));
+    }
+    parent[token] = json::object();
+  }
+
+  const std::vector<std::string>& tokens_;
+  std::string_view setting_;
+  const fs::path& file_;
+};
+
+}  // namespace
+
+void apply_override(json& document, std::string_view setting, const fs::path& file) {
+  const std::size_t equals = setting.find('=');
+  if (equals == std::string_view::npos || equals < 2 || setting[0] != '/')
+    throw UsageError(fmt::format("--set {}: wanted JSON_POINTER=VALUE, such as /camera/fov=30", setting));
+  const std::vector<std::string> tokens = split_pointer(setting.substr(0, equals));
+  const Step step(tokens, setting, file);
+  json* place = &document;
+  for (std::size_t depth = 0; depth < tokens.size(); ++depth) place = step.go(*place, depth);
+  *place = parse_value(setting.substr(equals + 1), file);
+}
+
+bool concerns(std::string_view setting, std::string_view place) {
+  const std::string_view pointer = setting.substr(0, setting.find('='));
+  const auto leads_through = [](std::string_view longer, std::string_view shorter) {
+    return longer.starts_with(shorter) && (longer.size() == shorter.size() || longer[shorter.size()] == '/');
+  };
+  return !place.empty() && (leads_through(place, pointer) || leads_through(pointer, place));
+}
+
+}  // namespace sundog

@@ -1,0 +1,54 @@
+#include "scene/load.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "base/error.h"
+#include "scene/json/override.h"
+#include "scene/json/parse.h"
+#include "scene/model.h"
+#include "scene/model_scene.h"
+#include "scene/read/scene_reader.h"
+
+namespace sundog {
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+SceneDescription read_with_overrides(json document, const fs::path& file,
+                                     const std::vector<std::string>& overrides, std::optional<Model> model) {
+  for (const std::string& setting : overrides) apply_override(document, setting, file);
+  const JsonContext context{file};
+  try {
+    return read_scene(JsonValue(document, context), std::move(model));
+  } catch (const SceneError& error) {
+    // The place is in the file as the overrides changed it: say which of them had a part in it.
+    if (error.file == file.string())
+      for (const std::string& setting : overrides)
+        if (concerns(setting, error.place))
+          throw SceneError(error.file, error.place,
+                           fmt::format("{} (changed by --set {})", error.reason, setting));
+    throw;
+  }
+}
+
+}  // namespace
+
+SceneDescription load_scene(const fs::path& path, const std::vector<std::string>& overrides) {
+  require_readable(path, path, "");
+  if (is_model_file(path)) {
+    Model model = load_model(path);
+    json document = make_model_scene(path, model);
+    return read_with_overrides(std::move(document), path, overrides, std::move(model));
+  }
+  if (path.extension() != ".json")
+    throw SceneError(
+        path.string(), "",
+        "wanted a scene (.json) or a model (.gltf, .glb, .obj, .ply, .stl, .nff, each also .gz), found "
+        "another extension");
+  return read_with_overrides(read_json_file(path), path, overrides, std::nullopt);
+}
+
+}  // namespace sundog

@@ -1,0 +1,15 @@
+// A model file as a scene by itself: the document that sundog makes up around it.
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "scene/model.h"
+
+namespace sundog {
+
+/// A scene document that places `file` (whose content is `model`): its own camera, lights, image size and
+/// background where it has them; else a camera that frames its bounds, a key light and an ambient one, and a
+/// light background.
+nlohmann::json make_model_scene(const std::filesystem::path& file, const Model& model);
+
+}  // namespace sundog

@@ -1,0 +1,82 @@
+#include "scene/read/library.h"
+
+#include <fmt/format.h>
+
+namespace sundog {
+namespace fs = std::filesystem;
+
+namespace {
+
+template <class Value>
+void append(std::vector<Value>& to, std::vector<Value>& from) {
+  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+/// The same file by whatever path it is named.
+std::string file_key(const fs::path& file) {
+  std::error_code ignored;
+  const fs::path canonical = fs::weakly_canonical(file, ignored);
+  return (ignored ? file : canonical).string();
+}
+
+}  // namespace
+
+ModelLibrary::Parts ModelLibrary::add(Model model, const std::string& name) {
+  const int first_mesh = static_cast<int>(scene_.meshes.size());
+  const int first_material = static_cast<int>(scene_.materials.size());
+  const int first_medium = static_cast<int>(scene_.media.size());
+  for (MediumDescription& medium : model.media) medium.name = fmt::format("{}: {}", name, medium.name);
+  for (MaterialDescription& material : model.materials) {
+    material.name = fmt::format("{}: {}", name, material.name);
+    if (material.medium >= 0) material.medium += first_medium;
+  }
+  for (Mesh& mesh : model.meshes)
+    for (int& material : mesh.materials) material += first_material;
+  for (const std::string& warning : model.warnings)
+    scene_.warnings.push_back(fmt::format("{}: {}", name, warning));
+  append(scene_.media, model.media);
+  append(scene_.materials, model.materials);
+  append(scene_.meshes, model.meshes);
+  for (Object& object : model.objects) {
+    auto* mesh = std::get_if<MeshShape>(&object.shape);
+    if (mesh) mesh->mesh += first_mesh;
+    if (object.material >= 0)
+      object.material += first_material;
+    else if (!mesh || scene_.meshes[static_cast<std::size_t>(mesh->mesh)].materials.empty())
+      object.material = grey();
+  }
+  return std::move(model.objects);
+}
+
+const ModelLibrary::Parts& ModelLibrary::load(const fs::path& file, const ModelOptions& options) {
+  const std::pair key(file_key(file), options.crease_angle);
+  if (const auto found = loaded_.find(key); found != loaded_.end()) return found->second;
+  return loaded_.emplace(key, add(load_model(file, options), file.filename().string())).first->second;
+}
+
+void ModelLibrary::keep(const fs::path& file, Model model) {
+  loaded_.emplace(std::pair(file_key(file), std::nullopt), add(std::move(model), file.filename().string()));
+}
+
+void ModelLibrary::place(const Parts& parts, const Placement& placement) {
+  for (Object part : parts) {
+    part.world_from_object = placement.world_from_object * part.world_from_object;
+    if (placement.material >= 0) part.material = placement.material;
+    if (part.name.empty())
+      part.name = placement.name;
+    else if (!placement.name.empty())
+      part.name = fmt::format("{}: {}", placement.name, part.name);
+    part.place = placement.place;
+    scene_.objects.push_back(std::move(part));
+  }
+}
+
+int ModelLibrary::grey() {
+  if (grey_ < 0) {
+    grey_ = static_cast<int>(scene_.materials.size());
+    scene_.materials.push_back({.name = "grey"});
+  }
+  return grey_;
+}
+
+}  // namespace sundog

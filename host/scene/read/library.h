@@ -1,0 +1,50 @@
+// The meshes and models that a scene places: each is read once, added to the scene's tables, and placed any
+// number of times.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/description.h"
+#include "scene/model.h"
+
+namespace sundog {
+
+/// Where an object stands: what it takes from its groups and from itself.
+struct Placement {
+  dmat4 world_from_object{1};
+  int material = -1;  // -1: the model's own
+  std::string name, place;
+};
+
+class ModelLibrary {
+ public:
+  /// Adds to `scene`, which must outlive the library.
+  explicit ModelLibrary(SceneDescription& scene) : scene_(scene) {}
+
+  /// What a model becomes in the scene's tables: objects with the scene's indices, placed in the model's
+  /// space.
+  using Parts = std::vector<Object>;
+
+  /// Adds a model; `name` goes before its materials' and media's names.
+  Parts add(Model model, const std::string& name);
+  /// Reads and adds a model file, or finds what was added before. Throws what load_model() throws.
+  const Parts& load(const std::filesystem::path& file, const ModelOptions& options = {});
+  /// Adds a model that has been read already, for load() to find.
+  void keep(const std::filesystem::path& file, Model model);
+
+  /// Puts each part of a model into the scene.
+  void place(const Parts& parts, const Placement& placement);
+
+ private:
+  int grey();
+
+  SceneDescription& scene_;
+  std::map<std::pair<std::string, std::optional<double>>, Parts> loaded_;
+  int grey_ = -1;
+};
+
+}  // namespace sundog

@@ -1,0 +1,169 @@
+// The document's sections in the order of what they refer to: media, materials, meshes, objects.
+#include "scene/read/scene_reader.h"
+
+#include <fmt/format.h>
+
+#include "scene/bounds.h"
+#include "scene/json/parse.h"
+#include "scene/procedural/procedural.h"
+#include "scene/read/library.h"
+#include "scene/read/parts.h"
+
+namespace sundog {
+namespace fs = std::filesystem;
+
+namespace {
+
+class SceneReader {
+ public:
+  SceneReader(const JsonValue& root, std::optional<Model> known) : root_(root), library_(scene_) {
+    scene_.file = root.context().file;
+    scene_.media.push_back({.name = "vacuum", .priority = world_priority});
+    if (known) library_.keep(scene_.file, std::move(*known));
+  }
+
+  SceneDescription read() {
+    root_.object("scene", [&](JsonObject& object) { read_root(object); });
+    return std::move(scene_);
+  }
+
+ private:
+  void read_root(JsonObject& object) {
+    object.text("$schema", " ");
+    if (const auto image = object.find("image")) scene_.image = read_image(*image);
+    if (const auto render = object.find("render")) scene_.render = read_render(*render);
+    bool placed = false;
+    if (const auto camera = object.find("camera")) scene_.camera = read_camera(*camera, placed);
+    if (const auto lights = object.find("lights"))
+      for (const JsonValue& light : lights->items("lights")) scene_.lights.push_back(read_light(light));
+    read_tables(object);
+    for (const JsonValue& item : object.at("objects", "an array of objects").items("objects"))
+      read_object(item, Placement{});
+    if (!placed)
+      scene_.camera = frame(bounds_of(scene_.objects, scene_.meshes),
+                            static_cast<double>(scene_.image.width) / scene_.image.height, scene_.camera);
+  }
+
+  void read_tables(JsonObject& object) {
+    if (const auto media = object.find("media"))
+      for (const auto& [name, value] : media->members("media")) {
+        media_.emplace(name, static_cast<int>(scene_.media.size()));
+        scene_.media.push_back(read_medium(value, name));
+      }
+    if (const auto world = object.find("world")) read_world(*world);
+    if (const auto materials = object.find("materials"))
+      for (const auto& [name, value] : materials->members("materials")) {
+        materials_.emplace(name, static_cast<int>(scene_.materials.size()));
+        scene_.materials.push_back(read_material(value, name, media_, scene_.media));
+      }
+    if (const auto meshes = object.find("meshes"))
+      for (const auto& [name, value] : meshes->members("meshes"))
+        meshes_.emplace(name, read_mesh(value, name));
+  }
+
+  /// The world gets a copy of its medium that gives way to all others, whatever the named one's priority.
+  void read_world(const JsonValue& value) {
+    value.object("world", [&](JsonObject& object) {
+      if (const auto name = object.find("medium")) {
+        scene_.media[0] = scene_.media[static_cast<std::size_t>(find_name(*name, media_, "medium"))];
+        scene_.media[0].priority = world_priority;
+      }
+    });
+  }
+
+  /// A model file named in the scene, by a path from the scene's own folder.
+  fs::path find_model(const JsonValue& value) const {
+    const fs::path file = scene_.file.parent_path() / value.text();
+    require_readable(file, scene_.file, value.pointer());
+    if (!is_model_file(file))
+      value.wanted("a model file (.gltf, .glb, .obj, .ply, .stl or .nff, each also .gz)");
+    return file;
+  }
+
+  ModelLibrary::Parts read_mesh(const JsonValue& value, const std::string& name) {
+    static constexpr std::string_view sources[] = {"file", "generate"};
+    return value.object("mesh", [&](JsonObject& object) {
+      const std::string source = object.one_of(sources);
+      const JsonValue from = *object.find(source);
+      if (source == "file") {
+        const fs::path file = find_model(from);
+        ModelOptions options;
+        if (const auto angle = object.find("crease_angle"))
+          options.crease_angle = angle->number({.low = 0, .high = 180});
+        return library_.load(file, options);
+      }
+      Model made;
+      made.meshes.push_back(generate_mesh(from));
+      made.meshes.back().name = name;
+      made.objects.emplace_back().shape = MeshShape{0};
+      return library_.add(std::move(made), name);
+    });
+  }
+
+  void read_object(const JsonValue& value, const Placement& parent) {
+    static const auto types = [] {
+      std::vector<std::string_view> result(solid_types().begin(), solid_types().end());
+      result.insert(result.end(), {"mesh", "model", "group"});
+      return result;
+    }();
+    const std::string type = value.member("type", list_names(types)).choice(types);
+    const bool solid = type != "mesh" && type != "model" && type != "group";
+    value.object(solid ? type : type + "_object", [&](JsonObject& object) {
+      object.at("type", "");
+      const Placement placement = read_placement(object, parent);
+      if (type == "group") {
+        for (const JsonValue& item : object.at("objects", "an array of objects").items("objects"))
+          read_object(item, placement);
+      } else if (type == "mesh") {
+        const JsonValue name = object.at("mesh", "the name of a mesh");
+        library_.place(find_mesh(name), placement);
+      } else if (type == "model") {
+        library_.place(library_.load(find_model(object.at("file", "the path of a model file"))), placement);
+      } else {
+        place_solid(object, type, placement);
+      }
+    });
+  }
+
+  const ModelLibrary::Parts& find_mesh(const JsonValue& name) const {
+    NameTable names;
+    for (const auto& [key, parts] : meshes_) names.emplace(key, 0);
+    find_name(name, names, "mesh");
+    return meshes_.find(name.text())->second;
+  }
+
+  Placement read_placement(JsonObject& object, const Placement& parent) {
+    Placement placement = parent;
+    placement.place = object.value().pointer();
+    placement.name = object.text("name", parent.name);
+    if (const auto material = object.find("material"))
+      placement.material = find_name(*material, materials_, "material");
+    if (const auto transform = object.find("transform")) {
+      placement.world_from_object = parent.world_from_object * read_transform(*transform);
+      check_transform(placement.world_from_object, *transform);
+    }
+    return placement;
+  }
+
+  void place_solid(JsonObject& object, const std::string& type, const Placement& placement) {
+    if (placement.material < 0) object.at("material", "the name of a material, here or in a group around it");
+    const PlacedShape solid = read_solid(object, type);
+    scene_.objects.push_back({placement.name, solid.shape, placement.material,
+                              placement.world_from_object * solid.placed, placement.place});
+    check_transform(scene_.objects.back().world_from_object, object.value());
+  }
+
+  const JsonValue& root_;
+  SceneDescription scene_;
+  ModelLibrary library_;
+  NameTable media_, materials_;
+  std::map<std::string, ModelLibrary::Parts, std::less<>> meshes_;
+};
+
+}  // namespace
+
+SceneDescription read_scene(const JsonValue& root, std::optional<Model> known) {
+  return SceneReader(root, std::move(known)).read();
+}
+
+}  // namespace sundog

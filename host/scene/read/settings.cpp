@@ -1,0 +1,136 @@
+// The camera, the image, the render settings and the lights.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "scene/read/parts.h"
+
+namespace sundog {
+
+namespace {
+
+void check_view(JsonObject& object, const Camera& camera) {
+  const dvec3 view = camera.target - camera.position;
+  if (!(glm::length(view) > 1e-12))
+    object.value().fail("wanted a \"target\" away from \"position\", found the same point");
+  if (!(glm::length(glm::cross(glm::normalize(view), camera.up)) > 1e-6))
+    object.value().fail("wanted an \"up\" that is not along the view from \"position\" to \"target\"");
+}
+
+dvec3 read_falloff(JsonObject& object) {
+  const dvec3 falloff(object.number("constant", 1, at_least_0), object.number("linear", 0, at_least_0),
+                      object.number("quadratic", 0, at_least_0));
+  if (falloff == dvec3(0))
+    object.value().fail("wanted a falloff that is not 0 everywhere: it divides the light");
+  return falloff;
+}
+
+void read_placed_light(JsonObject& object, LightDescription& light) {
+  light.position = object.at("position", "a point [x, y, z]").vec3();
+  if (const auto falloff = object.find("falloff")) light.falloff = falloff->object("falloff", read_falloff);
+}
+
+void read_spot(JsonObject& object, LightDescription& light) {
+  static constexpr std::string_view aims[] = {"direction", "target"};
+  const std::string aim = object.one_of(aims);
+  const JsonValue value = *object.find(aim);
+  if (aim == "direction") {
+    light.direction = value.direction();
+  } else {
+    light.direction = value.vec3() - light.position;
+    if (!(glm::length(light.direction) > 1e-12)) value.fail("wanted a point away from the light's position");
+    light.direction = glm::normalize(light.direction);
+  }
+  const Range angle{.low = 0, .high = 90, .low_open = true, .high_open = true};
+  light.outer_angle = object.number("outer_angle", light.outer_angle, angle);
+  light.inner_angle =
+      object.number("inner_angle", light.outer_angle * 2 / 3, {.low = 0, .high = 90, .high_open = true});
+  if (light.inner_angle > light.outer_angle)
+    object.value().fail(fmt::format("wanted an \"inner_angle\" not above the \"outer_angle\" of {}, found {}",
+                                    light.outer_angle, light.inner_angle));
+}
+
+}  // namespace
+
+Camera read_camera(const JsonValue& value, bool& placed) {
+  return value.object("camera", [&](JsonObject& object) {
+    Camera camera;
+    placed = object.has("position") || object.has("target");
+    if (placed) {
+      camera.position = object.at("position", "a point [x, y, z]").vec3();
+      camera.target = object.at("target", "a point [x, y, z]").vec3();
+    }
+    if (const auto up = object.find("up")) camera.up = up->direction();
+    camera.fov =
+        object.number("fov", camera.fov, {.low = 0, .high = 180, .low_open = true, .high_open = true});
+    camera.near = object.number("near", camera.near, at_least_0);
+    if (const auto far = object.find("far")) {
+      camera.far = far->number({.low = 0, .high = std::numeric_limits<double>::max(), .low_open = true});
+      if (camera.far <= camera.near)
+        far->wanted(fmt::format("a number above the \"near\" of {}", camera.near));
+    }
+    if (placed) check_view(object, camera);
+    return camera;
+  });
+}
+
+ImageSettings read_image(const JsonValue& value) {
+  return value.object("image", [](JsonObject& object) {
+    ImageSettings image;
+    image.width = object.integer("width", image.width, 1, 65536);
+    image.height = object.integer("height", image.height, 1, 65536);
+    const auto background = object.find("background");
+    if (!background) return image;
+    if (background->json().is_array()) {
+      image.background_bottom = image.background_top = background->color();
+    } else if (background->json().is_object()) {
+      background->object("gradient", [&](JsonObject& gradient) {
+        image.background_bottom = gradient.at("bottom", "a colour [r, g, b]").color();
+        image.background_top = gradient.at("top", "a colour [r, g, b]").color();
+      });
+    } else {
+      background->wanted("a colour [r, g, b] or {\"bottom\": colour, \"top\": colour}");
+    }
+    return image;
+  });
+}
+
+RenderSettings read_render(const JsonValue& value) {
+  static constexpr std::string_view integrators[] = {"whitted"}, tracers[] = {"auto", "wide", "compact"};
+  return value.object("render", [](JsonObject& object) {
+    RenderSettings render;
+    render.max_depth = object.integer("max_depth", render.max_depth, 1, 64);
+    render.samples = object.integer("samples", render.samples, 1, 65536);
+    render.cutoff = object.number("cutoff", render.cutoff, zero_to_one);
+    render.integrator = object.choice("integrator", render.integrator, integrators);
+    const std::string tracer = object.choice("tracer", "auto", tracers);
+    render.tracer = tracer == "wide"      ? Tracer::wide
+                    : tracer == "compact" ? Tracer::compact
+                                          : Tracer::automatic;
+    return render;
+  });
+}
+
+LightDescription read_light(const JsonValue& value) {
+  static constexpr std::string_view types[] = {"ambient", "directional", "point", "spot"};
+  const std::string type = value.member("type", list_names(types)).choice(types);
+  return value.object(type + "_light", [&](JsonObject& object) {
+    LightDescription light;
+    object.at("type", "");
+    light.color = object.color("color", light.color);
+    light.intensity = object.number("intensity", light.intensity, at_least_0);
+    if (type == "ambient") {
+      light.type = LightType::ambient;
+    } else if (type == "directional") {
+      light.type = LightType::directional;
+      light.direction = object.at("direction", "the way the light travels [x, y, z]").direction();
+    } else {
+      light.type = type == "point" ? LightType::point : LightType::spot;
+      read_placed_light(object, light);
+      if (light.type == LightType::spot) read_spot(object, light);
+    }
+    return light;
+  });
+}
+
+}  // namespace sundog
