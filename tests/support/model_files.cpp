@@ -1,34 +1,11 @@
 #include "model_files.h"
 
-#include <unistd.h>
 #include <zlib.h>
-
-#include <atomic>
-#include <fstream>
 
 #include "base/error.h"
 
 namespace fs = std::filesystem;
 using namespace sundog;
-
-TemporaryFolder::TemporaryFolder() {
-  static std::atomic<unsigned> serial{0};
-  path_ = fs::temp_directory_path() /
-          ("sundog-models-" + std::to_string(::getpid()) + "-" + std::to_string(serial++));
-  fs::create_directories(path_);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
-fs::path TemporaryFolder::write(const std::string& name, std::string_view bytes) const {
-  const fs::path file = path_ / name;
-  fs::create_directories(file.parent_path());
-  std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  return file;
-}
 
 Model load_text(const std::string& name, std::string_view bytes, const ModelOptions& options) {
   const TemporaryFolder folder;

@@ -5,20 +5,7 @@
 #include <string_view>
 
 #include "scene/model.h"
-
-/// A folder of its own, removed at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::filesystem::path write(const std::string& name, std::string_view bytes) const;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+#include "temporary_folder.h"
 
 /// Loads `bytes` as a file of that name.
 sundog::Model load_text(const std::string& name, std::string_view bytes,

@@ -24,6 +24,7 @@ std::size_t TemporaryFolder::entries() const {
 }
 
 fs::path TemporaryFolder::write(std::string_view name, std::string_view text) const {
+  fs::create_directories((path_ / name).parent_path());
   std::ofstream out(path_ / name, std::ios::binary);
   out << text;
   if (!out) throw std::runtime_error("a test's file could not be written");
