@@ -61,7 +61,8 @@ json rays_json(const RayCounts& counts) {
           {"march_steps", counts[COUNT_MARCH_STEPS]}};
 }
 
-json seconds_json(const TimeLedger& times) {
+/// The ledger's entries, in the order of the work.
+std::vector<std::pair<const char*, double>> entries(const TimeLedger& times) {
   return {{"load", times.load},
           {"compile_scene", times.compile_scene},
           {"build_kernels", times.render.build_kernels},
@@ -71,6 +72,12 @@ json seconds_json(const TimeLedger& times) {
           {"write", times.write},
           {"other", times.other()},
           {"total", times.total}};
+}
+
+json seconds_json(const TimeLedger& times) {
+  json seconds;
+  for (const auto& [step, value] : entries(times)) seconds[step] = value;
+  return seconds;
 }
 
 }  // namespace
@@ -116,8 +123,8 @@ std::vector<std::string> losses(const RayCounts& counts) {
 
 std::string details_text(const RenderResult& result, const TimeLedger& times) {
   std::string text;
-  for (const auto& [step, seconds] : seconds_json(times).items())
-    text += fmt::format("  {:<22} {:10.1f} ms\n", step, 1000 * seconds.get<double>());
+  for (const auto& [step, seconds] : entries(times))
+    text += fmt::format("  {:<22} {:10.1f} ms\n", step, 1000 * seconds);
   for (const json& group : {rays_json(result.counts), counters_json(result.counts)})
     for (const auto& [kind, count] : group.items())
       text += fmt::format("  {:<22} {:10}\n", kind, count.get<std::uint64_t>());
