@@ -41,14 +41,14 @@ void print_text(const CompareCommand& command, const ImageDifference& d) {
     return fmt::format("{} of {} ({:.3g} %)", count, d.pixels,
                        100 * static_cast<double>(count) / static_cast<double>(d.pixels));
   };
-  fmt::print("mean           {:.6g}\n", d.mean);
-  fmt::print("rms            {:.6g}\n", d.rms);
-  fmt::print("99th percentile {:.6g}\n", d.percentile_99);
-  fmt::print("max            {:.6g}\n", d.max);
-  fmt::print("PSNR           {:.2f} dB\n", d.psnr);
-  fmt::print("pixels differing     {}\n", percent(d.differing));
-  fmt::print("pixels over {:<8.3g} {}\n", command.tolerance, percent(d.over_tolerance));
-  if (d.non_finite > 0) fmt::print("pixels not finite    {}\n", percent(d.non_finite));
+  fmt::print("mean              {:.6g}\n", d.mean);
+  fmt::print("rms               {:.6g}\n", d.rms);
+  fmt::print("99th percentile   {:.6g}\n", d.percentile_99);
+  fmt::print("max               {:.6g}\n", d.max);
+  fmt::print("PSNR              {:.2f} dB\n", d.psnr);
+  fmt::print("pixels differing  {}\n", percent(d.differing));
+  fmt::print("pixels over {:<5.3g} {}\n", command.tolerance, percent(d.over_tolerance));
+  if (d.non_finite > 0) fmt::print("pixels not finite {}\n", percent(d.non_finite));
 }
 
 int report_sizes(const CompareCommand& command, const Image& a, const Image& b) {
