@@ -14,15 +14,10 @@ inline Lanes lanes(float value) { return Lanes{value, value, value, value}; }
 inline Lanes lanes_min(Lanes a, Lanes b) { return a < b ? a : b; }
 inline Lanes lanes_max(Lanes a, Lanes b) { return a > b ? a : b; }
 
-/// A box. The fourth lane of each corner is free for the owner. Not initialised: the builder makes many that
-/// it does not use.
+/// A box; empty when made. The fourth lane of each corner is free for the owner.
 struct Bounds {
-  Lanes lower, upper;
-
-  static Bounds none() {
-    constexpr float inf = std::numeric_limits<float>::infinity();
-    return {lanes(inf), lanes(-inf)};
-  }
+  Lanes lower = lanes(std::numeric_limits<float>::infinity());
+  Lanes upper = lanes(-std::numeric_limits<float>::infinity());
 
   void extend(const Bounds& other) {
     lower = lanes_min(lower, other.lower);

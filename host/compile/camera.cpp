@@ -55,6 +55,7 @@ void set_camera(const SceneDescription& scene, SceneInfo& info) {
   info.camera_forward = pack(forward, camera.near);
   info.background_bottom = pack(image.background_bottom, camera.far);
   info.background_top = pack(image.background_top);
+  info.up = pack(up);
   info.width = static_cast<u32>(image.width);
   info.height = static_cast<u32>(image.height);
   info.max_depth = static_cast<u32>(scene.render.max_depth);
