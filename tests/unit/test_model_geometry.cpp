@@ -191,7 +191,8 @@ TEST_CASE("vertices at one place are welded for smoothing", "[models]") {
 }
 
 TEST_CASE("model files are known by their extension, in any case and gzipped", "[models]") {
-  for (const char* name : {"a.obj", "a.PLY", "a.stl.gz", "a.nff.GZ"}) CHECK(is_model_file(name));
+  for (const char* name : {"a.obj", "a.PLY", "a.stl.gz", "a.b.GLTF", "a.glb", "a.nff.GZ"})
+    CHECK(is_model_file(name));
   for (const char* name : {"a.json", "obj", "a.obj.bak", "a.gz", ".obj"}) CHECK_FALSE(is_model_file(name));
   CHECK_THAT(load_error("scene.json", "{}"), ContainsSubstring("not a model file"));
 }

@@ -34,22 +34,24 @@ Model load(const models::Source& source, const std::string& extension, const Mod
   if (extension == ".obj") return models::load_obj(source, options);
   if (extension == ".ply") return models::load_ply(source, options);
   if (extension == ".stl") return models::load_stl(source, options);
-  return models::load_nff(source);
+  if (extension == ".nff") return models::load_nff(source);
+  return models::load_gltf(source, options);
 }
 
 }  // namespace
 
 bool is_model_file(const std::filesystem::path& path) {
   const std::string extension = models::model_extension(path);
-  for (const char* known : {".obj", ".ply", ".stl", ".nff"})
+  for (const char* known : {".gltf", ".glb", ".obj", ".ply", ".stl", ".nff"})
     if (extension == known) return true;
   return false;
 }
 
 Model load_model(const std::filesystem::path& path, const ModelOptions& options) {
   if (!is_model_file(path))
-    throw SceneError(path.string(), "",
-                     "not a model file: the name must end in .obj .ply .stl or .nff (or that and .gz)");
+    throw SceneError(
+        path.string(), "",
+        "not a model file: the name must end in .gltf .glb .obj .ply .stl or .nff (or that and .gz)");
   try {
     return load(models::read_source(path), models::model_extension(path), options);
   } catch (const std::bad_alloc&) {

@@ -8,6 +8,7 @@ namespace sundog::models {
 Model load_obj(const Source& source, const ModelOptions& options);
 Model load_ply(const Source& source, const ModelOptions& options);
 Model load_stl(const Source& source, const ModelOptions& options);
+Model load_gltf(const Source& source, const ModelOptions& options);
 Model load_nff(const Source& source);
 
 /// Adds `mesh` and an object that places it, unless it has no triangles.

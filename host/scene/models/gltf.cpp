@@ -1,0 +1,284 @@
+// glTF 2.0 and GLB: one scene's nodes with their meshes, instances, camera and lights.
+// In: JSON and buffers. Out: a Model whose objects share meshes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_access.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+#include <set>
+
+#include "scene/models/gltf_meshes.h"
+#include "scene/models/gltf_views.h"
+#include "scene/models/readers.h"
+
+namespace sundog::models {
+namespace {
+
+struct Node {
+  std::string name, pointer;
+  dmat4 local{1};
+  std::vector<std::size_t> children;
+  std::optional<std::size_t> mesh, camera, light, parent;
+  std::vector<dmat4> instances;  // EXT_mesh_gpu_instancing
+  bool instanced = false;
+};
+
+dmat4 place(dvec3 translation, glm::dquat rotation, dvec3 scale) {
+  dmat4 m = glm::mat4_cast(rotation);
+  for (int axis = 0; axis < 3; ++axis) m[axis] *= scale[axis];
+  m[3] = glm::dvec4(translation, 1);
+  return m;
+}
+
+glm::dquat unit_quaternion(double x, double y, double z, double w, const JsonAt& at) {
+  const double length = std::sqrt(x * x + y * y + z * z + w * w);
+  if (!(length > 1e-6)) at.fail("a rotation whose quaternion is 0");
+  return glm::dquat(w / length, x / length, y / length, z / length);
+}
+
+dmat4 read_transform(const JsonAt& at) {
+  if (const auto matrix = at.find("matrix")) {
+    const std::vector<double> values = matrix->numbers(16);
+    dmat4 m;
+    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = values[static_cast<std::size_t>(i)];
+    if (glm::row(m, 3) != glm::dvec4(0, 0, 0, 1)) matrix->fail("the last row must be 0 0 0 1");
+    return m;
+  }
+  glm::dquat rotation(1, 0, 0, 0);
+  if (const auto found = at.find("rotation")) {
+    const std::vector<double> q = found->numbers(4);
+    rotation = unit_quaternion(q[0], q[1], q[2], q[3], *found);
+  }
+  return place(at.vector("translation", dvec3(0)), rotation, at.vector("scale", dvec3(1)));
+}
+
+bool is_singular(const dmat4& m) {
+  const double determinant = glm::determinant(glm::dmat3(m));
+  return determinant == 0 || !std::isfinite(determinant) || !std::isfinite(glm::length(m[3]));
+}
+
+class GltfReader {
+ public:
+  GltfReader(const Source& source, const GltfContainer& container, const JsonAt& root, double crease_degrees)
+      : root_(root),
+        accessors_(source, container, root),
+        materials_(root),
+        meshes_(root, accessors_, materials_, crease_degrees) {}
+
+  Model read() {
+    for (const JsonAt& at : root_.list("cameras")) cameras_.push_back(read_gltf_camera(at));
+    if (const auto extension = root_.extension("KHR_lights_punctual"))
+      for (const JsonAt& at : extension->list("lights")) lights_.push_back(read_gltf_light(at));
+    read_nodes();
+    walk(scene_roots());
+    return std::move(model_);
+  }
+
+ private:
+  void read_nodes() {
+    const std::vector<JsonAt> all = root_.list("nodes");
+    nodes_.resize(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) read_node(all[i], nodes_[i]);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (const JsonAt& at : all[i].list("children")) {
+        const std::size_t child = at.index(nodes_.size(), "node");
+        if (nodes_[child].parent || child == i) at.fail(fmt::format("node {} is a child already", child));
+        nodes_[child].parent = i;
+        nodes_[i].children.push_back(child);
+      }
+  }
+
+  void read_node(const JsonAt& at, Node& node) {
+    node.name = at.text("name");
+    node.pointer = at.pointer();
+    node.local = read_transform(at);
+    if (const auto mesh = at.find("mesh")) node.mesh = mesh->index(meshes_.count(), "mesh");
+    if (const auto camera = at.find("camera")) node.camera = camera->index(cameras_.size(), "camera");
+    if (const auto light = at.extension("KHR_lights_punctual"))
+      node.light = light->member("light").index(lights_.size(), "light");
+    if (const auto instances = at.extension("EXT_mesh_gpu_instancing")) read_instances(*instances, node);
+    if (at.find("skin"))
+      model_.warnings.push_back(
+          fmt::format("{}: the mesh's skin is left aside: it stands as it is stored", node.pointer));
+  }
+
+  const std::vector<float>* instance_attribute(const JsonAt& attributes, const char* name,
+                                               std::size_t components, std::optional<std::size_t>& count) {
+    const auto at = attributes.find(name);
+    if (!at) return nullptr;
+    const std::size_t index = at->index(accessors_.all().size(), "accessor");
+    const Accessor& accessor = accessors_.all()[index];
+    const bool number = accessor.dense.component == component_float || accessor.normalized;
+    if (accessor.type != (components == 3 ? "VEC3" : "VEC4") || !number)
+      at->fail(fmt::format("{} components of floats or normalised integers wanted", components));
+    if (count && *count != accessor.dense.count) at->fail("instance attributes of different counts");
+    count = accessor.dense.count;
+    return &accessors_.floats(index);
+  }
+
+  void read_instances(const JsonAt& extension, Node& node) {
+    const JsonAt attributes = extension.member("attributes");
+    std::optional<std::size_t> count;
+    const auto* translations = instance_attribute(attributes, "TRANSLATION", 3, count);
+    const auto* rotations = instance_attribute(attributes, "ROTATION", 4, count);
+    const auto* scales = instance_attribute(attributes, "SCALE", 3, count);
+    if (!count) attributes.fail("TRANSLATION, ROTATION or SCALE wanted");
+    node.instanced = true;
+    accessors_.spend(*count, node.pointer);
+    for (std::size_t i = 0; i < *count; ++i) {
+      const auto value = [i](const std::vector<float>& all, std::size_t n, std::size_t c) {
+        return static_cast<double>(all[i * n + c]);
+      };
+      const auto vector = [&](const std::vector<float>* all, dvec3 otherwise) {
+        return all ? dvec3(value(*all, 3, 0), value(*all, 3, 1), value(*all, 3, 2)) : otherwise;
+      };
+      glm::dquat rotation(1, 0, 0, 0);
+      if (rotations)
+        rotation = unit_quaternion(value(*rotations, 4, 0), value(*rotations, 4, 1), value(*rotations, 4, 2),
+                                   value(*rotations, 4, 3), attributes);
+      node.instances.push_back(place(vector(translations, dvec3(0)), rotation, vector(scales, dvec3(1))));
+    }
+  }
+
+  // The scene that the file names, else its first; a file without scenes shows all its nodes.
+  std::vector<std::size_t> scene_roots() {
+    const std::vector<JsonAt> scenes = root_.list("scenes");
+    std::vector<std::vector<std::size_t>> roots;
+    for (const JsonAt& scene : scenes) {
+      roots.emplace_back();
+      std::set<std::size_t> seen;
+      for (const JsonAt& at : scene.list("nodes")) {
+        const std::size_t node = at.index(nodes_.size(), "node");
+        if (nodes_[node].parent || !seen.insert(node).second)
+          at.fail(fmt::format("node {} is not a root, or is named twice", node));
+        roots.back().push_back(node);
+      }
+    }
+    const auto chosen = root_.find("scene");
+    const std::size_t scene = chosen ? chosen->index(roots.size(), "scene") : 0;
+    if (!roots.empty()) return roots[scene];
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      if (!nodes_[i].parent) all.push_back(i);
+    return all;
+  }
+
+  // Each node has one parent at most and the roots have none, so no node comes twice.
+  void walk(const std::vector<std::size_t>& roots) {
+    struct Visit {
+      std::size_t node;
+      dmat4 parent;
+    };
+    std::vector<Visit> open;
+    for (std::size_t i = roots.size(); i-- > 0;) open.push_back({roots[i], dmat4(1)});
+    while (!open.empty()) {
+      const Visit visit = open.back();
+      open.pop_back();
+      const Node& node = nodes_[visit.node];
+      const dmat4 world = visit.parent * node.local;
+      add_node(node, world);
+      for (std::size_t i = node.children.size(); i-- > 0;) open.push_back({node.children[i], world});
+    }
+  }
+
+  void add_node(const Node& node, const dmat4& world) {
+    if (node.camera) add_camera(node, world);
+    if (node.light) add_light(node, world);
+    if (!node.mesh) return;
+    const int mesh = meshes_.use(*node.mesh, model_);
+    if (mesh < 0) return;
+    if (!node.instanced) return add_object(node, mesh, world);
+    for (const dmat4& instance : node.instances) add_object(node, mesh, world * instance);
+  }
+
+  // A scale of 0 is how some files hide a node.
+  void add_object(const Node& node, int mesh, const dmat4& world) {
+    if (is_singular(world)) {
+      model_.warnings.push_back(
+          fmt::format("{}: the transform flattens the mesh; it is left out", node.pointer));
+      return;
+    }
+    Object object;
+    object.name = node.name.empty() ? meshes_.name(*node.mesh) : node.name;
+    object.shape = MeshShape{mesh};
+    object.world_from_object = world;
+    object.place = node.pointer;
+    model_.objects.push_back(std::move(object));
+  }
+
+  void add_camera(const Node& node, const dmat4& world) {
+    const GltfCamera& from = cameras_[*node.camera];
+    if (!from.perspective || from.fov >= std::numbers::pi || is_singular(world)) {
+      model_.warnings.push_back(
+          fmt::format("{}: only perspective cameras of less than 180 degrees are read", node.pointer));
+      return;
+    }
+    if (model_.camera) return;
+    Camera camera;
+    camera.position = dvec3(world[3]);
+    camera.target = camera.position - glm::normalize(dvec3(world[2]));
+    camera.up = glm::normalize(dvec3(world[1]));
+    camera.fov = glm::degrees(from.fov);
+    camera.near = from.near;
+    camera.far = from.far;
+    model_.camera = camera;
+  }
+
+  void add_light(const Node& node, const dmat4& world) {
+    LightDescription light = lights_[*node.light];
+    light.position = dvec3(world[3]);
+    const dvec3 direction = -dvec3(world[2]);
+    if (glm::length(direction) > 0) light.direction = glm::normalize(direction);
+    model_.lights.push_back(light);
+  }
+
+  JsonAt root_;
+  GltfAccessors accessors_;
+  GltfMaterials materials_;
+  GltfMeshes meshes_;
+  std::vector<GltfCamera> cameras_;
+  std::vector<LightDescription> lights_;
+  std::vector<Node> nodes_;
+  Model model_;
+};
+
+// Extensions that a file may require: those that are read, and those that change colours alone.
+void check_extensions(const JsonAt& root) {
+  for (const JsonAt& at : root.list("extensionsRequired")) {
+    const std::string name = at.text();
+    const bool known = name == "KHR_lights_punctual" || name == "EXT_mesh_gpu_instancing";
+    const bool color = name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
+                       name.starts_with("EXT_texture_") || name.starts_with("MSFT_texture_");
+    if (!known && !color) at.fail(fmt::format("the file requires the extension {}, which is not read", name));
+  }
+}
+
+nlohmann::json parse(const Source& source, std::string_view text) {
+  try {
+    return nlohmann::json::parse(text);
+  } catch (const nlohmann::json::exception& error) {
+    const auto* syntax = dynamic_cast<const nlohmann::json::parse_error*>(&error);
+    const std::string_view what = error.what();
+    const std::size_t name_end = what.find("] ");  // "[json.exception.parse_error.101] ..."
+    const auto offset = static_cast<std::size_t>(text.data() - source.bytes.data());
+    fail(source, syntax ? fmt::format("byte {}", offset + syntax->byte) : "",
+         fmt::format("not valid JSON: {}", what.substr(name_end == what.npos ? 0 : name_end + 2)));
+  }
+}
+
+}  // namespace
+
+Model load_gltf(const Source& source, const ModelOptions& options) {
+  const GltfContainer container = open_container(source);
+  const nlohmann::json json = parse(source, container.json);
+  const JsonAt root(source, json, "");
+  const std::string version = root.member("asset").member("version").text();
+  if (!version.starts_with("2."))
+    fail(source, "/asset/version", fmt::format("glTF {}; 2.x is read", version));
+  check_extensions(root);
+  return GltfReader(source, container, root, options.crease_angle.value_or(0)).read();
+}
+
+}  // namespace sundog::models

@@ -1,0 +1,23 @@
+// glTF's containers: GLB files and buffer URIs.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "scene/models/gltf_json.h"
+
+namespace sundog::models {
+
+struct GltfContainer {
+  std::string_view json;
+  std::optional<std::string_view> binary;  // a GLB's BIN chunk
+};
+
+/// A .glb's chunks, or the whole of a .gltf as JSON. Views into `source`.
+GltfContainer open_container(const Source& source);
+
+/// The bytes behind a buffer's URI: a data URI, or a file beside `source`. nullopt for a URI with a scheme,
+/// which is not fetched. Throws SceneError at `uri`.
+std::optional<std::string> read_uri(const Source& source, const JsonAt& uri);
+
+}  // namespace sundog::models

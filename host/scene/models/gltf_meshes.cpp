@@ -1,0 +1,198 @@
+// glTF's primitives (glTF 2.0, section 3.7.2): triangles, strips and fans; points and lines have nothing to
+// trace.
+#include "scene/models/gltf_meshes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <span>
+#include <string_view>
+
+#include "scene/models/normals.h"
+
+namespace sundog::models {
+namespace {
+
+// Which accessors an attribute may have: its types, and whether integers may stand for numbers.
+struct AttributeRule {
+  std::string_view name, type, other_type;
+  bool normalized_integers;
+};
+constexpr AttributeRule rules[] = {{"POSITION", "VEC3", "VEC3", false},
+                                   {"NORMAL", "VEC3", "VEC3", false},
+                                   {"TEXCOORD_0", "VEC2", "VEC2", true},
+                                   {"COLOR_0", "VEC3", "VEC4", true}};
+
+bool fits(const AttributeRule& rule, const Accessor& accessor) {
+  if (accessor.type != rule.type && accessor.type != rule.other_type) return false;
+  const std::uint64_t component = accessor.dense.component;
+  if (component == component_float) return true;
+  const bool small = component == component_unsigned_byte || component == component_unsigned_short;
+  return rule.normalized_integers && small && accessor.normalized;
+}
+
+std::vector<glm::uvec3> triangles_of(std::uint64_t mode, std::span<const std::uint32_t> v) {
+  std::vector<glm::uvec3> triangles;
+  if (mode == 4)
+    for (std::size_t i = 0; i + 2 < v.size(); i += 3) triangles.emplace_back(v[i], v[i + 1], v[i + 2]);
+  if (mode == 5)
+    for (std::size_t i = 0; i + 2 < v.size(); ++i)
+      triangles.emplace_back(v[i], v[i + 1 + i % 2], v[i + 2 - i % 2]);
+  if (mode == 6)
+    for (std::size_t i = 0; i + 2 < v.size(); ++i) triangles.emplace_back(v[i + 1], v[i + 2], v[0]);
+  return triangles;
+}
+
+template <class Vector>
+Vector element(const std::vector<float>& values, std::size_t stride, std::size_t index) {
+  Vector out;
+  for (int c = 0; c < Vector::length(); ++c) out[c] = values[index * stride + static_cast<std::size_t>(c)];
+  return out;
+}
+
+}  // namespace
+
+GltfMeshes::GltfMeshes(const JsonAt& root, GltfAccessors& accessors, GltfMaterials& materials,
+                       double crease_degrees)
+    : accessors_(accessors), materials_(materials), crease_degrees_(crease_degrees) {
+  for (const JsonAt& at : root.list("meshes")) {
+    Entry entry;
+    entry.name = at.text("name");
+    for (const JsonAt& primitive : at.member("primitives").elements())
+      entry.primitives.push_back(read_primitive(primitive));
+    meshes_.push_back(std::move(entry));
+  }
+}
+
+std::optional<std::size_t> GltfMeshes::read_attribute(const JsonAt& attributes, const char* name) const {
+  const auto found = attributes.find(name);
+  if (!found) return std::nullopt;
+  const std::size_t index = found->index(accessors_.all().size(), "accessor");
+  const Accessor& accessor = accessors_.all()[index];
+  for (const AttributeRule& rule : rules)
+    if (rule.name == name && !fits(rule, accessor))
+      found->fail(fmt::format("accessor {} is a {} of type {}: {} of floats{} wanted", index, accessor.type,
+                              accessor.dense.component, rule.type,
+                              rule.normalized_integers ? " or normalised unsigned integers" : ""));
+  const BufferView* view = accessors_.view_of(accessor);
+  if (view && (accessor.dense.offset % 4 != 0 || (view->stride == 0 && accessor.dense.element_size % 4 != 0)))
+    found->fail(fmt::format("accessor {}: vertex attributes must begin at multiples of four bytes", index));
+  return index;
+}
+
+void GltfMeshes::check_indices(const JsonAt& at, const Accessor& accessor) const {
+  const std::uint64_t component = accessor.dense.component;
+  if (accessor.type != "SCALAR" || accessor.normalized ||
+      (component != component_unsigned_byte && component != component_unsigned_short &&
+       component != component_unsigned_int))
+    at.fail(fmt::format("indices must be SCALAR of type 5121, 5123 or 5125, not {} of type {}", accessor.type,
+                        component));
+  const BufferView* view = accessors_.view_of(accessor);
+  if (view && view->stride != 0) at.fail("the indices' buffer view must not have a byteStride");
+}
+
+GltfMeshes::Primitive GltfMeshes::read_primitive(const JsonAt& at) const {
+  Primitive p;
+  p.pointer = at.pointer();
+  const JsonAt attributes = at.member("attributes");
+  p.position = read_attribute(attributes, "POSITION");
+  p.normal = read_attribute(attributes, "NORMAL");
+  p.uv = read_attribute(attributes, "TEXCOORD_0");
+  p.color = read_attribute(attributes, "COLOR_0");
+  const auto vertices = [&](std::size_t accessor) { return accessors_.all()[accessor].dense.count; };
+  for (const auto& other : {p.normal, p.uv, p.color})
+    if (p.position && other && vertices(*other) != vertices(*p.position))
+      attributes.fail(fmt::format("an attribute of {} elements beside {} positions", vertices(*other),
+                                  vertices(*p.position)));
+  if (const auto indices = at.find("indices")) {
+    p.indices = indices->index(accessors_.all().size(), "accessor");
+    check_indices(*indices, accessors_.all()[*p.indices]);
+  }
+  const auto material = at.find("material");
+  p.material = material ? material->index(materials_.count() - 1, "material") : materials_.count() - 1;
+  if (const auto mode = at.find("mode")) p.mode = mode->integer(0, 6);
+  return p;
+}
+
+int GltfMeshes::use(std::size_t index, Model& model) {
+  Entry& entry = meshes_.at(index);
+  if (!entry.used) {
+    Mesh mesh = build(entry, model);
+    entry.used = mesh.triangles.empty() ? -1 : static_cast<int>(model.meshes.size());
+    if (!mesh.triangles.empty()) model.meshes.push_back(std::move(mesh));
+  }
+  return *entry.used;
+}
+
+Mesh GltfMeshes::build(const Entry& entry, Model& model) {
+  Mesh mesh;
+  mesh.name = entry.name;
+  bool any_uv = false, any_color = false;
+  std::vector<bool> has_normal;
+  for (const Primitive& primitive : entry.primitives) {
+    if (!primitive.position || primitive.mode < 4) continue;
+    append(primitive, model, mesh, has_normal);
+    any_uv = any_uv || primitive.uv;
+    any_color = any_color || primitive.color;
+  }
+  if (!any_uv) mesh.uvs.clear();
+  if (!any_color) mesh.colors.clear();
+  const bool smooth =
+      crease_degrees_ > 0 && std::find(has_normal.begin(), has_normal.end(), false) != has_normal.end();
+  complete_normals(mesh, std::move(has_normal), crease_degrees_,
+                   smooth ? weld_positions(mesh) : std::vector<std::uint32_t>());
+  return mesh;
+}
+
+// The primitive's vertices in drawing order.
+std::vector<std::uint32_t> GltfMeshes::vertex_numbers(const Primitive& primitive) {
+  const std::size_t count = accessors_.all()[*primitive.position].dense.count;
+  if (!primitive.indices) {
+    accessors_.spend(count, primitive.pointer);
+    std::vector<std::uint32_t> numbers(count);
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    return numbers;
+  }
+  const std::vector<std::uint32_t>& numbers = accessors_.indices(*primitive.indices);
+  accessors_.spend(numbers.size(), primitive.pointer);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (numbers[i] >= count)
+      JsonAt(accessors_.source(), nlohmann::json(), primitive.pointer + "/indices")
+          .fail(fmt::format("index {} is {}, but there are {} vertices", i, numbers[i], count));
+  return numbers;
+}
+
+// Of the attributes' elements only those that the triangles use are copied: primitives often share them.
+void GltfMeshes::append(const Primitive& primitive, Model& model, Mesh& mesh, std::vector<bool>& has_normal) {
+  const std::vector<float>& positions = accessors_.floats(*primitive.position);
+  std::vector<glm::uvec3> triangles = triangles_of(primitive.mode, vertex_numbers(primitive));
+  if (triangles.empty()) return;
+  std::vector<std::uint32_t> used;
+  used.reserve(triangles.size() * 3);
+  for (const glm::uvec3 t : triangles) used.insert(used.end(), {t.x, t.y, t.z});
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  const std::vector<float> none;
+  const std::vector<float>& normals = primitive.normal ? accessors_.floats(*primitive.normal) : none;
+  const std::vector<float>& uvs = primitive.uv ? accessors_.floats(*primitive.uv) : none;
+  const std::vector<float>& colors = primitive.color ? accessors_.floats(*primitive.color) : none;
+  const std::size_t channels = primitive.color ? accessors_.all()[*primitive.color].dense.components : 3;
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const std::uint32_t v : used) {
+    mesh.positions.push_back(element<glm::vec3>(positions, 3, v));
+    mesh.normals.push_back(primitive.normal ? element<glm::vec3>(normals, 3, v) : glm::vec3(0));
+    mesh.uvs.push_back(primitive.uv ? element<glm::vec2>(uvs, 2, v) : glm::vec2(0));
+    mesh.colors.push_back(primitive.color ? element<glm::vec3>(colors, channels, v) : glm::vec3(1));
+    has_normal.push_back(primitive.normal.has_value());
+  }
+  const auto place = [&](std::uint32_t v) {
+    return first + static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), v) - used.begin());
+  };
+  for (const glm::uvec3 t : triangles) mesh.triangles.emplace_back(place(t.x), place(t.y), place(t.z));
+  mesh.source_vertex_count += accessors_.all()[*primitive.position].dense.count;
+  mesh.materials.resize(mesh.triangles.size(),
+                        materials_.use(primitive.material, primitive.color.has_value(), model));
+}
+
+}  // namespace sundog::models

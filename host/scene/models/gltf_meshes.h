@@ -1,0 +1,48 @@
+// glTF's meshes as sundog's: all primitives of one together.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/model.h"
+#include "scene/models/gltf_accessors.h"
+#include "scene/models/gltf_materials.h"
+
+namespace sundog::models {
+
+class GltfMeshes {
+ public:
+  /// Checks all meshes of the document; decodes none.
+  GltfMeshes(const JsonAt& root, GltfAccessors& accessors, GltfMaterials& materials, double crease_degrees);
+
+  std::size_t count() const { return meshes_.size(); }
+  const std::string& name(std::size_t mesh) const { return meshes_[mesh].name; }
+  /// The index in `model` of a mesh, added at its first use; -1 for one without triangles (points, lines).
+  int use(std::size_t mesh, Model& model);
+
+ private:
+  struct Primitive {
+    std::string pointer;
+    std::optional<std::size_t> position, normal, uv, color, indices;
+    std::size_t material = 0;
+    std::uint64_t mode = 4;
+  };
+  struct Entry {
+    std::string name;
+    std::vector<Primitive> primitives;
+    std::optional<int> used;
+  };
+  Primitive read_primitive(const JsonAt& at) const;
+  std::optional<std::size_t> read_attribute(const JsonAt& attributes, const char* name) const;
+  void check_indices(const JsonAt& at, const Accessor& accessor) const;
+  Mesh build(const Entry& entry, Model& model);
+  std::vector<std::uint32_t> vertex_numbers(const Primitive& primitive);
+  void append(const Primitive& primitive, Model& model, Mesh& mesh, std::vector<bool>& has_normal);
+
+  GltfAccessors& accessors_;
+  GltfMaterials& materials_;
+  double crease_degrees_;
+  std::vector<Entry> meshes_;
+};
+
+}  // namespace sundog::models

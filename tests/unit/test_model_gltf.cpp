@@ -1,0 +1,391 @@
+// glTF and GLB, from small files written here.
+#include <cstring>
+#include <numbers>
+
+#include "catch.h"
+#include "model_files.h"
+
+using namespace sundog;
+
+namespace {
+
+template <class Value>
+void put(std::string& bytes, std::initializer_list<Value> values) {
+  for (const Value value : values) {
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof raw);
+    bytes.append(raw, sizeof raw);
+  }
+}
+
+std::string base64(std::string_view bytes) {
+  static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned bits = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k > bytes.size() ? '=' : digits[bits >> (18 - 6 * k) & 63];
+  }
+  return text;
+}
+
+// A quad in z = 0 of size 2, split along 0-2: indices 0 1 2 0 2 3 as bytes, then positions, then colours.
+std::string quad_bytes() {
+  std::string bytes;
+  put<std::uint8_t>(bytes, {0, 1, 2, 0, 2, 3, 0, 0});
+  put<float>(bytes, {0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0});
+  put<std::uint8_t>(bytes, {255, 0, 0, 0, 0, 255, 0, 0, 51, 51, 51, 0, 0, 0, 0, 0});
+  return bytes;
+}
+
+const std::string quad_views =
+    R"("bufferViews":[{"buffer":0,"byteLength":6},{"buffer":0,"byteOffset":8,"byteLength":48},
+  {"buffer":0,"byteOffset":56,"byteLength":16,"byteStride":4}],
+  "accessors":[{"bufferView":0,"componentType":5121,"type":"SCALAR","count":6},
+  {"bufferView":1,"componentType":5126,"type":"VEC3","count":4},
+  {"bufferView":2,"componentType":5121,"normalized":true,"type":"VEC3","count":4}])";
+
+std::string quad_buffer() {
+  return R"("buffers":[{"byteLength":72,"uri":"data:application/octet-stream;base64,)" +
+         base64(quad_bytes()) + R"("}])";
+}
+
+std::string document(const std::string& members) { return R"({"asset":{"version":"2.0"},)" + members + "}"; }
+
+// A document with the quad as mesh 0, and `members` beside it.
+std::string quad(const std::string& members, const std::string& primitive = "") {
+  return document(quad_buffer() + "," + quad_views +
+                  R"(,"meshes":[{"name":"quad","primitives":[{"attributes":{"POSITION":1},"indices":0)" +
+                  primitive + "}]}]," + members);
+}
+
+const std::string one_node = R"("nodes":[{"mesh":0}])";
+
+MaterialDescription material_of(const std::string& material, Model* model = nullptr) {
+  const Model loaded =
+      load_text("a.gltf", quad(one_node + R"(,"materials":[)" + material + "]", R"(,"material":0)"));
+  if (model) *model = loaded;
+  REQUIRE(loaded.materials.size() == 1);
+  return loaded.materials[0];
+}
+
+std::string glb(std::string json, std::string binary) {
+  while (json.size() % 4) json += ' ';
+  while (binary.size() % 4) binary += '\0';
+  std::string file = "glTF";
+  put<std::uint32_t>(file, {2, static_cast<std::uint32_t>(28 + json.size() + binary.size()),
+                            static_cast<std::uint32_t>(json.size()), 0x4E4F534A});
+  file += json;
+  put<std::uint32_t>(file, {static_cast<std::uint32_t>(binary.size()), 0x004E4942});
+  return file + binary;
+}
+
+dvec3 at(const dmat4& m, dvec3 p) { return dvec3(m * glm::dvec4(p, 1)); }
+bool near(dvec3 a, dvec3 b) { return glm::length(a - b) < 1e-6; }
+
+}  // namespace
+
+TEST_CASE("a glTF's buffer may be a data URI, a file beside it, or a GLB's chunk", "[models]") {
+  const std::string rest =
+      quad_views + R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":1},"indices":0}]}],)" + one_node;
+  const TemporaryFolder folder;
+  folder.write("sub folder/q.bin", quad_bytes());
+  const std::string file = document(R"("buffers":[{"byteLength":72,"uri":"sub%20folder/q.bin"}],)" + rest);
+  const Model models[] = {
+      load_text("a.gltf", quad(one_node)), load_model(folder.write("a.gltf", file)),
+      load_text("a.glb", glb(document(R"("buffers":[{"byteLength":72}],)" + rest), quad_bytes())),
+      load_text("a.glb.gz",
+                gzipped(glb(document(R"("buffers":[{"byteLength":72}],)" + rest), quad_bytes())))};
+  for (const Model& model : models) {
+    CHECK(area_of(model.meshes.at(0)) == 4);
+    CHECK(model.meshes[0].source_vertex_count == 4);
+    CHECK(model.meshes[0].normals.empty());
+    CHECK(model.objects.size() == 1);
+  }
+}
+
+TEST_CASE("a missing buffer file is an error that names it, a missing texture is none", "[models]") {
+  CHECK_THAT(load_error("a.gltf", document(R"("buffers":[{"byteLength":4,"uri":"gone.bin"}])")),
+             ContainsSubstring("/buffers/0/uri") && ContainsSubstring("gone.bin cannot be read"));
+  CHECK(load_error("a.gltf", quad(one_node + R"(,"images":[{"uri":"gone.png"}],"textures":[{"source":0}],
+    "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])",
+                                  R"(,"material":0)"))
+            .empty());
+}
+
+TEST_CASE("a buffer that is not fetched is an error only for who reads it", "[models]") {
+  const std::string buffers =
+      R"("buffers":[{"byteLength":72,"uri":"http://example.com/q.bin"}],)" + quad_views;
+  CHECK(load_error("a.gltf", document(buffers)).empty());
+  CHECK_THAT(load_error("a.gltf",
+                        document(buffers + R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":1}}]}],)" +
+                                 one_node)),
+             ContainsSubstring("/accessors/1: buffer 0 is not at hand"));
+}
+
+TEST_CASE("glTF's nodes place meshes by their whole chain, and share them", "[models]") {
+  const Model model = load_text("a.gltf", quad(R"("scene":1,"scenes":[{"nodes":[3]},{"nodes":[0]}],"nodes":[
+    {"children":[1,2],"translation":[10,0,0]},
+    {"name":"turned","mesh":0,"rotation":[0,0,0.70710678,0.70710678],"scale":[2,1,1]},
+    {"mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1]},{"mesh":0}])"));
+  REQUIRE(model.objects.size() == 2);
+  CHECK(model.meshes.size() == 1);
+  CHECK(model.objects[0].name == "turned");
+  CHECK(model.objects[0].place == "/nodes/1");
+  CHECK(near(at(model.objects[0].world_from_object, {1, 0, 0}), {10, 2, 0}));
+  CHECK(model.objects[1].name == "quad");
+  CHECK(near(at(model.objects[1].world_from_object, {0, 0, 0}), {15, 6, 7}));
+}
+
+TEST_CASE("glTF's instancing extension makes an object of each instance", "[models]") {
+  std::string bytes = quad_bytes();
+  put<float>(bytes, {1, 0, 0, 0, 5, 0});
+  put<std::int16_t>(bytes, {0, 0, 0, 32767, 0, 0, 23170, 23170});
+  put<float>(bytes, {1, 1, 1, 2, 2, 2});
+  const std::string uri =
+      R"("buffers":[{"byteLength":136,"uri":"data:application/octet-stream;base64,)" + base64(bytes);
+  const Model model =
+      load_text("a.gltf", document(uri + R"("}],"bufferViews":[{"buffer":0,"byteOffset":8,"byteLength":48},
+    {"buffer":0,"byteOffset":72,"byteLength":24},{"buffer":0,"byteOffset":96,"byteLength":16},
+    {"buffer":0,"byteOffset":112,"byteLength":24}],"accessors":[
+    {"bufferView":0,"componentType":5126,"type":"VEC3","count":4},{"bufferView":1,"componentType":5126,"type":"VEC3","count":2},
+    {"bufferView":2,"componentType":5122,"normalized":true,"type":"VEC4","count":2},
+    {"bufferView":3,"componentType":5126,"type":"VEC3","count":2}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+    "nodes":[{"mesh":0,"translation":[0,0,9],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":
+    {"TRANSLATION":1,"ROTATION":2,"SCALE":3}}}}])"));
+  REQUIRE(model.objects.size() == 2);
+  CHECK(near(at(model.objects[0].world_from_object, {1, 1, 0}), {2, 1, 9}));
+  CHECK(near(at(model.objects[1].world_from_object, {1, 0, 0}), {0, 7, 9}));
+}
+
+TEST_CASE("glTF's primitive modes give triangles of one winding, or none", "[models]") {
+  std::string bytes;
+  put<float>(bytes, {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0});
+  const auto load = [&](int mode) {
+    return load_text(
+        "a.gltf", document(R"("buffers":[{"byteLength":60,"uri":"data:application/gltf-buffer;base64,)" +
+                           base64(bytes) +
+                           R"("}],"bufferViews":[{"buffer":0,"byteLength":60}],"accessors":[{"bufferView":0,
+        "componentType":5126,"type":"VEC3","count":5}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":)" +
+                           std::to_string(mode) + "}]}]," + one_node));
+  };
+  for (const int mode : {0, 1, 2, 3}) CHECK(load(mode).objects.empty());
+  CHECK(load(4).meshes.at(0).triangles.size() == 1);
+  const Mesh strip = load(5).meshes.at(0);
+  REQUIRE(strip.triangles.size() == 3);
+  for (const glm::uvec3 t : strip.triangles)
+    CHECK(glm::cross(strip.positions[t.y] - strip.positions[t.x], strip.positions[t.z] - strip.positions[t.x])
+              .z > 0);
+  const Mesh fan = load(6).meshes.at(0);
+  REQUIRE(fan.triangles.size() == 3);
+  CHECK(fan.triangles[1] == glm::uvec3(2, 3, 0));
+  CHECK_THAT(load_error("a.gltf", quad(one_node, R"(,"mode":7)")),
+             ContainsSubstring("/meshes/0/primitives/0/mode"));
+}
+
+TEST_CASE("sparse accessors replace some elements, of data or of zeros", "[models]") {
+  std::string bytes = quad_bytes();
+  put<std::uint16_t>(bytes, {1, 3});
+  put<float>(bytes, {7, 0, 0, 0, 8, 0});
+  for (const bool zeros : {false, true}) {
+    const std::string base = zeros ? "" : R"("bufferView":1,)";
+    const Model model = load_text(
+        "a.gltf",
+        document(
+            R"("buffers":[{"byteLength":100,"uri":"data:application/octet-stream;base64,)" + base64(bytes) +
+            R"("}],"bufferViews":[{"buffer":0,"byteLength":6},{"buffer":0,"byteOffset":8,"byteLength":48},
+      {"buffer":0,"byteOffset":72,"byteLength":4},{"buffer":0,"byteOffset":76,"byteLength":24}],
+      "accessors":[{"bufferView":0,"componentType":5121,"type":"SCALAR","count":6},{)" +
+            base +
+            R"("componentType":5126,"type":"VEC3","count":4,"sparse":{"count":2,
+      "indices":{"bufferView":2,"componentType":5123},"values":{"bufferView":3}}}],
+      "meshes":[{"primitives":[{"attributes":{"POSITION":1},"indices":0}]}],)" +
+            one_node));
+    const std::vector<glm::vec3>& p = model.meshes.at(0).positions;
+    CHECK(p.at(1) == glm::vec3(7, 0, 0));
+    CHECK(p.at(2) == (zeros ? glm::vec3(0) : glm::vec3(2, 2, 0)));
+    CHECK(p.at(3) == glm::vec3(0, 8, 0));
+  }
+}
+
+TEST_CASE("interleaved attributes and vertex colours are read", "[models]") {
+  const Model model = load_text(
+      "a.gltf",
+      document(quad_buffer() + "," + quad_views +
+               R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":1,"COLOR_0":2},"indices":0}]}],)" +
+               one_node));
+  CHECK(model.meshes.at(0).colors.at(0) == glm::vec3(1, 0, 0));
+  CHECK(model.meshes[0].colors.at(2) == glm::vec3(0.2f));
+  CHECK(model.materials.at(0).vertex_color);
+  std::string bytes;  // position, padding, normal
+  for (const float x : {0.0f, 1.0f, 2.0f}) put<float>(bytes, {x, x * x, 0, 99, 0, 0, 3});
+  const Mesh mesh =
+      load_text("a.gltf",
+                document(R"("buffers":[{"byteLength":84,"uri":"data:application/octet-stream;base64,)" +
+                         base64(bytes) + R"("}],"bufferViews":[{"buffer":0,"byteLength":84,"byteStride":28}],
+    "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3},
+    {"bufferView":0,"byteOffset":16,"componentType":5126,"type":"VEC3","count":3}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1}}]}],)" +
+                         one_node))
+          .meshes.at(0);
+  CHECK(mesh.positions.at(2) == glm::vec3(2, 4, 0));
+  CHECK(mesh.normals == std::vector<glm::vec3>(3, {0, 0, 1}));
+}
+
+TEST_CASE("a glTF mesh without normals is flat, or smooth when a crease angle is given", "[models]") {
+  ModelOptions options;
+  options.crease_angle = 30;
+  CHECK(load_text("a.gltf", quad(one_node)).meshes.at(0).normals.empty());
+  CHECK(load_text("a.gltf", quad(one_node), options).meshes.at(0).normals ==
+        std::vector<glm::vec3>(4, {0, 0, 1}));
+}
+
+TEST_CASE("metallic-roughness factors become phong coefficients", "[models]") {
+  const MaterialDescription plastic = material_of(R"({"name":"p","pbrMetallicRoughness":{
+    "baseColorFactor":[0.8,0.4,0.2,1],"metallicFactor":0,"roughnessFactor":0.5}})");
+  CHECK(plastic.name == "p");
+  CHECK(near(plastic.diffuse, {0.8, 0.4, 0.2}));
+  CHECK(near(plastic.specular, dvec3(0.04)));
+  CHECK(plastic.exponent == Approx(30));
+  CHECK(plastic.reflection == dvec3(0));
+  const MaterialDescription mirror =
+      material_of(R"({"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.4,0.2,1],"roughnessFactor":0}})");
+  CHECK(near(mirror.reflection, {0.8, 0.4, 0.2}));
+  CHECK(near(mirror.diffuse, {0, 0, 0}));
+  CHECK(std::isfinite(mirror.exponent));
+  const MaterialDescription rough =
+      material_of(R"({"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.4,0.2,1]}})");
+  CHECK(near(rough.diffuse, {0.8, 0.4, 0.2}));
+  CHECK(rough.reflection == dvec3(0));
+}
+
+TEST_CASE("transmission with a volume is a dielectric with an absorbing medium, without one a thin pane",
+          "[models]") {
+  Model model;
+  const std::string glass = R"({"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0},"extensions":{
+    "KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_ior":{"ior":1.33})";
+  const MaterialDescription solid = material_of(
+      glass +
+          R"(,"KHR_materials_volume":{"thicknessFactor":1,"attenuationDistance":2,"attenuationColor":[0.5,1,0]}}})",
+      &model);
+  CHECK(solid.type == MaterialType::dielectric);
+  CHECK(solid.transmission == dvec3(1));
+  CHECK(solid.diffuse == dvec3(0));
+  REQUIRE(solid.medium == 0);
+  CHECK(model.media.at(0).ior == 1.33);
+  CHECK(model.media[0].absorption.x == Approx(std::log(2.0) / 2));
+  CHECK(model.media[0].absorption.y == 0);
+  CHECK(std::isfinite(model.media[0].absorption.z));
+  for (const char* volume : {"}}", R"(,"KHR_materials_volume":{"thicknessFactor":0}}})"}) {
+    const MaterialDescription thin = material_of(glass + volume, &model);
+    CHECK(thin.medium == -1);
+    CHECK(model.media.empty());
+    CHECK(thin.transmission.x == Approx(1 - 0.020059));
+    CHECK(thin.reflection.x == Approx(0.020059).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("a metal transmits nothing, whatever its transmission factor", "[models]") {
+  const MaterialDescription metal =
+      material_of(R"({"extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})");
+  CHECK(metal.transmission == dvec3(0));
+  CHECK(metal.diffuse == dvec3(1));
+}
+
+TEST_CASE("alpha lets light straight through when blended or masked, and is left aside when opaque",
+          "[models]") {
+  const std::string pbr = R"({"pbrMetallicRoughness":{"metallicFactor":0,"baseColorFactor":[1,1,1,0.25]})";
+  CHECK(material_of(pbr + R"(,"alphaMode":"BLEND"})").transmission == dvec3(0.75));
+  CHECK(material_of(pbr + R"(,"alphaMode":"BLEND"})").diffuse == dvec3(0.25));
+  CHECK(material_of(pbr + R"(,"alphaMode":"MASK"})").transmission == dvec3(1));
+  CHECK(material_of(pbr + R"(,"alphaMode":"MASK","alphaCutoff":0.2})").transmission == dvec3(0));
+  CHECK(material_of(pbr + "}").transmission == dvec3(0));
+}
+
+TEST_CASE("glTF's lights come with their node's place and direction, in sundog's units", "[models]") {
+  const Model model = load_text("a.gltf", document(R"("extensions":{"KHR_lights_punctual":{"lights":[
+    {"type":"directional","intensity":3,"color":[1,0.5,0]},{"type":"point","intensity":40},
+    {"type":"spot","spot":{"innerConeAngle":0.1,"outerConeAngle":0.2}}]}},"nodes":[
+    {"rotation":[-0.70710678,0,0,0.70710678],"extensions":{"KHR_lights_punctual":{"light":0}}},
+    {"translation":[1,2,3],"extensions":{"KHR_lights_punctual":{"light":1}}},
+    {"scale":[3,3,3],"extensions":{"KHR_lights_punctual":{"light":2}}}])"));
+  REQUIRE(model.lights.size() == 3);
+  CHECK(model.lights[0].type == LightType::directional);
+  CHECK(near(model.lights[0].direction, {0, -1, 0}));
+  CHECK(model.lights[0].color == dvec3(1, 0.5, 0));
+  CHECK(model.lights[0].intensity == Approx(3 / std::numbers::pi));
+  CHECK(model.lights[0].falloff == dvec3(1, 0, 0));
+  CHECK(model.lights[1].type == LightType::point);
+  CHECK(model.lights[1].position == dvec3(1, 2, 3));
+  CHECK(model.lights[1].falloff == dvec3(0, 0, 1));
+  CHECK(model.lights[2].type == LightType::spot);
+  CHECK(near(model.lights[2].direction, {0, 0, -1}));
+  CHECK(model.lights[2].inner_angle == Approx(glm::degrees(0.1)));
+  CHECK(model.lights[2].outer_angle == Approx(glm::degrees(0.2)));
+}
+
+TEST_CASE("the first perspective camera of a glTF's scene is the model's", "[models]") {
+  const Model model = load_text("a.gltf", document(R"("cameras":[
+    {"type":"orthographic","orthographic":{"xmag":1,"ymag":1,"znear":0,"zfar":9}},
+    {"type":"perspective","perspective":{"yfov":1,"znear":0.5}},{"type":"perspective","perspective":{"yfov":2,"znear":1}}],
+    "nodes":[{"camera":0},{"camera":1,"translation":[1,2,3],"rotation":[0,0.70710678,0,0.70710678]},{"camera":2}])"));
+  REQUIRE(model.camera);
+  CHECK(model.camera->fov == Approx(glm::degrees(1.0)));
+  CHECK(model.camera->near == 0.5);
+  CHECK(std::isinf(model.camera->far));
+  CHECK(model.camera->position == dvec3(1, 2, 3));
+  CHECK(near(model.camera->target, {0, 2, 3}));
+  CHECK(near(model.camera->up, {0, 1, 0}));
+  CHECK(model.warnings.size() == 1);
+}
+
+TEST_CASE("a bad glTF is refused with its JSON pointer", "[models]") {
+  const auto error = [](const std::string& members) { return load_error("a.gltf", quad(members)); };
+  CHECK_THAT(error(R"("nodes":[{"mesh":1}])"),
+             ContainsSubstring("/nodes/0/mesh: mesh 1 does not exist: there are 1"));
+  CHECK_THAT(error(R"("nodes":[{"children":[1]},{"children":[0]}],"scenes":[{"nodes":[0]}])"),
+             ContainsSubstring("/scenes/0/nodes/0"));
+  CHECK_THAT(error(R"("nodes":[{"children":[0]}])"), ContainsSubstring("/nodes/0/children/0"));
+  CHECK_THAT(error(R"("nodes":[{"children":[2]},{"children":[2]},{}])"),
+             ContainsSubstring("/nodes/1/children/0"));
+  CHECK_THAT(error(R"("nodes":[{"rotation":[0,0,0,0]}])"), ContainsSubstring("/nodes/0/rotation"));
+  CHECK_THAT(error(R"("nodes":[{"scale":[1,1]}])"),
+             ContainsSubstring("/nodes/0/scale: 3 numbers wanted, found 2"));
+  CHECK_THAT(error(R"("nodes":[{"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2]}])"),
+             ContainsSubstring("/nodes/0/matrix"));
+  CHECK_THAT(error(R"("materials":[{"pbrMetallicRoughness":{"metallicFactor":2}}])"),
+             ContainsSubstring("/materials/0/pbrMetallicRoughness/metallicFactor: 2 is outside [0, 1]"));
+  CHECK_THAT(error(R"("scene":0)"), ContainsSubstring("/scene: scene 0 does not exist"));
+  CHECK_THAT(error(R"("extensionsRequired":["KHR_draco_mesh_compression"])"),
+             ContainsSubstring("/extensionsRequired/0") && ContainsSubstring("KHR_draco_mesh_compression"));
+  CHECK_THAT(load_error("a.gltf", R"({"asset":{"version":"1.0"}})"), ContainsSubstring("/asset/version"));
+  CHECK_THAT(load_error("a.gltf", R"({"asset":{)"), ContainsSubstring("byte 11: not valid JSON"));
+  CHECK_THAT(load_error("a.glb", "glTF"), ContainsSubstring("byte 4"));
+}
+
+TEST_CASE("indices beyond the vertices, and data that is not a number, are refused", "[models]") {
+  std::string bytes = quad_bytes();
+  bytes[2] = 4;
+  const auto error = [&] {
+    return load_error(
+        "a.gltf",
+        document(R"("buffers":[{"byteLength":72,"uri":"data:application/octet-stream;base64,)" +
+                 base64(bytes) + R"("}],)" + quad_views +
+                 R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":1},"indices":0}]}],)" + one_node));
+  };
+  CHECK_THAT(error(),
+             ContainsSubstring("/meshes/0/primitives/0/indices: index 2 is 4, but there are 4 vertices"));
+  bytes = quad_bytes();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::memcpy(bytes.data() + 12, &nan, 4);
+  CHECK_THAT(error(), ContainsSubstring("/accessors/1: a value is not finite"));
+}
+
+TEST_CASE("a node scaled to nothing is left out with a warning", "[models]") {
+  const Model model = load_text("a.gltf", quad(R"("nodes":[{"mesh":0,"scale":[0,0,0]}])"));
+  CHECK(model.objects.empty());
+  CHECK(model.warnings.size() == 1);
+}
