@@ -15,6 +15,7 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_THIN 32u          // no interior: transmits straight through and changes no medium
 #define MATERIAL_VERTEX_COLOR 64u  // ambient and diffuse are multiplied by the vertex colour
 #define MATERIAL_FLAT 128u         // shades with the geometric normal
+#define MATERIAL_CLEAR 256u        // no local terms, no tint in transmission: cannot be seen between equal indices
 
 // 128 bytes. Each colour is already multiplied by its coefficient.
 typedef struct Material {

@@ -1,0 +1,82 @@
+#include "scenes.h"
+
+namespace scenes {
+
+using namespace sundog;
+
+SceneDescription line_of_sight(glm::dvec3 position, glm::dvec3 target, glm::dvec3 up) {
+  SceneDescription scene;
+  scene.camera.position = position;
+  scene.camera.target = target;
+  scene.camera.up = up;
+  scene.camera.fov = 1e-3;
+  scene.image.width = scene.image.height = 1;
+  scene.render.cutoff = 0;
+  scene.media.push_back({"world", 1, {0, 0, 0}, 0});
+  LightDescription ambient;
+  ambient.type = LightType::ambient;
+  scene.lights.push_back(ambient);
+  return scene;
+}
+
+namespace {
+
+int add(SceneDescription& scene, const MaterialDescription& material) {
+  scene.materials.push_back(material);
+  return static_cast<int>(scene.materials.size()) - 1;
+}
+
+MaterialDescription dark() {
+  MaterialDescription material;
+  material.ambient = material.diffuse = material.specular = {0, 0, 0};
+  return material;
+}
+
+}  // namespace
+
+int add_glow(SceneDescription& scene, glm::dvec3 color) {
+  MaterialDescription material = dark();
+  material.ambient = color;
+  return add(scene, material);
+}
+
+int add_dielectric(SceneDescription& scene, double ior, glm::dvec3 absorption, int priority) {
+  MaterialDescription material = dark();
+  material.type = MaterialType::dielectric;
+  material.reflection = material.transmission = {1, 1, 1};
+  material.medium = static_cast<int>(scene.media.size());
+  scene.media.push_back({"medium" + std::to_string(material.medium), ior, absorption, priority});
+  return add(scene, material);
+}
+
+int add_white(SceneDescription& scene) {
+  MaterialDescription material = dark();
+  material.diffuse = {1, 1, 1};
+  return add(scene, material);
+}
+
+int add_mirror(SceneDescription& scene, double reflection, glm::dvec3 glow) {
+  MaterialDescription material = dark();
+  material.reflection = glm::dvec3(reflection);
+  material.ambient = glow;
+  return add(scene, material);
+}
+
+void place(SceneDescription& scene, Shape shape, int material, const glm::dmat4& world_from_object) {
+  Object object;
+  object.shape = shape;
+  object.material = material;
+  object.world_from_object = world_from_object;
+  scene.objects.push_back(object);
+}
+
+RenderResult render_on(const DeviceInfo& device, const SceneDescription& scene, const RenderOptions& options) {
+  return render(compile(scene), {device}, options);
+}
+
+glm::dvec3 pixel_on(const DeviceInfo& device, const SceneDescription& scene) {
+  const RenderResult result = render_on(device, scene);
+  return {result.image.data.at(0), result.image.data.at(1), result.image.data.at(2)};
+}
+
+}  // namespace scenes
