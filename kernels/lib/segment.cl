@@ -19,6 +19,13 @@ typedef struct Encounter {
   float3 absorbed;  // factor on the ray's light from its start to the hit
 } Encounter;
 
+// There is nothing to see where both sides are one medium, nor where a clear material parts media of equal
+// index.
+static inline bool is_invisible(__global const Medium* restrict media, const Encounter* e, u32 flags) {
+  return e->after == e->before ||
+         ((flags & MATERIAL_CLEAR) && media[e->after].absorption.w == media[e->before].absorption.w);
+}
+
 // Follows the ray (o, d) in (t_min, t_max] to the next visible surface. `stack` is the media at its start,
 // and afterwards those just before the surface. Crossed interfaces do not move the origin, so what lies
 // behind a vanished interface keeps its bits.
@@ -46,8 +53,11 @@ static inline Encounter next_surface(TRACE_PARAMETERS, SHADE_PARAMETERS, float3 
       if (!cross_boundary(&crossed, materials[e.material].medium, e.entering))
         counts[e.entering ? COUNT_MEDIA_STACK_OVERFLOW : COUNT_STRAY_EXIT] += 1u;
       e.after = current_medium(media, &crossed);
-      if (e.after == e.before &&
-          crossing < MAX_CROSSINGS) {  // both sides are one medium: there is nothing to see
+      if (is_invisible(media, &e, flags) && crossing < MAX_CROSSINGS) {
+        if (e.after != e.before) {
+          e.absorbed *= absorb(media, here, e.hit.t - from);
+          from = e.hit.t;
+        }
         *stack = crossed;
         t_min = e.hit.t;
         continue;
