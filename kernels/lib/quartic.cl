@@ -41,7 +41,7 @@ static inline u32 roots_between(const float* c, const float* derivative, float l
   for (u32 i = 0; i <= count; ++i) {
     const float right = i < count ? clamp(extrema[i], low, high) : high;
     const float f_right = polynomial(c, right);
-    if (f_left == 0.0f && (i == 0u || found == 0u || roots[found - 1u] != left))
+    if (f_left == 0.0f && (found == 0u || roots[found - 1u] != left))
       roots[found++] = left;
     else if ((f_left < 0.0f) != (f_right < 0.0f) && f_right != 0.0f)
       roots[found++] = bracketed_root(c, derivative, left, right);

@@ -1,4 +1,5 @@
-// Overlapping solids: what has no interface vanishes, and media resolve by priority and by order of entry, not by the order in the file.
+// Overlapping solids: what has no interface vanishes, and media resolve by priority and by order of entry,
+// not by the order in the file.
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -26,7 +27,9 @@ double passed(std::initializer_list<double> indices) {
 
 template <class Body>
 void on_every_device(Body body) {
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) { body(device); }
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      body(device);
+    }
 }
 
 // A small picture of a checkered floor with solids over it.
@@ -45,8 +48,10 @@ SceneDescription over_a_checkered_floor() {
   return scene;
 }
 
-// Only the first reflections and refractions of the far side: what the camera sees along the axis through both solids.
-SceneDescription looking_through(double first_index, int first_priority, double second_index, int second_priority, bool swapped) {
+// Only the first reflections and refractions of the far side: what the camera sees along the axis through
+// both solids.
+SceneDescription looking_through(double first_index, int first_priority, double second_index,
+                                 int second_priority, bool swapped) {
   SceneDescription scene = scenes::line_of_sight({0, 0, 9}, {0, 0, 0});
   const int first = scenes::add_dielectric(scene, first_index, {0, 0, 0}, first_priority);
   const int second = scenes::add_dielectric(scene, second_index, {0, 0, 0}, second_priority);
@@ -91,19 +96,24 @@ TEST_CASE("where solids overlap the higher priority wins, whatever was entered f
   // Echoes between the faces add less than the tolerance: each is the product of two reflectances.
   const auto near = [](double expected) { return Approx(expected).margin(6e-3); };
   on_every_device([&](const DeviceInfo& device) {
-    CHECK(scenes::pixel_on(device, looking_through(1.5, 2, 1.2, 1, swapped)).x == near(passed({1, 1.5, 1.2, 1})));
-    CHECK(scenes::pixel_on(device, looking_through(1.5, 1, 1.2, 2, swapped)).x == near(passed({1, 1.5, 1.2, 1})));
+    CHECK(scenes::pixel_on(device, looking_through(1.5, 2, 1.2, 1, swapped)).x ==
+          near(passed({1, 1.5, 1.2, 1})));
+    CHECK(scenes::pixel_on(device, looking_through(1.5, 1, 1.2, 2, swapped)).x ==
+          near(passed({1, 1.5, 1.2, 1})));
   });
 }
 
 TEST_CASE("priority decides how far each medium reaches") {
-  // The overlap is 2 long: absorbing in the first medium only, it dims by the overlap's length when the first has the priority.
+  // The overlap is 2 long: absorbing in the first medium only, it dims by the overlap's length when the first
+  // has the priority.
   for (const bool first_wins : {true, false}) {
     SceneDescription scene = looking_through(1, first_wins ? 2 : 1, 1, first_wins ? 1 : 2, false);
     scene.media[1].absorption = dvec3(0.5);
     scene.media[2].absorption = dvec3(0.125);
     const double expected = first_wins ? std::exp(-0.5 * 4 - 0.125 * 2) : std::exp(-0.5 * 2 - 0.125 * 4);
-    on_every_device([&](const DeviceInfo& device) { CHECK(scenes::pixel_on(device, scene).x == Approx(expected).epsilon(1e-5)); });
+    on_every_device([&](const DeviceInfo& device) {
+      CHECK(scenes::pixel_on(device, scene).x == Approx(expected).epsilon(1e-5));
+    });
   }
 }
 

@@ -1,4 +1,5 @@
-// Closed forms of refraction, reflection and absorption, through the whole path from description to pixel, on every device.
+// Closed forms of refraction, reflection and absorption, through the whole path from description to pixel, on
+// every device.
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
@@ -27,7 +28,9 @@ double fresnel(double angle, double n) {
 // Runs `body` on each device found.
 template <class Body>
 void on_every_device(Body body) {
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) { body(device); }
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      body(device);
+    }
 }
 
 }  // namespace
@@ -104,7 +107,8 @@ TEST_CASE("Beer-Lambert: a light and the camera inside the medium") {
 }
 
 TEST_CASE("a light inside a medium shines out through the interface, filtered") {
-  // The floor is outside the ball of fog that holds the light: 1 of fog, the Fresnel share at normal incidence, then 3 of air.
+  // The floor is outside the ball of fog that holds the light: 1 of fog, the Fresnel share at normal
+  // incidence, then 3 of air.
   const double a = 0.3, n = 1.4;
   SceneDescription scene = scenes::line_of_sight({0.5, 3, 0}, {0, 0, 0});
   scene.lights.clear();
@@ -114,7 +118,8 @@ TEST_CASE("a light inside a medium shines out through the interface, filtered") 
   scenes::place(scene, SphereShape{1}, scenes::add_dielectric(scene, n, dvec3(a)), at({0, 4, 0}));
   scenes::place(scene, PlaneShape{}, scenes::add_white(scene));
   on_every_device([&](const DeviceInfo& device) {
-    REQUIRE(scenes::pixel_on(device, scene).x == Approx(std::exp(-a) * (1 - normal_reflectance(n))).epsilon(1e-4));
+    REQUIRE(scenes::pixel_on(device, scene).x ==
+            Approx(std::exp(-a) * (1 - normal_reflectance(n))).epsilon(1e-4));
   });
 }
 
@@ -139,7 +144,9 @@ TEST_CASE("a mirror returns its share of the energy at each bounce") {
   SceneDescription scene = scenes::line_of_sight({0, 3, 3}, {0, 0, 0});
   scene.image.background_bottom = scene.image.background_top = {1, 1, 1};
   scenes::place(scene, PlaneShape{}, scenes::add_mirror(scene, 0.6));
-  on_every_device([&](const DeviceInfo& device) { REQUIRE(scenes::pixel_on(device, scene).x == Approx(0.6).epsilon(1e-6)); });
+  on_every_device([&](const DeviceInfo& device) {
+    REQUIRE(scenes::pixel_on(device, scene).x == Approx(0.6).epsilon(1e-6));
+  });
 }
 
 TEST_CASE("in a furnace of white light clear glass is as white, whatever the index") {
@@ -148,6 +155,8 @@ TEST_CASE("in a furnace of white light clear glass is as white, whatever the ind
     scene.image.background_bottom = scene.image.background_top = {1, 1, 1};
     scene.render.max_depth = 30;
     scenes::place(scene, SphereShape{1}, scenes::add_dielectric(scene, n));
-    on_every_device([&](const DeviceInfo& device) { REQUIRE(scenes::pixel_on(device, scene).x == Approx(1.0).epsilon(2e-5)); });
+    on_every_device([&](const DeviceInfo& device) {
+      REQUIRE(scenes::pixel_on(device, scene).x == Approx(1.0).epsilon(2e-5));
+    });
   }
 }

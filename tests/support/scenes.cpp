@@ -70,8 +70,11 @@ void place(SceneDescription& scene, Shape shape, int material, const glm::dmat4&
   scene.objects.push_back(object);
 }
 
-RenderResult render_on(const DeviceInfo& device, const SceneDescription& scene, const RenderOptions& options) {
-  return render(compile(scene), {device}, options);
+RenderResult render_on(const DeviceInfo& device, const SceneDescription& scene,
+                       const RenderOptions& options) {
+  RenderOptions chosen = options;
+  chosen.generic_kernels = device.native_vector_width <= 1;
+  return render(compile(scene), {device}, chosen);
 }
 
 glm::dvec3 pixel_on(const DeviceInfo& device, const SceneDescription& scene) {

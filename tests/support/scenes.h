@@ -1,4 +1,5 @@
-// Scenes built in code, for closed forms: short makers of the description's values, and a render of one pixel or more.
+// Scenes built in code, for closed forms: short makers of the description's values, and a render of one pixel
+// or more.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,15 +9,16 @@
 
 namespace scenes {
 
-/// An empty scene: black background, no lights, world medium of index 1, a 1x1 image with a view so narrow that the pixel's ray is the
-/// line from position to target.
+/// An empty scene: black background, no lights, world medium of index 1, a 1x1 image with a view so narrow
+/// that the pixel's ray is the line from position to target.
 sundog::SceneDescription line_of_sight(glm::dvec3 position, glm::dvec3 target, glm::dvec3 up = {0, 1, 0});
 
 /// Shines with `color` by itself (the scene has one ambient light of 1), reflects and transmits nothing.
 int add_glow(sundog::SceneDescription& scene, glm::dvec3 color);
 
 /// A clear dielectric over a new medium.
-int add_dielectric(sundog::SceneDescription& scene, double ior, glm::dvec3 absorption = {0, 0, 0}, int priority = 0);
+int add_dielectric(sundog::SceneDescription& scene, double ior, glm::dvec3 absorption = {0, 0, 0},
+                   int priority = 0);
 
 /// A white diffuse material, kd = 1, without other terms.
 int add_white(sundog::SceneDescription& scene);
@@ -24,9 +26,11 @@ int add_white(sundog::SceneDescription& scene);
 int add_mirror(sundog::SceneDescription& scene, double reflection, glm::dvec3 glow = {0, 0, 0});
 
 /// Places a shape with the transform.
-void place(sundog::SceneDescription& scene, sundog::Shape shape, int material, const glm::dmat4& world_from_object = glm::dmat4(1));
+void place(sundog::SceneDescription& scene, sundog::Shape shape, int material,
+           const glm::dmat4& world_from_object = glm::dmat4(1));
 
-/// Renders on one device.
+/// Renders on one device; with one kernel for all scenes where the driver (llvmpipe) takes half a minute for
+/// each.
 sundog::RenderResult render_on(const sundog::DeviceInfo& device, const sundog::SceneDescription& scene,
                                const sundog::RenderOptions& options = {});
 
