@@ -52,6 +52,9 @@ u32 material_flags(const MaterialDescription& material) {
   if (!is_zero(material.reflection)) flags |= MATERIAL_REFLECTS;
   if (material.medium < 0) flags |= MATERIAL_THIN;
   if (material.vertex_color) flags |= MATERIAL_VERTEX_COLOR;
+  const bool local = !is_zero(material.ambient) || !is_zero(material.diffuse) || !is_zero(material.specular);
+  if (material.type == MaterialType::dielectric && !local && material.transmission == dvec3(1))
+    flags |= MATERIAL_CLEAR;
   return flags;
 }
 
