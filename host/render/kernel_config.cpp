@@ -49,14 +49,16 @@ unsigned traversal_stack_size(const CompiledScene& scene) {
   return std::max(1u, meshes + (leaf_root ? 0 : tree_stack_size(scene.nodes, scene.info.tlas_root)));
 }
 
-KernelConfig make_kernel_config(const CompiledScene& scene, DeviceClass device_class, bool generic) {
+KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device, bool generic) {
   KernelConfig config;
-  if (device_class == DeviceClass::gpu) config.tile_w = config.tile_h = 1;
+  const bool vectors = device.device_class == DeviceClass::cpu && device.native_vector_width > 1;
+  if (!vectors) config.tile_w = config.tile_h = 1;
   const unsigned batch = config.tile_w * config.tile_h;
   KernelDefines& defines = config.defines;
   const auto define = [&](const char* name, unsigned value) { defines[name] = std::to_string(value); };
   define("TILE_W", config.tile_w);
   define("TILE_H", config.tile_h);
+  define("WIDE_VECTORS", vectors);
   // Depth first, `batch` rays at a time, at most that many wait on each level, and one batch of children
   // more. Beyond 32 levels the kernel counts what does not fit, and the frame reports it.
   define("RAY_STACK",

@@ -14,6 +14,13 @@
 #endif
 #define BATCH (TILE_W * TILE_H)
 
+// 1: eight boxes or triangles an instruction, with explicit vectors. 0: one by one in rolled loops, for
+// devices that run a lane a ray (native vector width 1), where explicit vectors only make the program eight
+// times as long.
+#ifndef WIDE_VECTORS
+#define WIDE_VECTORS 1
+#endif
+
 // Pending rays of a work-item: enough for a full binary tree of max_depth levels walked BATCH rays at a time.
 #ifndef RAY_STACK
 #define RAY_STACK (BATCH * 9)

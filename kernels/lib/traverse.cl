@@ -36,10 +36,14 @@ static inline SlabRay make_slab_ray(float3 o, float3 d) {
   return ray;
 }
 
-// Entry distances of the eight children (as the bits of non-negative floats, which order like integers), and
-// which are crossed.
+// A child's key is the bits of its entry distance (non-negative floats order like integers) with the slot in
+// the lowest three.
+#define KEY_SLOT 7
+
+#if WIDE_VECTORS
+// Writes the keys of the eight children; returns which are crossed.
 static inline u32 cross_children(__global const Bvh8Node* node, const SlabRay* ray, float t_min, float t_max,
-                                 int8* entry) {
+                                 u32* keys) {
   __global const float* bounds = node->lower_x;
   const int8 near_x =
       as_int8(fma(vload8(0, bounds + ray->near_x), (float8)(ray->rcp_near.x), (float8)(ray->shift_near.x)));
@@ -55,11 +59,31 @@ static inline u32 cross_children(__global const Bvh8Node* node, const SlabRay* r
       as_int8(fma(vload8(0, bounds + ray->far_z), (float8)(ray->rcp_far.z), (float8)(ray->shift_far.z)));
   const int8 near = max(max(near_x, near_y), max(near_z, (int8)(as_int(t_min))));
   const int8 far = min(min(far_x, far_y), min(far_z, (int8)(as_int(t_max))));
-  *entry = near;
-  return lane_mask(near <= far) & node->valid;
+  const u32 crossed = lane_mask(near <= far) & node->valid;
+  if (crossed) vstore8((as_uint8(near) & ~(u32)KEY_SLOT) | (uint8)(0, 1, 2, 3, 4, 5, 6, 7), 0, keys);
+  return crossed;
 }
-
-#define KEY_SLOT 7
+#else
+static inline u32 cross_children(__global const Bvh8Node* node, const SlabRay* ray, float t_min, float t_max,
+                                 u32* keys) {
+  __global const float* bounds = node->lower_x;
+  u32 crossed = 0;
+#pragma unroll 1
+  for (u32 i = 0; i < 8u; ++i) {
+    const int near =
+        max(max(as_int(fma(bounds[ray->near_x + i], ray->rcp_near.x, ray->shift_near.x)),
+                as_int(fma(bounds[ray->near_y + i], ray->rcp_near.y, ray->shift_near.y))),
+            max(as_int(fma(bounds[ray->near_z + i], ray->rcp_near.z, ray->shift_near.z)), as_int(t_min)));
+    const int far =
+        min(min(as_int(fma(bounds[ray->far_x + i], ray->rcp_far.x, ray->shift_far.x)),
+                as_int(fma(bounds[ray->far_y + i], ray->rcp_far.y, ray->shift_far.y))),
+            min(as_int(fma(bounds[ray->far_z + i], ray->rcp_far.z, ray->shift_far.z)), as_int(t_max)));
+    if (near <= far) crossed |= 1u << i;
+    keys[i] = ((u32)near & ~(u32)KEY_SLOT) | i;
+  }
+  return crossed & node->valid;
+}
+#endif
 
 static inline void order_pair(u32* a, u32* b) {
   const u32 low = min(*a, *b), high = max(*a, *b);
@@ -68,10 +92,8 @@ static inline void order_pair(u32* a, u32* b) {
 }
 
 // Pushes the crossed children, farthest first, and returns the nearest one's word.
-static inline u32 push_children(__global const Bvh8Node* node, u32 crossed, int8 entry, u32* stack,
+static inline u32 push_children(__global const Bvh8Node* node, u32 crossed, const u32* keys, u32* stack,
                                 float* stack_t, u32* top) {
-  u32 keys[8];
-  vstore8((as_uint8(entry) & ~(u32)KEY_SLOT) | (uint8)(0, 1, 2, 3, 4, 5, 6, 7), 0, keys);
   u32 a = keys[lowest_bit(crossed)];
   crossed &= crossed - 1u;
   if (crossed) {
@@ -124,10 +146,10 @@ static inline void closest_in_mesh(TRACE_PARAMETERS, u32 root, float3 o, float3 
                 last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
       for (u32 i = first; i <= last; ++i) closest_in_block(blocks + i, o, d, t_min, instance, hit);
     } else {
-      int8 entry;
-      const u32 crossed = cross_children(nodes + word, &slabs, t_min, hit->t, &entry);
+      u32 keys[8];
+      const u32 crossed = cross_children(nodes + word, &slabs, t_min, hit->t, keys);
       if (crossed) {
-        word = push_children(nodes + word, crossed, entry, stack, stack_t, &top);
+        word = push_children(nodes + word, crossed, keys, stack, stack_t, &top);
         continue;
       }
     }
@@ -191,10 +213,10 @@ static inline Hit trace_ray(TRACE_PARAMETERS, float3 o, float3 d, float t_min, f
         next = word & BVH_FIRST_MASK;
         end = next + 1u + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
       } else {
-        int8 entry;
-        const u32 crossed = cross_children(nodes + word, &slabs, t_min, hit.t, &entry);
+        u32 keys[8];
+        const u32 crossed = cross_children(nodes + word, &slabs, t_min, hit.t, keys);
         if (crossed) {
-          word = push_children(nodes + word, crossed, entry, stack, stack_t, &top);
+          word = push_children(nodes + word, crossed, keys, stack, stack_t, &top);
           continue;
         }
       }

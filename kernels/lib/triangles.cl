@@ -19,6 +19,28 @@ static inline u32 lane_mask(int8 lanes) {
 
 static inline u32 lowest_bit(u32 mask) { return 31u - clz(mask & (0u - mask)); }
 
+// Takes triangle i of the block at t as the hit when it is nearer than *hit, or as near and earlier in the
+// tables.
+static inline void offer_triangle(__global const TriangleBlock* block, u32 i, float t, float u, float v,
+                                  float t_min, u32 instance, Hit* hit) {
+  const u32 prim = block->prim[i];
+  const bool nearer =
+      t < hit->t || (t == hit->t && (hit->instance == NO_INSTANCE || instance < hit->instance ||
+                                     (instance == hit->instance && prim < hit->prim)));
+  if (!(nearer && t > t_min)) return;
+  hit->t = t;
+  hit->u = u;
+  hit->v = v;
+  hit->prim = prim;
+  hit->instance = instance;
+  const float3 ng = cross((float3)(block->e1_x[i], block->e1_y[i], block->e1_z[i]),
+                          (float3)(block->e2_x[i], block->e2_y[i], block->e2_z[i]));
+  hit->ng_x = ng.x;
+  hit->ng_y = ng.y;
+  hit->ng_z = ng.z;
+}
+
+#if WIDE_VECTORS
 // What the eight lanes have in common with the hit test: sign-corrected, not divided by |det|.
 typedef struct BlockTest {
   float8 u, v, t, det;
@@ -48,7 +70,8 @@ static inline BlockTest test_block(__global const TriangleBlock* block, float3 o
   return test;
 }
 
-// Nearest hit of the block in (t_min, hit->t]; updates *hit, of which instance must be set for a hit so far.
+// Nearest hit of the block in (t_min, hit->t]; updates *hit, whose instance is NO_INSTANCE before the first
+// hit.
 static inline void closest_in_block(__global const TriangleBlock* block, float3 o, float3 d, float t_min,
                                     u32 instance, Hit* hit) {
   const BlockTest test = test_block(block, o, d, t_min, hit->t);
@@ -62,23 +85,30 @@ static inline void closest_in_block(__global const TriangleBlock* block, float3 
   while (lanes) {
     const u32 i = lowest_bit(lanes);
     lanes &= lanes - 1u;
-    const u32 prim = block->prim[i];
-    const bool nearer =
-        t[i] < hit->t || (t[i] == hit->t && (hit->instance == NO_INSTANCE || instance < hit->instance ||
-                                             (instance == hit->instance && prim < hit->prim)));
-    if (!(nearer && t[i] > t_min)) continue;
-    hit->t = t[i];
-    hit->u = u[i] / det[i];
-    hit->v = v[i] / det[i];
-    hit->prim = prim;
-    hit->instance = instance;
-    const float3 e1 = (float3)(block->e1_x[i], block->e1_y[i], block->e1_z[i]);
-    const float3 e2 = (float3)(block->e2_x[i], block->e2_y[i], block->e2_z[i]);
-    const float3 ng = cross(e1, e2);
-    hit->ng_x = ng.x;
-    hit->ng_y = ng.y;
-    hit->ng_z = ng.z;
+    offer_triangle(block, i, t[i], u[i] / det[i], v[i] / det[i], t_min, instance, hit);
   }
 }
+#else
+static inline void closest_in_block(__global const TriangleBlock* block, float3 o, float3 d, float t_min,
+                                    u32 instance, Hit* hit) {
+#pragma unroll 1
+  for (u32 i = 0; i < 8u && block->prim[i] != NO_PRIM; ++i) {
+    const float3 e1 = (float3)(block->e1_x[i], block->e1_y[i], block->e1_z[i]);
+    const float3 e2 = (float3)(block->e2_x[i], block->e2_y[i], block->e2_z[i]);
+    const float3 s = o - (float3)(block->v0_x[i], block->v0_y[i], block->v0_z[i]);
+    const float3 p =
+        (float3)(fma(d.y, e2.z, -(d.z * e2.y)), fma(d.z, e2.x, -(d.x * e2.z)), fma(d.x, e2.y, -(d.y * e2.x)));
+    const float3 q =
+        (float3)(fma(s.y, e1.z, -(s.z * e1.y)), fma(s.z, e1.x, -(s.x * e1.z)), fma(s.x, e1.y, -(s.y * e1.x)));
+    const float signed_det = fma(e1.x, p.x, fma(e1.y, p.y, e1.z * p.z));
+    const float det = fabs(signed_det), sign = copysign(1.0f, signed_det);
+    const float u = sign * fma(s.x, p.x, fma(s.y, p.y, s.z * p.z)),
+                v = sign * fma(d.x, q.x, fma(d.y, q.y, d.z * q.z));
+    const float t = sign * fma(e2.x, q.x, fma(e2.y, q.y, e2.z * q.z));
+    if (u >= 0.0f && v >= 0.0f && u + v <= det && det > 0.0f)
+      offer_triangle(block, i, t / det, u / det, v / det, t_min, instance, hit);
+  }
+}
+#endif
 
 #endif
