@@ -1,2 +1,63 @@
-// sundog's command line.
-int main() { return 0; }
+// sundog's command line: the command does its work; what goes wrong becomes one line and an exit status here.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "app/commands.h"
+#include "app/devices_command.h"
+#include "app/options.h"
+#include "base/error.h"
+
+namespace sundog {
+namespace {
+
+int run(const RenderCommand& command) { return render_command(command); }
+int run(const DevicesOptions& command) { return devices_command(command); }
+int run(const InfoCommand& command) { return info_command(command); }
+int run(const CompareCommand& command) { return compare_command(command); }
+int run(const ShowText& command) {
+  fmt::print("{}", command.text);
+  return exit_done;
+}
+
+int run_command_line(int argc, char** argv) {
+  const Command command = parse_command_line(argc, argv);
+  const int status = std::visit([](const auto& chosen) { return run(chosen); }, command);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw IoError("the standard output cannot be written");
+  return status;
+}
+
+/// Prints the error in one line, whatever a library's message holds.
+int fail(ExitStatus status, std::string message) {
+  std::ranges::replace(message, '\n', ' ');
+  fmt::print(stderr, "sundog: {}\n", message);
+  return status;
+}
+
+}  // namespace
+}  // namespace sundog
+
+int main(int argc, char** argv) {
+  using namespace sundog;
+  try {
+    return run_command_line(argc, argv);
+  } catch (const UsageError& error) {
+    return fail(exit_usage, error.what());
+  } catch (const SceneError& error) {
+    return fail(exit_scene, error.what());
+  } catch (const DeviceError& error) {
+    return fail(exit_device, error.what());
+  } catch (const BuildError& error) {
+    fail(exit_build, error.what());
+    fmt::print(stderr, "{}{}", error.log, error.log.ends_with('\n') ? "" : "\n");
+    return exit_build;
+  } catch (const std::bad_alloc&) {
+    return fail(exit_failure, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(exit_failure, error.what());
+  }
+}

@@ -52,7 +52,8 @@ struct BinaryTree::Builder {
 BinaryTree::BinaryTree(std::span<Ref> refs, const WideBvhSettings& settings, bool balanced)
     : members_(refs.size()) {
   const RefSet all = make_ref_set(refs);
-  SplitSettings split{settings.block_width, 1.0f};
+  const auto scratch = std::make_unique_for_overwrite<Ref[]>(refs.size());
+  SplitSettings split{settings.block_width, 1.0f, refs, scratch.get()};
   const Lanes extent = all.box.upper - all.box.lower;
   const float longest = std::max({extent[0], extent[1], extent[2]});
   if (longest > 0) split.area_scale = std::min(1 / longest, std::numeric_limits<float>::max());

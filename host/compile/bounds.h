@@ -14,10 +14,15 @@ inline Lanes lanes(float value) { return Lanes{value, value, value, value}; }
 inline Lanes lanes_min(Lanes a, Lanes b) { return a < b ? a : b; }
 inline Lanes lanes_max(Lanes a, Lanes b) { return a > b ? a : b; }
 
-/// A box; empty when made. The fourth lane of each corner is free for the owner.
+/// A box. The fourth lane of each corner is free for the owner. Not initialised: the builder makes many that
+/// it does not use.
 struct Bounds {
-  Lanes lower = lanes(std::numeric_limits<float>::infinity());
-  Lanes upper = lanes(-std::numeric_limits<float>::infinity());
+  Lanes lower, upper;
+
+  static Bounds none() {
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    return {lanes(inf), lanes(-inf)};
+  }
 
   void extend(const Bounds& other) {
     lower = lanes_min(lower, other.lower);

@@ -16,7 +16,7 @@ namespace {
 /// An instance and its bounds in the world; `cost` is that of a ray that crosses them.
 struct Placed {
   Instance instance{};
-  Bounds box;
+  Bounds box = Bounds::none();
   double cost = 1;
   bool bounded() const { return instance.shape != SHAPE_PLANE; }
 };
@@ -89,7 +89,7 @@ std::vector<Bounds> two_levels(const std::vector<Bvh8Node>& nodes, u32 root) {
 /// World bounds, rounded outwards and widened by what a kernel's transform of a ray may round.
 Bounds world_bounds(const UnitShape& unit, const std::vector<Bounds>& boxes, const dmat4& world_from_unit,
                     bool exact) {
-  Bounds bounds;
+  Bounds bounds = Bounds::none();
   for (int axis = 0; axis < 3; ++axis) {
     const dvec3 row(world_from_unit[0][axis], world_from_unit[1][axis], world_from_unit[2][axis]);
     const double offset = world_from_unit[3][axis];

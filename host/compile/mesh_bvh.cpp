@@ -4,9 +4,13 @@
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <memory>
+#include <stdexcept>
 
 #include "base/error.h"
 #include "compile/vertices.h"
@@ -33,20 +37,9 @@ bool in_range(const glm::vec3& p) {
 
 bool attribute_fits(std::size_t count, std::size_t wanted) { return count == 0 || count == wanted; }
 
-void check_mesh(const SceneDescription& scene, std::size_t index) {
+void check_attributes(const SceneDescription& scene, std::size_t index) {
   const Mesh& mesh = scene.meshes[index];
-  const auto bad = std::find_if_not(mesh.positions.begin(), mesh.positions.end(), in_range);
-  if (bad != mesh.positions.end())
-    fail(scene, index,
-         fmt::format("vertex {} is ({}, {}, {}); wanted finite numbers up to {:g}; mend the model",
-                     bad - mesh.positions.begin(), bad->x, bad->y, bad->z, farthest));
   const std::size_t n = mesh.positions.size();
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (int corner = 0; corner < 3; ++corner)
-      if (mesh.triangles[t][corner] >= n)
-        fail(scene, index,
-             fmt::format("triangle {} names vertex {}; wanted less than {}; mend the model", t,
-                         mesh.triangles[t][corner], n));
   if (!attribute_fits(mesh.normals.size(), n) || !attribute_fits(mesh.uvs.size(), n) ||
       !attribute_fits(mesh.colors.size(), n) || !attribute_fits(mesh.materials.size(), mesh.triangles.size()))
     fail(scene, index, "normals, uvs or colours are not one a vertex, or materials not one a triangle");
@@ -55,19 +48,51 @@ void check_mesh(const SceneDescription& scene, std::size_t index) {
       fail(scene, index, fmt::format("material {} of {}", material, scene.materials.size()));
 }
 
-std::vector<Ref> make_refs(const Mesh& mesh) {
-  std::vector<Ref> refs(mesh.triangles.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, refs.size(), 4096), [&](const auto& range) {
+/// Names the first triangle corner that makes no box.
+[[noreturn]] void fail_corner(const SceneDescription& scene, std::size_t index) {
+  const Mesh& mesh = scene.meshes[index];
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int corner = 0; corner < 3; ++corner) {
+      const u32 vertex = mesh.triangles[t][corner];
+      if (vertex >= mesh.positions.size())
+        fail(scene, index,
+             fmt::format("triangle {} names vertex {}; wanted less than {}; mend the model", t, vertex,
+                         mesh.positions.size()));
+      const glm::vec3& p = mesh.positions[vertex];
+      if (!in_range(p))
+        fail(scene, index,
+             fmt::format("vertex {} is ({}, {}, {}); wanted finite numbers up to {:g}; mend the model",
+                         vertex, p.x, p.y, p.z, farthest));
+    }
+  throw std::logic_error("a mesh that was refused has no bad corner");
+}
+
+/// The box of a triangle, empty when a corner is no vertex or is out of range.
+Bounds triangle_box(const Mesh& mesh, const glm::uvec3& triangle) {
+  Bounds box = Bounds::none();
+  for (int corner = 0; corner < 3; ++corner) {
+    if (triangle[corner] >= mesh.positions.size()) return Bounds::none();
+    const glm::vec3& p = mesh.positions[triangle[corner]];
+    if (!in_range(p)) return Bounds::none();
+    box.extend(Lanes{p.x, p.y, p.z, 0});
+  }
+  return box;
+}
+
+WideBvh build_mesh(const SceneDescription& scene, std::size_t index) {
+  check_attributes(scene, index);
+  const Mesh& mesh = scene.meshes[index];
+  const auto refs = std::make_unique_for_overwrite<Ref[]>(mesh.triangles.size());
+  std::atomic<bool> bad{false};
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 4096), [&](const auto& range) {
     for (std::size_t t = range.begin(); t != range.end(); ++t) {
-      Bounds box;
-      for (int corner = 0; corner < 3; ++corner) {
-        const glm::vec3& p = mesh.positions[mesh.triangles[t][corner]];
-        box.extend(Lanes{p.x, p.y, p.z, 0});
-      }
+      const Bounds box = triangle_box(mesh, mesh.triangles[t]);
+      if (box.empty()) bad = true;
       refs[t] = Ref::of(box, static_cast<u32>(t));
     }
   });
-  return refs;
+  if (bad) fail_corner(scene, index);
+  return build_wide_bvh({refs.get(), mesh.triangles.size()}, WideBvhSettings{});
 }
 
 TriangleBlock make_block(const Mesh& mesh, std::span<const u32> members, u32 first_triangle) {
@@ -125,10 +150,7 @@ std::vector<PlacedMesh> add_meshes(const SceneDescription& scene, u32 default_ma
 
   std::vector<WideBvh> trees(placed.size());
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
-    if (!placed[i].used) return;
-    check_mesh(scene, i);
-    std::vector<Ref> refs = make_refs(scene.meshes[i]);
-    trees[i] = build_wide_bvh(refs, WideBvhSettings{});
+    if (placed[i].used) trees[i] = build_mesh(scene, i);
   });
 
   std::vector<TableSizes> first(placed.size());
@@ -142,10 +164,9 @@ std::vector<PlacedMesh> add_meshes(const SceneDescription& scene, u32 default_ma
     sum.vertices += vertex_count(scene.meshes[i]);
   }
   check_sizes(scene, sum);
-  out.nodes.resize(sum.nodes);
-  out.blocks.resize(sum.blocks);
-  out.triangles.resize(sum.triangles);
-  out.vertices.resize(sum.vertices);
+  tbb::parallel_invoke([&] { out.nodes.resize(sum.nodes); }, [&] { out.blocks.resize(sum.blocks); },
+                       [&] { out.triangles.resize(sum.triangles); },
+                       [&] { out.vertices.resize(sum.vertices); });
 
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
     if (!placed[i].used) return;
@@ -155,12 +176,20 @@ std::vector<PlacedMesh> add_meshes(const SceneDescription& scene, u32 default_ma
     placed[i].root = node;
     placed[i].first_triangle = triangle;
     placed[i].triangle_count = static_cast<u32>(mesh.triangles.size());
-    placed[i].cost = expected_cost(trees[i].nodes, 0, [](u32, u32 count) { return double(count); });
-    placed[i].stack = stack_need(trees[i].nodes, 0);
-    append_tree(trees[i], mesh, triangle, std::span(out.nodes).subspan(node), node,
-                std::span(out.blocks).subspan(block), block);
-    fill_vertices(mesh, vertex, default_material, std::span(out.vertices).subspan(vertex, vertex_count(mesh)),
-                  std::span(out.triangles).subspan(triangle, mesh.triangles.size()));
+    tbb::parallel_invoke(
+        [&] {
+          placed[i].cost = expected_cost(trees[i].nodes, 0, [](u32, u32 count) { return double(count); });
+        },
+        [&] { placed[i].stack = stack_need(trees[i].nodes, 0); },
+        [&] {
+          append_tree(trees[i], mesh, triangle, std::span(out.nodes).subspan(node), node,
+                      std::span(out.blocks).subspan(block), block);
+        },
+        [&] {
+          fill_vertices(mesh, vertex, default_material,
+                        std::span(out.vertices).subspan(vertex, vertex_count(mesh)),
+                        std::span(out.triangles).subspan(triangle, mesh.triangles.size()));
+        });
   });
   return placed;
 }

@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -40,9 +41,16 @@ struct BinMap {
 };
 
 struct Bins {
-  std::array<std::array<Bounds, max_bins>, 3> box;
-  std::array<std::array<u32, max_bins>, 3> members{};
+  std::array<std::array<Bounds, max_bins>, 3>
+      box;  // not initialised beyond the bins in use: most sets are small
+  std::array<std::array<u32, max_bins>, 3> members;
 
+  explicit Bins(int count) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::fill_n(box[axis].begin(), count, Bounds::none());
+      std::fill_n(members[axis].begin(), count, 0u);
+    }
+  }
   void add(const Ref& ref, const BinMap& map) {
     const IntLanes bin = map(ref.center2());
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -60,13 +68,19 @@ struct Bins {
   }
 };
 
-void fill_bins(Bins& bins, std::span<const Ref> refs, const BinMap& map) {
-  if (refs.size() < parallel_size) {
+/// Whether several threads should work on one set: it is large, and there are too few others for them.
+bool share_work(std::size_t members, const SplitSettings& settings) {
+  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  return members >= parallel_size && members * threads > settings.all.size();
+}
+
+void fill_bins(Bins& bins, std::span<const Ref> refs, const BinMap& map, bool parallel) {
+  if (!parallel) {
     for (const Ref& ref : refs) bins.add(ref, map);
     return;
   }
   bins = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, refs.size(), chunk_size), Bins{},
+      tbb::blocked_range<std::size_t>(0, refs.size(), chunk_size), Bins(map.count),
       [&](const tbb::blocked_range<std::size_t>& range, Bins sum) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) sum.add(refs[i], map);
         return sum;
@@ -96,14 +110,14 @@ void search_axis(const Bins& bins, int axis, int count, const SplitSettings& set
   const auto& members = bins.members[static_cast<std::size_t>(axis)];
   std::array<Bounds, max_bins> right;
   std::array<u32, max_bins> right_members;
-  Bounds sum;
+  Bounds sum = Bounds::none();
   u32 n = 0;
   for (auto i = static_cast<std::size_t>(count); i-- > 0;) {
     sum.extend(box[i]);
     right[i] = sum;
     right_members[i] = n += members[i];
   }
-  sum = Bounds{};
+  sum = Bounds::none();
   n = 0;
   for (std::size_t i = 1; i < static_cast<std::size_t>(count); ++i) {
     sum.extend(box[i - 1]);
@@ -123,8 +137,8 @@ void search_axis(const Bins& bins, int axis, int count, const SplitSettings& set
 Plane find_plane(const RefSet& set, const BinMap& map, const SplitSettings& settings) {
   Plane plane;
   if (!map.usable(0) && !map.usable(1) && !map.usable(2)) return plane;
-  Bins bins;
-  fill_bins(bins, set.refs, map);
+  Bins bins(map.count);
+  fill_bins(bins, set.refs, map, share_work(set.refs.size(), settings));
   float least = std::numeric_limits<float>::infinity();
   u32 unevenness = std::numeric_limits<u32>::max();
   for (int axis = 0; axis < 3; ++axis)
@@ -132,63 +146,70 @@ Plane find_plane(const RefSet& set, const BinMap& map, const SplitSettings& sett
   return plane;
 }
 
-/// Moves the members left of the plane to the front; returns their number, and the bounds of the centres.
-std::size_t partition_serial(std::span<Ref> refs, const BinMap& map, const Plane& plane, Bounds& left,
-                             Bounds& right) {
-  std::size_t i = 0, j = refs.size();
-  const auto is_left = [&](Lanes center2) { return map(center2)[plane.axis] < plane.bin; };
-  while (true) {
-    Lanes center{};
-    while (i < j && is_left(center = refs[i].center2())) left.extend(center), ++i;
-    if (i == j) return i;
-    right.extend(center);
-    while (i < --j && !is_left(center = refs[j].center2())) right.extend(center);
-    if (i == j) return i;
-    left.extend(center);
-    std::swap(refs[i++], refs[j]);
+/// A partition's outcome: how many went left, and the bounds of the centres, [0] left and [1] right.
+struct Parts {
+  std::size_t left_count = 0;
+  std::array<Bounds, 2> centers{Bounds::none(), Bounds::none()};
+};
+
+/// Which side of a plane a centre is on: 0 left, 1 right.
+struct Side {
+  const BinMap& map;
+  const Plane& plane;
+  std::size_t operator()(Lanes center2) const { return map(center2)[plane.axis] >= plane.bin; }
+};
+
+/// Moves the members left of the plane to the front. Each ref is written to both sides and one of them
+/// advances: no branch to mispredict.
+Parts partition_serial(std::span<Ref> refs, Ref* scratch, const Side& side_of) {
+  Parts parts;
+  std::size_t right_count = 0;
+  for (const Ref ref : refs) {
+    const Lanes center = ref.center2();
+    const std::size_t side = side_of(center);
+    refs[parts.left_count] = ref;
+    scratch[right_count] = ref;
+    parts.left_count += 1 - side;
+    right_count += side;
+    parts.centers[side].extend(center);
   }
+  std::copy(scratch, scratch + right_count, refs.begin() + static_cast<std::ptrdiff_t>(parts.left_count));
+  return parts;
 }
 
-/// The same for large sets: chunks are counted, then scattered through a second array.
-std::size_t partition_parallel(std::span<Ref> refs, const BinMap& map, const Plane& plane, Bounds& left,
-                               Bounds& right) {
-  struct Chunk {
-    std::size_t left_count = 0;
-    Bounds left, right;
-  };
-  std::vector<Chunk> chunks((refs.size() + chunk_size - 1) / chunk_size);
-  const auto is_left = [&](Lanes center2) { return map(center2)[plane.axis] < plane.bin; };
+/// The same for large sets: chunks are counted, then scattered through the scratch array.
+Parts partition_parallel(std::span<Ref> refs, Ref* scratch, const Side& side_of) {
+  std::vector<Parts> chunks((refs.size() + chunk_size - 1) / chunk_size);
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
-    Chunk chunk;
+    Parts chunk;
     for (const Ref& ref : refs.subspan(c * chunk_size, std::min(chunk_size, refs.size() - c * chunk_size))) {
       const Lanes center = ref.center2();
-      const bool first = is_left(center);
-      (first ? chunk.left : chunk.right).extend(center);
-      chunk.left_count += first;
+      const std::size_t side = side_of(center);
+      chunk.centers[side].extend(center);
+      chunk.left_count += 1 - side;
     }
     chunks[c] = chunk;
   });
-  std::size_t left_count = 0;
-  for (Chunk& chunk : chunks) {
-    left.extend(chunk.left);
-    right.extend(chunk.right);
-    left_count += std::exchange(chunk.left_count, left_count);
+  Parts parts;
+  for (Parts& chunk : chunks) {
+    for (std::size_t side = 0; side < 2; ++side) parts.centers[side].extend(chunk.centers[side]);
+    parts.left_count += std::exchange(chunk.left_count, parts.left_count);
   }
-  std::vector<Ref> sorted(refs.size());
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
     const std::size_t begin = c * chunk_size;
-    std::size_t to_left = chunks[c].left_count, to_right = left_count + begin - to_left;
+    std::array<std::size_t, 2> to = {chunks[c].left_count, parts.left_count + begin - chunks[c].left_count};
     for (const Ref& ref : refs.subspan(begin, std::min(chunk_size, refs.size() - begin)))
-      sorted[is_left(ref.center2()) ? to_left++ : to_right++] = ref;
+      scratch[to[side_of(ref.center2())]++] = ref;
   });
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, refs.size(), chunk_size), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) refs[i] = sorted[i];
+    std::copy(scratch + range.begin(), scratch + range.end(),
+              refs.begin() + static_cast<std::ptrdiff_t>(range.begin()));
   });
-  return left_count;
+  return parts;
 }
 
 RefSet bounds_of(std::span<Ref> refs, std::size_t begin, std::size_t end) {
-  RefSet set{refs, {}, {}};
+  RefSet set{refs, Bounds::none(), Bounds::none()};
   for (std::size_t i = begin; i != end; ++i) {
     set.box.extend(refs[i].box);
     set.centers.extend(refs[i].center2());
@@ -201,7 +222,8 @@ RefSet bounds_of(std::span<Ref> refs, std::size_t begin, std::size_t end) {
 RefSet make_ref_set(std::span<Ref> refs) {
   if (refs.size() < parallel_size) return bounds_of(refs, 0, refs.size());
   return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, refs.size(), chunk_size), RefSet{refs, {}, {}},
+      tbb::blocked_range<std::size_t>(0, refs.size(), chunk_size),
+      RefSet{refs, Bounds::none(), Bounds::none()},
       [&](const tbb::blocked_range<std::size_t>& range, RefSet sum) {
         const RefSet part = bounds_of(refs, range.begin(), range.end());
         sum.box.extend(part.box);
@@ -222,10 +244,13 @@ RefSplit split_by_area(const RefSet& set, const SplitSettings& settings) {
   RefSplit split;
   split.left.box = plane.left;
   split.right.box = plane.right;
-  const auto partition = set.refs.size() < parallel_size ? partition_serial : partition_parallel;
-  const std::size_t middle = partition(set.refs, map, plane, split.left.centers, split.right.centers);
-  split.left.refs = set.refs.first(middle);
-  split.right.refs = set.refs.subspan(middle);
+  const auto partition = share_work(set.refs.size(), settings) ? partition_parallel : partition_serial;
+  const Parts parts =
+      partition(set.refs, settings.scratch + (set.refs.data() - settings.all.data()), Side{map, plane});
+  split.left.refs = set.refs.first(parts.left_count);
+  split.right.refs = set.refs.subspan(parts.left_count);
+  split.left.centers = parts.centers[0];
+  split.right.centers = parts.centers[1];
   return split;
 }
 

@@ -21,6 +21,8 @@ RefSet make_ref_set(std::span<Ref> refs);
 struct SplitSettings {
   u32 block_width = 8;   // members tested for the price of one
   float area_scale = 1;  // see half_area()
+  std::span<Ref> all;    // every ref of the tree
+  Ref* scratch;          // as many, to be overwritten
 };
 
 struct RefSplit {

@@ -107,7 +107,7 @@ Bounds child_bounds(const Bvh8Node& node, u32 slot) {
 }
 
 Bounds node_bounds(const Bvh8Node& node) {
-  Bounds box;
+  Bounds box = Bounds::none();
   for (u32 slot = 0; slot < BVH_WIDTH && (node.valid >> slot & 1u); ++slot)
     box.extend(child_bounds(node, slot));
   return box;

@@ -28,8 +28,8 @@ struct WideBvh {
   };
   std::vector<Bvh8Node> nodes;  // [0] is the root; never empty
   std::vector<Block> blocks;
-  std::vector<u32> members;  // primitive numbers in leaf order
-  Bounds box;                // empty when there are no members
+  std::vector<u32> members;     // primitive numbers in leaf order
+  Bounds box = Bounds::none();  // empty when there are no members
 };
 
 /// Builds the tree over `refs` (reordered), whose numbers are below 2^27. Deterministic at any number of

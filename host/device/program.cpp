@@ -56,6 +56,17 @@ std::string first_error(const std::string& log) {
   return first.empty() ? "the compiler gave no reason" : first;
 }
 
+/// Whether the driver can make kernels of what its compiler made.
+bool kernels_work(const cl::Program& program) {
+  std::istringstream names(program.getInfo<CL_PROGRAM_KERNEL_NAMES>());
+  cl_int status = CL_INVALID_PROGRAM_EXECUTABLE;
+  for (std::string name; std::getline(names, name, ';');) {
+    cl::Kernel(program, name.c_str(), &status);
+    if (status != CL_SUCCESS) break;
+  }
+  return status == CL_SUCCESS;
+}
+
 /// The program of a cached binary; null when the driver will not have it.
 cl::Program program_from_binary(const cl::Context& context, const cl::Device& device,
                                 const std::string& binary) {
@@ -65,15 +76,16 @@ cl::Program program_from_binary(const cl::Context& context, const cl::Device& de
   cl::Program program(context, {device}, binaries, &statuses, &status);
   if (status != CL_SUCCESS || std::ranges::any_of(statuses, [](cl_int s) { return s != CL_SUCCESS; }))
     return {};
-  return program.build({device}, build_options) == CL_SUCCESS ? program : cl::Program();
+  if (program.build({device}, build_options) != CL_SUCCESS || !kernels_work(program)) return {};
+  return program;
 }
 
 void compile(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
-             const std::string& source, BuildReport& report) {
+             const std::string& source, const std::string& options, BuildReport& report) {
   cl_int status = CL_SUCCESS;
   record.program = cl::Program(context, source, false, &status);
   check_cl(status, record.device, fmt::format("{}: clCreateProgramWithSource", record.entry));
-  status = record.program.build({device}, build_options);
+  status = record.program.build({device}, options.c_str());
   report.log = build_log(record.program, device);
   if (status == CL_SUCCESS) return;
   if (status != CL_BUILD_PROGRAM_FAILURE && report.log.empty())
@@ -81,6 +93,19 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
   throw BuildError(
       fmt::format("{} did not build on {}: {}", record.entry, record.device.label(), first_error(report.log)),
       report.log);
+}
+
+/// Oclgrind's optimiser leaves calls in the program that its interpreter does not know (llvm.bitreverse,
+/// noalias scopes): such a program builds, but gives no kernels. Without optimisation it runs.
+void compile_to_kernels(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
+                        const std::string& source, BuildReport& report) {
+  compile(record, context, device, source, build_options, report);
+  if (kernels_work(record.program)) return;
+  compile(record, context, device, source, fmt::format("{} -cl-opt-disable", build_options), report);
+  if (kernels_work(record.program)) return;
+  throw BuildError(fmt::format("{} on {}: the driver built it but makes no kernels of it", record.entry,
+                               record.device.label()),
+                   report.log);
 }
 
 }  // namespace
@@ -104,13 +129,19 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
     }
     report.note = fmt::format("{}: the driver refused the cached binary", record->cache_file.string());
   }
-  compile(*record, context, device, source, report);
+  if (!record->cache_file.empty())
+    if (const auto reason = cannot_store(record->cache_file)) {
+      report.note = *reason;
+      record->cache_file.clear();
+    }
+  compile_to_kernels(*record, context, device, source, report);
   return record;
 }
 
 void save_program(ProgramRecord& record) {
   const bool complete = std::ranges::includes(record.stored_variants, record.launched_variants);
-  if (record.cache_file.empty() || (record.stored && complete)) return;
+  // What was never launched is not worth it: PoCL would compile it now to give its binary out.
+  if (record.cache_file.empty() || record.launched_variants.empty() || (record.stored && complete)) return;
   cl_int status = CL_SUCCESS;
   const auto binaries = record.program.getInfo<CL_PROGRAM_BINARIES>(&status);
   check_cl(status, record.device, fmt::format("{}: CL_PROGRAM_BINARIES", record.entry));

@@ -3,10 +3,13 @@
 #include "device/program_cache.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <sstream>
 #include <vector>
 
@@ -119,6 +122,16 @@ std::optional<CachedProgram> load_program(const fs::path& file, const std::strin
   std::error_code ignored;  // the time of last use, for prune()
   fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
   return CachedProgram{std::string(binary), split(std::string(variants))};
+}
+
+std::optional<std::string> cannot_store(const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) return fmt::format("{}: cannot be made: {}", folder.string(), failed.message());
+  if (::access(folder.c_str(), W_OK) != 0)
+    return fmt::format("{}: {}", folder.string(), std::strerror(errno));
+  return std::nullopt;
 }
 
 void store_program(const fs::path& file, const std::string& key, const CachedProgram& program,

@@ -21,6 +21,9 @@ std::string hash128(std::string_view bytes);
 /// Where the program of `key` is kept; empty when SUNDOG_KERNEL_CACHE=off or there is no cache folder.
 std::filesystem::path program_cache_file(const std::string& key);
 
+/// Makes the folder of `file` if need be; why nothing can be stored there, or nothing.
+std::optional<std::string> cannot_store(const std::filesystem::path& file);
+
 /// The program stored for exactly this key; nothing when the file is missing, damaged, of another format or
 /// of another key.
 std::optional<CachedProgram> load_program(const std::filesystem::path& file, const std::string& key);

@@ -5,7 +5,15 @@
 
 #include "catch.h"
 
-void prepare_opencl_environment() { setenv("RUSTICL_ENABLE", "llvmpipe", 0); }
+void prepare_opencl_environment() {
+  setenv("RUSTICL_ENABLE", "llvmpipe", 0);
+  // Tests move XDG_CACHE_HOME about; Mesa's own cache stays where it is.
+  const char *xdg = std::getenv("XDG_CACHE_HOME"), *home = std::getenv("HOME");
+  if (xdg && *xdg)
+    setenv("MESA_SHADER_CACHE_DIR", xdg, 0);
+  else if (home)
+    setenv("MESA_SHADER_CACHE_DIR", (std::string(home) + "/.cache").c_str(), 0);
+}
 
 const std::vector<sundog::DeviceInfo>& test_devices() {
   static const std::vector<sundog::DeviceInfo> devices = [] {

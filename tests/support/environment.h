@@ -1,9 +1,6 @@
-// Environment variables and folders that last as long as a test.
+// Environment variables that last as long as a test.
 #pragma once
-#include <unistd.h>
-
 #include <cstdlib>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -22,23 +19,4 @@ class ScopedVariable {
   void set(const char* value) const { value ? setenv(name_, value, 1) : unsetenv(name_); }
   const char* name_;
   std::optional<std::string> old_;
-};
-
-/// An empty folder, removed at the end.
-class ScopedFolder {
- public:
-  ScopedFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "sundog-test-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~ScopedFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScopedFolder(const ScopedFolder&) = delete;
-  ScopedFolder& operator=(const ScopedFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
 };

@@ -15,7 +15,7 @@ class TemporaryFolder {
   std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
   /// How many files and folders lie in it.
   std::size_t entries() const;
-  /// Writes `text` to the file `name` in it, making the folders of `name`, and returns its path.
+  /// Writes `text` to the file `name` in it (folders are made) and returns its path.
   std::filesystem::path write(std::string_view name, std::string_view text) const;
 
  private:

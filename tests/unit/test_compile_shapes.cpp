@@ -109,7 +109,7 @@ TEST_CASE("world bounds hold the surface and are tight") {
     description.meshes.push_back(bumpy_sphere(20));
     const CompiledScene scene = compile(description);
     const Bounds box = instance_box(scene);
-    Bounds seen;
+    Bounds seen = Bounds::none();
     for (int i = 0; i < 40000; ++i) {
       HostRay ray;
       ray.origin = dvec3(10, -20, 30) + 20.0 * dvec3(uniform(), uniform(), uniform());

@@ -1,0 +1,26 @@
+// The values of options: from their text, or a UsageError that names the option, what was wanted and what was
+// found.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "render/render.h"
+
+namespace sundog {
+
+/// A whole number from `low` to `high`.
+int parse_number(const char* option, const std::string& text, int low, int high);
+
+/// "64", "8x8", "auto" or "driver".
+WorkGroup parse_work_group(const std::string& text);
+
+/// A finite number, 0 or more.
+double parse_tolerance(const std::string& text);
+
+/// "WxH" as the overrides of a scene that make its image so.
+std::vector<std::string> parse_image_size(const std::string& text);
+
+/// Refuses what is not of the form JSON_POINTER=VALUE.
+void check_override(const std::string& setting);
+
+}  // namespace sundog

@@ -1,0 +1,168 @@
+#include "app/options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <memory>
+
+#include "app/option_values.h"
+#include "base/error.h"
+
+namespace sundog {
+namespace {
+
+constexpr const char* more_help = "(sundog --help tells more)";
+constexpr const char* scene_help = "a .json scene, or a .gltf .glb .obj .ply .stl .nff model";
+
+/// The options of `render` as typed, before they are checked.
+struct TypedRender {
+  RenderCommand command;
+  std::string size, samples, max_depth, integrator, work_group = "auto", tile;
+};
+
+/// The options that only shorten a --set come first, so that a --set of the same value wins.
+std::vector<std::string> collect_overrides(const TypedRender& typed) {
+  std::vector<std::string> all;
+  if (!typed.size.empty()) all = parse_image_size(typed.size);
+  if (!typed.samples.empty())
+    all.push_back(fmt::format("/render/samples={}", parse_number("--samples", typed.samples, 1, 65536)));
+  if (!typed.max_depth.empty())
+    all.push_back(fmt::format("/render/max_depth={}", parse_number("--max-depth", typed.max_depth, 1, 64)));
+  if (!typed.integrator.empty()) all.push_back(fmt::format("/render/integrator=\"{}\"", typed.integrator));
+  for (const std::string& setting : typed.command.overrides) {
+    check_override(setting);
+    all.push_back(setting);
+  }
+  return all;
+}
+
+std::vector<std::string> devices_of_environment() {
+  const char* text = std::getenv("SUNDOG_DEVICE");
+  return text && *text ? CLI::detail::split(text, ',') : std::vector<std::string>();
+}
+
+RenderCommand checked(const TypedRender& typed) {
+  RenderCommand command = typed.command;
+  command.overrides = collect_overrides(typed);
+  command.work_group = parse_work_group(typed.work_group);
+  if (!typed.tile.empty()) command.tile = parse_number("--tile", typed.tile, 4, 65536);
+  if (command.devices.empty()) command.devices = devices_of_environment();
+  for (const std::string& name : command.aovs)
+    if (std::ranges::count(aov_names(), name) == 0)
+      throw UsageError(fmt::format("--aov {}: wanted one of {}", name, fmt::join(aov_names(), ", ")));
+  return command;
+}
+
+template <class T>
+CLI::Option* value(CLI::App* app, const char* name, const char* type, T& target, const std::string& help) {
+  return app->add_option(name, target, help)->type_name(type);
+}
+
+/// An option that may be given several times, each time with one value.
+void values(CLI::App* app, const char* name, const char* type, std::vector<std::string>& target,
+            const std::string& help) {
+  value(app, name, type, target, help + "; repeatable")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_render(CLI::App& root, Command& chosen) {
+  const auto typed = std::make_shared<TypedRender>();
+  RenderCommand& command = typed->command;
+  CLI::App* app = root.add_subcommand("render", "Render a scene to an image file");
+  value(app, "SCENE", "FILE", command.scene, scene_help)->required();
+  value(app, "-o,--out", "FILE", command.out, "image file: .png, .exr, .hdr or .pfm")->required();
+  values(app, "--device", "SPEC", command.devices,
+         "P:D, cpu, gpu, accelerator, all, part of a name, or !SPEC to take away; /N for N compute units "
+         "(default: SUNDOG_DEVICE, or the fastest)");
+  value(app, "--size", "WxH", typed->size, "width and height in pixels");
+  value(app, "--samples", "N", typed->samples, "samples a pixel");
+  value(app, "--max-depth", "N", typed->max_depth,
+        "greatest depth of the ray tree; 1: the camera's rays alone");
+  value(app, "--integrator", "NAME", typed->integrator, "how light is followed: whitted");
+  values(app, "--set", "POINTER=VALUE", command.overrides, "change the scene, as in /camera/fov=30");
+  value(app, "--work-group", "SIZE", typed->work_group, "local size: N, WxH, auto or driver");
+  value(app, "--tile", "N", typed->tile, "edge of the tiles in pixels");
+  value(app, "--stats", "FILE", command.stats, "write rays, times and devices to this JSON file");
+  values(app, "--aov", "NAME", command.aovs,
+         fmt::format("an extra image in the .exr: {}", fmt::join(aov_names(), ", ")));
+  app->add_flag("--float", command.full_floats, "keep an .exr's colours as 32-bit floats (default: half)");
+  value(app, "--resume", "FILE", command.resume,
+        "checkpoint: written when interrupted, continued from when it is there");
+  app->add_flag("-q,--quiet", command.quiet, "no progress bar and no summary");
+  app->add_flag("-v,--verbose", command.verbose, "tell more: times, rays, kernels");
+  app->callback([typed, &chosen] { chosen = checked(*typed); });
+}
+
+void add_devices(CLI::App& root, Command& chosen) {
+  const auto command = std::make_shared<DevicesOptions>();
+  CLI::App* app = root.add_subcommand("devices", "List every OpenCL platform and device");
+  app->add_flag("--json", command->json, "as JSON");
+  app->callback([command, &chosen] { chosen = *command; });
+}
+
+void add_info(CLI::App& root, Command& chosen) {
+  const auto command = std::make_shared<InfoCommand>();
+  CLI::App* app = root.add_subcommand("info", "What a scene holds: triangles, lights, BVH figures, bytes");
+  value(app, "SCENE", "FILE", command->scene, scene_help)->required();
+  app->add_flag("--json", command->json, "as JSON");
+  app->callback([command, &chosen] { chosen = *command; });
+}
+
+void add_compare(CLI::App& root, Command& chosen) {
+  const auto command = std::make_shared<CompareCommand>();
+  const auto tolerance = std::make_shared<std::string>("0");
+  CLI::App* app = root.add_subcommand("compare", "Compare two images; exit status 6 when they differ");
+  value(app, "A", "FILE", command->a, "image file: .png, .jpg, .exr, .hdr or .pfm")->required();
+  value(app, "B", "FILE", command->b, "image file")->required();
+  value(app, "--tolerance", "T", *tolerance,
+        "greatest difference that passes, in linear colour (1 is white; default 0)");
+  value(app, "--diff", "FILE", command->diff, "write a picture that shows where they differ");
+  app->add_flag("--json", command->json, "print the figures as JSON");
+  app->callback([command, tolerance, &chosen] {
+    command->tolerance = parse_tolerance(*tolerance);
+    chosen = *command;
+  });
+}
+
+/// The library's own message about an unknown command only asks for one.
+void check_command_name(const CLI::App& root, int argc, const char* const* argv) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : root.get_subcommands(nullptr)) names.push_back(command->get_name());
+  const std::string wanted = argc > 1 ? argv[1] : "";
+  if (!wanted.starts_with('-') && std::ranges::count(names, wanted) == 0)
+    throw UsageError(fmt::format("wanted a command ({}), found {} {}", fmt::join(names, ", "),
+                                 wanted.empty() ? "none" : "'" + wanted + "'", more_help));
+}
+
+}  // namespace
+
+Command parse_command_line(int argc, const char* const* argv) {
+  CLI::App root("sundog renders scenes with OpenCL, on any device there is.", "sundog");
+  root.set_version_flag("--version", "sundog " SUNDOG_VERSION);
+  root.require_subcommand(1);
+  Command chosen;
+  add_render(root, chosen);
+  add_devices(root, chosen);
+  add_info(root, chosen);
+  add_compare(root, chosen);
+  check_command_name(root, argc, argv);
+  try {
+    root.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    return ShowText{root.help()};
+  } catch (const CLI::CallForVersion& version) {
+    return ShowText{std::string(version.what()) + "\n"};
+  } catch (const CLI::ExtrasError&) {
+    throw UsageError(
+        fmt::format("unknown option or argument: {} {}", fmt::join(root.remaining(true), " "), more_help));
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(fmt::format("{} {}", error.what(), more_help));
+  }
+  return chosen;
+}
+
+}  // namespace sundog

@@ -1,0 +1,46 @@
+// The command line as values: what the user asked for, checked as far as it can be without reading a file.
+#pragma once
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "app/devices_command.h"
+#include "render/render.h"
+
+namespace sundog {
+
+struct RenderCommand {
+  std::string scene, out;
+  std::vector<std::string> devices;    // --device SPECs, or those of SUNDOG_DEVICE
+  std::vector<std::string> overrides;  // "JSON_POINTER=VALUE", those of --size, --samples... among them
+  WorkGroup work_group;
+  int tile = 0;
+  std::string stats, resume;  // files; empty: none
+  std::vector<std::string> aovs;
+  bool full_floats = false;  // an EXR's colours as 32-bit floats
+  bool quiet = false, verbose = false;
+};
+
+struct InfoCommand {
+  std::string scene;
+  bool json = false;
+};
+
+struct CompareCommand {
+  std::string a, b, diff;
+  double tolerance = 0;
+  bool json = false;
+};
+
+/// --help or --version: a text for stdout.
+struct ShowText {
+  std::string text;
+};
+
+using Command = std::variant<RenderCommand, DevicesOptions, InfoCommand, CompareCommand, ShowText>;
+
+/// Throws UsageError. Reads the environment variable SUNDOG_DEVICE (SPECs separated by commas).
+Command parse_command_line(int argc, const char* const* argv);
+
+}  // namespace sundog

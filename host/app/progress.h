@@ -1,0 +1,33 @@
+// The progress bar: one line on the terminal, with rate and time left, erased at the end.
+#pragma once
+#include <string>
+
+#include "base/clock.h"
+#include "render/render.h"
+
+namespace sundog {
+
+/// The bar's text, at most `columns` wide. `since` is the first progress of this run: a resumed render begins
+/// with pixels that cost it nothing.
+std::string progress_line(const RenderProgress& now, const RenderProgress& since, int columns);
+
+/// Draws on stderr at most ten times a second, and only when that is a terminal.
+class ProgressBar {
+ public:
+  explicit ProgressBar(bool wanted);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void update(const RenderProgress& progress);
+  /// Takes the line off the terminal.
+  void erase();
+
+ private:
+  bool shown_ = false, drawn_ = false, started_ = false;
+  RenderProgress first_;
+  double last_drawn_ = -1;
+  Stopwatch clock_;
+};
+
+}  // namespace sundog

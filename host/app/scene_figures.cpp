@@ -1,0 +1,92 @@
+#include "app/scene_figures.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <type_traits>
+
+namespace sundog {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array shape_names = {"mesh", "sphere", "plane", "box",     "cylinder",
+                                    "cone", "disk",   "torus", "roundbox"};
+static_assert(shape_names.size() == std::variant_size_v<Shape>);
+constexpr std::array light_names = {"ambient", "directional", "point", "spot"};
+
+json count_shapes(const SceneDescription& scene) {
+  json counts = json::object();
+  for (const Object& object : scene.objects) {
+    json& count = counts[shape_names[object.shape.index()]];
+    count = count.is_null() ? 1 : count.get<int>() + 1;
+  }
+  return counts;
+}
+
+json count_lights(const SceneDescription& scene) {
+  json counts = json::object();
+  for (const LightDescription& light : scene.lights) {
+    json& count = counts[light_names[static_cast<std::size_t>(light.type)]];
+    count = count.is_null() ? 1 : count.get<int>() + 1;
+  }
+  return counts;
+}
+
+std::size_t placed_triangles(const SceneDescription& scene) {
+  std::size_t count = 0;
+  for (const Object& object : scene.objects)
+    if (const auto* shape = std::get_if<MeshShape>(&object.shape))
+      count += scene.meshes[static_cast<std::size_t>(shape->mesh)].triangles.size();
+  return count;
+}
+
+template <class T>
+std::size_t bytes_of(const std::vector<T>& table) {
+  return table.size() * sizeof(T);
+}
+
+json table_bytes(const CompiledScene& flat) {
+  const std::size_t bvh = bytes_of(flat.nodes) + bytes_of(flat.blocks);
+  const std::size_t shading = bytes_of(flat.triangles) + bytes_of(flat.vertices);
+  const std::size_t rest =
+      bytes_of(flat.instances) + bytes_of(flat.materials) + bytes_of(flat.media) + bytes_of(flat.lights);
+  return {{"bvh", bvh}, {"shading", shading}, {"tables", rest}, {"total", bvh + shading + rest}};
+}
+
+/// The union of the scene BVH's root's children.
+json bounds(const CompiledScene& flat) {
+  if (flat.info.bounded_count == 0) return nullptr;
+  const Bvh8Node& root = flat.nodes[flat.info.tlas_root];
+  const auto lower = [](const float(&side)[8]) {
+    return *std::min_element(side, side + 8);
+  };  // an empty slot's
+  const auto upper = [](const float(&side)[8]) { return *std::max_element(side, side + 8); };  // is inverted
+  return {{"min", {lower(root.lower_x), lower(root.lower_y), lower(root.lower_z)}},
+          {"max", {upper(root.upper_x), upper(root.upper_y), upper(root.upper_z)}}};
+}
+
+}  // namespace
+
+json scene_figures(const SceneDescription& scene, const CompiledScene& flat) {
+  return {{"file", scene.file.string()},
+          {"triangles", flat.figures.triangles},
+          {"placed_triangles", placed_triangles(scene)},
+          {"meshes", scene.meshes.size()},
+          {"instances", flat.instances.size()},
+          {"unbounded", flat.instances.size() - flat.info.bounded_count},
+          {"objects", count_shapes(scene)},
+          {"lights", count_lights(scene)},
+          {"materials", scene.materials.size()},
+          {"media", scene.media.size()},
+          {"bvh",
+           {{"nodes", flat.figures.nodes},
+            {"blocks", flat.figures.blocks},
+            {"mean_block_fill", flat.figures.mean_block_fill},
+            {"sah_cost", flat.figures.sah_cost},
+            {"build_seconds", flat.figures.build_seconds}}},
+          {"bytes", table_bytes(flat)},
+          {"bounds", bounds(flat)}};
+}
+
+}  // namespace sundog

@@ -1,0 +1,142 @@
+#include "app/stats.h"
+
+#include <fmt/format.h>
+
+#include "app/scene_figures.h"
+
+namespace sundog {
+namespace {
+
+using nlohmann::json;
+
+json image_json(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result) {
+  return {{"file", command.out},
+          {"width", scene.image.width},
+          {"height", scene.image.height},
+          {"samples", scene.render.samples},
+          {"max_depth", scene.render.max_depth},
+          {"integrator", scene.render.integrator},
+          {"aovs", command.aovs},
+          {"complete", result.complete}};
+}
+
+json device_json(const DeviceReport& report) {
+  json kernels = json::object();
+  for (const auto& [name, times] : report.kernels)
+    kernels[name] = {{"launches", times.launches},
+                     {"device_ms", times.device_ms},
+                     {"host_ms", times.host_ms},
+                     {"work_group", {times.local_x, times.local_y}}};
+  return {{"index", fmt::format("{}:{}", report.info.platform, report.info.device)},
+          {"platform", report.info.platform_name},
+          {"name", report.info.name},
+          {"driver", report.info.driver},
+          {"sub_units", report.info.sub_units},
+          {"tiles", report.tiles},
+          {"failures", report.failures},
+          {"retired", report.retired},
+          {"busy_seconds", report.busy_seconds},
+          {"kernels_cached", report.kernels_cached},
+          {"messages", report.messages},
+          {"kernels", kernels}};
+}
+
+json counters_json(const RayCounts& counts) {
+  return {{"primary_hit", counts[COUNT_PRIMARY_HIT]},
+          {"cut_off", counts[COUNT_CUT_OFF]},
+          {"depth_limit", counts[COUNT_DEPTH_LIMIT]},
+          {"ray_stack_overflow", counts[COUNT_RAY_STACK_OVERFLOW]},
+          {"media_stack_overflow", counts[COUNT_MEDIA_STACK_OVERFLOW]},
+          {"non_finite", counts[COUNT_NON_FINITE]},
+          {"stray_exit", counts[COUNT_STRAY_EXIT]},
+          {"shadow_limit", counts[COUNT_SHADOW_LIMIT]},
+          {"march_limit", counts[COUNT_MARCH_LIMIT]}};
+}
+
+json rays_json(const RayCounts& counts) {
+  return {{"primary", counts[COUNT_PRIMARY]},
+          {"reflection", counts[COUNT_REFLECTION]},
+          {"refraction", counts[COUNT_REFRACTION]},
+          {"shadow", counts[COUNT_SHADOW]},
+          {"march_steps", counts[COUNT_MARCH_STEPS]}};
+}
+
+/// The ledger's entries, in the order of the work.
+std::vector<std::pair<const char*, double>> entries(const TimeLedger& times) {
+  return {{"load", times.load},
+          {"compile_scene", times.compile_scene},
+          {"build_kernels", times.render.build_kernels},
+          {"upload", times.render.upload},
+          {"render", times.render.render},
+          {"readback", times.render.readback},
+          {"write", times.write},
+          {"other", times.other()},
+          {"total", times.total}};
+}
+
+json seconds_json(const TimeLedger& times) {
+  json seconds;
+  for (const auto& [step, value] : entries(times)) seconds[step] = value;
+  return seconds;
+}
+
+}  // namespace
+
+json stats_json(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
+                const RenderResult& result, const TimeLedger& times) {
+  json devices = json::array();
+  for (const DeviceReport& report : result.devices) devices.push_back(device_json(report));
+  return {{"schema", 1},
+          {"sundog", SUNDOG_VERSION},
+          {"scene", scene_figures(scene, flat)},
+          {"image", image_json(command, scene, result)},
+          {"devices", devices},
+          {"rays", rays_json(result.counts)},
+          {"counters", counters_json(result.counts)},
+          {"seconds", seconds_json(times)},
+          {"kernels_cached", times.render.cached}};
+}
+
+std::uint64_t ray_count(const RayCounts& counts) {
+  return counts[COUNT_PRIMARY] + counts[COUNT_REFLECTION] + counts[COUNT_REFRACTION] + counts[COUNT_SHADOW];
+}
+
+std::vector<std::string> losses(const RayCounts& counts) {
+  struct Loss {
+    int counter;
+    const char* what;
+  };
+  constexpr Loss kinds[] = {
+      {COUNT_RAY_STACK_OVERFLOW, "rays were dropped because the ray stack was full: lower max_depth"},
+      {COUNT_MEDIA_STACK_OVERFLOW,
+       "times a ray entered more solids inside each other than the media stack holds"},
+      {COUNT_SHADOW_LIMIT, "shadow rays were given up after too many transmissive surfaces"},
+      {COUNT_NON_FINITE, "samples were dropped because they were not finite"},
+      {COUNT_STRAY_EXIT,
+       "times a ray left a solid that it had not entered: a mesh with an interior is not closed"}};
+  std::vector<std::string> sentences;
+  for (const Loss& kind : kinds)
+    if (const std::uint64_t count = counts[static_cast<std::size_t>(kind.counter)]; count > 0)
+      sentences.push_back(fmt::format("{} {}", count, kind.what));
+  return sentences;
+}
+
+std::string details_text(const RenderResult& result, const TimeLedger& times) {
+  std::string text;
+  for (const auto& [step, seconds] : entries(times))
+    text += fmt::format("  {:<22} {:10.1f} ms\n", step, 1000 * seconds);
+  for (const json& group : {rays_json(result.counts), counters_json(result.counts)})
+    for (const auto& [kind, count] : group.items())
+      text += fmt::format("  {:<22} {:10}\n", kind, count.get<std::uint64_t>());
+  for (const DeviceReport& report : result.devices) {
+    text += fmt::format("  {}: {} tiles in {:.3f} s, kernels {}\n", report.info.label(), report.tiles,
+                        report.busy_seconds, report.kernels_cached ? "from the cache" : "compiled");
+    for (const auto& [name, kernel] : report.kernels)
+      text += fmt::format("    {:<20} {:6} launches {:10.1f} ms  work-group {}x{}\n", name, kernel.launches,
+                          kernel.device_ms > 0 ? kernel.device_ms : kernel.host_ms, kernel.local_x,
+                          kernel.local_y);
+  }
+  return text;
+}
+
+}  // namespace sundog

@@ -1,0 +1,36 @@
+// What a render did, for --stats and --verbose.
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "app/options.h"
+#include "compile/compiled_scene.h"
+#include "render/render.h"
+
+namespace sundog {
+
+/// Wall seconds of the whole command. What none of the named steps took is `other` (choosing devices,
+/// checks), so that they add up to `total`.
+struct TimeLedger {
+  double load = 0, compile_scene = 0, write = 0, total = 0;
+  RenderTimes render;
+
+  double other() const {
+    return total - (load + compile_scene + render.build_kernels + render.upload + render.render +
+                    render.readback + write);
+  }
+};
+
+/// The statistics file, "schema": 1 (README.md describes it).
+nlohmann::json stats_json(const RenderCommand& command, const SceneDescription& scene,
+                          const CompiledScene& flat, const RenderResult& result, const TimeLedger& times);
+
+/// Rays of all kinds: primary, reflection, refraction and shadow.
+std::uint64_t ray_count(const RayCounts& counts);
+
+/// One sentence for each kind of loss that a picture may suffer (full stacks, dropped samples); empty: none.
+std::vector<std::string> losses(const RayCounts& counts);
+
+/// Many lines: the times, the rays, and each device's kernels.
+std::string details_text(const RenderResult& result, const TimeLedger& times);
+
+}  // namespace sundog

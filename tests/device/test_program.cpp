@@ -1,0 +1,175 @@
+// Programs: built, refused with file and line, kept in the binary cache.
+#include <sys/stat.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "catch.h"
+#include "device/program_cache.h"
+#include "devices.h"
+#include "environment.h"
+#include "temporary_folder.h"
+
+using namespace sundog;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string add_kernel = R"(
+__kernel void add(__global float* values, float what, uint count) {
+  const uint i = get_global_id(0);
+  if (i < count) values[i] += what;
+}
+)";
+
+/// Builds and runs the add kernel; what the build said.
+BuildReport add_on(const DeviceInfo& info, const std::string& text = add_kernel, std::size_t local = 64) {
+  Device device(info);
+  BuildReport report;
+  auto add = device.build("add.cl", {}, &report, {{"add.cl", text}}).kernel<Buffer<float>, float, u32>("add");
+  const auto values = device.upload<float>(std::vector<float>(100, 1.0f));
+  device.run(add, {.x = values.count, .local_x = local}, values, 2.5f, 100u);
+  std::vector<float> result(values.count);
+  device.read(values, std::span<float>(result));
+  CHECK(result == std::vector<float>(100, 3.5f));
+  return report;
+}
+
+std::vector<fs::path> files_of(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (fs::exists(folder))
+    for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+  return files;
+}
+
+/// A cache folder of this test's own.
+struct OwnCache {
+  TemporaryFolder folder;
+  ScopedVariable place{"XDG_CACHE_HOME", folder.path().c_str()};
+  ScopedVariable on{"SUNDOG_KERNEL_CACHE", nullptr};
+  fs::path kernels() const { return folder.path() / "sundog" / "kernels"; }
+};
+
+}  // namespace
+
+TEST_CASE("a program is compiled once and comes from the cache after that") {
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      const OwnCache cache;
+      CHECK(!add_on(info).cached);
+      CHECK(files_of(cache.kernels()).size() == 1);
+      const BuildReport second = add_on(info);
+      CHECK(second.cached);
+      CHECK(second.note.empty());
+      CHECK(add_on(info, add_kernel, 8).cached);  // another local size
+      CHECK(!add_on(info, add_kernel + " ").cached);
+      CHECK(files_of(cache.kernels()).size() == 2);
+    }
+}
+
+TEST_CASE("a damaged cache file is compiled anew and replaced") {
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      const OwnCache cache;
+      add_on(info);
+      const auto files = files_of(cache.kernels());
+      REQUIRE(files.size() == 1);
+      const std::string good = read_file(files[0]);
+      std::string flipped = good;
+      flipped[flipped.size() / 2] ^= 1;
+      for (const std::string& bad :
+           {flipped, good.substr(0, good.size() - 1), good + "x", std::string(), std::string("\0\0", 2)}) {
+        write_file(files[0], bad);
+        CHECK(!add_on(info).cached);
+        CHECK(add_on(info).cached);
+      }
+    }
+}
+
+TEST_CASE("a binary that the driver refuses is compiled anew, and the report says so") {
+  for (const DeviceInfo& info : test_devices()) {
+    if (info.platform_name == "rusticl")
+      continue;  // aborts the process for a binary that is not its own (Mesa 22.3)
+    DYNAMIC_SECTION(info.label()) {
+      const OwnCache cache;
+      add_on(info);
+      const auto files = files_of(cache.kernels());
+      REQUIRE(files.size() == 1);
+      // A file that is sound in itself, of the right key, with a binary that is none. The key is in the file
+      // as it stands.
+      const std::string stored = read_file(files[0]);
+      const std::size_t sizes = stored.find('\n') + 1 + 32;
+      const std::string key = stored.substr(sizes + 60, std::stoul(stored.substr(sizes, 20)));
+      REQUIRE(load_program(files[0], key));
+      store_program(files[0], key, {"this is no binary", {}});
+      const BuildReport report = add_on(info);
+      CHECK(!report.cached);
+      CHECK_THAT(report.note, ContainsSubstring("refused"));
+      CHECK(add_on(info).cached);
+    }
+  }
+}
+
+TEST_CASE("an unusable cache folder costs time and nothing else") {
+  const DeviceInfo& info = test_devices().front();
+  const OwnCache cache;
+  write_file(cache.folder.path() / "sundog", "a file where the folder should be");
+  CHECK(!add_on(info).cached);
+  const BuildReport second = add_on(info);
+  CHECK(!second.cached);
+  CHECK_THAT(second.note, ContainsSubstring("kernels: "));
+  CHECK(fs::is_regular_file(cache.folder.path() / "sundog"));
+}
+
+TEST_CASE("SUNDOG_KERNEL_CACHE=off neither reads nor writes the cache") {
+  const DeviceInfo& info = test_devices().front();
+  const OwnCache cache;
+  add_on(info);
+  const ScopedVariable off("SUNDOG_KERNEL_CACHE", "off");
+  CHECK(!add_on(info).cached);
+  CHECK(!add_on(info, add_kernel + "\n").cached);
+  CHECK(files_of(cache.kernels()).size() == 1);
+}
+
+TEST_CASE("a build error names the kernel file and the line, and carries the compiler's log") {
+  const GeneratedFiles files = {
+      {"main.cl", "#include \"shared/types.h\"\n#include \"lib/wrong.cl\"\n"},
+      {"lib/wrong.cl", "// One line.\n__kernel void f(__global u32* a) {\n  a[0] = undeclared;\n}\n"}};
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      Device device(info);
+      try {
+        device.build("main.cl", {}, nullptr, files);
+        FAIL("it built");
+      } catch (const BuildError& error) {
+        CHECK_THAT(error.what(), ContainsSubstring("main.cl did not build on"));
+        CHECK_THAT(error.what(), ContainsSubstring("lib/wrong.cl:3"));
+        CHECK_THAT(error.log, ContainsSubstring("undeclared"));
+      }
+    }
+}
+
+TEST_CASE("a kernel that is not in the program is a build error") {
+  Device device(test_devices().front());
+  const Program program = build_text(device, add_kernel);
+  CHECK_THROWS_AS(program.kernel<Buffer<float>>("subtract"), BuildError);
+  CHECK_THROWS_AS(Program().kernel<>("add"), BuildError);
+}
+
+TEST_CASE("SUNDOG_DUMP_KERNELS keeps the text that the compiler gets") {
+  const TemporaryFolder folder;
+  const ScopedVariable dump("SUNDOG_DUMP_KERNELS", folder.path().c_str());
+  Device device(test_devices().front());
+  build_text(device, add_kernel, {{"WIDTH", "8"}});
+  const auto files = files_of(folder.path());
+  REQUIRE(files.size() == 1);
+  CHECK_THAT(read_file(files[0]),
+             ContainsSubstring("#define WIDTH 8") && ContainsSubstring("values[i] += what;"));
+}
+
+TEST_CASE("a kernel's parameter types are known by their names") {
+  const std::string text =
+      "#include \"shared/bvh.h\"\n"
+      "__kernel void f(__global const Ray* rays, __global Hit* hits, u32 count, float4 v) {}\n";
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      Device device(info);
+      const auto types = argument_types(build_text(device, text).kernel<>("f").kernel);
+      CHECK(types == std::vector<std::string>{"Ray*", "Hit*", "u32", "float4"});
+    }
+}

@@ -1,0 +1,94 @@
+// Kernel files become one text: includes once each, lines named.
+#include <algorithm>
+
+#include "base/file.h"
+#include "catch.h"
+#include "device/embedded_kernels.h"
+#include "device/kernel_source.h"
+#include "environment.h"
+#include "temporary_folder.h"
+
+using namespace sundog;
+
+namespace {
+
+std::size_t occurrences(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("the embedded kernels are the files of kernels/, byte for byte") {
+  namespace fs = std::filesystem;
+  std::size_t files = 0;
+  const fs::path folder = fs::path(SUNDOG_SOURCE_DIR) / "kernels";
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cl") continue;
+    ++files;
+    CHECK(embedded_kernel(fs::relative(entry.path(), folder).string()) == read_file(entry.path()));
+  }
+  CHECK(files == embedded_kernels().size());
+  CHECK(files > 0);
+}
+
+TEST_CASE("SUNDOG_KERNEL_DIR replaces the embedded kernels") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "lib");
+  write_file(folder.path() / "lib" / "own.cl", "int own;\n");
+  const ScopedVariable variable("SUNDOG_KERNEL_DIR", folder.path().c_str());
+  CHECK(embedded_kernel("lib/own.cl") == "int own;\n");
+  CHECK_THROWS_AS(embedded_kernel("shared/types.h"), MissingKernelFile);
+}
+
+TEST_CASE("a file included twice is expanded once, and #line names what follows") {
+  const GeneratedFiles files = {{"main.cl", "#include \"a.cl\"\n#include \"b.cl\"\nint in_main;\n"},
+                                {"a.cl", "#include \"b.cl\"\nint in_a;\n"},
+                                {"b.cl", "int in_b;"}};
+  const std::string text = expand_kernel("main.cl", {}, files);
+  CHECK(occurrences(text, "int in_b;") == 1);
+  CHECK(text.find("int in_b;") < text.find("int in_a;"));
+  CHECK(text.find("#line 1 \"b.cl\"\nint in_b;\n") != std::string::npos);
+  CHECK(text.find("#line 2 \"a.cl\"\nint in_a;\n") != std::string::npos);
+  CHECK(text.find("#line 2 \"main.cl\"\n\nint in_main;\n") != std::string::npos);
+}
+
+TEST_CASE("a file included under an #if is there again for those who need it for certain") {
+  const GeneratedFiles files = {{"main.cl", "#if WANTED\n#include \"a.cl\"\n#endif\n#include \"a.cl\"\n"},
+                                {"a.cl", "int in_a;\n"}};
+  const std::string text = expand_kernel("main.cl", {}, files);
+  CHECK(occurrences(text, "int in_a;") == 2);
+  CHECK(occurrences(text, "#ifndef SUNDOG_INCLUDED_a_cl\n#define SUNDOG_INCLUDED_a_cl\n") == 2);
+}
+
+TEST_CASE("a header's own include guard does not count as an #if") {
+  const std::string guarded = "// Comment.\n#ifndef H\n#define H\n#include \"a.cl\"\n#endif\n";
+  const GeneratedFiles files = {
+      {"main.cl", "#include \"h.h\"\n#include \"a.cl\"\n"}, {"h.h", guarded}, {"a.cl", "int in_a;\n"}};
+  CHECK(occurrences(expand_kernel("main.cl", {}, files), "int in_a;") == 1);
+}
+
+TEST_CASE("defines stand first, sorted by name") {
+  const GeneratedFiles files = {{"main.cl", "int x;\n"}};
+  const std::string text = expand_kernel("main.cl", {{"ZETA", "1"}, {"ALPHA", "2.0f"}}, files);
+  CHECK(text.find("#define ALPHA 2.0f\n#define ZETA 1\n") < text.find("int x;"));
+}
+
+TEST_CASE("generated files go before embedded ones of the same path; <angle> includes are left alone") {
+  const GeneratedFiles files = {{"main.cl", "#include \"shared/types.h\"\n#include <cstdint>\n"},
+                                {"shared/types.h", "int own_types;\n"}};
+  const std::string text = expand_kernel("main.cl", {}, files);
+  CHECK(occurrences(text, "int own_types;") == 1);
+  CHECK(occurrences(text, "#include <cstdint>") == 1);
+}
+
+TEST_CASE("a missing or circular include names the file and line that asks for it") {
+  const GeneratedFiles files = {{"main.cl", "int x;\n#include \"lib/nowhere.cl\"\n"},
+                                {"self.cl", "#include \"other.cl\"\n"},
+                                {"other.cl", "\n\n#include \"self.cl\"\n"}};
+  CHECK_THROWS_WITH(expand_kernel("main.cl", {}, files),
+                    "main.cl:2: lib/nowhere.cl: there is no such kernel file");
+  CHECK_THROWS_WITH(expand_kernel("self.cl", {}, files), "other.cl:3: self.cl includes itself");
+  CHECK_THROWS_AS(expand_kernel("absent.cl", {}, files), BuildError);
+}
