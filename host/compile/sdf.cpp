@@ -1,0 +1,251 @@
+// The tree of each field becomes calls of the leaves' functions and of lib/sdf/compose.cl.
+#include "compile/sdf.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "compile/sdf_leaf.h"
+
+namespace sundog {
+namespace {
+
+constexpr const char* file_head = R"(// Written by the host for the fields of one scene.
+#ifndef SUNDOG_GENERATED_SDF_CL
+#define SUNDOG_GENERATED_SDF_CL
+#include "lib/sdf/compose.cl"
+
+)";
+
+class FieldsEmitter {
+ public:
+  CompiledFields run(std::span<const SdfDescription> fields) {
+    for (const SdfDescription& field : fields) {
+      add_field(field);
+      out_.fields.push_back(record(field));
+    }
+    if (!fields.empty()) out_.source = file_head + leaves_ + fields_ + dispatch() + "#endif\n";
+    return std::move(out_);
+  }
+
+ private:
+  struct Kind {
+    const char *type, *suffix, *join;
+  };
+  static constexpr Kind kinds[3] = {
+      {"REAL", "distance", ""}, {"REAL", "signed", ""}, {"SdfSample", "sample", "_samples"}};
+
+  std::size_t table(const std::vector<double>& values) {
+    const std::size_t first = out_.parameters.size();
+    for (const double value : values) out_.parameters.push_back(static_cast<float>(value));
+    return first;
+  }
+
+  /// Parameters get their places once for the three functions: by the order in which the tree is walked.
+  void place(const SdfNode& node, int depth = 1) {
+    if (depth > SdfNode::max_depth)
+      throw FormulaError(0, 0, fmt::format("fields nested deeper than {} levels", SdfNode::max_depth));
+    switch (node.kind) {
+      case SdfNode::Kind::formula:
+        places_.push_back(place_leaf(node.formula));
+        break;
+      case SdfNode::Kind::transform:
+        places_.push_back(place_transform(node));
+        break;
+      case SdfNode::Kind::repeat:
+        places_.push_back(
+            table({node.period.x, node.period.y, node.period.z, node.count.x, node.count.y, node.count.z}));
+        break;
+      case SdfNode::Kind::thicken:
+      case SdfNode::Kind::shell:
+        places_.push_back(table({node.amount}));
+        break;
+      default:
+        places_.push_back(table({node.smooth}));
+        break;
+    }
+    const std::size_t wanted = node.kind == SdfNode::Kind::formula ? 0 : is_joint(node) ? 2 : 1;
+    if (node.children.size() < wanted || (wanted < 2 && node.children.size() != wanted))
+      throw FormulaError(
+          0, 0,
+          fmt::format("a field's operation takes {} fields, found {}",
+                      wanted == 2 ? "two or more" : std::to_string(wanted), node.children.size()));
+    for (const SdfNode& child : node.children) place(child, depth + 1);
+  }
+  static bool is_joint(const SdfNode& node) {
+    return node.kind == SdfNode::Kind::unite || node.kind == SdfNode::Kind::intersect ||
+           node.kind == SdfNode::Kind::subtract;
+  }
+
+  std::size_t place_leaf(const FormulaField& formula) {
+    if (++leaf_count_ > SdfNode::max_formulas)
+      throw FormulaError(0, 0, fmt::format("a scene may have {} formulas", SdfNode::max_formulas));
+    LeafCode code = leaf_code(formula);
+    const auto [found, is_new] =
+        leaf_names_.try_emplace(code.functions, fmt::format("leaf{}", leaf_names_.size()));
+    if (is_new) {
+      std::string text = code.functions;
+      for (std::size_t at = 0; (at = text.find("NAME", at)) != std::string::npos;)
+        text.replace(at, 4, found->second);
+      leaves_ += text;
+    }
+    leaf_of_place_.push_back(found->second);
+    const std::size_t first = out_.parameters.size();
+    out_.parameters.insert(out_.parameters.end(), code.parameters.begin(), code.parameters.end());
+    return first;
+  }
+
+  std::size_t place_transform(const SdfNode& node) {
+    std::vector<double> values;
+    for (int row = 0; row < 3; ++row)  // rows of the transpose are columns of the rotation
+      for (int column = 0; column < 3; ++column) values.push_back(node.rotation[row][column]);
+    values.insert(values.end(), {node.offset.x, node.offset.y, node.offset.z, node.scale, 1 / node.scale});
+    return table(values);
+  }
+
+  void add_field(const SdfDescription& field) {
+    places_.clear();
+    leaf_of_place_.clear();
+    place(field.root);
+    const std::size_t index = out_.fields.size();
+    for (int kind = 0; kind < 3; ++kind) {
+      kind_ = kind;
+      next_place_ = next_leaf_ = next_name_ = 0;
+      body_.clear();
+      const std::string value = visit(field.root, "p", kind == 1);
+      fields_ += fmt::format(
+          "static inline {} field{}_{}(REAL3 p, MASK active, __global const float* restrict q) {{\n{}    "
+          "return {};\n}}\n\n",
+          kinds[kind].type, index, kinds[kind].suffix, body_, value);
+    }
+  }
+
+  std::string fresh() { return fmt::format("v{}", next_name_++); }
+  void line(const std::string& text) { body_ += "    " + text + "\n"; }
+  std::string define(const std::string& value) {
+    const std::string name = fresh();
+    line(fmt::format("const {} {} = {};", kinds[kind_].type, name, value));
+    return name;
+  }
+
+  /// Emits a node at point `p` and returns its variable. `two_sided`: depths inside are wanted.
+  std::string visit(const SdfNode& node, const std::string& p, bool two_sided) {
+    const std::string q = fmt::format("q + {}", places_[next_place_++]);
+    const std::string first_value = q.substr(4);
+    switch (node.kind) {
+      case SdfNode::Kind::formula: {
+        const char* suffix = kind_ == 0 && two_sided ? "signed" : kinds[kind_].suffix;
+        return define(fmt::format("{}_{}({}, active, {})", leaf_of_place_[next_leaf_++], suffix, p, q));
+      }
+      case SdfNode::Kind::transform:
+        return visit_transform(node, p, q, two_sided);
+      case SdfNode::Kind::repeat:
+        return visit_repeat(node, p, q, two_sided);
+      case SdfNode::Kind::thicken:
+      case SdfNode::Kind::shell: {
+        const bool shell = node.kind == SdfNode::Kind::shell;
+        const std::string child = visit(node.children[0], p, two_sided || shell);
+        return define(fmt::format("{}{}({}, q[{}])", shell ? "shell" : "thicken", kind_ == 2 ? "_sample" : "",
+                                  child, first_value));
+      }
+      default:
+        return visit_joint(node, p, first_value, two_sided);
+    }
+  }
+
+  std::string visit_joint(const SdfNode& node, const std::string& p, const std::string& smooth,
+                          bool two_sided) {
+    const bool subtract = node.kind == SdfNode::Kind::subtract;
+    const char* name = node.kind == SdfNode::Kind::unite ? "unite"
+                       : subtract                        ? (kind_ == 2 ? "subtract" : "subtract_from")
+                                                         : "intersect";
+    const bool rounded = node.smooth > 0;  // a rounded joint needs depths beside its seam
+    std::string value = visit(node.children[0], p, two_sided || rounded);
+    for (std::size_t i = 1; i < node.children.size(); ++i) {
+      const std::string other = visit(node.children[i], p, two_sided || subtract || rounded);
+      value = define(fmt::format("{}{}({}, {}, q[{}])", name, kinds[kind_].join, value, other, smooth));
+    }
+    return value;
+  }
+
+  std::string visit_transform(const SdfNode& node, const std::string& p, const std::string& q,
+                              bool two_sided) {
+    const std::string local = fresh();
+    line(fmt::format("const REAL3 {} = into_child({}, {});", local, p, q));
+    const std::string child = visit(node.children[0], local, two_sided);
+    return define(
+        fmt::format("{}({}, {})", kind_ == 2 ? "out_of_child_sample" : "out_of_child_distance", child, q));
+  }
+
+  std::string visit_repeat(const SdfNode& node, const std::string& p, const std::string& q, bool two_sided) {
+    u32 axes = 0;
+    for (int i = 0; i < 3; ++i) axes |= node.period[i] > 0 ? 1u << i : 0u;
+    const std::string result = fresh(), at = fresh(), n = fresh();
+    line(fmt::format("{} {} = {};", kinds[kind_].type, result, kind_ == 2 ? "no_sample()" : "(REAL)(1e20f)"));
+    line(fmt::format("for (u32 {0} = 0; {0} < 8u; ++{0}) {{", n));
+    line(fmt::format("if ({} & {}u) continue;", n, ~axes & 7u));
+    line(fmt::format("const REAL3 {} = repeat_cell({}, {}, {});", at, p, q, n));
+    const std::string child = visit(node.children[0], at, two_sided);
+    line(fmt::format("{0} = unite{1}({0}, {2}, 0.0f);", result, kinds[kind_].join, child));
+    line("}");
+    return result;
+  }
+
+  std::string dispatch() const {
+    std::string out;
+    for (int kind = 0; kind < 3; ++kind) {
+      out += fmt::format(
+          "static inline {} sdf_{}(u32 field, REAL3 p, {}__global const float* restrict q) {{\n  switch "
+          "(field) {{\n",
+          kinds[kind].type, kinds[kind].suffix, kind == 2 ? "" : "MASK active, ");
+      for (std::size_t i = 0; i + 1 < out_.fields.size(); ++i)
+        out += fmt::format("    case {}u: return field{}_{}(p, {}, q);\n", i, i, kinds[kind].suffix,
+                           kind == 2 ? "ALL_LANES" : "active");
+      out += fmt::format("    default: return field{}_{}(p, {}, q);\n  }}\n}}\n\n", out_.fields.size() - 1,
+                         kinds[kind].suffix, kind == 2 ? "ALL_LANES" : "active");
+    }
+    return out;
+  }
+
+  static bool is_smooth(const SdfNode& node) {
+    if (node.kind == SdfNode::Kind::formula)
+      return std::all_of(node.formula.steps.begin(), node.formula.steps.end(),
+                         [](const FormulaStep& step) { return step.definition.smooth; });
+    return std::all_of(node.children.begin(), node.children.end(), is_smooth);
+  }
+
+  SdfField record(const SdfDescription& d) {
+    const auto f = [](double value) { return static_cast<float>(value); };
+    SdfField r{};
+    r.lower = {f(d.lower.x), f(d.lower.y), f(d.lower.z), f(d.least)};
+    r.upper = {f(d.upper.x), f(d.upper.y), f(d.upper.z), f(d.greatest)};
+    if (d.sphere) r.sphere = {f(d.sphere->x), f(d.sphere->y), f(d.sphere->z), f(d.sphere->w)};
+    r.safety = 1;
+    r.detail = f(d.detail);
+    r.step_limit = static_cast<u32>(d.step_limit);
+    r.flags = (is_smooth(d.root) ? SDF_SMOOTH : 0u) | (d.sphere ? SDF_CUT_SPHERE : 0u);
+    r.color_by = d.coloring.palette.empty() ? SDF_COLOR_NONE : static_cast<u32>(d.coloring.by);
+    std::vector<double> stops;
+    for (const glm::dvec3& stop : d.coloring.palette) stops.insert(stops.end(), {stop.x, stop.y, stop.z});
+    r.palette_first = static_cast<u32>(table(stops));
+    r.palette_count = static_cast<u32>(d.coloring.palette.size());
+    r.palette_scale = f(d.coloring.scale);
+    r.palette_offset = f(d.coloring.offset);
+    return r;
+  }
+
+  CompiledFields out_;
+  std::map<std::string, std::string> leaf_names_;
+  std::string leaves_, fields_, body_;
+  std::vector<std::size_t> places_;
+  std::vector<std::string> leaf_of_place_;
+  std::size_t next_place_ = 0, next_leaf_ = 0, next_name_ = 0;
+  int leaf_count_ = 0, kind_ = 0;
+};
+
+}  // namespace
+
+CompiledFields compile_fields(std::span<const SdfDescription> fields) { return FieldsEmitter().run(fields); }
+
+}  // namespace sundog

@@ -1,0 +1,24 @@
+// From descriptions of signed distance fields to the OpenCL C that computes them ("generated/sdf.cl") and its
+// tables.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/formula/sdf.h"
+#include "shared/sdf.h"
+
+namespace sundog {
+
+/// `source` depends on the formulas, their whole exponents and how the fields are put together; every other
+/// number is in `parameters`, so that changing it builds no kernel anew.
+struct CompiledFields {
+  std::string source;  // text of generated/sdf.cl; empty when there are no fields
+  std::vector<float> parameters;
+  std::vector<SdfField> fields;  // as many as there were descriptions
+};
+
+/// Pure. Throws FormulaError.
+CompiledFields compile_fields(std::span<const SdfDescription> fields);
+
+}  // namespace sundog

@@ -1,0 +1,53 @@
+// A formula before it is lowered: its text, its parameters, and what else belongs to a surface of the list.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "scene/formula/error.h"
+
+namespace sundog {
+
+/// A named number, vec3 or quat (size 1, 3, 4) that a scene can set within [minimum, maximum] for every
+/// component. whole: only integers.
+struct FormulaParameter {
+  std::string name;
+  std::vector<double> value;
+  double minimum = -1e6, maximum = 1e6;
+  bool whole = false;
+  std::string meaning;
+};
+
+/// escape: the solid is what stays within the bailout radius; its distance comes from |z| and the derivative.
+/// folded: `distance` of the folded point, divided by the derivative; negative inside.
+/// direct: `distance` of p alone.
+enum class FormulaKind { escape, folded, direct };
+
+/// How an escape's distance is made of r = |z| and the derivative dr: r log r / (2 dr) or r / dr.
+enum class EscapeEstimate { logarithmic, linear };
+
+/// Which derivative the estimate divides by. running: one number, a bound on the growth of lengths. jacobian:
+/// all partial derivatives of z, exact. automatic: running where the rules give it tightly, else jacobian.
+enum class FormulaDerivative { automatic, running, jacobian };
+
+struct FormulaDefinition {
+  std::string name, title, source;
+  FormulaKind kind = FormulaKind::escape;
+  bool quaternion = false;           // z and c are quaternions
+  std::string start, map, distance;  // statements; statements; one expression
+  EscapeEstimate estimate = EscapeEstimate::logarithmic;
+  FormulaDerivative derivative = FormulaDerivative::automatic;
+  bool normalize =
+      false;  // direct: divide by the gradient's length (the expression is no distance by itself)
+  std::vector<FormulaParameter> parameters;
+  int iterations = 8;        // 1..max_iterations
+  double bailout = 16;       // radius at which an orbit has escaped, 0: never
+  double inside_radius = 2;  // escape: an orbit within it may still be inside (at most the bailout)
+  double safety = 1;         // (0, 1]: the estimate times this is a bound, as measured by the tests
+  std::array<double, 6> bounds{-1.5, -1.5, -1.5, 1.5, 1.5, 1.5};  // default interval: lower, upper
+  bool smooth = false;  // a surface without detail at every scale: hits are refined
+  static constexpr int max_iterations = 1000;
+  static constexpr std::size_t max_parameters = 32;
+};
+
+}  // namespace sundog

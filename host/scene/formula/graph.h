@@ -1,0 +1,110 @@
+// A formula as straight-line scalar code: nodes in the order of their evaluation, each operand before its
+// use. Equal nodes are one node and constants are folded, so differentiation leaves no dead weight behind.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <set>
+#include <span>
+#include <tuple>
+#include <vector>
+
+namespace sundog {
+
+using NodeId = std::uint32_t;
+inline constexpr NodeId no_node = 0xFFFFFFFFu;
+
+/// less, less_equal, both, either and opposite give conditions; choose(condition, a, b) is a where it holds,
+/// else b. All else gives numbers. power takes a base >= 0.
+enum class Op {
+  constant,
+  input,
+  add,
+  subtract,
+  multiply,
+  divide,
+  negate,
+  absolute,
+  minimum,
+  maximum,
+  round_down,
+  square_root,
+  sine,
+  cosine,
+  arc_cosine,
+  arc_tangent,
+  exponential,
+  logarithm,
+  power,
+  less,
+  less_equal,
+  both,
+  either,
+  opposite,
+  choose
+};
+
+struct Node {
+  Op op = Op::constant;
+  NodeId a = no_node, b = no_node, c = no_node;
+  double value = 0;  // constant: its value; input: its index
+};
+
+/// Throws std::domain_error when a constant expression is not a finite number, std::length_error beyond
+/// max_nodes.
+class Graph {
+ public:
+  static constexpr std::size_t max_nodes = 20000;
+
+  NodeId constant(double value);
+  NodeId input(int index);
+  NodeId apply(Op op, NodeId a, NodeId b = no_node, NodeId c = no_node);
+
+  NodeId add(NodeId a, NodeId b) { return apply(Op::add, a, b); }
+  NodeId sub(NodeId a, NodeId b) { return apply(Op::subtract, a, b); }
+  NodeId mul(NodeId a, NodeId b) { return apply(Op::multiply, a, b); }
+  NodeId neg(NodeId a) { return apply(Op::negate, a); }
+  NodeId min(NodeId a, NodeId b) { return apply(Op::minimum, a, b); }
+  NodeId max(NodeId a, NodeId b) { return apply(Op::maximum, a, b); }
+  NodeId choose(NodeId condition, NodeId a, NodeId b) { return apply(Op::choose, condition, a, b); }
+  NodeId less(NodeId a, NodeId b) { return apply(Op::less, a, b); }
+  /// a / b where |b| is kept from zero: never a division by zero on a device.
+  NodeId div(NodeId a, NodeId b);
+  /// Square root of max(a, 0).
+  NodeId sqrt(NodeId a) { return apply(Op::square_root, is_not_negative(a) ? a : max(a, constant(0))); }
+  NodeId scaled(NodeId a, double k) { return mul(a, constant(k)); }
+
+  /// Later requests for `node`'s computation give `alias` instead (a value that is known already).
+  void alias(NodeId node, NodeId alias_) { aliases_[node] = alias_; }
+
+  void mark_not_negative(NodeId id) { not_negative_.insert(id); }
+
+  bool is_constant(NodeId id) const { return nodes_[id].op == Op::constant; }
+  bool is_constant(NodeId id, double value) const { return is_constant(id) && nodes_[id].value == value; }
+  const Node& operator[](NodeId id) const { return nodes_[id]; }
+  std::size_t size() const { return nodes_.size(); }
+
+ private:
+  NodeId insert(const Node& node);
+  bool is_not_negative(NodeId id, int depth = 8) const;
+  NodeId simplified(Op op, NodeId a, NodeId b, NodeId c);
+  std::vector<Node> nodes_;
+  std::map<std::tuple<Op, NodeId, NodeId, NodeId, double>, NodeId> known_;
+  std::map<NodeId, NodeId> aliases_;
+  std::set<NodeId> not_negative_;
+};
+
+/// Values of `outputs` in double precision; input(index) gives the inputs. Conditions are 0 or 1.
+std::vector<double> evaluate(const Graph& graph, std::span<const NodeId> outputs,
+                             const std::function<double(int)>& input);
+
+/// One operation on numbers, as the devices do it.
+double evaluate(Op op, double a, double b, double c);
+
+/// Forward-mode differentiation: the tangents of `outputs` along one direction, where tangent(index) gives
+/// each input's tangent (a node; no_node is zero). New nodes are added to the graph.
+std::vector<NodeId> differentiate(Graph& graph, std::span<const NodeId> outputs,
+                                  const std::function<NodeId(int)>& tangent);
+
+}  // namespace sundog

@@ -1,0 +1,21 @@
+// The words of the formula language.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/formula/syntax.h"
+
+namespace sundog {
+
+struct Token {
+  enum class Kind { number, name, sign, end_of_statement, end } kind = Kind::end;
+  SourcePlace place;
+  std::string text;
+  double value = 0;
+};
+
+/// The last token is `end`. A line end inside brackets does not end a statement.
+std::vector<Token> tokens_of(std::string_view text);
+
+}  // namespace sundog

@@ -1,0 +1,64 @@
+#include "scene/formula/list.h"
+
+#include <fmt/format.h>
+
+#include "scene/formula/functions.h"
+#include "scene/formula/list_parts.h"
+#include "scene/formula/syntax.h"
+
+namespace sundog {
+namespace {
+
+std::string values_text(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += fmt::format("{}{:g}", text.empty() ? "" : ", ", value);
+  return values.size() > 1 ? "[" + text + "]" : text;
+}
+
+std::string entry_text(const FormulaDefinition& d) {
+  std::string text = fmt::format("{}\n    {}\n    source: {}\n", d.name, d.title, d.source);
+  if (d.kind != FormulaKind::direct)
+    text += fmt::format("    iterations {}, bailout {:g}\n", d.iterations, d.bailout);
+  text += fmt::format("    interval x {:g}..{:g}, y {:g}..{:g}, z {:g}..{:g}\n", d.bounds[0], d.bounds[3],
+                      d.bounds[1], d.bounds[4], d.bounds[2], d.bounds[5]);
+  for (const FormulaParameter& p : d.parameters)
+    text += fmt::format("    {} = {}  ({:g}..{:g}{}) {}\n", p.name, values_text(p.value), p.minimum,
+                        p.maximum, p.whole ? ", whole" : "", p.meaning);
+  return text;
+}
+
+}  // namespace
+
+const std::vector<FormulaDefinition>& formula_list() {
+  static const std::vector<FormulaDefinition> list = [] {
+    std::vector<FormulaDefinition> all;
+    for (const auto& part : {escape_formulas(), folded_formulas(), solid_formulas()})
+      all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }();
+  return list;
+}
+
+const FormulaDefinition* find_formula(const std::string& name) {
+  for (const FormulaDefinition& d : formula_list())
+    if (d.name == name) return &d;
+  return nullptr;
+}
+
+std::string formula_list_text() {
+  std::string text;
+  for (const FormulaDefinition& d : formula_list()) text += entry_text(d) + "\n";
+  text += fmt::format(
+      "formula\n    Your own: \"start\" and \"map\" (statements), or \"distance\" (an expression). A map "
+      "sets z; it may read c, "
+      "p, r = |z|, i, pi\n    and its parameters. At most {} characters a text, {} iterations, {} "
+      "parameters.\n\n",
+      FormulaLimits::characters, FormulaDefinition::max_iterations, FormulaDefinition::max_parameters);
+  text +=
+      "functions of the language\n    operators + - * / ^ < <= > >= == != && || ! ?:, components v.x, "
+      "v.zxy\n";
+  for (const FunctionHelp& f : function_help()) text += fmt::format("    {:24} {}\n", f.call, f.meaning);
+  return text;
+}
+
+}  // namespace sundog

@@ -1,0 +1,20 @@
+// The list of surfaces that sundog knows by name. Each is a text in the formula language, like a user's own.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/formula/definition.h"
+
+namespace sundog {
+
+/// All surfaces, in the order in which `sundog formulas` prints them.
+const std::vector<FormulaDefinition>& formula_list();
+
+/// nullptr when there is no such name.
+const FormulaDefinition* find_formula(const std::string& name);
+
+/// The text of `sundog formulas`: every surface with its parameters, defaults, ranges and source; then the
+/// language.
+std::string formula_list_text();
+
+}  // namespace sundog

@@ -1,0 +1,13 @@
+// The parts of the list, by kind.
+#pragma once
+#include <vector>
+
+#include "scene/formula/definition.h"
+
+namespace sundog {
+
+std::vector<FormulaDefinition> escape_formulas();  // what does not escape
+std::vector<FormulaDefinition> folded_formulas();  // kaleidoscopic and inversive
+std::vector<FormulaDefinition> solid_formulas();   // closed forms
+
+}  // namespace sundog

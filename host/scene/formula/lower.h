@@ -1,0 +1,53 @@
+// From a formula's text to checked scalar graphs, with the derivative that its distance estimate needs.
+//
+// The derivative comes in two forms (definition.h). The running one is a dual number that carries, with every
+// value v(p), a bound on |v(p + h) - v(p)| / |h|: rotations, reflections and translations keep it, a scale
+// multiplies it, z^n turns it into n |z|^(n-1) times it (exact along z; the rule every Mandelbulb program
+// uses), sums add it. It is used where no rule had to give away more than that (see Value::tight). The
+// Jacobian is the exact derivative by forward-mode differentiation of the scalar graph; the estimate divides
+// by the length of the gradient of |z|.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/formula/definition.h"
+#include "scene/formula/graph.h"
+
+namespace sundog {
+
+/// Numbers of a graph's inputs.
+namespace formula_input {
+inline constexpr int p = 0, z = 3, c = 7, derivative = 11, c_slope = 12, iteration = 13, square = 14,
+                     tangent_z = 16, tangent_c = 28, parameter = 40;
+/// d z[component] / d p[axis]
+constexpr int tangent_of_z(int component, int axis) { return tangent_z + component * 3 + axis; }
+constexpr int tangent_of_c(int component, int axis) { return tangent_c + component * 3 + axis; }
+}  // namespace formula_input
+
+/// Straight-line code with named results. Absent ones are empty or no_node.
+struct Section {
+  Graph graph;
+  std::vector<NodeId> z, c;                                   // 3 or 4 components
+  NodeId derivative = no_node, c_slope = no_node;             // running
+  std::vector<std::array<NodeId, 3>> z_tangents, c_tangents;  // per component and axis
+  NodeId distance = no_node;
+  std::array<NodeId, 3> gradient{no_node, no_node, no_node};  // of the distance
+};
+
+/// start: p -> z, c. map: z, c, derivative -> z, derivative. finish: z, derivative, p -> distance, gradient.
+/// A direct field has `finish` alone.
+struct LoweredFormula {
+  int size = 3;           // components of z
+  bool jacobian = false;  // the derivative is the gradient's length; else the running one
+  Section start, map, finish;
+};
+
+/// Throws FormulaError. `values` are the parameters' components in order: an exponent that is a whole number
+/// is compiled in. `start`: of the formula that a hybrid's sequence begins with, else the definition's own.
+LoweredFormula lower(const FormulaDefinition& definition, const std::vector<double>& values,
+                     const Section* start = nullptr);
+
+/// The default values of a definition's parameters, one after the other.
+std::vector<double> default_values(const FormulaDefinition& definition);
+
+}  // namespace sundog

@@ -1,0 +1,85 @@
+// The typed values of the formula language over a scalar graph, with the rules of the running derivative
+// (lower.h).
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+
+#include "scene/formula/graph.h"
+
+namespace sundog {
+
+enum class ValueType { condition, scalar, vec3, quat };
+
+std::string name_of(ValueType type);
+
+/// A value and a bound `slope` on how fast it changes with p, relative to lengths. The slope means nothing
+/// unless `tight`: a value for which the rules would have to give away too much is differentiated exactly
+/// instead.
+struct Value {
+  ValueType type = ValueType::scalar;
+  std::array<NodeId, 4> part{no_node, no_node, no_node, no_node};
+  bool varies = false;     // changes with p
+  bool depends_z = false;  // by way of z
+  bool tight = true;
+  NodeId slope = no_node;
+
+  int size() const { return type == ValueType::quat ? 4 : type == ValueType::vec3 ? 3 : 1; }
+  NodeId x() const { return part[0]; }
+  NodeId y() const { return part[1]; }
+  NodeId z() const { return part[2]; }
+  NodeId w() const { return part[3]; }
+};
+
+/// Operations on values. Those that do not fit their operands' types throw std::invalid_argument with the
+/// reason.
+class Values {
+ public:
+  explicit Values(Graph& graph) : g(graph) {}
+
+  Value number(double value);
+  Value vector(const Value& x, const Value& y, const Value& z);
+  Value quaternion(const Value& x, const Value& y, const Value& z, const Value& w);
+  Value members(const Value& v, const std::string& names);
+  Value with_member(const Value& v, const std::string& name, const Value& part);
+
+  Value add(const Value& a, const Value& b, bool subtract = false);
+  Value multiply(const Value& a, const Value& b);
+  Value divide(const Value& a, const Value& b);
+  Value negate(const Value& a);
+  /// `whole`: the exponent's value where it is known to be a whole number.
+  Value power(const Value& base, const Value& exponent, std::optional<int> whole);
+  Value compare(const std::string& sign, const Value& a, const Value& b);
+  Value choose(const Value& condition, const Value& a, const Value& b);
+
+  Value dot(const Value& a, const Value& b);
+  Value square_length(const Value& v);
+  Value length(const Value& v);
+  Value conjugate(const Value& v);
+  Value bicomplex_product(const Value& a, const Value& b);
+  Value cross(const Value& a, const Value& b);
+  /// Reflected to the side of the plane n.v = d that n points to.
+  Value fold(const Value& v, const Value& n, const Value& d);
+  Value box_fold(const Value& v, const Value& limit);
+  Value ball_fold(const Value& v, const Value& least, const Value& fixed);
+  Value invert(const Value& v, const Value& square_radius);
+  Value wrap(const Value& v, const Value& period);
+  Value rotate(const Value& v, const Value& axis, const Value& angle);
+  /// op on every component, scalars widened to the other operand's type. Lengths grow by `growth` at most.
+  Value each(Op op, const Value& a);
+  Value each(Op op, const Value& a, const Value& b);
+  Value clamped(const Value& v, const Value& low, const Value& high);
+
+  Graph& g;
+
+ private:
+  friend class Powers;
+  Value widened(const Value& scalar, ValueType type);
+  Value result(ValueType type, std::initializer_list<const Value*> from);
+  Value isometry(const Value& from);
+  void require(bool holds, const std::string& what);
+  std::optional<Value> cheap_fold(const Value& v, const Value& n, const Value& d);
+  NodeId bicomplex_norm(const Value& a);
+};
+
+}  // namespace sundog

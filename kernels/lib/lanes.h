@@ -1,0 +1,111 @@
+// One source for every number of lanes: REAL is a float or a vector of LANES floats, MASK an int or a vector
+// of ints whose lanes are 0 or -1 (all bits set) for scalars too, so that select(), any() and the bit
+// operators mean the same for LANES = 1, 4, 8 and 16. Comparisons go through MASK_OF(a < b). Everything here
+// gives the same bits for every number of lanes. Included once a program: LANES is a definition of the whole
+// build.
+#ifndef SUNDOG_LIB_LANES_H
+#define SUNDOG_LIB_LANES_H
+#include "lib/config.h"
+
+#ifndef LANES
+#define LANES BATCH
+#endif
+
+#if LANES == 1
+typedef float REAL;
+typedef int MASK;
+#define MASK_OF(comparison) (-(int)(comparison))
+#define AS_MASK(x) as_int(x)
+#define AS_REAL(x) as_float(x)
+#define TO_MASK(x) convert_int_rtz(x)
+#define TO_REAL(x) convert_float(x)
+#elif LANES == 4
+typedef float4 REAL;
+typedef int4 MASK;
+#define MASK_OF(comparison) (comparison)
+#define AS_MASK(x) as_int4(x)
+#define AS_REAL(x) as_float4(x)
+#define TO_MASK(x) convert_int4_rtz(x)
+#define TO_REAL(x) convert_float4(x)
+#elif LANES == 8
+typedef float8 REAL;
+typedef int8 MASK;
+#define MASK_OF(comparison) (comparison)
+#define AS_MASK(x) as_int8(x)
+#define AS_REAL(x) as_float8(x)
+#define TO_MASK(x) convert_int8_rtz(x)
+#define TO_REAL(x) convert_float8(x)
+#elif LANES == 16
+typedef float16 REAL;
+typedef int16 MASK;
+#define MASK_OF(comparison) (comparison)
+#define AS_MASK(x) as_int16(x)
+#define AS_REAL(x) as_float16(x)
+#define TO_MASK(x) convert_int16_rtz(x)
+#define TO_REAL(x) convert_float16(x)
+#else
+#error "LANES must be 1, 4, 8 or 16"
+#endif
+
+#define NO_LANES ((MASK)(0))
+#define ALL_LANES ((MASK)(-1))
+
+// Lane i of a private REAL or MASK variable, to read or to write.
+#define REAL_LANE(variable, i) (((float*)&(variable))[i])
+#define MASK_LANE(variable, i) (((int*)&(variable))[i])
+
+typedef struct REAL3 {
+  REAL x, y, z;
+} REAL3;
+
+static inline REAL3 real3(REAL x, REAL y, REAL z) {
+  REAL3 r = {x, y, z};
+  return r;
+}
+static inline REAL3 add3(REAL3 a, REAL3 b) { return real3(a.x + b.x, a.y + b.y, a.z + b.z); }
+static inline REAL3 subtract3(REAL3 a, REAL3 b) { return real3(a.x - b.x, a.y - b.y, a.z - b.z); }
+static inline REAL3 negate3(REAL3 a) { return real3(-a.x, -a.y, -a.z); }
+static inline REAL3 scale3(REAL3 a, REAL s) { return real3(a.x * s, a.y * s, a.z * s); }
+// a + s b: the point at distance s along a ray.
+static inline REAL3 along3(REAL3 a, REAL s, REAL3 b) {
+  return real3(fma(s, b.x, a.x), fma(s, b.y, a.y), fma(s, b.z, a.z));
+}
+static inline REAL dot3(REAL3 a, REAL3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+static inline REAL length3(REAL3 a) { return sqrt(dot3(a, a)); }
+static inline REAL3 select3(REAL3 a, REAL3 b, MASK m) {
+  return real3(select(a.x, b.x, m), select(a.y, b.y, m), select(a.z, b.z, m));
+}
+
+// Unit length; a vector without a direction gives +x.
+static inline REAL3 unit3(REAL3 a) {
+  const REAL square = dot3(a, a);
+  const MASK good = MASK_OF(square > 0.0f) & MASK_OF(square < INFINITY);
+  const REAL inverse = 1.0f / sqrt(select((REAL)(1.0f), square, good));
+  return select3(real3((REAL)(1.0f), (REAL)(0.0f), (REAL)(0.0f)), scale3(a, inverse), good);
+}
+
+// One instruction each, which fmin and fmax are not: a NaN in a gives b.
+static inline REAL real_min(REAL a, REAL b) { return select(b, a, MASK_OF(a < b)); }
+static inline REAL real_max(REAL a, REAL b) { return select(b, a, MASK_OF(a > b)); }
+
+// b where it is far enough from zero to divide by, else the nearest such number.
+static inline REAL nonzero(REAL b) {
+  return select(b, copysign((REAL)(1e-30f), b), MASK_OF(fabs(b) < 1e-30f));
+}
+
+// Natural logarithm of a positive normal number, to 2 ulp or 1e-7 absolute where that is more. Unlike the
+// library's it has the same bits on every device. x = 2^e m with m in [sqrt(1/2), sqrt(2)); log m by its odd
+// series in s = (m - 1) / (m + 1), the coefficients fitted on Chebyshev's nodes (error 6e-12).
+static inline REAL real_log(REAL x) {
+  const MASK bits = AS_MASK(x) - 0x3f3504f3;  // of sqrt(1/2)
+  const REAL e = TO_REAL(bits >> 23);
+  const REAL m = AS_REAL((bits & 0x007fffff) + 0x3f3504f3);
+  const REAL s = (m - 1.0f) / (m + 1.0f), q = s * s;
+  REAL p = fma(q, (REAL)(0.233304672f), (REAL)(0.285508208f));
+  p = fma(q, p, (REAL)(0.400001218f));
+  p = fma(q, p, (REAL)(0.666666666f));
+  const REAL tail = fma(e, (REAL)(1.42860677e-6f), s * q * p);  // ln 2 in two parts: the first has few bits
+  return fma(e, (REAL)(0.693145752f), fma((REAL)(2.0f), s, tail));
+}
+
+#endif

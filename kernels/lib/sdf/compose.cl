@@ -1,0 +1,94 @@
+// How distance fields are put together. Each operation keeps the bound of its operands: where they never
+// exceed the distance to their surfaces, the result never exceeds the distance to its own.
+#ifndef SUNDOG_LIB_SDF_COMPOSE_CL
+#define SUNDOG_LIB_SDF_COMPOSE_CL
+#include "lib/sdf/sample.h"
+
+// A moved field's table: rows of the rotation's transpose, the offset, the scale and its inverse.
+static inline REAL3 into_child(REAL3 p, __global const float* restrict q) {
+  const REAL3 d = real3((p.x - q[9]) * q[13], (p.y - q[10]) * q[13], (p.z - q[11]) * q[13]);
+  return real3(fma(d.x, (REAL)(q[0]), fma(d.y, (REAL)(q[1]), d.z * q[2])),
+               fma(d.x, (REAL)(q[3]), fma(d.y, (REAL)(q[4]), d.z * q[5])),
+               fma(d.x, (REAL)(q[6]), fma(d.y, (REAL)(q[7]), d.z * q[8])));
+}
+static inline REAL3 out_of_child(REAL3 g, __global const float* restrict q) {
+  return real3(fma(g.x, (REAL)(q[0]), fma(g.y, (REAL)(q[3]), g.z * q[6])),
+               fma(g.x, (REAL)(q[1]), fma(g.y, (REAL)(q[4]), g.z * q[7])),
+               fma(g.x, (REAL)(q[2]), fma(g.y, (REAL)(q[5]), g.z * q[8])));
+}
+
+static inline REAL out_of_child_distance(REAL d, __global const float* restrict q) { return d * q[12]; }
+static inline SdfSample out_of_child_sample(SdfSample s, __global const float* restrict q) {
+  s.distance *= q[12];
+  s.gradient = out_of_child(s.gradient, q);
+  return s;
+}
+
+// Place in the nearest cell (neighbour = 0) or in the next nearest along the axis, so that a child which fits
+// its cell is never missed. Table: three periods, three counts.
+static inline REAL cell_coordinate(REAL x, float period, float count, u32 neighbour) {
+  if (!(period > 0.0f)) return x;
+  const REAL cell = floor(x / period + 0.5f), inside = x - cell * period;
+  const REAL next = cell + select((REAL)(-1.0f), (REAL)(1.0f), MASK_OF(inside > 0.0f));
+  REAL chosen = neighbour ? next : cell;
+  if (count > 0.0f) chosen = clamp(chosen, (REAL)(-count), (REAL)(count));
+  return x - chosen * period;
+}
+static inline REAL3 repeat_cell(REAL3 p, __global const float* restrict q, u32 neighbours) {
+  return real3(cell_coordinate(p.x, q[0], q[3], neighbours & 1u),
+               cell_coordinate(p.y, q[1], q[4], neighbours & 2u),
+               cell_coordinate(p.z, q[2], q[5], neighbours & 4u));
+}
+
+// The smooth minimum of a and b, and in `share` the part that b has in it: quadratic, equal to the plain one
+// where they differ by k.
+static inline REAL smooth_minimum(REAL a, REAL b, float k, REAL* share) {
+  const REAL h = fmax(1.0f - fabs(a - b) / k, 0.0f);
+  const REAL less = 0.5f * h;
+  const MASK second = MASK_OF(b < a);
+  *share = select(less, 1.0f - less, second);
+  return real_min(a, b) - h * h * (0.25f * k);
+}
+
+static inline REAL unite(REAL a, REAL b, float smooth) {
+  if (!(smooth > 0.0f)) return real_min(a, b);
+  REAL share;
+  return smooth_minimum(a, b, smooth, &share);
+}
+static inline REAL intersect(REAL a, REAL b, float smooth) { return -unite(-a, -b, smooth); }
+static inline REAL subtract_from(REAL a, REAL b, float smooth) { return -unite(-a, b, smooth); }
+
+static inline SdfSample negated_sample(SdfSample a) {
+  a.distance = -a.distance;
+  a.gradient = negate3(a.gradient);
+  return a;
+}
+// Gradients have any length, so they are made unit vectors before they are mixed.
+static inline SdfSample unite_samples(SdfSample a, SdfSample b, float smooth) {
+  SdfSample r = select_sample(a, b, MASK_OF(b.distance < a.distance));
+  if (!(smooth > 0.0f)) return r;
+  REAL share;
+  r.distance = smooth_minimum(a.distance, b.distance, smooth, &share);
+  r.gradient = along3(scale3(unit3(a.gradient), 1.0f - share), share, unit3(b.gradient));
+  return r;
+}
+static inline SdfSample intersect_samples(SdfSample a, SdfSample b, float smooth) {
+  return negated_sample(unite_samples(negated_sample(a), negated_sample(b), smooth));
+}
+static inline SdfSample subtract_samples(SdfSample a, SdfSample b, float smooth) {
+  return negated_sample(unite_samples(negated_sample(a), b, smooth));
+}
+
+static inline REAL thicken(REAL d, float amount) { return d - amount; }
+static inline REAL shell(REAL d, float amount) { return fabs(d) - 0.5f * amount; }
+static inline SdfSample thicken_sample(SdfSample s, float amount) {
+  s.distance -= amount;
+  return s;
+}
+static inline SdfSample shell_sample(SdfSample s, float amount) {
+  s = select_sample(s, negated_sample(s), MASK_OF(s.distance < 0.0f));
+  s.distance -= 0.5f * amount;
+  return s;
+}
+
+#endif

@@ -1,0 +1,117 @@
+// Sphere tracing (Hart 1996) of LANES rays at once, in the field's own space. Steps longer than the estimate
+// are taken only as far as the two empty spheres still touch, and are taken back where they do not (Keinert
+// et al. 2014), so a step is never longer than what the field's bound proves empty.
+#ifndef SUNDOG_LIB_SDF_MARCH_CL
+#define SUNDOG_LIB_SDF_MARCH_CL
+#include "generated/sdf.cl"
+#include "lib/sdf/cut.cl"
+
+// t counts in lengths of direction, which need not be a unit vector. The pixel's footprint at t is
+// footprint + t * spread, in the same unit.
+typedef struct MarchRays {
+  REAL3 origin, direction;
+  REAL t_min, t_max;
+  REAL footprint, spread;
+  MASK active;
+  MASK inside;   // the ray travels inside the solid and looks for the way out
+  MASK leaving;  // it starts on the surface: a hit counts only after it has got clear of it
+} MarchRays;
+
+typedef struct MarchHits {
+  REAL t;
+  MASK hit;
+  MASK cut;      // on the interval's boundary, where the solid is cut
+  MASK limited;  // the step limit ended the march: taken as a hit, for the ray had been close to the surface
+                 // for long
+  MASK steps;    // estimates used by each lane
+  MASK taken_back;  // relaxed steps that had to be taken back
+  REAL threshold;   // at the hit, in the field's space
+} MarchHits;
+
+// Distance to the surface on the side that each lane travels on: negative when it is on the wrong side.
+static inline REAL march_estimate(u32 field, REAL3 p, MASK active, MASK inside,
+                                  __global const float* restrict q) {
+#if SDF_TWO_SIDED
+  if (any(inside & active)) {
+    const REAL d = sdf_signed(field, p, active, q);
+    return select(d, -d, inside);
+  }
+#endif
+  return sdf_distance(field, p, active, q);
+}
+
+// A few plain steps more, which bring a closed form from within its threshold to its surface.
+static inline REAL refine_hit(SDF_PARAMETERS, u32 field, const MarchRays* rays, REAL t, REAL inverse_length,
+                              MASK hit) {
+  const float safety = sdf_fields[field].safety;
+  for (int i = 0; i < 4; ++i) {
+    const REAL3 p = along3(rays->origin, t, rays->direction);
+    const REAL f = march_estimate(field, p, hit, rays->inside, sdf_parameters) * safety;
+    t = select(t, fma(f, inverse_length, t), hit);
+  }
+  return t;
+}
+
+static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* rays) {
+  __global const SdfField* restrict field = sdf_fields + index;
+  const REAL speed = length3(rays->direction), inverse_speed = 1.0f / speed;
+  REAL first = (REAL)(-INFINITY), last = (REAL)(INFINITY);
+  clip_to_interval(field, rays->origin, rays->direction, &first, &last);
+  const MASK from_cut = MASK_OF(first > rays->t_min), to_cut = MASK_OF(last < rays->t_max);
+  first = fmax(first, rays->t_min);
+  last = fmin(last, rays->t_max);
+
+  MarchHits hits = {first, NO_LANES, NO_LANES, NO_LANES, NO_LANES, NO_LANES, (REAL)(0.0f)};
+  MASK active = rays->active & MASK_OF(first <= last), leaving = rays->leaving, relaxed = NO_LANES;
+  REAL t = first;
+  REAL previous = (REAL)(0.0f), step = (REAL)(0.0f), slope = (REAL)(-1.0f);
+  for (u32 i = 0; i < field->step_limit && any(active); ++i) {
+    const REAL3 p = along3(rays->origin, t, rays->direction);
+    const REAL f = march_estimate(index, p, active, rays->inside, sdf_parameters) * field->safety;
+    const REAL threshold = clamp(fma(t, rays->spread, rays->footprint) * speed * field->detail,
+                                 (REAL)(field->lower.w), (REAL)(field->upper.w));
+    hits.steps -= active;
+
+    // The spheres about the last point and this one must touch: else back to where the last one ended.
+    const MASK gap = active & relaxed & MASK_OF(f + previous < step);
+    hits.taken_back -= gap;
+    const MASK forward = active & ~gap;
+
+    const REAL wrong_side = select(0.25f * threshold, -2.0f * threshold, rays->inside);
+    const MASK arrived = forward & select(MASK_OF(f < threshold), MASK_OF(f < wrong_side), leaving);
+    leaving &= ~(forward & MASK_OF(f >= threshold));
+    hits.hit |= arrived;
+    hits.t = select(hits.t, t, arrived);
+    hits.threshold = select(hits.threshold, threshold, active);
+    if (i == 0) hits.cut = arrived & from_cut & ~rays->inside & MASK_OF(f <= 0.0f);
+
+    // Along a plane the estimate changes linearly: the longest step whose spheres still touch solves
+    // f + (f + slope s) = s. The slope is smoothed, so that one odd sample does not spoil the next steps.
+    const REAL measured = clamp((f - previous) / fmax(step, 1e-30f), (REAL)(-1.0f), (REAL)(0.5f));
+    slope = select(slope, 0.5f * (slope + measured), forward & MASK_OF(step > 0.0f));
+    slope = select(slope, (REAL)(-1.0f), gap);
+    const REAL proven = fmax(f, 0.5f * threshold);
+    const REAL longer = 2.0f * f / (1.0f - slope);
+    const REAL remaining = (last - t) * speed;
+    const MASK through = forward & ~arrived & MASK_OF(proven >= remaining);
+    hits.cut |= through & to_cut & rays->inside;
+    active &= ~(arrived | through);
+
+    const REAL stride = fmin(select(proven, fmax(longer, proven), ~leaving), remaining);
+    relaxed = MASK_OF(stride > proven) & forward;
+    // Taken back: from the point before, exactly its proven distance.
+    t = select(select(t, fma(stride, inverse_speed, t), active), fma(previous - step, inverse_speed, t), gap);
+    step = select(stride, previous, gap);
+    previous = select(f, previous, gap);
+  }
+  hits.limited = active;
+  hits.t = select(select(hits.t, t, active), last, hits.cut & ~hits.hit);
+  hits.hit |= active | hits.cut;
+  if (field->flags & SDF_SMOOTH)
+    hits.t =
+        select(hits.t, refine_hit(SDF_ARGUMENTS, index, rays, hits.t, inverse_speed, hits.hit & ~hits.cut),
+               hits.hit & ~hits.cut);
+  return hits;
+}
+
+#endif
