@@ -93,7 +93,7 @@ std::string GraphPrinter::value(NodeId id) const {
     case Op::divide:
       return infix("/");
     case Op::negate:
-      return "-" + text(node.a);
+      return fmt::format("-{}", text(node.a));
     case Op::absolute:
       return call("fabs");
     case Op::minimum:
@@ -127,7 +127,7 @@ std::string GraphPrinter::value(NodeId id) const {
     case Op::either:
       return infix("|");
     case Op::opposite:
-      return "~" + text(node.a);
+      return fmt::format("~{}", text(node.a));
     case Op::choose:
       return fmt::format("select({}, {}, {})", text(node.c), text(node.b), text(node.a));
   }

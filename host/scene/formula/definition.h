@@ -15,7 +15,7 @@ struct FormulaParameter {
   std::vector<double> value;
   double minimum = -1e6, maximum = 1e6;
   bool whole = false;
-  std::string meaning;
+  std::string meaning = {};
 };
 
 /// escape: the solid is what stays within the bailout radius; its distance comes from |z| and the derivative.

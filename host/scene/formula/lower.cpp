@@ -299,6 +299,7 @@ void lower_finish(LoweredFormula& out, const FormulaDefinition& d, const std::ve
   low.define("p", point_input(g));
   if (d.kind != FormulaKind::direct) {
     Value z = state_input(g, in::z, out.size);
+    z.tight = false;  // no running derivative is wanted here
     low.define("z", z);
     low.define("c", c_input(g, out));
     low.define("r", low.v.length(z));

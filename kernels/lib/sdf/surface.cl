@@ -1,0 +1,49 @@
+// What shading needs of a marched hit: the normal and the colour that the orbit gives it.
+#ifndef SUNDOG_LIB_SDF_SURFACE_CL
+#define SUNDOG_LIB_SDF_SURFACE_CL
+#include "lib/sdf/march.cl"
+
+typedef struct SdfSurface {
+  REAL3 normal;  // outward, unit, in the field's space
+  REAL3 color;   // factor on the material's ambient and diffuse colours, linear
+} SdfSurface;
+
+// The palette at `trap`, linear between its stops, the last of which joins the first.
+static inline REAL3 palette_color(SDF_PARAMETERS, __global const SdfField* restrict field, REAL trap) {
+  const REAL turns = fma(trap, (REAL)(field->palette_scale), (REAL)(field->palette_offset));
+  const float count = (float)field->palette_count;
+  const REAL place = (turns - floor(turns)) * count;
+  REAL3 color = real3((REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f));
+  for (u32 i = 0; i < field->palette_count; ++i) {
+    const REAL apart = fabs(place - (float)i);
+    const REAL weight = fmax(1.0f - fmin(apart, count - apart), 0.0f);  // round the circle of stops
+    __global const float* stop = sdf_parameters + field->palette_first + 3u * i;
+    color = along3(color, weight, real3((REAL)(stop[0]), (REAL)(stop[1]), (REAL)(stop[2])));
+  }
+  return color;
+}
+
+static inline REAL trap_value(u32 color_by, SdfSample s, REAL3 p) {
+  switch (color_by) {
+    case SDF_COLOR_POINT: return s.point;
+    case SDF_COLOR_PLANE: return s.plane;
+    case SDF_COLOR_AXIS: return s.axis;
+    case SDF_COLOR_ITERATIONS: return s.iterations;
+    default: return length3(p);
+  }
+}
+
+// At p, a hit of march_rays. `cut`: it lies on the interval's boundary.
+static inline SdfSurface sdf_surface(SDF_PARAMETERS, u32 index, REAL3 p, MASK cut) {
+  __global const SdfField* restrict field = sdf_fields + index;
+  const SdfSample s = sdf_sample(index, p, sdf_parameters);
+  SdfSurface surface;
+  surface.normal = unit3(s.gradient);
+  if (any(cut)) surface.normal = select3(surface.normal, cut_normal(field, p), cut);
+  surface.color = real3((REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f));
+  if (field->color_by != SDF_COLOR_NONE)
+    surface.color = palette_color(SDF_ARGUMENTS, field, trap_value(field->color_by, s, p));
+  return surface;
+}
+
+#endif
