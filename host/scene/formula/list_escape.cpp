@@ -34,8 +34,8 @@ FormulaDefinition mandelbulb() {
 FormulaDefinition juliabulb() {
   FormulaDefinition d = triplex("juliabulb", "Julia set of the Mandelbulb's map, for one constant",
                                 "after D. White and P. Nylander, 2009", "z = z ^ power + c", 8);
-  d.start = "c = constant";
-  d.parameters.push_back({"constant", {0.35, 0.6, -0.3}, -2, 2, false, "c"});
+  d.start = "c = seed";
+  d.parameters.push_back({"seed", {0.35, 0.6, -0.3}, -2, 2, false, "c"});
   return d;
 }
 
@@ -46,8 +46,8 @@ FormulaDefinition julia() {
       "L. Kauffman, Ray tracing deterministic 3-D fractals, SIGGRAPH 1989",
       "z = z ^ power + c", 2);
   d.quaternion = true;
-  d.start = "z = quat(p, slice); c = constant";
-  d.parameters.push_back({"constant", {-0.2, 0.8, 0, 0}, -2, 2, false, "c = x + y i + z j + w k"});
+  d.start = "z = quat(p, slice); c = seed";
+  d.parameters.push_back({"seed", {-0.2, 0.8, 0, 0}, -2, 2, false, "c = x + y i + z j + w k"});
   d.parameters.push_back(slice);
   d.iterations = 11;
   return d;

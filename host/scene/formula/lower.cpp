@@ -340,6 +340,10 @@ LoweredFormula lower(const FormulaDefinition& definition, const std::vector<doub
     } catch (FormulaError& error) {
       error.section = name;
       throw;
+    } catch (const std::logic_error& error) {  // of the graph, while it is differentiated
+      FormulaError placed(1, 1, error.what());
+      placed.section = name;
+      throw placed;
     }
   };
   if (definition.kind == FormulaKind::direct) {
