@@ -6,6 +6,7 @@
 #include "devices.h"
 #include "shared/bvh.h"
 #include "shared/scene.h"
+#include "shared/sdf.h"
 
 using namespace sundog;
 
@@ -27,6 +28,7 @@ const Place places[] = {
 const std::string probe = R"(
 #include "shared/bvh.h"
 #include "shared/scene.h"
+#include "shared/sdf.h"
 #define SUNDOG_STRUCT(type) places[n++] = (u32)sizeof(type);
 #define SUNDOG_MEMBER(type, member) \
   { type probed; places[n++] = (u32)((size_t)&probed.member - (size_t)&probed); }

@@ -1,0 +1,159 @@
+// The image is a pure function of scene and settings: the same bits for every work-group size, tile, run,
+// interruption and sub-device.
+#include <atomic>
+#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "base/error.h"
+#include "catch.h"
+#include "devices.h"
+#include "scenes.h"
+#include "temporary_folder.h"
+
+using namespace sundog;
+using glm::dvec3;
+
+namespace {
+
+// Meshless, but with every secondary effect: glass with liquid in it, a mirror, shadows through filters,
+// several samples.
+SceneDescription busy_scene() {
+  SceneDescription scene = scenes::line_of_sight({0.6, 2.4, 6}, {0, 0.1, 0});
+  scene.camera.fov = 35;
+  scene.image.width = 37;
+  scene.image.height = 29;
+  scene.render.samples = 3;
+  scene.render.max_depth = 6;
+  scene.image.background_top = {0.2, 0.4, 0.9};
+  LightDescription point;
+  point.position = {-4, 6, 5};
+  scene.lights.push_back(point);
+  const int floor = scenes::add_white(scene);
+  scene.materials[static_cast<std::size_t>(floor)].checker = true;
+  const int ice = scenes::add_dielectric(scene, 1.31, {0.1, 0.05, 0.02}, 10);
+  const int wine = scenes::add_dielectric(scene, 1.34, {0.5, 1.4, 1.2}, 20);
+  scenes::place(scene, PlaneShape{}, floor, glm::translate(glm::dmat4(1), dvec3(0, -1, 0)));
+  scenes::place(scene, RoundBoxShape{{0.9, 0.9, 0.9}, 0.1}, ice);
+  scenes::place(scene, SphereShape{0.6}, wine);
+  scenes::place(scene, SphereShape{0.7}, scenes::add_mirror(scene, 0.8),
+                glm::translate(glm::dmat4(1), dvec3(1.9, -0.3, -0.4)));
+  return scene;
+}
+
+// Equal to the bit, NaNs included.
+bool same_bits(const Image& a, const Image& b) {
+  return a.data.size() == b.data.size() &&
+         std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
+}
+
+RenderOptions with_group(WorkGroup::Kind kind, std::size_t size) {
+  RenderOptions options;
+  options.work_group = {kind, size, 1};
+  return options;
+}
+
+RenderOptions with_tile(int tile) {
+  RenderOptions options;
+  options.tile = tile;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("the image has the same bits for every work-group size, tile size and run") {
+  const SceneDescription scene = busy_scene();
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      const RenderResult reference = scenes::render_on(device, scene);
+      REQUIRE(reference.complete);
+      REQUIRE(reference.counts[COUNT_REFRACTION] > 0);
+      CHECK(same_bits(scenes::render_on(device, scene).image, reference.image));
+      CHECK(same_bits(scenes::render_on(device, scene, with_group(WorkGroup::Kind::driver, 0)).image,
+                      reference.image));
+      for (const std::size_t size : {1u, 3u, 8u, 64u})
+        CHECK(same_bits(scenes::render_on(device, scene, with_group(WorkGroup::Kind::fixed, size)).image,
+                        reference.image));
+      for (const int tile : {4, 12, 33, 64}) {
+        const RenderResult tiled = scenes::render_on(device, scene, with_tile(tile));
+        CHECK(same_bits(tiled.image, reference.image));
+        CHECK(tiled.counts == reference.counts);
+      }
+    }
+}
+
+TEST_CASE("sub-devices compute the same bits as the whole device") {
+  const SceneDescription scene = busy_scene();
+  for (const DeviceInfo& device : test_devices()) {
+    if (device.max_sub_devices < 2) continue;
+    DYNAMIC_SECTION(device.label()) {
+      DeviceInfo part = device;
+      part.sub_units = 1;
+      CHECK(same_bits(scenes::render_on(part, scene).image, scenes::render_on(device, scene).image));
+    }
+  }
+}
+
+TEST_CASE("an interrupted frame is resumed to the same bits") {
+  const SceneDescription scene = busy_scene();
+  const TemporaryFolder folder;
+  const DeviceInfo device = test_devices().front();
+  const RenderResult reference = scenes::render_on(device, scene);
+  std::atomic<bool> stop{false};
+  RenderOptions options = with_tile(8);
+  options.resume = folder.path() / "frame.checkpoint";
+  options.stop = &stop;
+  options.on_progress = [&](const RenderProgress& progress) {
+    stop = progress.pixels_done > progress.pixels_total / 3;
+  };
+  const RenderResult part = scenes::render_on(device, scene, options);
+  REQUIRE_FALSE(part.complete);
+  REQUIRE(std::filesystem::exists(options.resume));
+
+  SECTION("with what was done kept") {
+    options.stop = nullptr;
+    std::uint64_t first_report = 0;
+    options.on_progress = [&](const RenderProgress& progress) {
+      first_report = first_report ? first_report : progress.pixels_done;
+    };
+    const RenderResult whole = scenes::render_on(device, scene, options);
+    CHECK(whole.complete);
+    CHECK(same_bits(whole.image, reference.image));
+    CHECK(first_report > whole.image.data.size() / 4 / 3);
+    CHECK_FALSE(std::filesystem::exists(options.resume));
+  }
+  SECTION("but not into another scene") {
+    SceneDescription other = scene;
+    other.camera.fov = 36;
+    CHECK_THROWS_AS(scenes::render_on(device, other, options), UsageError);
+  }
+  SECTION("and a damaged checkpoint is refused") {
+    std::filesystem::resize_file(options.resume, std::filesystem::file_size(options.resume) - 5);
+    CHECK_THROWS_AS(scenes::render_on(device, scene, options), IoError);
+  }
+}
+
+TEST_CASE("devices agree within a tolerance, and the pixels that differ are few") {
+  const SceneDescription scene = busy_scene();
+  const RenderResult reference = scenes::render_on(test_devices().front(), scene);
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      const RenderResult other = scenes::render_on(device, scene);
+      std::size_t differ = 0;
+      for (std::size_t i = 0; i < reference.image.data.size(); ++i)
+        differ += std::abs(reference.image.data[i] - other.image.data[i]) > 1e-3f;
+      CHECK(differ <= reference.image.data.size() / 100);  // rays that graze an edge may fall to either side
+    }
+}
+
+TEST_CASE("two devices share a frame without changing it") {
+  const SceneDescription scene = busy_scene();
+  for (const DeviceInfo& device : test_devices()) {
+    if (device.max_sub_devices < 2) continue;
+    DYNAMIC_SECTION(device.label()) {
+      DeviceInfo part = device;
+      part.sub_units = 1;
+      const RenderResult shared = render(compile(scene), {part, part}, with_tile(8));
+      CHECK(same_bits(shared.image, scenes::render_on(device, scene).image));
+      CHECK(shared.devices.size() == 2);
+      CHECK(shared.devices[0].tiles + shared.devices[1].tiles == 5 * 4);
+    }
+  }
+}
