@@ -101,7 +101,9 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
                    const nlohmann::detail::exception& error) override {
     if (dynamic_cast<const json::out_of_range*>(&error))
       throw SceneError(file_.string(), pointer(), fmt::format("wanted a finite number, found {}", token));
-    throw SceneError(file_.string(), line_and_column(text_, position), bare_message(error.what()));
+    throw SceneError(
+        file_.string(), line_and_column(text_, position),
+        bare_message(error.what()) + (after_comma(position) ? ": take the last comma away" : ""));
   }
 
  private:
@@ -111,6 +113,15 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
     for (std::size_t i = 0; i + 1 < open_.size(); ++i) result = join_pointer(result, tokens_[i + 1]);
     if (open_.empty()) return result;
     return join_pointer(result, open_.back()->is_array() ? std::to_string(open_.back()->size()) : key_);
+  }
+
+  /// Whether a container ends just before `position`, right after a comma.
+  bool after_comma(std::size_t position) const {
+    if (position == 0 || position > text_.size() ||
+        (text_[position - 1] != '}' && text_[position - 1] != ']'))
+      return false;
+    const std::size_t before = text_.find_last_not_of(" \t\r\n", position - 2);
+    return position > 1 && before != std::string_view::npos && text_[before] == ',';
   }
 
   json* place(json&& value) {

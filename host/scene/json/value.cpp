@@ -50,20 +50,22 @@ std::string describe(const Range& range) {
   return fmt::format("{} and {}", above, below);
 }
 
-/// Levenshtein's distance.
+/// Letters to add, drop or change, or neighbours to swap, to get from `a` to `b` (optimal string alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
     }
   }
-  return row[b.size()];
+  return d[a.size()][b.size()];
 }
 
 }  // namespace
@@ -85,7 +87,8 @@ std::string join_pointer(std::string_view pointer, std::string_view key) {
 
 std::optional<std::string> nearest_name(std::string_view found, const std::vector<std::string>& names) {
   std::optional<std::string> best;
-  std::size_t best_distance = 1 + std::max<std::size_t>(found.size() / 3, 1);
+  if (found.size() > 100) return best;
+  std::size_t best_distance = 1 + (found.size() + 2) / 3;
   for (const std::string& name : names)
     if (const std::size_t distance = edit_distance(found, name); distance < best_distance) {
       best_distance = distance;
@@ -266,8 +269,8 @@ std::string JsonObject::one_of(Names keys) {
 }
 
 void JsonObject::not_both(std::string_view first, std::string_view second) {
-  if (has(first) && has(second))
-    value_.fail(fmt::format("wanted \"{}\" or \"{}\", found both", first, second));
+  const bool one = has(first), other = has(second);
+  if (one && other) value_.fail(fmt::format("wanted \"{}\" or \"{}\", found both", first, second));
 }
 
 void JsonObject::refuse_unasked() const {

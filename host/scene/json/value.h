@@ -128,7 +128,7 @@ class JsonObject {
 /// "a, b or c", each in quotes.
 std::string list_names(Names names, std::string_view conjunction = "or");
 
-/// The name most like `found` (at most a third of its letters away), or nothing.
+/// The name most like `found` (a third of its letters may differ), or nothing.
 std::optional<std::string> nearest_name(std::string_view found, const std::vector<std::string>& names);
 
 /// `pointer` with one more reference token, escaped by RFC 6901.

@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include "scene_text.h"
+
+using namespace sundog;
+
+namespace {
+
+std::string text(const dvec3& v) { return fmt::format("[{} {} {}]", v.x, v.y, v.z); }
+
+struct ShapeText {
+  std::string operator()(const MeshShape& s) const { return fmt::format("mesh {}", s.mesh); }
+  std::string operator()(const SphereShape& s) const { return fmt::format("sphere {}", s.radius); }
+  std::string operator()(const PlaneShape&) const { return "plane"; }
+  std::string operator()(const BoxShape& s) const { return fmt::format("box {}", text(s.half)); }
+  std::string operator()(const CylinderShape& s) const {
+    return fmt::format("cylinder {} {} {}", s.radius, s.half_height, s.capped);
+  }
+  std::string operator()(const ConeShape& s) const {
+    return fmt::format("cone {} {} {} {}", s.bottom_radius, s.top_radius, s.half_height, s.capped);
+  }
+  std::string operator()(const DiskShape& s) const {
+    return fmt::format("disk {} {}", s.radius, s.inner_radius);
+  }
+  std::string operator()(const TorusShape& s) const {
+    return fmt::format("torus {} {}", s.major_radius, s.minor_radius);
+  }
+  std::string operator()(const RoundBoxShape& s) const {
+    return fmt::format("round_box {} {}", text(s.half), s.radius);
+  }
+};
+
+std::string settings(const SceneDescription& scene) {
+  const Camera& c = scene.camera;
+  const ImageSettings& i = scene.image;
+  const RenderSettings& r = scene.render;
+  return fmt::format("camera {} {} {} {} {} {}\n", text(c.position), text(c.target), text(c.up), c.fov,
+                     c.near, c.far) +
+         fmt::format("image {} {} {} {}\n", i.width, i.height, text(i.background_bottom),
+                     text(i.background_top)) +
+         fmt::format("render {} {} {} {} {}\n", r.max_depth, r.samples, r.cutoff, r.integrator,
+                     static_cast<int>(r.tracer));
+}
+
+std::string line(const LightDescription& l) {
+  return fmt::format("light {} {} {} {} {} {} {} {}\n", static_cast<int>(l.type), text(l.color), l.intensity,
+                     text(l.position), text(l.direction), l.inner_angle, l.outer_angle, text(l.falloff));
+}
+
+std::string line(const MediumDescription& m) {
+  return fmt::format("medium {} {} {} {}\n", m.name, m.ior, text(m.absorption), m.priority);
+}
+
+std::string line(const MaterialDescription& m) {
+  return fmt::format("material {} {} {} {} {} {} {} ", m.name, static_cast<int>(m.type), text(m.ambient),
+                     text(m.diffuse), text(m.specular), m.exponent, m.blinn) +
+         fmt::format("{} {} {} {} {} {} {} {} {}\n", text(m.reflection), text(m.transmission), m.medium,
+                     m.shadow_opaque, m.checker, text(m.checker_ambient), text(m.checker_diffuse),
+                     m.checker_size, m.vertex_color);
+}
+
+std::string line(const Mesh& m) {
+  std::string out = fmt::format("mesh {} {} {}", m.name, m.positions.size(), m.triangles.size());
+  for (const auto& p : m.positions) out += fmt::format(" {}", text(dvec3(p)));
+  return out + '\n';
+}
+
+std::string line(const Object& o) {
+  std::string out =
+      fmt::format("object {} {} {} {}", o.name, std::visit(ShapeText{}, o.shape), o.material, o.place);
+  for (int column = 0; column < 4; ++column)
+    out += fmt::format(" {}", text(dvec3(o.world_from_object[column])));
+  return out + '\n';
+}
+
+}  // namespace
+
+std::string all_values(const SceneDescription& scene) {
+  std::string out = settings(scene);
+  const auto add = [&](const auto& table) {
+    for (const auto& entry : table) out += line(entry);
+  };
+  add(scene.lights), add(scene.media), add(scene.materials), add(scene.meshes), add(scene.objects);
+  return out;
+}

@@ -1,0 +1,388 @@
+// What a scene file may not hold: each error names the place, what was wanted and what was found.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "catch.h"
+#include "json_schema.h"
+#include "scene/json/parse.h"
+#include "scene/load.h"
+#include "scene_text.h"
+
+using namespace sundog;
+
+namespace {
+
+/// A bad scene, the place that its error names, and words that the error says. `schema` is false where the
+/// fault is beyond a JSON Schema: a name that leads nowhere, one number against another.
+struct Bad {
+  std::string text, place;
+  std::vector<std::string> words;
+  bool schema = true;
+};
+
+void check(const std::vector<Bad>& table) {
+  for (const Bad& bad : table) {
+    INFO(bad.text);
+    const SceneError error = error_of(bad.text);
+    INFO(error.what());
+    CHECK(error.place == bad.place);
+    CHECK(std::filesystem::path(error.file).filename() == "scene.json");
+    CHECK(error.reason.find('\n') == std::string::npos);
+    for (const std::string& word : bad.words) {
+      INFO(word);
+      CHECK(error.reason.find(word) != std::string::npos);
+    }
+    CHECK(schema_errors(scene_schema(), parse_json(bad.text, "scene.json")).empty() == !bad.schema);
+  }
+}
+
+Bad object(const std::string& text, const std::string& place, std::vector<std::string> words,
+           bool schema = true) {
+  return {scene_of(text), "/objects/0" + place, std::move(words), schema};
+}
+
+Bad sphere(const std::string& members, const std::string& place, std::vector<std::string> words,
+           bool schema = true) {
+  return object(R"({"type": "sphere", "material": "m", )" + members + "}", place, std::move(words), schema);
+}
+
+Bad material(const std::string& text, const std::string& place, std::vector<std::string> words,
+             bool schema = true) {
+  return {scene_with(R"("materials": {"m": )" + text + "}"), "/materials/m" + place, std::move(words),
+          schema};
+}
+
+Bad light(const std::string& text, const std::string& place, std::vector<std::string> words,
+          bool schema = true) {
+  return {scene_with(R"("lights": [)" + text + "]"), "/lights/0" + place, std::move(words), schema};
+}
+
+}  // namespace
+
+TEST_CASE("bad sections of a scene are refused with their place") {
+  check({
+      {R"([])", "", {"wanted an object", "an array of 0 items"}},
+      {R"({})", "", {"missing key \"objects\""}},
+      {R"({"object": []})", "", {"missing key \"objects\"", "found \"object\""}},
+      {R"({"objects": {}})", "/objects", {"wanted an array of objects", "found an object"}},
+      {scene_with(R"("camra": {})"), "/camra", {"unknown key \"camra\"", "did you mean \"camera\"?"}},
+      {scene_with(R"("zzzzzz": 1)"), "/zzzzzz", {"unknown key", "wanted", "camera", "lights", "objects"}},
+      {scene_with(R"("a/b~c": 1)"), "/a~1b~0c", {"unknown key \"a/b~c\""}},
+      {scene_with(R"("line\nbreak": 1)"), "/line\\u000abreak", {"unknown key \"line\\nbreak\""}},
+      {scene_with(R"("camera": [])"), "/camera", {"wanted an object", "found an array of 0 items"}},
+      {scene_with(R"("camera": {"position": [0, 0, 5]})"),
+       "/camera",
+       {"missing key \"target\"", "[x, y, z]"}},
+      {scene_with(R"("camera": {"position": [0, 0, 5], "targt": [0, 0, 0]})"),
+       "/camera",
+       {"missing key \"target\"", "found \"targt\""}},
+      {scene_with(R"("camera": {"position": [0, 0], "target": [0, 0, 0]})"),
+       "/camera/position",
+       {"wanted an array of 3 numbers", "found an array of 2 items"}},
+      {scene_with(R"("camera": {"position": [0, 0, "5"], "target": [0, 0, 0]})"),
+       "/camera/position/2",
+       {"wanted a number", "found the string \"5\""}},
+      {scene_with(R"("camera": {"position": [1, 2, 3], "target": [1, 2, 3]})"),
+       "/camera",
+       {"same point"},
+       false},
+      {scene_with(R"("camera": {"position": [0, 5, 0], "target": [0, 0, 0]})"), "/camera", {"\"up\""}, false},
+      {scene_with(R"("camera": {"up": [0, 0, 0]})"), "/camera/up", {"wanted a direction", "length 0"}, false},
+      {scene_with(R"("camera": {"fov": 180})"), "/camera/fov", {"above 0 and below 180", "found 180"}},
+      {scene_with(R"("camera": {"fov": 0})"), "/camera/fov", {"above 0 and below 180", "found 0"}},
+      {scene_with(R"("camera": {"fov": true})"), "/camera/fov", {"wanted a number", "found true"}},
+      {scene_with(R"("camera": {"near": -1})"), "/camera/near", {"not below 0", "found -1"}},
+      {scene_with(R"("camera": {"near": 5, "far": 2})"),
+       "/camera/far",
+       {"above the \"near\" of 5", "found 2"},
+       false},
+      {scene_with(R"("image": {"width": 0})"), "/image/width", {"an integer from 1 to 65536", "found 0"}},
+      {scene_with(R"("image": {"height": 1.5})"),
+       "/image/height",
+       {"an integer from 1 to 65536", "found 1.5"}},
+      {scene_with(R"("image": {"background": "red"})"),
+       "/image/background",
+       {"a colour [r, g, b]", "found the string \"red\""}},
+      {scene_with(R"("image": {"background": [0, 0]})"),
+       "/image/background",
+       {"a colour [r, g, b]", "2 items"}},
+      {scene_with(R"("image": {"background": [0, 0, -1]})"), "/image/background/2", {"found -1"}},
+      {scene_with(R"("image": {"background": {"bottom": [0, 0, 0]}})"),
+       "/image/background",
+       {"missing key \"top\""}},
+      {scene_with(R"("render": {"max_depth": 65})"),
+       "/render/max_depth",
+       {"an integer from 1 to 64", "found 65"}},
+      {scene_with(R"("render": {"samples": null})"), "/render/samples", {"an integer", "found null"}},
+      {scene_with(R"("render": {"samples": 1e300})"), "/render/samples", {"an integer", "found 1e+300"}},
+      {scene_with(R"("render": {"cutoff": 2})"), "/render/cutoff", {"from 0 to 1", "found 2"}},
+      {scene_with(R"("render": {"integrator": "whited"})"),
+       "/render/integrator",
+       {"\"whitted\"", "found the string \"whited\"", "did you mean \"whitted\"?"}},
+      {scene_with(R"("render": {"tracer": "fast"})"),
+       "/render/tracer",
+       {"\"auto\", \"wide\" or \"compact\""}},
+      {scene_with(R"("world": {"medium": "watr"}, "media": {"water": {}})"),
+       "/world/medium",
+       {"the name of a medium", "did you mean \"water\"?", "found the string \"watr\""},
+       false},
+      {scene_with(R"("$schema": 3)"), "/$schema", {"wanted a string", "found 3"}},
+  });
+}
+
+TEST_CASE("bad lights are refused with their place") {
+  check({
+      {scene_with(R"("lights": {})"), "/lights", {"wanted an array of lights", "found an object"}},
+      light("3", "", {"wanted an object", "found 3"}),
+      light(R"({"color": [1, 1, 1]})", "", {"missing key \"type\"", "\"ambient\"", "\"spot\""}),
+      light(R"({"type": "sun"})", "/type",
+            {"\"ambient\", \"directional\", \"point\" or \"spot\"", "\"sun\""}),
+      light(R"({"type": "ambient", "position": [0, 0, 0]})", "/position", {"unknown key \"position\""}),
+      light(R"({"type": "directional"})", "", {"missing key \"direction\""}),
+      light(R"({"type": "directional", "direction": [0, 0, 0]})", "/direction", {"length 0"}, false),
+      light(R"({"type": "point"})", "", {"missing key \"position\""}),
+      light(R"({"type": "point", "position": [0, 0, 0], "intensity": -1})", "/intensity",
+            {"not below 0", "found -1"}),
+      light(R"({"type": "point", "position": [0, 0, 0], "color": [1, 1, 1, 1]})", "/color", {"4 items"}),
+      light(R"({"type": "point", "position": [0, 0, 0], "falloff": {"constant": 0}})", "/falloff", {"not 0"},
+            false),
+      light(R"({"type": "point", "position": [0, 0, 0], "falloff": {"square": 1}})", "/falloff/square",
+            {"quadratic"}),
+      light(R"({"type": "spot", "position": [0, 0, 0]})", "", {"\"direction\" or \"target\"", "found none"}),
+      light(R"({"type": "spot", "position": [0, 0, 0], "direction": [0, 1, 0], "target": [0, 1, 0]})", "",
+            {"wanted one of", "found \"direction\" and \"target\""}),
+      light(R"({"type": "spot", "position": [0, 1, 0], "target": [0, 1, 0]})", "/target", {"away from"},
+            false),
+      light(R"({"type": "spot", "position": [0, 1, 0], "target": [0, 0, 0], "outer_angle": 90})",
+            "/outer_angle", {"above 0 and below 90", "found 90"}),
+      light(
+          R"({"type": "spot", "position": [0, 1, 0], "target": [0, 0, 0], "outer_angle": 20, "inner_angle": 25})",
+          "", {"\"inner_angle\"", "20", "found 25"}, false),
+  });
+}
+
+TEST_CASE("bad materials and media are refused with their place") {
+  check({
+      {scene_with(R"("materials": [])"), "/materials", {"wanted an object of materials"}},
+      material(R"({"colour": [1, 1, 1]})", "/colour", {"unknown key", "did you mean \"color\"?"}),
+      material(R"({"type": "metal"})", "/type", {"\"phong\" or \"dielectric\"", "\"metal\""}),
+      material(R"({"color": 1})", "/color", {"a colour [r, g, b]", "\"checker\"", "found 1"}),
+      material(R"({"color": {"checker": [[1, 1, 1]]}})", "/color/checker",
+               {"2 colours", "found an array of 1 item"}),
+      material(R"({"color": {"checker": [[1, 1, 1], [0, 0]]}})", "/color/checker/1", {"a colour", "2 items"}),
+      material(R"({"color": {"checker": [[1, 1, 1], [0, 0, 0]], "size": 0}})", "/color/size",
+               {"above 0", "found 0"}),
+      material(R"({"diffuse": -0.5})", "/diffuse", {"from 0 to 1000000", "found -0.5"}),
+      material(R"({"diffuse": "red"})", "/diffuse", {"a coefficient", "\"red\""}),
+      material(R"({"diffuse": {"exponent": 3}})", "/diffuse/exponent", {"unknown key", "coefficient"}),
+      material(R"({"specular": {"exponent": -1}})", "/specular/exponent", {"from 0", "found -1"}),
+      material(R"({"reflection": 1.5})", "/reflection", {"from 0 to 1", "found 1.5"}),
+      material(R"({"transmission": {"color": [1, 1, 2]}})", "/transmission/color/2",
+               {"from 0 to 1", "found 2"}),
+      material(R"({"type": "dielectric"})", "", {"missing key \"ior\"", "\"medium\""}),
+      material(R"({"type": "dielectric", "ior": 1.5, "color": [1, 0, 0]})", "/color", {"transmission"},
+               false),
+      material(R"({"ior": 0})", "/ior", {"from 0.01 to 100", "found 0"}),
+      material(R"({"medium": "ice", "ior": 1.3})", "", {"\"medium\" or \"ior\"", "found both"}),
+      material(R"({"medium": "ice"})", "/medium", {"the scene names no medium", "found the string \"ice\""},
+               false),
+      material(R"({"shadow": "none"})", "/shadow", {"\"filter\" or \"opaque\""}),
+      material(R"({"shading": 1})", "/shading", {"\"phong\" or \"blinn\"", "found 1"}),
+      material(R"({"vertex_color": 1})", "/vertex_color", {"true or false", "found 1"}),
+      {scene_with(R"("media": {"a": {"ior": 1000}})"), "/media/a/ior", {"from 0.01 to 100"}},
+      {scene_with(R"("media": {"a": {"priority": 1001}})"), "/media/a/priority", {"from -1000 to 1000"}},
+      {scene_with(R"("media": {"a": {"absorption": 1}})"), "/media/a/absorption", {"[r, g, b]", "found 1"}},
+      {scene_with(R"("media": {"a": {"absorption": {"color": [1, 1, 0], "distance": 1}}})"),
+       "/media/a/absorption/color/2",
+       {"above 0", "found 0"}},
+      {scene_with(R"("media": {"a": {"absorption": {"color": [1, 1, 1]}}})"),
+       "/media/a/absorption",
+       {"missing key \"distance\""}},
+  });
+}
+
+TEST_CASE("bad objects are refused with their place") {
+  check({
+      object("[]", "", {"wanted an object", "an array of 0 items"}),
+      object("{}", "", {"missing key \"type\"", "\"sphere\"", "\"group\""}),
+      object(R"({"type": "shpere"})", "/type", {"did you mean \"sphere\"?"}),
+      object(R"({"type": "sphere"})", "", {"missing key \"material\""}, false),
+      object(R"({"type": "sphere", "material": "n"})", "/material",
+             {"the name of a material", "did you mean \"m\"?", "found the string \"n\""}, false),
+      object(R"({"type": "sphere", "material": "glass"})", "/material", {"the scene has \"m\""}, false),
+      object(R"({"type": "sphere", "material": {}})", "/material", {"wanted a string", "found an object"}),
+      object(R"({"type": "sphere", "material": "m", "name": ""})", "/name",
+             {"wanted a string", "an empty string"}),
+      sphere(R"("radius": 0)", "/radius", {"above 0", "found 0"}),
+      sphere(R"("radius": 1e19)", "/radius", {"up to 1e+18", "found 1e+19"}),
+      sphere(R"("center": [1e30, 0, 0])", "/center/0", {"of magnitude up to 1e+18", "found 1e+30"}),
+      sphere(R"("half": 1)", "/half", {"unknown key \"half\"", "radius"}),
+      object(R"({"type": "plane", "material": "m", "normal": [0, 0, 0]})", "/normal", {"length 0"}, false),
+      object(R"({"type": "box", "material": "m", "half": 1, "min": [0, 0, 0], "max": [1, 1, 1]})", "",
+             {"\"half\" or \"min\"", "found both"}),
+      object(R"({"type": "box", "material": "m", "max": [1, 1, 1]})", "", {"missing key \"min\""}),
+      object(R"({"type": "box", "material": "m", "min": [0, 0, 0], "max": [1, 0, 1]})", "", {"\"min\" below"},
+             false),
+      object(R"({"type": "box", "material": "m", "half": [1, 1]})", "/half", {"3 numbers"}),
+      object(R"({"type": "box", "material": "m", "half": [1, 0, 1]})", "/half/1", {"above 0"}),
+      object(R"({"type": "round_box", "material": "m", "half": [1, 0.2, 1], "radius": 0.3})", "/radius",
+             {"up to 0.2", "found 0.3"}, false),
+      object(R"({"type": "cylinder", "material": "m", "height": 1, "from": [0, 0, 0], "to": [0, 1, 0]})", "",
+             {"\"height\" or \"from\"", "both"}),
+      object(R"({"type": "cylinder", "material": "m", "from": [0, 0, 0]})", "", {"missing key \"to\""}),
+      object(R"({"type": "cylinder", "material": "m", "from": [1, 2, 3], "to": [1, 2, 3]})", "/to", {"same"},
+             false),
+      object(R"({"type": "cone", "material": "m", "bottom_radius": 0})", "", {"\"top_radius\"", "both 0"},
+             false),
+      object(R"({"type": "disk", "material": "m", "inner_radius": 1})", "/inner_radius",
+             {"below 1", "found 1"}, false),
+      object(R"({"type": "torus", "material": "m", "minor_radius": 2})", "/minor_radius",
+             {"below 1", "found 2"}, false),
+      object(R"({"type": "group"})", "", {"missing key \"objects\""}),
+      object(
+          R"({"type": "group", "objects": [{"type": "group", "material": "m", "objects": [{"type": "disk", "x": 1}]}]})",
+          "/objects/0/objects/0/x", {"unknown key \"x\""}),
+  });
+}
+
+TEST_CASE("bad meshes and models are refused with their place") {
+  check({
+      object(R"({"type": "mesh"})", "", {"missing key \"mesh\""}),
+      object(R"({"type": "mesh", "mesh": "bunny"})", "/mesh", {"the scene names no mesh", "\"bunny\""},
+             false),
+      object(R"({"type": "model", "file": "none.ply"})", "/file", {"none.ply\" does not exist"}, false),
+      object(R"({"type": "model", "file": "."})", "/file", {"is a folder"}, false),
+      object(R"({"type": "model", "file": "scene.json"})", "/file",
+             {"a model file", ".gltf", "\"scene.json\""}, false),
+      object(R"({"type": "model", "file": 3})", "/file", {"wanted a string", "found 3"}),
+      {scene_with(R"("meshes": {"a": {}})"),
+       "/meshes/a",
+       {"wanted one of \"file\" or \"generate\"", "found none"}},
+      {scene_with(R"("meshes": {"a": {"flie": "tetra.ply"}})"), "/meshes/a/flie", {"did you mean \"file\"?"}},
+      {scene_with(R"("meshes": {"a": {"file": "gone.obj"}})"), "/meshes/a/file", {"does not exist"}, false},
+      {scene_with(R"("meshes": {"a": {"file": "tetra.ply", "crease_angle": 181}})"),
+       "/meshes/a/crease_angle",
+       {"from 0 to 180", "found 181"}},
+      {scene_with(R"("meshes": {"a": {"generate": {"type": "ice_block"}, "crease_angle": 3}})"),
+       "/meshes/a/crease_angle",
+       {"unknown key"}},
+      {scene_with(R"("meshes": {"a": {"generate": {}}})"), "/meshes/a/generate", {"missing key \"type\""}},
+      {scene_with(R"("meshes": {"a": {"generate": {"type": "snow"}}})"),
+       "/meshes/a/generate/type",
+       {"\"snow\""}},
+      {scene_with(R"("meshes": {"a": {"generate": {"type": "ice_block", "sed": 1}}})"),
+       "/meshes/a/generate/sed",
+       {"did you mean \"seed\"?"}},
+  });
+}
+
+TEST_CASE("bad transforms are refused with their place") {
+  const auto transform = [](const std::string& list, const std::string& place, std::vector<std::string> words,
+                            bool schema = true) {
+    return sphere(R"("transform": )" + list, "/transform" + place, std::move(words), schema);
+  };
+  check({
+      transform("{}", "", {"wanted an array of transforms", "found an object"}),
+      transform("[{}]", "/0", {"wanted one of", "\"translate\"", "\"matrix\"", "found none"}),
+      transform(R"([{"translate": [0, 0, 0], "scale": 2}])", "/0", {"found \"translate\" and \"scale\""}),
+      transform(R"([{"rotation": 3}])", "/0/rotation", {"unknown key", "did you mean \"rotate\"?"}),
+      transform(R"([{"rotate": {"degrees": 30}}])", "/0/rotate", {"missing key \"axis\""}),
+      transform(R"([{"rotate": {"axis": [0, 0, 0], "degrees": 30}}])", "/0/rotate/axis", {"length 0"}, false),
+      transform(R"([{"scale": 2}, {"scale": 0}])", "/1/scale", {"singular", "not 0"}),
+      transform(R"([{"scale": [1, 0, 1]}])", "/0/scale", {"singular", "not 0"}, false),
+      transform(R"([{"scale": "2"}])", "/0/scale", {"a factor", "found the string \"2\""}),
+      transform(R"([{"matrix": [1, 0, 0, 0]}])", "/0/matrix", {"16 numbers", "4 items"}),
+      transform(R"([{"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 5,5,5,1]}])", "/0/matrix", {"last row is 0 0 0 1"},
+                false),
+      transform(R"([{"matrix": [1,2,0,0, 2,4,0,0, 0,0,1,0, 0,0,0,1]}])", "/0", {"singular"}, false),
+      transform(R"([{"matrix": [1,2,3,0, 4,5,6,0, 7,8,9,0, 0,0,0,1]}])", "/0", {"singular"}, false),
+      transform(R"([{"scale": 1e10}, {"scale": 1e10}])", "", {"range of floats"}, false),
+      transform(R"([{"scale": 1e-10}, {"scale": 1e-10}])", "", {"singular"}, false),
+      object(R"({"type": "group", "transform": [{"scale": 1e-9}], "material": "m", "objects": [
+                 {"type": "sphere", "transform": [{"scale": 1e-9}]}]})",
+             "/objects/0/transform", {"singular"}, false),
+  });
+}
+
+TEST_CASE("bad JSON is refused with its place") {
+  struct Broken {
+    std::string text, place, words;
+  };
+  const std::string nul("{\"objects\": []}\0{}", 18);
+  const std::vector<Broken> table = {
+      {"", "", "found an empty file"},
+      {" \n\t ", "", "found an empty file"},
+      {"// only a comment", "line 1, column 17", "unexpected end of input"},
+      {"{\n  \"objects\": [\n    {]\n  ]\n}", "line 3, column 6", "unexpected ']'"},
+      {"{\"objects\": [1, 2,]}", "line 1, column 19", "take the last comma away"},
+      {"{\"objects\": [],\n}", "line 2, column 1", "take the last comma away"},
+      {"{\"objects\": []", "line 1, column 14", "unexpected end of input"},
+      {"{\"objects\": []} []", "line 1, column 17", "expected end of input"},
+      {"{\"objects\": [NaN]}", "line 1, column 14", "invalid literal"},
+      {"{\"objects\": [] /* open", "line 1, column 22", "comment"},
+      {"{\"objects\": [\"tab\there\"]}", "line 1, column 18", "control character"},
+      {"{\"objects\": [[0, 1], 1e999]}", "/objects/1", "wanted a finite number, found 1e999"},
+      {"{\"camera\": {\"fov\": -1e999}}", "/camera/fov", "wanted a finite number, found -1e999"},
+      {"{\"camera\": {\"fov\": 30, \"fov\": 40}}", "/camera/fov", "duplicate key"},
+      {"{\"objects\": [{}, {\"a\": {}, \"b\": 1, \"a\": 2}]}", "/objects/1/a", "duplicate key"},
+      {"\xFF\xFE{\0}\0", "", "UTF-16"},
+      {"{\"objects\": [\"\xE9\"]}", "line 1, column 15", "wanted UTF-8 text, found the byte 0xE9"},
+      {"// caf\xE9\n{\"objects\": []}", "line 1, column 7", "found the byte 0xE9"},
+      {"{\"objects\": [\"\xED\xA0\x80\"]}", "line 1, column 15", "found the byte 0xED"},
+      {nul, "line 1, column 16", "found the byte 0x00"},
+  };
+  for (const auto& [text, place, words] : table) {
+    const SceneError error = error_of(text);
+    INFO(error.what());
+    CHECK(error.place == place);
+    CHECK(error.reason.find(words) != std::string::npos);
+    CHECK(error.reason.find('\n') == std::string::npos);
+  }
+}
+
+TEST_CASE("nesting is bounded, however deep the file") {
+  const auto nested = [](std::size_t depth) {
+    return "{\"objects\": " + std::string(depth, '[') + std::string(depth, ']') + "}";
+  };
+  CHECK(error_of(nested(max_json_depth - 1)).place == "/objects/0");
+  CHECK(error_of(nested(max_json_depth)).reason.find("at most 100 nested") != std::string::npos);
+  CHECK(error_of(std::string(1000000, '[')).reason.find("at most 100 nested") != std::string::npos);
+}
+
+TEST_CASE("files that are no scene are refused") {
+  const TemporaryFolder folder;
+  const auto reason = [](const std::filesystem::path& path) {
+    try {
+      load_scene(path);
+    } catch (const SceneError& error) {
+      CHECK(error.file == path.string());
+      return error.reason;
+    }
+    return std::string("no error");
+  };
+  CHECK(reason(folder.path() / "none.json") == "does not exist");
+  CHECK(reason(folder.path()) == "is a folder, wanted a file");
+  std::filesystem::create_directory(folder.path() / "folder.json");
+  CHECK(reason(folder.path() / "folder.json") == "is a folder, wanted a file");
+  CHECK(reason(folder.write("scene.txt", "{}")).find("wanted a scene (.json)") == 0);
+  CHECK(reason(folder.write("scene", "{}")).find("wanted a scene (.json)") == 0);
+  CHECK(reason(folder.path() / "scene.txt" / "below.json").find("Not a directory") != std::string::npos);
+  const auto loop = folder.path() / "loop.json";
+  std::filesystem::create_symlink(loop, loop);
+  CHECK(reason(loop).find("symbolic links") != std::string::npos);
+}
+
+TEST_CASE("a bad mesh file is named by itself") {
+  const TemporaryFolder folder;
+  folder.write("bad.ply", "ply\nformat ascii 1.0\nelement vertex x\n");
+  const auto scene = folder.write("scene.json", scene_of(R"({"type": "model", "file": "bad.ply"})"));
+  try {
+    load_scene(scene);
+    FAIL("no error");
+  } catch (const SceneError& error) {
+    CHECK(error.file == (folder.path() / "bad.ply").string());
+    CHECK(error.place == "line 3");
+  }
+}

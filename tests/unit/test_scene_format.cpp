@@ -1,0 +1,341 @@
+// What a scene file says is what the SceneDescription holds.
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "catch.h"
+#include "scene_text.h"
+
+using namespace sundog;
+
+namespace {
+
+void check_close(const dvec3& found, const dvec3& wanted) {
+  INFO(found.x << " " << found.y << " " << found.z);
+  CHECK(glm::length(found - wanted) < 1e-12);
+}
+
+dvec3 point(const dmat4& matrix, const dvec3& p) { return dvec3(matrix * glm::dvec4(p, 1)); }
+
+/// Where an object's transform takes a point.
+dvec3 placed(std::string_view object, const dvec3& p) {
+  return point(load_scene_text(scene_of(object)).objects.at(0).world_from_object, p);
+}
+
+MaterialDescription material(std::string_view text) {
+  return load_scene_text(
+             scene_with(R"("media": {"ice": {"ior": 1.31}}, "materials": {"m": )" + std::string(text) + "}"))
+      .materials.at(0);
+}
+
+LightDescription light(std::string_view text) {
+  return load_scene_text(scene_with(R"("lights": [)" + std::string(text) + "]")).lights.at(0);
+}
+
+template <class Kind>
+Kind shape(std::string_view object) {
+  return std::get<Kind>(load_scene_text(scene_of(object)).objects.at(0).shape);
+}
+
+}  // namespace
+
+TEST_CASE("a scene of one sphere gets every default") {
+  const SceneDescription scene = load_scene_text(scene_with(""));
+  CHECK(scene.file.filename() == "scene.json");
+  CHECK(scene.camera.fov == 45);
+  CHECK(scene.camera.near == 0);
+  CHECK(std::isinf(scene.camera.far));
+  CHECK(scene.image.width == 640);
+  CHECK(scene.image.height == 480);
+  CHECK(scene.render.max_depth == 8);
+  CHECK(scene.render.samples == 1);
+  CHECK(scene.render.tracer == Tracer::automatic);
+  CHECK(scene.lights.empty());
+  REQUIRE(scene.media.size() == 1);
+  CHECK(scene.media[0].ior == 1);
+  CHECK(scene.media[0].priority == world_priority);
+  REQUIRE(scene.objects.size() == 1);
+  CHECK(scene.objects[0].place == "/objects/0");
+  CHECK(scene.objects[0].world_from_object == dmat4(1));
+  CHECK(scene.warnings.empty());
+}
+
+TEST_CASE("comments and a byte order mark are read over") {
+  CHECK(load_scene_text("\xEF\xBB\xBF{ // objects\n \"objects\": [ /* none */ ] }").objects.empty());
+}
+
+TEST_CASE("camera, image and render settings are read") {
+  const SceneDescription scene = load_scene_text(scene_with(R"(
+    "camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 2], "fov": 30.5, "near": 0.5, "far": 1e30},
+    "image": {"width": 320, "height": 2e2, "background": {"bottom": [0.1, 0.2, 0.3], "top": [4, 5, 6]}},
+    "render": {"max_depth": 3, "samples": 16, "cutoff": 0.25, "integrator": "whitted", "tracer": "compact"})"));
+  CHECK(scene.camera.position == dvec3(1, 2, 3));
+  CHECK(scene.camera.target == dvec3(4, 5, 6));
+  CHECK(scene.camera.up == dvec3(0, 0, 1));
+  CHECK(scene.camera.fov == 30.5);
+  CHECK(scene.camera.near == 0.5);
+  CHECK(scene.camera.far == 1e30);
+  CHECK(scene.image.width == 320);
+  CHECK(scene.image.height == 200);
+  CHECK(scene.image.background_bottom == dvec3(0.1, 0.2, 0.3));
+  CHECK(scene.image.background_top == dvec3(4, 5, 6));
+  CHECK(scene.render.max_depth == 3);
+  CHECK(scene.render.samples == 16);
+  CHECK(scene.render.cutoff == 0.25);
+  CHECK(scene.render.tracer == Tracer::compact);
+}
+
+TEST_CASE("a scene without a camera is framed") {
+  const SceneDescription scene =
+      load_scene_text(scene_with(R"("camera": {"fov": 60}, "image": {"width": 100, "height": 200})"));
+  CHECK(scene.camera.fov == 60);
+  CHECK(scene.camera.target == dvec3(0));
+  // The corners of the box around the sphere are seen: their angles from the axis are within the narrower
+  // half angle.
+  const dvec3 view = glm::normalize(scene.camera.target - scene.camera.position);
+  const double half_width = std::atan(std::tan(glm::radians(30.0)) / 2);
+  for (int corner = 0; corner < 8; ++corner) {
+    const dvec3 to =
+        dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1) - scene.camera.position;
+    CHECK(std::acos(glm::dot(view, glm::normalize(to))) <= half_width + 1e-12);
+  }
+}
+
+TEST_CASE("lights of every type are read") {
+  const LightDescription ambient = light(R"({"type": "ambient", "color": [1, 0.5, 0], "intensity": 0.2})");
+  CHECK(ambient.type == LightType::ambient);
+  CHECK(ambient.color == dvec3(1, 0.5, 0));
+  CHECK(ambient.intensity == 0.2);
+  const LightDescription sun = light(R"({"type": "directional", "direction": [0, -2, 0]})");
+  CHECK(sun.type == LightType::directional);
+  CHECK(sun.direction == dvec3(0, -1, 0));
+  CHECK(sun.intensity == 1);
+  const LightDescription lamp =
+      light(R"({"type": "point", "position": [1, 2, 3], "falloff": {"quadratic": 0.5}})");
+  CHECK(lamp.type == LightType::point);
+  CHECK(lamp.position == dvec3(1, 2, 3));
+  CHECK(lamp.falloff == dvec3(1, 0, 0.5));
+  const LightDescription spot =
+      light(R"({"type": "spot", "position": [0, 5, 0], "target": [0, 0, 0], "outer_angle": 15})");
+  CHECK(spot.type == LightType::spot);
+  CHECK(spot.direction == dvec3(0, -1, 0));
+  CHECK(spot.outer_angle == 15);
+  CHECK(spot.inner_angle == 10);
+}
+
+TEST_CASE("media are read, and absorption may be a colour at a distance") {
+  const SceneDescription scene = load_scene_text(scene_with(R"("media": {
+    "a": {"ior": 1.31, "absorption": [1, 2, 3], "priority": -4},
+    "b": {"absorption": {"color": [1, 0.5, 0.25], "distance": 2}}})"));
+  REQUIRE(scene.media.size() == 3);
+  CHECK(scene.media[1].name == "a");
+  CHECK(scene.media[1].ior == 1.31);
+  CHECK(scene.media[1].absorption == dvec3(1, 2, 3));
+  CHECK(scene.media[1].priority == -4);
+  check_close(scene.media[2].absorption, {0, std::log(2.0) / 2, std::log(4.0) / 2});
+  CHECK(!std::signbit(scene.media[2].absorption.x));
+}
+
+TEST_CASE("the world's medium gives way to all others") {
+  const SceneDescription scene = load_scene_text(
+      scene_with(R"("world": {"medium": "sea"}, "media": {"air": {}, "sea": {"ior": 1.33, "priority": 7}},
+                    "materials": {"m": {"medium": "sea"}})"));
+  REQUIRE(scene.media.size() == 3);
+  CHECK(scene.media[0].ior == 1.33);
+  CHECK(scene.media[0].priority == world_priority);
+  CHECK(scene.media[2].priority == 7);
+  CHECK(scene.materials[0].medium == 2);
+}
+
+TEST_CASE("a material's colour goes into its ambient and diffuse terms") {
+  const MaterialDescription plain = material("{}");
+  CHECK(plain.type == MaterialType::phong);
+  CHECK(plain.ambient == dvec3(0.1));
+  CHECK(plain.diffuse == dvec3(0.8));
+  CHECK(plain.specular == dvec3(0));
+  CHECK(plain.reflection == dvec3(0));
+  CHECK(plain.transmission == dvec3(0));
+  CHECK(plain.medium == -1);
+  const MaterialDescription red =
+      material(R"({"color": [1, 0.5, 0], "ambient": 0.5, "diffuse": {"coefficient": 0.25}})");
+  CHECK(red.ambient == dvec3(0.5, 0.25, 0));
+  CHECK(red.diffuse == dvec3(0.25, 0.125, 0));
+  const MaterialDescription own =
+      material(R"({"color": [1, 0, 0], "ambient": {"color": [0, 1, 0], "coefficient": 0.5}})");
+  CHECK(own.ambient == dvec3(0, 0.5, 0));
+  CHECK(own.diffuse == dvec3(0.8, 0, 0));
+}
+
+TEST_CASE("a material's other terms are read") {
+  const MaterialDescription m =
+      material(R"({"specular": {"color": [1, 1, 0], "coefficient": 0.5, "exponent": 80},
+    "shading": "blinn", "reflection": 0.25, "transmission": {"color": [1, 0.5, 0], "coefficient": 0.5},
+    "medium": "ice", "shadow": "opaque", "vertex_color": true})");
+  CHECK(m.specular == dvec3(0.5, 0.5, 0));
+  CHECK(m.exponent == 80);
+  CHECK(m.blinn);
+  CHECK(m.reflection == dvec3(0.25));
+  CHECK(m.transmission == dvec3(0.5, 0.25, 0));
+  CHECK(m.medium == 1);
+  CHECK(m.shadow_opaque);
+  CHECK(m.vertex_color);
+}
+
+TEST_CASE("a checkerboard's odd cells hold their own colour, whatever the even ones'") {
+  const MaterialDescription m =
+      material(R"({"color": {"checker": [[0, 0, 0], [1, 0.5, 0]], "size": 2}, "diffuse": 0.5})");
+  CHECK(m.checker);
+  CHECK(m.checker_size == 2);
+  CHECK(m.diffuse == dvec3(0));
+  CHECK(m.checker_diffuse == dvec3(0.5, 0.25, 0));
+  CHECK(m.checker_ambient == dvec3(0.1, 0.05, 0));
+  const MaterialDescription own =
+      material(R"({"color": {"checker": [[0, 0, 0], [1, 1, 1]]}, "ambient": {"color": [1, 0, 0]}})");
+  CHECK(own.ambient == dvec3(0.1, 0, 0));
+  CHECK(own.checker_ambient == dvec3(0.1, 0, 0));
+}
+
+TEST_CASE("a dielectric has no local terms and clear rays unless it says so") {
+  const MaterialDescription glass = material(R"({"type": "dielectric", "ior": 1.5})");
+  CHECK(glass.type == MaterialType::dielectric);
+  CHECK(glass.ambient == dvec3(0));
+  CHECK(glass.diffuse == dvec3(0));
+  CHECK(glass.specular == dvec3(0));
+  CHECK(glass.reflection == dvec3(1));
+  CHECK(glass.transmission == dvec3(1));
+  const MaterialDescription milky =
+      material(R"({"type": "dielectric", "medium": "ice", "color": [1, 0.5, 0], "diffuse": 0.5})");
+  CHECK(milky.diffuse == dvec3(0.5, 0.25, 0));
+  CHECK(milky.medium == 1);
+}
+
+TEST_CASE("an index of refraction of its own makes a medium of its own") {
+  const SceneDescription scene = load_scene_text(
+      scene_with(R"("media": {"ice": {}}, "materials": {"a": {"ior": 1.5}, "m": {"ior": 1.7}})"));
+  REQUIRE(scene.media.size() == 4);
+  CHECK(scene.materials[0].medium == 2);
+  CHECK(scene.materials[1].medium == 3);
+  CHECK(scene.media[2].ior == 1.5);
+  CHECK(scene.media[3].ior == 1.7);
+  CHECK(scene.media[3].priority == 0);
+}
+
+TEST_CASE("transforms are applied in the order of the list") {
+  check_close(placed(R"({"type": "sphere", "material": "m", "transform": [
+    {"scale": [2, 3, 4]}, {"rotate": {"axis": [0, 0, 5], "degrees": 90}}, {"translate": [10, 0, 0]}]})",
+                     {1, 1, 1}),
+              {7, 2, 4});
+  check_close(
+      placed(R"({"type": "sphere", "material": "m", "transform": [{"translate": [10, 0, 0]}, {"scale": 2}]})",
+             {1, 0, 0}),
+      {22, 0, 0});
+  check_close(placed(R"({"type": "sphere", "material": "m",
+    "transform": [{"matrix": [0, 1, 0, 5, 0, 0, 1, 6, 1, 0, 0, 7, 0, 0, 0, 1]}]})",
+                     {1, 2, 3}),
+              {7, 9, 8});
+}
+
+TEST_CASE("groups place what is in them, and lend it their material and name") {
+  const SceneDescription scene = load_scene_text(R"({"materials": {"a": {}, "b": {}}, "objects": [
+    {"type": "group", "name": "table", "material": "b", "transform": [{"translate": [1, 0, 0]}], "objects": [
+      {"type": "group", "transform": [{"scale": 2}], "objects": [
+        {"type": "sphere", "center": [1, 0, 0]}, {"type": "sphere", "name": "top", "material": "a"}]},
+      {"type": "disk"}]}]})");
+  REQUIRE(scene.objects.size() == 3);
+  check_close(point(scene.objects[0].world_from_object, {0, 0, 0}), {3, 0, 0});
+  CHECK(scene.objects[0].material == 1);
+  CHECK(scene.objects[0].name == "table");
+  CHECK(scene.objects[0].place == "/objects/0/objects/0/objects/0");
+  CHECK(scene.objects[1].material == 0);
+  CHECK(scene.objects[1].name == "top");
+  CHECK(scene.objects[2].material == 1);
+}
+
+TEST_CASE("uneven scales of any size are no singular transforms") {
+  check_close(placed(R"({"type": "sphere", "material": "m", "transform": [{"scale": [1e-6, 1, 1e6]},
+    {"rotate": {"axis": [1, 1, 1], "degrees": 120}}]})",
+                     {0, 1, 0}),
+              {0, 0, 1});
+  check_close(placed(R"({"type": "sphere", "material": "m", "transform": [
+    {"rotate": {"axis": [1, 1, 1], "degrees": 120}}, {"scale": [-1, 1, 1e-7]}]})",
+                     {0, 0, 1}),
+              {-1, 0, 0});
+}
+
+TEST_CASE("solids are read with their sizes") {
+  CHECK(shape<SphereShape>(R"({"type": "sphere", "material": "m", "radius": 3})").radius == 3);
+  CHECK(shape<BoxShape>(R"({"type": "box", "material": "m"})").half == dvec3(1));
+  CHECK(shape<BoxShape>(R"({"type": "box", "material": "m", "half": 2})").half == dvec3(2));
+  CHECK(shape<BoxShape>(R"({"type": "box", "material": "m", "min": [0, 1, 2], "max": [2, 5, 8]})").half ==
+        dvec3(1, 2, 3));
+  const auto round = shape<RoundBoxShape>(R"({"type": "round_box", "material": "m", "half": [1, 2, 0.05]})");
+  CHECK(round.half == dvec3(1, 2, 0.05));
+  CHECK(round.radius == 0.05);
+  CHECK(shape<RoundBoxShape>(R"({"type": "round_box", "material": "m", "radius": 0.2})").radius == 0.2);
+  const auto cylinder = shape<CylinderShape>(
+      R"({"type": "cylinder", "material": "m", "radius": 2, "height": 3, "capped": false})");
+  CHECK(cylinder.radius == 2);
+  CHECK(cylinder.half_height == 1.5);
+  CHECK(!cylinder.capped);
+  const auto cone = shape<ConeShape>(
+      R"({"type": "cone", "material": "m", "bottom_radius": 0, "top_radius": 2, "from": [0, 0, 0], "to": [3, 4, 0]})");
+  CHECK(cone.bottom_radius == 0);
+  CHECK(cone.top_radius == 2);
+  CHECK(cone.half_height == 2.5);
+  CHECK(cone.capped);
+  const auto disk =
+      shape<DiskShape>(R"({"type": "disk", "material": "m", "radius": 2, "inner_radius": 1.5})");
+  CHECK(disk.radius == 2);
+  CHECK(disk.inner_radius == 1.5);
+  const auto torus = shape<TorusShape>(R"({"type": "torus", "material": "m", "major_radius": 2})");
+  CHECK(torus.major_radius == 2);
+  CHECK(torus.minor_radius == 0.5);
+}
+
+TEST_CASE("shorthands put solids where they say") {
+  check_close(
+      placed(R"({"type": "sphere", "material": "m", "center": [1, 2, 3], "transform": [{"scale": 2}]})",
+             {0, 0, 1}),
+      {2, 4, 8});
+  check_close(placed(R"({"type": "box", "material": "m", "min": [0, 1, 2], "max": [2, 5, 8]})", {0, 0, 0}),
+              {1, 3, 5});
+  const std::string_view plane =
+      R"({"type": "plane", "material": "m", "point": [1, 2, 3], "normal": [3, 0, 4]})";
+  check_close(placed(plane, {0, 0, 0}), {1, 2, 3});
+  check_close(placed(plane, {0, 1, 0}), {1.6, 2, 3.8});
+  const std::string_view bar =
+      R"({"type": "cylinder", "material": "m", "from": [1, 2, 3], "to": [1, -2, 3]})";
+  check_close(placed(bar, {0, -2, 0}), {1, 2, 3});
+  check_close(placed(bar, {0, 2, 0}), {1, -2, 3});
+  const std::string_view cone = R"({"type": "cone", "material": "m", "from": [0, 0, 0], "to": [2, 4, 4]})";
+  check_close(placed(cone, {0, -3, 0}), {0, 0, 0});
+  check_close(placed(cone, {0, 3, 0}), {2, 4, 4});
+  check_close(
+      placed(R"({"type": "torus", "material": "m", "axis": [-1, 0, 0], "center": [0, 0, 5]})", {0, 1, 0}),
+      {-1, 0, 5});
+  check_close(placed(R"({"type": "disk", "material": "m", "normal": [0, -1, 0]})", {0, 1, 0}), {0, -1, 0});
+}
+
+TEST_CASE("shorthands only turn and move: no shape is mirrored or stretched") {
+  for (const char* normal :
+       {"[0, 1, 0]", "[0, -1, 0]", "[1, 0, 0]", "[1e-9, -1, 0]", "[-3, -4, 5]", "[2, 1e-7, 2]"}) {
+    INFO(normal);
+    const SceneDescription scene = load_scene_text(
+        scene_of(R"({"type": "disk", "material": "m", "normal": )" + std::string(normal) + "}"));
+    const glm::dmat3 linear(scene.objects[0].world_from_object);
+    const glm::dmat3 product = linear * glm::transpose(linear);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) CHECK(std::abs(product[i][j] - (i == j)) < 1e-12);
+    CHECK(glm::determinant(linear) == Approx(1).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("the same scene gives the same description, whatever the order of its keys") {
+  const SceneDescription one = load_scene_text(R"({"materials": {"a": {}, "b": {"ior": 2}}, "objects": []})");
+  const SceneDescription two = load_scene_text(R"({"objects": [], "materials": {"b": {"ior": 2}, "a": {}}})");
+  REQUIRE(one.materials.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(one.materials[i].name == two.materials[i].name);
+    CHECK(one.materials[i].medium == two.materials[i].medium);
+  }
+}

@@ -1,0 +1,111 @@
+// --set: one value of a scene, changed from outside.
+#include <string>
+
+#include "catch.h"
+#include "scene/load.h"
+#include "scene_text.h"
+
+using namespace sundog;
+
+namespace {
+
+const std::string scene = R"({
+  "camera": {"position": [0, 0, 5], "target": [0, 0, 0], "fov": 40},
+  "lights": [{"type": "ambient"}, {"type": "point", "position": [1, 2, 3]}],
+  "materials": {"glass": {"type": "dielectric", "ior": 1.5}, "a/b~c": {}},
+  "objects": [{"type": "sphere", "material": "glass"}]})";
+
+SceneDescription with(const std::vector<std::string>& overrides) { return load_scene_text(scene, overrides); }
+
+void check_error(const std::string& setting, const std::string& place, const std::string& words) {
+  const SceneError error = error_of(scene, {setting});
+  INFO(error.what());
+  CHECK(error.place == place);
+  CHECK(error.reason.find(words) != std::string::npos);
+  CHECK(error.reason.find("--set " + setting) != std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("an override changes a value that is there") {
+  CHECK(with({"/camera/fov=30"}).camera.fov == 30);
+  CHECK(with({"/camera/position=[1, 2, 3]"}).camera.position == dvec3(1, 2, 3));
+  CHECK(with({"/camera/position/2=7.5"}).camera.position == dvec3(0, 0, 7.5));
+  CHECK(with({"/lights/1/position/0=-4"}).lights[1].position == dvec3(-4, 2, 3));
+  CHECK(with({"/materials/glass/ior=1.7"}).media[1].ior == 1.7);
+  CHECK(with({"/objects=[]"}).objects.empty());
+}
+
+TEST_CASE("an override adds a value that the format knows, and the section around it") {
+  CHECK(with({"/render/samples=16"}).render.samples == 16);
+  CHECK(with({"/image/width=17", "/image/height=18"}).image.height == 18);
+  CHECK(with({"/lights/0/intensity=3"}).lights[0].intensity == 3);
+  CHECK(with({"/materials/glass/specular/exponent=99"}).materials[1].exponent == 99);
+  CHECK(with({"/lights/-={\"type\": \"ambient\"}"}).lights.size() == 3);
+}
+
+TEST_CASE("a later override sees what an earlier one did") {
+  CHECK(with({"/camera/fov=30", "/camera/fov=20"}).camera.fov == 20);
+  CHECK(with({"/media/ice={\"ior\": 1.3}", "/media/ice/ior=1.4"}).media[1].ior == 1.4);
+}
+
+TEST_CASE("an override's value is JSON, or else a string") {
+  CHECK(with({"/render/tracer=wide"}).render.tracer == Tracer::wide);
+  CHECK(with({"/render/tracer=\"wide\""}).render.tracer == Tracer::wide);
+  CHECK(with({"/objects/0/name=a=b"}).objects[0].name == "a=b");
+  check_error("/camera/fov=wide", "/camera/fov", "wanted a number, found the string \"wide\"");
+  check_error("/camera/fov=1e999", "/camera/fov", "wanted a number");
+  check_error("/camera/fov=", "/camera/fov", "wanted a number, found an empty string");
+}
+
+TEST_CASE("escapes lead an override to keys with / and ~") {
+  CHECK(with({"/materials/a~1b~0c/vertex_color=true"}).materials[0].vertex_color);
+}
+
+TEST_CASE("an override that is checked like the file names its place and itself") {
+  check_error("/camera/fov=200", "/camera/fov", "above 0 and below 180");
+  check_error("/camera/fovv=30", "/camera/fovv", "did you mean \"fov\"?");
+  check_error("/rendr/samples=3", "/rendr", "did you mean \"render\"?");
+  check_error("/camera/target=[0, 0, 5]", "/camera", "same point");
+}
+
+TEST_CASE("an override that leads nowhere names its place") {
+  check_error("/camera/fov/x=3", "/camera/fov/x", "leads nowhere: /camera/fov holds a single value");
+  check_error("/lights/2/intensity=3", "/lights/2", "leads nowhere: /lights has 2 items");
+  check_error("/lights/01/intensity=3", "/lights/01", "leads nowhere");
+  check_error("/lights/-1=3", "/lights/-1", "leads nowhere");
+  check_error("/lights/one/intensity=3", "/lights/one", "leads nowhere");
+  check_error("/materials/galss/ior=3", "/materials/galss", "did you mean \"glass\"?");
+  check_error("/meshes/a/file=x", "/meshes/a", "leads nowhere: there is no /meshes/a");
+  check_error("/render/0/x=1", "/render", "leads nowhere: there is no /render");
+}
+
+TEST_CASE("text that is no override is a usage error") {
+  for (const char* setting : {"", "=", "/", "=3", "/=3", "camera/fov=3", "/camera/fov", "/a~2=3", "/a~=3"}) {
+    INFO(setting);
+    CHECK_THROWS_AS(with({setting}), UsageError);
+  }
+}
+
+TEST_CASE("overrides change what is made up around a model") {
+  const TemporaryFolder folder;
+  const auto file = folder.write("tetra.ply", tetrahedron_ply);
+  const SceneDescription plain = load_scene(file);
+  const SceneDescription changed =
+      load_scene(file, {"/camera/fov=10", "/image/width=33", "/image/background=[1, 0, 0]",
+                        "/lights/1/intensity=7", "/camera/position/1=50", "/render/max_depth=2"});
+  CHECK(plain.camera.fov == 45);
+  CHECK(changed.camera.fov == 10);
+  CHECK(changed.camera.position == dvec3(plain.camera.position.x, 50, plain.camera.position.z));
+  CHECK(changed.image.width == 33);
+  CHECK(changed.image.background_top == dvec3(1, 0, 0));
+  CHECK(changed.lights[1].intensity == 7);
+  CHECK(changed.render.max_depth == 2);
+  try {
+    load_scene(file, {"/camera/fov=0"});
+    FAIL("no error");
+  } catch (const SceneError& error) {
+    CHECK(error.file == file.string());
+    CHECK(error.place == "/camera/fov");
+  }
+}

@@ -1,0 +1,131 @@
+// scenes/scene.schema.json says what the reader does: the same keys, the same defaults, and every scene that
+// ships is valid.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "catch.h"
+#include "json_schema.h"
+#include "scene/json/parse.h"
+#include "scene/load.h"
+#include "scene/read/scene_reader.h"
+#include "scene_text.h"
+
+using namespace sundog;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// One thing of every kind, so that the reader asks for every key.
+const std::string everything = R"({
+  "$schema": "scene.schema.json",
+  "camera": {}, "image": {"background": {"bottom": [0, 0, 0], "top": [1, 1, 1]}}, "render": {}, "world": {"medium": "a"},
+  "media": {"a": {"absorption": {"color": [1, 1, 1], "distance": 1}}, "b": {"absorption": [0, 1, 2]}},
+  "lights": [{"type": "ambient"}, {"type": "directional", "direction": [0, -1, 0]},
+    {"type": "point", "position": [0, 0, 0], "falloff": {}},
+    {"type": "spot", "position": [0, 0, 0], "direction": [0, 1, 0]}],
+  "materials": {
+    "m": {"color": {"checker": [[0, 0, 0], [1, 1, 1]]}, "ambient": {}, "specular": {}, "reflection": {}},
+    "plain": {"color": [0, 1, 0], "ambient": 0, "specular": 0.5, "transmission": 1, "ior": 1.5},
+    "glass": {"type": "dielectric", "medium": "a"}},
+  "meshes": {
+    "t": {"file": "tetra.ply", "crease_angle": 30},
+    "i": {"generate": {"type": "ice_block", "subdivision": 4, "cavity": {}}},
+    "l": {"generate": {"type": "ice_block", "subdivision": 4, "part": "liquid", "level": 0, "cavity": {}}}},
+  "objects": [{"type": "sphere"}, {"type": "plane"}, {"type": "box"}, {"type": "cylinder"}, {"type": "cone"},
+    {"type": "disk"}, {"type": "torus"}, {"type": "round_box"}, {"type": "mesh", "mesh": "t"},
+    {"type": "box", "min": [0, 0, 0], "max": [1, 1, 1]}, {"type": "cone", "from": [0, 0, 0], "to": [1, 1, 1]},
+    {"type": "cylinder", "from": [0, 0, 0], "to": [1, 1, 1]},
+    {"type": "model", "file": "tetra.ply", "transform": [{"translate": [0, 0, 0]}, {"scale": 2}, {"scale": [1, 2, 3]},
+      {"rotate": {"axis": [0, 1, 0], "degrees": 3}}, {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]},
+    {"type": "group", "objects": []}]})";
+
+json everything_document() {
+  json document = parse_json(everything, "everything.json");
+  for (json& object : document["objects"]) object["material"] = "m";
+  return document;
+}
+
+/// Reads a document that lies beside tetra.ply.
+SceneDescription read(const json& document, decltype(JsonContext::asked) asked = nullptr) {
+  const TemporaryFolder folder;
+  folder.write("tetra.ply", tetrahedron_ply);
+  const JsonContext context{folder.path() / "scene.json", asked};
+  return read_scene(JsonValue(document, context));
+}
+
+/// The $defs that say which keys an object may have.
+std::map<std::string, std::set<std::string>, std::less<>> schema_keys() {
+  std::map<std::string, std::set<std::string>, std::less<>> result;
+  for (const auto& [kind, schema] : scene_schema().at("$defs").items())
+    if (schema.contains("additionalProperties") && schema["additionalProperties"] == false)
+      for (const auto& [key, rule] : schema.at("properties").items()) result[kind].insert(key);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("the reader and the schema know the same keys") {
+  std::map<std::string, std::set<std::string>, std::less<>> asked;
+  read(everything_document(), &asked);
+  const auto schema = schema_keys();
+  CHECK(schema.size() > 30);
+  for (const auto& [kind, keys] : asked) {
+    INFO("$defs/" << kind << " of the schema has: "
+                  << fmt::format(
+                         "{}",
+                         fmt::join(schema.count(kind) ? schema.at(kind) : std::set<std::string>{}, ", ")));
+    INFO("the reader asks for: " << fmt::format("{}", fmt::join(keys, ", ")));
+    CHECK((schema.count(kind) == 1 && schema.at(kind) == keys));
+  }
+  for (const auto& [kind, keys] : schema) {
+    INFO("$defs/" << kind << " of the schema is of no kind that the reader reads");
+    CHECK(asked.count(kind) == 1);
+  }
+}
+
+TEST_CASE("the schema takes what the reader takes") {
+  const auto errors = schema_errors(scene_schema(), everything_document());
+  INFO(fmt::format("{}", fmt::join(errors, "\n")));
+  CHECK(errors.empty());
+  for (const char* scene :
+       {R"({"objects": []})", R"({"objects": [], "image": {"width": 10.0, "background": [1, 2, 3]}})",
+        R"({"objects": [], "camera": {"far": 1e300}})"})
+    CHECK(schema_errors(scene_schema(), json::parse(scene)).empty());
+}
+
+TEST_CASE("the schema's defaults are the reader's") {
+  const json document = everything_document();
+  json filled = document;
+  fill_defaults(scene_schema(), filled);
+  // Proof that something was filled in, at every depth.
+  CHECK(filled.at("/camera/fov"_json_pointer) == 45);
+  CHECK(filled.at("/lights/3/outer_angle"_json_pointer) == 30);
+  CHECK(filled.at("/lights/2/falloff/constant"_json_pointer) == 1);
+  CHECK(filled.at("/materials/m/specular/exponent"_json_pointer) == 32);
+  CHECK(filled.at("/meshes/i/generate/chips"_json_pointer) == 12);
+  CHECK(filled.at("/objects/0/radius"_json_pointer) == 1);
+  CHECK(filled.at("/objects/4/capped"_json_pointer) == true);
+  const std::string plain = all_values(read(document)), explicitly = all_values(read(filled));
+  CHECK(plain == explicitly);
+}
+
+TEST_CASE("every scene that ships loads and is valid") {
+  std::size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(SUNDOG_SOURCE_DIR "/scenes")) {
+    if (entry.path().extension() != ".json" || entry.path().filename() == "scene.schema.json") continue;
+    INFO(entry.path());
+    ++count;
+    const json document = read_json_file(entry.path());
+    CHECK(document.value("$schema", "") == "scene.schema.json");
+    const auto errors = schema_errors(scene_schema(), document);
+    INFO(fmt::format("{}", fmt::join(errors, "\n")));
+    CHECK(errors.empty());
+    CHECK_NOTHROW(load_scene(entry.path()));
+  }
+  CHECK(count >= 6);
+}
