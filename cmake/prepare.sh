@@ -1,0 +1,65 @@
+#!/bin/bash
+# Makes build/release ready: `prepare.sh program` for sundog alone, `prepare.sh tests` for the tests too. Packages come from
+# apt, and only those that are missing. Quiet unless there is something to do.
+set -eu
+goal=$1
+root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
+build=$root/build/release
+
+# The build cannot do without these. PoCL is among them, so that the first picture needs no GPU.
+needed=(g++ cmake ninja-build ocl-icd-opencl-dev opencl-clhpp-headers pocl-opencl-icd libglm-dev libstb-dev
+  libopenexr-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtbb-dev zlib1g-dev catch2)
+# The tests compare with these where they are.
+peers=(oclgrind mesa-opencl-icd libembree-dev povray clang)
+
+say() { echo "sundog: $*" >&2; }
+
+# Those of the packages named that are not installed, in one line.
+missing_of() {
+  local installed package
+  installed=$(dpkg-query -W -f '${Package} ${db:Status-Status}\n' "$@" 2>/dev/null || true)
+  for package; do grep -qx "$package installed" <<<"$installed" || echo "$package"; done | xargs
+}
+
+as_root() {
+  if [[ $EUID == 0 ]]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    say "cannot install packages: neither root nor sudo. Ask an administrator for: apt-get install $missing"
+    exit 1
+  fi
+}
+
+# Installs the packages named that are missing; those this distribution does not have are left out.
+install_missing() {
+  missing=$(missing_of "$@")
+  [[ -n $missing ]] || return 0
+  if ! command -v apt-get >/dev/null; then
+    say "there is no apt-get here; make sure that the equivalents of these are installed: $missing"
+    return 0
+  fi
+  say "installing $missing"
+  as_root apt-get update -qq
+  local package available=()
+  for package in $missing; do
+    if apt-cache show "$package" >/dev/null 2>&1; then available+=("$package"); else say "no package $package here"; fi
+  done
+  [[ ${#available[@]} == 0 ]] && return 0
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${available[@]}"
+}
+
+mkdir -p "$build"
+exec 9>"$build/lock"
+flock 9  # two calls at once take turns
+
+install_missing "${needed[@]}"
+if [[ $goal == tests ]]; then install_missing "${peers[@]}"; fi
+
+cd "$root"
+touch "$build/started"  # what changes during the build is built the next time
+cmake --preset release >"$build/configure.log" 2>&1 || { cat "$build/configure.log" >&2; exit 1; }
+if [[ $goal == tests ]]; then target=all; else target=sundog; fi
+cmake --build "$build" --target "$target"
+touch -r "$build/started" "$build/built-program" "$build/built-$goal"

@@ -1,0 +1,125 @@
+// Ctrl-C and the progress bar, on a terminal of the test's own.
+#include <base/image_io.h>
+
+#include <nlohmann/json.hpp>
+
+#include "catch.h"
+#include "cli_scene.h"
+
+using namespace sundog;
+
+namespace {
+
+/// A render that takes much longer than the test waits.
+std::vector<std::string> long_render(const CliFolder& folder, const std::string& out) {
+  return {"render",  folder.scene, "-o",   folder.file(out), "--size",
+          "640x480", "--samples",  "2000", "--tile",         "16"};
+}
+
+CommandOptions on_terminal() {
+  CommandOptions options;
+  options.terminal = true;
+  options.environment["TERM"] = "xterm";
+  return options;
+}
+
+int dark_pixels(const Image& image) {
+  int count = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const float* pixel = image.pixel(x, y);
+      count += pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 0;
+    }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("an interrupt saves the part that is done, within a second, with status 130") {
+  const int signal = GENERATE(SIGINT, SIGTERM);
+  const CliFolder folder;
+  CommandOptions options = on_terminal();
+  options.signal_at = "Mpixel/s";
+  options.signal = signal;
+  const CommandResult result = run_sundog(long_render(folder, "a.png"), options);
+  CAPTURE(result.err);
+  CHECK(result.status == 130);
+  CHECK(result.seconds_after_signal < 1);
+  CHECK(result.err.find("sundog: interrupted: ") != std::string::npos);
+  CHECK(result.err.find("% of the pixels are in " + folder.file("a.png")) != std::string::npos);
+  const Image image = read_image(folder / "a.png");
+  CHECK(image.width == 640);
+  const int dark = dark_pixels(image);
+  CHECK(dark > 0);
+  CHECK(dark < 640 * 480);
+  CHECK(folder.entries() == 2);
+}
+
+TEST_CASE("an interrupt before the first tile is done leaves a file too") {
+  const CliFolder folder;
+  CommandOptions options;
+  options.signal_after = 0.5;
+  std::vector<std::string> arguments = long_render(folder, "a.exr");
+  arguments[6] = "60000";  // samples: the first tile takes minutes
+  arguments[4] = "--size";
+  const CommandResult result = run_sundog(arguments, options);
+  CAPTURE(result.err);
+  CHECK(result.status == 130);
+  CHECK_FALSE(result.timed_out);
+}
+
+TEST_CASE("an interrupted render goes on from its checkpoint to the same image") {
+  const CliFolder folder;
+  const std::vector<std::string> end = {"--size", "200x150", "--samples", "200", "--tile", "16", "--quiet"};
+  std::vector<std::string> whole = {"render", folder.scene, "-o", folder.file("whole.pfm")};
+  whole.insert(whole.end(), end.begin(), end.end());
+  REQUIRE(run_sundog(whole).status == 0);
+  std::vector<std::string> parts = {
+      "render", folder.scene, "-o", folder.file("parts.pfm"), "--resume", folder.file("checkpoint")};
+  parts.insert(parts.end(), end.begin(), end.end() - 1);
+  CommandOptions options = on_terminal();
+  options.signal_at = "Mpixel/s";
+  const CommandResult first = run_sundog(parts, options);
+  CAPTURE(first.err);
+  REQUIRE(first.status == 130);
+  CHECK(first.err.find("the same command goes on from there") != std::string::npos);
+  REQUIRE(std::filesystem::exists(folder / "checkpoint"));
+  REQUIRE(run_sundog(parts).status == 0);
+  CHECK(run_sundog({"compare", folder.file("whole.pfm"), folder.file("parts.pfm")}).status == 0);
+  CHECK_FALSE(std::filesystem::exists(folder / "checkpoint"));
+}
+
+TEST_CASE("the progress bar shows rate and time left, fits the terminal, and is gone at the end") {
+  const CliFolder folder;
+  const CommandResult result = run_sundog({"render", folder.scene, "-o", folder.file("a.png"), "--size",
+                                           "200x150", "--samples", "100", "--tile", "16"},
+                                          on_terminal());
+  REQUIRE(result.status == 0);
+  CHECK(result.err.find("Mpixel/s") != std::string::npos);
+  CHECK(result.err.find(" left") != std::string::npos);
+  CHECK(result.err.ends_with("\r\033[K"));
+  CHECK(result.err.find('\n') == std::string::npos);
+  for (std::size_t at = 0; at < result.err.size();) {
+    const std::size_t next = std::min(result.err.find('\r', at + 1), result.err.size());
+    CHECK(next - at <= 1 + 79 + 3);  // the carriage return, the line, and the erasing of what is behind it
+    at = next;
+  }
+  CHECK(result.seconds > 0);
+  const auto drawings = std::count(result.err.begin(), result.err.end(), '\r');
+  CHECK(static_cast<double>(drawings) <= 10 * result.seconds + 2);
+}
+
+TEST_CASE("there is no progress bar where stderr is not a terminal, or a dumb one") {
+  const CliFolder folder;
+  CommandOptions options;
+  SECTION("a pipe") {}
+  SECTION("a dumb terminal") {
+    options.terminal = true;
+    options.environment["TERM"] = "dumb";
+  }
+  const CommandResult result = run_sundog({"render", folder.scene, "-o", folder.file("a.png"), "--size",
+                                           "200x150", "--samples", "100", "--tile", "16"},
+                                          options);
+  CHECK(result.status == 0);
+  CHECK(result.err.empty());
+}

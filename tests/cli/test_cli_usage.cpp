@@ -1,0 +1,105 @@
+// Bad command lines: exit status 2, one line on stderr that says what was wanted, nothing on stdout, no file.
+#include "catch.h"
+#include "cli_scene.h"
+
+namespace {
+
+struct BadLine {
+  std::vector<std::string> arguments;
+  std::string says;
+};
+
+}  // namespace
+
+TEST_CASE("a bad command line is one line on stderr and exit status 2") {
+  const CliFolder folder;
+  const std::string scene = folder.scene, out = folder.file("out.png");
+  const std::vector<BadLine> lines = {
+      {{}, "wanted a command (render, devices, info, compare), found none"},
+      {{""}, "found none"},
+      {{"frobnicate"}, "found 'frobnicate'"},
+      {{"bench", "rays"}, "found 'bench'"},
+      {{"check"}, "found 'check'"},
+      {{"--frobnicate"}, "required"},
+      {{"render"}, "SCENE is required"},
+      {{"render", scene}, "--out is required"},
+      {{"render", scene, "-o"}, "--out"},
+      {{"render", scene, "-o", out, "surplus"}, "surplus"},
+      {{"render", scene, "-o", out, "--split", "static"}, "--split static"},
+      {{"render", scene, "-o", folder.file("out")}, "no extension"},
+      {{"render", scene, "-o", folder.file("out.jpg")}, "found .jpg"},
+      {{"render", scene, "-o", out, "--aov", "depth"}, "only .exr files hold AOVs"},
+      {{"render", scene, "-o", folder.file("out.exr"), "--aov", "beauty"},
+       "--aov beauty: wanted one of depth"},
+      {{"render", scene, "-o", out, "--size", "640"}, "--size 640: wanted WIDTHxHEIGHT"},
+      {{"render", scene, "-o", out, "--size", "0x5"}, "--size 0x5"},
+      {{"render", scene, "-o", out, "--size", "5x"}, "--size 5x"},
+      {{"render", scene, "-o", out, "--size", "-5x5"}, "--size -5x5"},
+      {{"render", scene, "-o", out, "--size", "99999x5"}, "to 65536"},
+      {{"render", scene, "-o", out, "--size", "5x5x5"}, "--size 5x5x5"},
+      {{"render", scene, "-o", out, "--samples", "0"}, "--samples 0: wanted a whole number from 1 to 65536"},
+      {{"render", scene, "-o", out, "--samples", "1.5"}, "--samples 1.5"},
+      {{"render", scene, "-o", out, "--samples", "many"}, "--samples many"},
+      {{"render", scene, "-o", out, "--samples", "99999999999999999999"}, "--samples 9999"},
+      {{"render", scene, "-o", out, "--max-depth", "65"}, "from 1 to 64"},
+      {{"render", scene, "-o", out, "--max-depth", "-1"}, "--max-depth -1"},
+      {{"render", scene, "-o", out, "--tile", "0"}, "--tile 0"},
+      {{"render", scene, "-o", out, "--work-group", "0"}, "--work-group 0: wanted a size (64)"},
+      {{"render", scene, "-o", out, "--work-group", "8x"}, "--work-group 8x"},
+      {{"render", scene, "-o", out, "--work-group", "big"}, "auto or driver"},
+      {{"render", scene, "-o", out, "--integrator", "magic"},
+       "wanted \"whitted\", found the string \"magic\""},
+      {{"render", scene, "-o", out, "--set", "fov=3"}, "--set fov=3: wanted JSON_POINTER=VALUE"},
+      {{"render", scene, "-o", out, "--set", "/camera/fov"}, "wanted JSON_POINTER=VALUE"},
+      {{"render", scene, "-o", out, "--set", "/camera/fov=190"},
+       "/camera/fov: wanted a number above 0 and below 180"},
+      {{"render", scene, "-o", out, "--set", "/camera/fvo=30"}, "unknown key \"fvo\""},
+      {{"render", scene, "-o", out, "--set", "/objects/7/radius=1"},
+       "--set /objects/7/radius=1 leads nowhere"},
+      {{"info"}, "SCENE is required"},
+      {{"info", scene, scene}, scene},
+      {{"devices", "all"}, "all"},
+      {{"compare", out}, "B is required"},
+      {{"compare", out, out, "--tolerance", "-1"}, "--tolerance -1: wanted a number, 0 or more"},
+      {{"compare", out, out, "--tolerance", "nan"}, "--tolerance nan"},
+      {{"compare", out, out, "--tolerance", "1e-3x"}, "--tolerance 1e-3x"},
+      {{"compare", out, out, "--diff", "diff.txt"}, "found .txt"},
+  };
+  for (const BadLine& line : lines) {
+    const CommandResult result = run_sundog(line.arguments);
+    CAPTURE(line.arguments, result.err);
+    CHECK(result.status == 2);
+    CHECK(result.out.empty());
+    CHECK(is_one_error_line(result.err));
+    CHECK(result.err.find(line.says) != std::string::npos);
+  }
+  CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("help and version go to stdout with status 0") {
+  const std::vector<std::vector<std::string>> lines = {{"--help"},
+                                                       {"-h"},
+                                                       {"--version"},
+                                                       {"render", "--help"},
+                                                       {"devices", "--help"},
+                                                       {"info", "-h"},
+                                                       {"compare", "--help"}};
+  for (const auto& line : lines) {
+    const CommandResult result = run_sundog(line);
+    CAPTURE(line, result.err);
+    CHECK(result.status == 0);
+    CHECK(result.err.empty());
+    CHECK(result.out.size() > 10);
+  }
+}
+
+TEST_CASE("the help of a command tells its options, and only of commands that exist") {
+  const std::string render = run_sundog({"render", "--help"}).out;
+  for (const char* option :
+       {"--out", "--device", "--size", "--samples", "--max-depth", "--integrator", "--set", "--work-group",
+        "--tile", "--stats", "--aov", "--resume", "--quiet", "--verbose"})
+    CHECK(render.find(option) != std::string::npos);
+  const std::string all = run_sundog({"--help"}).out;
+  for (const char* command : {"render", "devices", "info", "compare"})
+    CHECK(all.find(command) != std::string::npos);
+}
