@@ -147,6 +147,20 @@ TEST_CASE("a device that is not there is status 4, with those that are") {
   CHECK(run_sundog({"render", folder.scene, "-o", folder.file("b.png")}, options).status == 0);
 }
 
+TEST_CASE("a kernel that does not build is status 5, and the compiler's log follows") {
+  const CliFolder folder;
+  CommandOptions options;
+  options.file_limit = 2000;  // too little for what PoCL's compiler writes
+  options.environment["XDG_CACHE_HOME"] = folder.file("cache");
+  options.environment["POCL_CACHE_DIR"] = folder.file("pocl");
+  const CommandResult result = run_sundog(
+      {"render", folder.scene, "-o", folder.file("a.png"), "--device", "portable computing"}, options);
+  CAPTURE(result.err);
+  CHECK(result.status == 5);
+  CHECK(result.err.starts_with("sundog: "));
+  CHECK_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
 TEST_CASE("an output that cannot be written is status 1, before the render") {
   const CliFolder folder;
   for (const std::string out : {"none/a.png", "scene.json/a.png"}) {
@@ -168,12 +182,14 @@ TEST_CASE("a full disk is status 1, the old image stays and no other file is lef
   const CliFolder folder;
   const std::string out = folder.write("a.pfm", "old").string();
   CommandOptions options;
-  options.file_limit = 2000;
-  options.environment["XDG_CACHE_HOME"] = folder.file("no/cache");
-  const CommandResult result = run_sundog({"render", folder.scene, "-o", out}, options);
+  options.file_limit = 8 << 20;  // room for what the drivers write, not for 1024x768 pixels of 12 bytes
+  const CommandResult result =
+      run_sundog({"render", folder.scene, "-o", out, "--size", "1024x768", "--max-depth", "1"}, options);
+  CAPTURE(result.err);
   CHECK(result.status == 1);
   CHECK(result.err.find(out + ": cannot be written: ") != std::string::npos);
   CHECK(read_file(out) == "old");
+  CHECK(folder.entries() == 2);
 }
 
 TEST_CASE("the times of --stats add up to the total") {
