@@ -38,6 +38,12 @@ std::vector<u32> add_media(const SceneDescription& scene, std::vector<Medium>& m
     auto found =
         std::find_if(media.begin() + 1, media.end(), [&](const Medium& m) { return same(m, medium); });
     if (found == media.end()) found = media.insert(found, medium);
+    if (media.size() > MAX_MEDIA)
+      throw SceneError(
+          scene.file.string(), "/media",
+          fmt::format(
+              "at most {} different media are supported (the world's among them); merge those that are alike",
+              MAX_MEDIA));
     index_of[i] = static_cast<u32>(found - media.begin());
   }
   return index_of;

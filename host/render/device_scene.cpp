@@ -9,7 +9,7 @@
 namespace sundog {
 namespace {
 
-constexpr std::size_t camera_media_words = 9;
+constexpr std::size_t camera_media_words = 2;
 
 template <class T>
 std::size_t table_bytes(const std::vector<T>& table) {

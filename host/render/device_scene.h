@@ -16,13 +16,13 @@ struct DeviceScene {
   Buffer<Material> materials;
   Buffer<Medium> media;
   Buffer<Light> lights;
-  Buffer<u32> camera_media;  // count, then the media that the camera is in, by order of entry
+  Buffer<u32> camera_media;  // the MediaStack at the camera (kernels/lib/media.cl), low word first
 };
 
 /// Bytes that upload_scene will take.
 std::size_t scene_bytes(const CompiledScene& scene);
 
-/// Throws DeviceError when the device cannot hold the scene. camera_media is empty (count 0).
+/// Throws DeviceError when the device cannot hold the scene. camera_media is empty.
 DeviceScene upload_scene(Device& device, const CompiledScene& scene);
 
 /// A kernel that reads the scene: its table parameters, then Args.

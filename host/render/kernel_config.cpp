@@ -8,8 +8,6 @@
 namespace sundog {
 namespace {
 
-constexpr unsigned camera_media_capacity = 8;
-
 // Children that wait below each node, bottom-up. A node that is visited leaves all its children but one on
 // the stack; a child's own need adds to its waiting siblings. Nodes of one tree may lie in any order, so the
 // walk keeps its own stack.
@@ -63,7 +61,6 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   // more. Beyond 32 levels the kernel counts what does not fit, and the frame reports it.
   define("RAY_STACK",
          scene.features.secondary_rays ? batch * (std::min(scene.info.max_depth, 32u) + 2u) : batch);
-  define("MEDIA_STACK", camera_media_capacity);
   // Rounded up, so that similar scenes share their kernels.
   const unsigned stack = std::max(traversal_stack_size(scene), generic ? 96u : 1u);
   define("BVH_STACK", (stack + 31u) / 32u * 32u);

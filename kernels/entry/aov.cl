@@ -12,9 +12,7 @@ __kernel void first_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const 
   if (i >= pixel_count) return;
   u32 counts[COUNTERS];
   for (u32 k = 0; k < COUNTERS; ++k) counts[k] = 0;
-  MediaStack stack;
-  stack.count = min(camera_media[0], (u32)MEDIA_STACK);
-  for (u32 k = 0; k < MEDIA_STACK; ++k) stack.medium[k] = k < stack.count ? camera_media[1u + k] : 0u;
+  MediaStack stack = (MediaStack)camera_media[1] << 32 | camera_media[0];
   const CameraRay ray = camera_ray(info, (float)(x0 + i % width) + 0.5f, (float)(y0 + i / width) + 0.5f);
   const Encounter e =
       next_surface(TRACE_ARGUMENTS, SHADE_ARGUMENTS, ray.o, ray.d, ray.t_min, ray.t_max, &stack, counts);

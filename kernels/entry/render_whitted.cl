@@ -29,9 +29,7 @@ __kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const 
   if (item >= item_count) return;
   u32 counts[COUNTERS];
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
-  MediaStack start;
-  start.count = min(camera_media[0], (u32)MEDIA_STACK);
-  for (u32 i = 0; i < MEDIA_STACK; ++i) start.medium[i] = i < start.count ? camera_media[1u + i] : 0u;
+  const MediaStack start = (MediaStack)camera_media[1] << 32 | camera_media[0];
   RayStack stack;
   for (u32 sample = first_sample; sample < first_sample + sample_count; ++sample) {
     float4 radiance[BATCH];

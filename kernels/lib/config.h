@@ -25,10 +25,6 @@
 #ifndef RAY_STACK
 #define RAY_STACK (BATCH * 9)
 #endif
-// Solids that a ray may be inside of at once.
-#ifndef MEDIA_STACK
-#define MEDIA_STACK 8
-#endif
 // Nodes that wait during a traversal; the host computes what the scene needs.
 #ifndef BVH_STACK
 #define BVH_STACK 128

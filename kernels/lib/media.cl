@@ -6,31 +6,37 @@
 #include "lib/config.h"
 #include "lib/tables.h"
 
-typedef struct MediaStack {
-  u32 count;
-  u32 medium[MEDIA_STACK];  // in the order of entry
-} MediaStack;
+// Up to eight media in the order of entry, the last in the lowest byte; a byte holds the medium's index plus
+// one, 0 is empty. One register, so that a waiting ray stays small. The host refuses scenes of more than
+// MAX_MEDIA media.
+typedef ulong MediaStack;
 
 // Index of the medium that light is in; 0 is the world's.
-static inline u32 current_medium(__global const Medium* restrict media, const MediaStack* stack) {
-  u32 best = 0;
-  for (u32 i = 0; i < stack->count; ++i)
-    if (i == 0u || media[stack->medium[i]].priority >= media[best].priority) best = stack->medium[i];
+static inline u32 current_medium(__global const Medium* restrict media, MediaStack stack) {
+  if (!stack) return 0u;
+  u32 best = (u32)(stack & 0xFFu) - 1u;
+#pragma unroll 1
+  for (stack >>= 8; stack; stack >>= 8) {
+    const u32 medium = (u32)(stack & 0xFFu) - 1u;
+    if (media[medium].priority > media[best].priority) best = medium;
+  }
   return best;
 }
 
 // Enters or leaves `medium`. Returns false when that cannot be: the stack is full, or the medium was never
 // entered.
 static inline bool cross_boundary(MediaStack* stack, u32 medium, bool entering) {
+  const MediaStack entry = medium + 1u;
   if (entering) {
-    if (stack->count == MEDIA_STACK) return false;
-    stack->medium[stack->count++] = medium;
+    if (*stack >> 56) return false;
+    *stack = *stack << 8 | entry;
     return true;
   }
-  for (u32 i = stack->count; i-- > 0u;) {
-    if (stack->medium[i] != medium) continue;
-    stack->count -= 1u;
-    for (u32 j = i; j < stack->count; ++j) stack->medium[j] = stack->medium[j + 1u];
+#pragma unroll 1
+  for (u32 shift = 0; shift < 64u; shift += 8u) {
+    if ((*stack >> shift & 0xFFu) != entry) continue;
+    const MediaStack newer = *stack & ((1ul << shift) - 1ul), older = *stack >> shift >> 8;
+    *stack = older << shift | newer;
     return true;
   }
   return false;

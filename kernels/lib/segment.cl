@@ -36,7 +36,7 @@ static inline Encounter next_surface(TRACE_PARAMETERS, SHADE_PARAMETERS, float3 
 #if HAS_MEDIA
   float from = 0.0f;
   for (u32 crossing = 0;; ++crossing) {
-    const u32 here = current_medium(media, stack);
+    const u32 here = current_medium(media, *stack);
     e.hit = trace_ray(TRACE_ARGUMENTS, o, d, t_min, t_max, false);
     e.before = here;
     e.after = here;
@@ -52,7 +52,7 @@ static inline Encounter next_surface(TRACE_PARAMETERS, SHADE_PARAMETERS, float3 
       MediaStack crossed = *stack;
       if (!cross_boundary(&crossed, materials[e.material].medium, e.entering))
         counts[e.entering ? COUNT_MEDIA_STACK_OVERFLOW : COUNT_STRAY_EXIT] += 1u;
-      e.after = current_medium(media, &crossed);
+      e.after = current_medium(media, crossed);
       if (is_invisible(media, &e, flags) && crossing < MAX_CROSSINGS) {
         if (e.after != e.before) {
           e.absorbed *= absorb(media, here, e.hit.t - from);

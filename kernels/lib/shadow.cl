@@ -15,7 +15,7 @@ static inline float3 visibility(TRACE_PARAMETERS, SHADE_PARAMETERS, float3 o, fl
   float t_min = 0.0f, from = 0.0f;
   for (u32 filter = 0; filter < MAX_FILTERS; ++filter) {
     const Hit hit = trace_ray(TRACE_ARGUMENTS, o, wi, t_min, distance, false);
-    const u32 here = current_medium(media, &stack);
+    const u32 here = current_medium(media, stack);
     const float end = hit.instance == NO_INSTANCE ? distance : hit.t;
     if (hit.instance == NO_INSTANCE) return through * absorb(media, here, end - from);
     __global const Material* material = materials + hit_material(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &hit);
@@ -26,7 +26,7 @@ static inline float3 visibility(TRACE_PARAMETERS, SHADE_PARAMETERS, float3 o, fl
     const float3 normal = outward_normal(TRACE_ARGUMENTS, &hit);
     if (!(material->flags & MATERIAL_THIN)) {
       cross_boundary(&stack, material->medium, dot(normal, wi) < 0.0f);
-      there = current_medium(media, &stack);
+      there = current_medium(media, stack);
       if (there == here) continue;
       through *= absorb(media, here, end - from);
       from = end;

@@ -33,6 +33,8 @@ typedef struct Material {
 } Material;
 SUNDOG_SHARED_SIZE(Material, 128)
 
+#define MAX_MEDIA 255  // a ray's stack of media keeps an index in a byte
+
 // 32 bytes. Medium 0 is the world's.
 typedef struct Medium {
   float4 absorption;  // Beer-Lambert, per unit of world length; w = index of refraction
