@@ -108,12 +108,11 @@ std::vector<std::string> losses(const RayCounts& counts) {
   };
   constexpr Loss kinds[] = {
       {COUNT_RAY_STACK_OVERFLOW, "rays were dropped because the ray stack was full: lower max_depth"},
-      {COUNT_MEDIA_STACK_OVERFLOW,
-       "times a ray entered more solids inside each other than the media stack holds"},
+      {COUNT_MEDIA_STACK_OVERFLOW, "rays entered more solids inside each other than the media stack holds"},
       {COUNT_SHADOW_LIMIT, "shadow rays were given up after too many transmissive surfaces"},
       {COUNT_NON_FINITE, "samples were dropped because they were not finite"},
       {COUNT_STRAY_EXIT,
-       "times a ray left a solid that it had not entered: a mesh with an interior is not closed"}};
+       "rays left a solid that they had not entered: a mesh with an interior may not be closed"}};
   std::vector<std::string> sentences;
   for (const Loss& kind : kinds)
     if (const std::uint64_t count = counts[static_cast<std::size_t>(kind.counter)]; count > 0)

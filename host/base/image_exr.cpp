@@ -11,8 +11,8 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include "base/image_codecs.h"
@@ -66,24 +66,26 @@ Suffixes channel_suffixes(const std::string& aov, int channels) {
   return {all.begin(), all.begin() + channels};
 }
 
-/// Channels of one image, as OpenEXR wants them: a base address, the strides, and the value where the file
-/// has none.
-void add_slice(Imf::FrameBuffer& buffer, const std::string& name, Image& image, int channel, float fill = 0) {
-  const std::size_t pixel = sizeof(float) * static_cast<std::size_t>(image.channels);
-  char* base = reinterpret_cast<char*>(image.data.data() + channel);
-  buffer.insert(
-      name, Imf::Slice(Imf::FLOAT, base, pixel, pixel * static_cast<std::size_t>(image.width), 1, 1, fill));
+/// Adds interleaved samples as a channel; `fill` is the value where a file has none. The library takes no
+/// const pixels, but writes to them only when it reads a file.
+template <class Sample>
+void add_slice(Imf::FrameBuffer& buffer, const std::string& name, const Sample* samples, const Image& shape,
+               float fill = 0) {
+  const std::size_t pixel = sizeof(Sample) * static_cast<std::size_t>(shape.channels);
+  char* base = reinterpret_cast<char*>(const_cast<Sample*>(samples));
+  const auto type = std::is_same_v<Sample, half> ? Imf::HALF : Imf::FLOAT;
+  buffer.insert(name,
+                Imf::Slice(type, base, pixel, pixel * static_cast<std::size_t>(shape.width), 1, 1, fill));
 }
 
 /// A half overflows to infinity above 65504.
 float clamped_to_half(float value) { return value > 65504 ? 65504 : value < -65504 ? -65504 : value; }
 
-struct HalfImage {
-  std::vector<half> data;
-  explicit HalfImage(const Image& image) : data(image.data.size()) {
-    std::ranges::transform(image.data, data.begin(), [](float v) { return half(clamped_to_half(v)); });
-  }
-};
+std::vector<half> halves_of(const Image& image) {
+  std::vector<half> halves(image.data.size());
+  std::ranges::transform(image.data, halves.begin(), [](float v) { return half(clamped_to_half(v)); });
+  return halves;
+}
 
 class Reader {
  public:
@@ -113,7 +115,7 @@ class Reader {
       const Imf::Channel* channel = channels().findChannel(names[c]);
       if (channel && (channel->xSampling != 1 || channel->ySampling != 1))
         throw std::runtime_error("EXR channel " + names[c] + " is subsampled, which is not supported");
-      add_slice(buffer, names[c], image, static_cast<int>(c), fill[c]);
+      add_slice(buffer, names[c], image.data.data() + c, image, fill[c]);
     }
     shift(buffer, image.channels);
     file_.setFrameBuffer(buffer);
@@ -141,27 +143,20 @@ std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::FrameBuffer buffer;
-  Image source = image;  // the library takes no const pixels
-  AovImages layers = aovs;
-  const HalfImage halves(image);
+  const std::vector<half> halves = color == ExrColor::half ? halves_of(image) : std::vector<half>();
   const Suffixes names = {"R", "G", "B", "A"};
-  for (int c = 0; c < image.channels; ++c) {
-    const std::string& name = names[static_cast<std::size_t>(c)];
-    header.channels().insert(name, Imf::Channel(color == ExrColor::half ? Imf::HALF : Imf::FLOAT));
-    if (color == ExrColor::half) {
-      const std::size_t pixel = sizeof(half) * static_cast<std::size_t>(image.channels);
-      char* base = reinterpret_cast<char*>(const_cast<half*>(halves.data.data() + c));
-      buffer.insert(name, Imf::Slice(Imf::HALF, base, pixel, pixel * static_cast<std::size_t>(image.width)));
-    } else {
-      add_slice(buffer, name, source, c);
-    }
+  for (std::size_t c = 0; c < static_cast<std::size_t>(image.channels); ++c) {
+    header.channels().insert(names[c], Imf::Channel(halves.empty() ? Imf::FLOAT : Imf::HALF));
+    if (halves.empty())
+      add_slice(buffer, names[c], image.data.data() + c, image);
+    else
+      add_slice(buffer, names[c], halves.data() + c, image);
   }
-  for (auto& [aov, layer] : layers) {
+  for (const auto& [aov, layer] : aovs) {
     const Suffixes suffixes = channel_suffixes(aov, layer.channels);
-    for (int c = 0; c < layer.channels; ++c) {
-      const std::string name = aov + "." + suffixes[static_cast<std::size_t>(c)];
-      header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-      add_slice(buffer, name, layer, c);
+    for (std::size_t c = 0; c < suffixes.size(); ++c) {
+      header.channels().insert(aov + "." + suffixes[c], Imf::Channel(Imf::FLOAT));
+      add_slice(buffer, aov + "." + suffixes[c], layer.data.data() + c, layer);
     }
   }
   std::string bytes;
