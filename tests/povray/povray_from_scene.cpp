@@ -13,7 +13,13 @@ namespace sundog::povray {
 
 namespace {
 
-constexpr double shrink = 1 - 1e-4;
+constexpr double shrink = 1 - 1e-3;  // POV-Ray overlooks surfaces less than about 1e-4 apart
+
+// POV-Ray bends nothing at the far side of an overlap, but without this would reflect there, by a wrong
+// index.
+constexpr const char* unseen = "texture { pigment { color rgbf 1 } finish { ambient 0 diffuse 0 } }";
+
+std::string texture(const MaterialDescription& m);
 
 const MaterialDescription& material_of(const SceneDescription& scene, const Object& object) {
   if (object.material < 0) throw Unsupported(object.place + ": a mesh with materials of its own");
@@ -156,22 +162,50 @@ std::string interior(const MediumDescription& medium, Absorption absorption) {
   return fmt::format("interior {{ ior {}{} }}", text(medium.ior), inside);
 }
 
-// The object's shape less what overrules it, in world space, open for modifiers.
-std::string open_region(const SceneDescription& scene, const Object& object) {
-  const std::string own = open_shape(object.shape) + matrix(object.world_from_object) + ' ';
-  const MaterialDescription& m = material_of(scene, object);
-  if (!is_dielectric(m) || std::holds_alternative<MeshShape>(object.shape)) return own;
-  const int priority = medium_of(scene, m).priority;
+int priority_of(const SceneDescription& scene, const Object& object) {
+  return medium_of(scene, material_of(scene, object)).priority;
+}
+
+// The exact transmitting solids that reach into this one, of higher or of lower priority than its own.
+enum class Rank { higher, lower };
+std::vector<const Object*> overlapping(const SceneDescription& scene, const Object& object, Rank rank) {
+  std::vector<const Object*> found;
+  if (std::holds_alternative<MeshShape>(object.shape)) return found;
   const Bounds bounds = world_bounds(scene, object);
-  std::string cuts;
   for (const Object& other : scene.objects) {
     if (!is_dielectric(material_of(scene, other)) || std::holds_alternative<MeshShape>(other.shape)) continue;
-    if (medium_of(scene, material_of(scene, other)).priority <= priority) continue;
-    if (!bounds.overlaps(world_bounds(scene, other))) continue;
-    const std::string scale = is_hole(scene, other) ? "" : fmt::format("scale {} ", text(shrink));
-    cuts += open_shape(other.shape) + scale + matrix(other.world_from_object) + " } ";
+    const int difference = priority_of(scene, other) - priority_of(scene, object);
+    if (rank == Rank::higher ? difference <= 0 : difference >= 0) continue;
+    if (bounds.overlaps(world_bounds(scene, other))) found.push_back(&other);
+  }
+  return found;
+}
+
+// The object's shape less what overrules it, in world space, open for modifiers. Light that goes from this
+// solid into the one that overrules it meets that one's surface first, and then the cut, which must not be
+// seen a second time.
+std::string open_region(const SceneDescription& scene, const Object& object) {
+  const std::string own = open_shape(object.shape) + matrix(object.world_from_object) + ' ';
+  std::string cuts;
+  for (const Object* other : overlapping(scene, object, Rank::higher)) {
+    cuts += open_shape(other->shape);
+    if (!is_hole(scene, *other))
+      cuts +=
+          fmt::format("{} interior_{} scale {} ", texture(material_of(scene, object)), unseen, text(shrink));
+    cuts += matrix(other->world_from_object) + " } ";
   }
   return cuts.empty() ? own : "difference { " + own + "} " + cuts;
+}
+
+// The other way, light meets the cut first, and then this solid's own surface, where that lies in the solid
+// it overrules.
+std::string inner_texture(const SceneDescription& scene, const Object& object) {
+  std::string around;
+  for (const Object* other : overlapping(scene, object, Rank::lower))
+    if (!is_hole(scene, *other)) around += open_region(scene, *other) + "} ";
+  if (around.empty()) return "";
+  return fmt::format(" interior_texture {{ object {{ union {{ {}}} {} {} }} }}", around,
+                     texture(material_of(scene, object)), unseen);
 }
 
 std::string write_object(const SceneDescription& scene, const Object& object, Absorption absorption) {
@@ -179,8 +213,8 @@ std::string write_object(const SceneDescription& scene, const Object& object, Ab
   if (is_hole(scene, object)) return "";
   if (!is_dielectric(m))  // a pattern moves with its object
     return open_shape(object.shape) + texture(m) + ' ' + matrix(object.world_from_object) + " }\n";
-  std::string out =
-      open_region(scene, object) + texture(m) + ' ' + interior(medium_of(scene, m), absorption) + " hollow";
+  std::string out = open_region(scene, object) + texture(m) + inner_texture(scene, object) + ' ' +
+                    interior(medium_of(scene, m), absorption) + " hollow";
   if (!m.shadow_opaque) return out + " }\n";
   return out + " no_shadow }\n" + open_shape(object.shape) + matrix(object.world_from_object) +
          " pigment { color rgb 0 } no_image no_reflection }\n";

@@ -18,7 +18,7 @@ struct Unsupported : std::runtime_error {
 };
 
 /// The POV-Ray scene. POV-Ray knows no priorities, so each exact solid is cut by the solids of higher
-/// priority that reach into it, shrunk by 1/10000 so that no surfaces coincide: the thin overlap is the
+/// priority that reach into it, shrunk by 1/1000 so that no surfaces coincide: the thin overlap is the
 /// medium entered last, and its second interface bends nothing. Meshes are not cut (slow there); where they
 /// overlap, too, the one entered last counts. A material with "shadow": "opaque" becomes one that casts no
 /// shadow and an invisible double that does. Throws Unsupported.

@@ -1,0 +1,116 @@
+// sundog's pictures against POV-Ray's of the same scenes, where POV-Ray is installed. Both take one sample at
+// each pixel's centre and follow every ray. Shadows are compared apart: POV-Ray's shadow rays pass through
+// glass without loss, ours lose what each interface reflects. So transmissive things first cast opaque
+// shadows in both pictures; then, with filtering shadows, the pictures may differ only where those shadows
+// reach.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "base/image_compare.h"
+#include "base/image_io.h"
+#include "catch.h"
+#include "compile/compiled_scene.h"
+#include "device/devices.h"
+#include "povray_from_scene.h"
+#include "povray_run.h"
+#include "render/render.h"
+#include "scene/load.h"
+
+using namespace sundog;
+
+namespace {
+
+const std::filesystem::path folder =
+    std::filesystem::path(SUNDOG_BINARY).parent_path() / "test_output" / "povray";
+
+struct Pictures {
+  std::string name;
+  Image ours, theirs;
+};
+
+// POV-Ray's picture ends at 1.
+Image clamped(Image image) {
+  for (float& value : image.data) value = std::clamp(value, 0.0f, 1.0f);
+  return image;
+}
+
+Pictures render_both(const std::string& scene_name, const std::string& name,
+                     std::vector<std::string> overrides) {
+  for (const char* common : {"/image/width=320", "/image/height=240", "/render/samples=1", "/render/cutoff=0",
+                             "/render/max_depth=7"})
+    overrides.emplace_back(common);
+  const std::filesystem::path file =
+      std::filesystem::path(SUNDOG_SOURCE_DIR) / "scenes" / (scene_name + ".json");
+  const SceneDescription scene = load_scene(file, overrides);
+  const std::string text = povray::from_scene(scene, povray::Absorption::media);
+  return {name, clamped(render(compile(scene), select_devices(enumerate_devices(), {})).image),
+          povray::run(text, scene.image.width, scene.image.height, 2, folder, name).image};
+}
+
+// Says how the pictures differ, and leaves ours and the difference beside POV-Ray's.
+ImageDifference report(const Pictures& pictures) {
+  const ImageDifference d = compare_images(pictures.ours, pictures.theirs, 0.01);
+  write_image(pictures.ours, folder / (pictures.name + "_sundog.png"));
+  write_image(difference_image(pictures.ours, pictures.theirs), folder / (pictures.name + "_difference.png"));
+  std::printf(
+      "%s against POV-Ray: mean %.6f, 99th percentile %.5f, greatest %.3f; %.2f %% of the pixels off by more "
+      "than "
+      "0.01 (pictures in %s)\n",
+      pictures.name.c_str(), d.mean, d.percentile_99, d.max,
+      100 * static_cast<double>(d.over_tolerance) / static_cast<double>(d.pixels), folder.c_str());
+  return d;
+}
+
+bool differ(const Image& a, const Image& b, int x, int y, float tolerance) {
+  for (int c = 0; c < 3; c++)
+    if (std::abs(a.pixel(x, y)[c] - b.pixel(x, y)[c]) > tolerance) return true;
+  return false;
+}
+
+// The share of pixels off by more than 0.01 although POV-Ray's picture does not depend on how transmissive
+// things cast shadows there.
+double unexplained(const Pictures& filtering, const Pictures& opaque) {
+  int count = 0;
+  for (int y = 0; y < filtering.ours.height; y++)
+    for (int x = 0; x < filtering.ours.width; x++)
+      count += differ(filtering.ours, filtering.theirs, x, y, 0.01f) &&
+               !differ(filtering.theirs, opaque.theirs, x, y, 0.001f);
+  return static_cast<double>(count) / (filtering.ours.width * filtering.ours.height);
+}
+
+bool povray_missing() {
+  if (!povray::installed_version().empty()) return false;
+  std::printf("POV-Ray is not installed: its pictures were not compared (apt-get install povray)\n");
+  return true;
+}
+
+void check_scene(const std::string& scene, const std::vector<std::string>& opaque_shadows) {
+  const Pictures opaque = render_both(scene, scene, opaque_shadows);
+  const ImageDifference d = report(opaque);
+  CHECK(d.mean < 0.0003);
+  CHECK(d.percentile_99 < 0.002);
+  CHECK(static_cast<double>(d.over_tolerance) < 0.002 * static_cast<double>(d.pixels));
+
+  const Pictures filtering = render_both(scene, scene + "_filtering_shadows", {});
+  report(filtering);
+  const double outside = unexplained(filtering, opaque);
+  std::printf(
+      "%s: %.3f %% of the pixels are off by more than 0.01 and not in the shadow of something transmissive\n",
+      scene.c_str(), 100 * outside);
+  CHECK(outside < 0.003);
+}
+
+}  // namespace
+
+TEST_CASE("spheres look as POV-Ray shows them", "[povray]") {
+  if (povray_missing()) return;
+  check_scene("spheres", {"/materials/glass/shadow=opaque"});
+}
+
+TEST_CASE("the exact hollow ice looks as POV-Ray shows it", "[povray]") {
+  if (povray_missing()) return;
+  check_scene("hollow_ice_exact", {"/materials/ice/shadow=opaque", "/materials/liquid/shadow=opaque",
+                                   "/materials/cavity/shadow=opaque", "/materials/bubble/shadow=opaque"});
+}
