@@ -157,3 +157,12 @@ TEST_CASE("an empty scene keeps the plain camera") {
   CHECK(scene.camera.position == dvec3(0, 0, 5));
   CHECK(scene.camera.target == dvec3(0));
 }
+
+TEST_CASE("a model without surfaces is warned of, and what a model warns of is passed on") {
+  Model model;
+  model.warnings = {"something was read past"};
+  const SceneDescription scene = read(model);
+  CHECK(scene.objects.empty());
+  CHECK(scene.warnings ==
+        std::vector<std::string>{"model.glb: something was read past", "model.glb: holds no surfaces"});
+}

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <vector>
 
 #include "catch.h"
 #include "json_schema.h"
@@ -58,6 +59,27 @@ SceneDescription read(const json& document, decltype(JsonContext::asked) asked =
   return read_scene(JsonValue(document, context));
 }
 
+/// Every place of a document, outermost first.
+void list_places(const json& value, const std::string& pointer, std::vector<std::string>& places) {
+  places.push_back(pointer);
+  if (!value.is_structured()) return;
+  for (const auto& [key, member] : value.items()) list_places(member, join_pointer(pointer, key), places);
+}
+
+bool takes(const json& document, const fs::path& folder) {
+  const JsonContext context{folder / "scene.json"};
+  try {
+    const SceneDescription scene = read_scene(JsonValue(document, context));
+    for (const Object& object : scene.objects)
+      for (int column = 0; column < 4; ++column)
+        CHECK(glm::all(glm::lessThan(glm::abs(object.world_from_object[column]), glm::dvec4(1e19))));
+    return true;
+  } catch (const SceneError& error) {
+    CHECK(!error.place.empty());
+    return false;
+  }
+}
+
 /// The $defs that say which keys an object may have.
 std::map<std::string, std::set<std::string>, std::less<>> schema_keys() {
   std::map<std::string, std::set<std::string>, std::less<>> result;
@@ -96,6 +118,30 @@ TEST_CASE("the schema takes what the reader takes") {
        {R"({"objects": []})", R"({"objects": [], "image": {"width": 10.0, "background": [1, 2, 3]}})",
         R"({"objects": [], "camera": {"far": 1e300}})"})
     CHECK(schema_errors(scene_schema(), json::parse(scene)).empty());
+}
+
+TEST_CASE("what the schema refuses, the reader refuses") {
+  const TemporaryFolder folder;
+  folder.write("tetra.ply", tetrahedron_ply);
+  const json document = everything_document();
+  const json strange = json::parse(
+      R"([null, true, 0, -1, 0.5, 1e-300, 2e18, "", "x", [], [1, 2, 3], [0, 0, 0], {}, {"x": 1}])");
+  std::vector<std::string> places;
+  list_places(document, "", places);
+  std::size_t refused = 0;
+  for (const std::string& place : places) {
+    if (place.empty()) continue;
+    for (const json& value : strange) {
+      json changed = document;
+      changed[json::json_pointer(place)] = value;
+      const bool valid = schema_errors(scene_schema(), changed).empty();
+      const bool taken = takes(changed, folder.path());
+      INFO(place << " = " << value.dump());
+      CHECK((valid || !taken));
+      refused += !taken;
+    }
+  }
+  CHECK(refused > places.size() * 10);
 }
 
 TEST_CASE("the schema's defaults are the reader's") {

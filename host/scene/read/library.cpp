@@ -34,6 +34,7 @@ ModelLibrary::Parts ModelLibrary::add(Model model, const std::string& name) {
     for (int& material : mesh.materials) material += first_material;
   for (const std::string& warning : model.warnings)
     scene_.warnings.push_back(fmt::format("{}: {}", name, warning));
+  if (model.objects.empty()) scene_.warnings.push_back(fmt::format("{}: holds no surfaces", name));
   append(scene_.media, model.media);
   append(scene_.materials, model.materials);
   append(scene_.meshes, model.meshes);
