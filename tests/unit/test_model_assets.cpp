@@ -40,7 +40,7 @@ Box stated_bounds(const fs::path& path) {
   Box box;
   for (const auto& mesh : json.at("meshes"))
     for (const auto& primitive : mesh.at("primitives")) {
-      const auto& accessor =
+      const auto accessor =
           json.at("accessors").at(primitive.at("attributes").at("POSITION").get<std::size_t>());
       for (const char* end : {"min", "max"})
         box.add({accessor.at(end).at(0), accessor.at(end).at(1), accessor.at(end).at(2)});

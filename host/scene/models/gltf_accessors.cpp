@@ -11,7 +11,7 @@
 namespace sundog::models {
 namespace {
 
-constexpr std::uint64_t array_buffer = 34962, element_array_buffer = 34963;
+constexpr std::uint64_t element_array_buffer = 34963;  // a view's target: indices
 constexpr std::uint64_t most = std::uint64_t{1} << 53;
 
 std::size_t size_of_component(std::uint64_t component) {

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <new>
+#include <stdexcept>
+#include <string>
 
 #include "base/error.h"
 #include "scene/models/readers.h"
@@ -54,6 +56,8 @@ Model load_model(const std::filesystem::path& path, const ModelOptions& options)
         "not a model file: the name must end in .gltf .glb .obj .ply .stl or .nff (or that and .gz)");
   try {
     return load(models::read_source(path), models::model_extension(path), options);
+  } catch (const std::length_error& error) {
+    throw SceneError(path.string(), "", std::string("the model is too large: ") + error.what());
   } catch (const std::bad_alloc&) {
     throw SceneError(path.string(), "", "the model does not fit into memory");
   }

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <stdexcept>
 
 namespace sundog::models {
 namespace {
@@ -18,6 +19,7 @@ using std::uint32_t;
 // More faces than this at one edge are no surface: all its edges are creases (and comparing all pairs would
 // be slow).
 constexpr std::size_t most_faces_at_edge = 16;
+constexpr std::size_t most_triangles = std::size_t{1} << 30;  // corners are counted in 32 bits
 const glm::vec3 any_direction{0, 1, 0};
 
 bool normalize(dvec3 sum, glm::vec3& out) {
@@ -188,6 +190,7 @@ CornersByPoint gather(const Mesh& mesh, const std::vector<bool>& has_normal,
 
 void complete_normals(Mesh& mesh, std::vector<bool> has_normal, double crease_degrees,
                       std::vector<std::uint32_t> point_of_vertex) {
+  if (mesh.triangles.size() > most_triangles) throw std::length_error("more than 2^30 triangles");
   if (has_normal.empty()) has_normal.assign(mesh.positions.size(), !mesh.normals.empty());
   mesh.normals.resize(mesh.positions.size(), glm::vec3(0));
   bool any = false, all = true;

@@ -14,6 +14,7 @@ namespace sundog::models {
 /// Edges run between `point_of_vertex` (empty: the vertices themselves), so vertices that differ in texture
 /// coordinates alone still smooth. Faces without area have no say; every normal comes out with unit length. A
 /// mesh that needs no normals (none given, crease 0) keeps none: flat.
+/// Throws std::length_error above 2^30 triangles.
 void complete_normals(Mesh& mesh, std::vector<bool> has_normal, double crease_degrees,
                       std::vector<std::uint32_t> point_of_vertex = {});
 
