@@ -4,6 +4,13 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 
+// Without the instruction fma() is a program of its own, inlined at every use (rusticl took 12 times as long
+// to compile); two roundings are as good here. PoCL does not define FP_FAST_FMAF, but names the host's
+// __FMA__.
+#if !defined(FP_FAST_FMAF) && !defined(__FMA__)
+#define fma(a, b, c) ((a) * (b) + (c))
+#endif
+
 // Rays a work-item carries together: TILE_W x TILE_H pixels of the image. 16 on CPU-class devices, 1 on
 // GPU-class ones.
 #ifndef TILE_W

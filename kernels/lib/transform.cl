@@ -1,6 +1,7 @@
 // Rays and normals between world and object space.
 #ifndef SUNDOG_LIB_TRANSFORM_CL
 #define SUNDOG_LIB_TRANSFORM_CL
+#include "lib/config.h"
 #include "shared/bvh.h"
 
 static inline float3 object_point(__global const Instance* instance, float3 p) {
