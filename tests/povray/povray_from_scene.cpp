@@ -103,8 +103,8 @@ std::string lights(const SceneDescription& scene) {
     out += light_source(light);
   }
   return fmt::format(
-             "global_settings {{ assumed_gamma 1.0 max_trace_level {} adc_bailout 0 ambient_light {} }}\n",
-             scene.render.max_depth, rgb(ambient)) +
+             "global_settings {{ assumed_gamma 1.0 max_trace_level {} adc_bailout {} ambient_light {} }}\n",
+             scene.render.max_depth, text(scene.render.cutoff), rgb(ambient)) +
          out;
 }
 
