@@ -47,7 +47,7 @@ unsigned traversal_stack_size(const CompiledScene& scene) {
   return std::max(1u, meshes + (leaf_root ? 0 : tree_stack_size(scene.nodes, scene.info.tlas_root)));
 }
 
-KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device, bool generic) {
+KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device) {
   KernelConfig config;
   const bool vectors = device.device_class == DeviceClass::cpu && device.native_vector_width > 1;
   if (!vectors) config.tile_w = config.tile_h = 1;
@@ -62,16 +62,15 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   define("RAY_STACK",
          scene.features.secondary_rays ? batch * (std::min(scene.info.max_depth, 32u) + 2u) : batch);
   // Rounded up, so that similar scenes share their kernels.
-  const unsigned stack = std::max(traversal_stack_size(scene), generic ? 96u : 1u);
-  define("BVH_STACK", (stack + 31u) / 32u * 32u);
+  define("BVH_STACK", (traversal_stack_size(scene) + 31u) / 32u * 32u);
   static constexpr const char* shape_names[SHAPE_SDF] = {"HAS_MESH", "HAS_SPHERE",   "HAS_PLANE",
                                                          "HAS_BOX",  "HAS_CYLINDER", "HAS_CONE",
                                                          "HAS_DISK", "HAS_TORUS",    "HAS_ROUNDBOX"};
   for (unsigned shape = 0; shape < SHAPE_SDF; ++shape)
-    define(shape_names[shape], generic || scene.features.shapes[shape]);
-  define("HAS_SECONDARY", generic || scene.features.secondary_rays);
-  define("HAS_MEDIA", generic || scene.features.media);
-  define("HAS_SHADOW_FILTERS", generic || scene.features.shadow_filters);
+    define(shape_names[shape], scene.features.shapes[shape]);
+  define("HAS_SECONDARY", scene.features.secondary_rays);
+  define("HAS_MEDIA", scene.features.media);
+  define("HAS_SHADOW_FILTERS", scene.features.shadow_filters);
   return config;
 }
 

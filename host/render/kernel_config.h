@@ -13,9 +13,7 @@ struct KernelConfig {
 };
 
 /// Pure. Devices with vectors take 4x4 pixels a work-item and eight boxes an instruction, the others a pixel.
-/// `generic` leaves nothing out that the scene does without: one kernel then serves all scenes, for drivers
-/// that compile much more slowly than they run.
-KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device, bool generic = false);
+KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device);
 
 /// Most nodes that wait at once in a traversal of the scene: the BVH stack's size.
 unsigned traversal_stack_size(const CompiledScene& scene);

@@ -21,7 +21,7 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
     : device_(device),
       scene_(scene),
       options_(options),
-      config_(make_kernel_config(scene, device.info(), options.generic_kernels)),
+      config_(make_kernel_config(scene, device.info())),
       next_size_(first_launch_size) {
   const Stopwatch building;
   BuildReport report;

@@ -17,6 +17,7 @@ static inline float polynomial(const float* c, float x) {
 static inline float bracketed_root(const float* c, const float* derivative, float low, float high) {
   const bool rising = polynomial(c, high) > polynomial(c, low);
   float x = 0.5f * (low + high);
+#pragma unroll 1
   for (u32 i = 0; i < 40u && low < high; ++i) {
     const float f = polynomial(c, x);
     if (f == 0.0f) return x;
@@ -38,6 +39,7 @@ static inline u32 roots_between(const float* c, const float* derivative, float l
                                 const float* extrema, u32 count, float* roots) {
   u32 found = 0;
   float left = low, f_left = polynomial(c, low);
+#pragma unroll 1
   for (u32 i = 0; i <= count; ++i) {
     const float right = i < count ? clamp(extrema[i], low, high) : high;
     const float f_right = polynomial(c, right);

@@ -180,6 +180,7 @@ static inline void closest_in_torus(float4 parameters, float3 o, float3 d, float
   const float a0 = fma(g, g, -4.0f * fma(s.x, s.x, s.z * s.z));
   float roots[4];
   const u32 count = quartic_roots(a2, a1, a0, -reach, reach, roots);
+#pragma unroll 1
   for (u32 i = 0; i < count; ++i) {
     float x = roots[i];
     float3 p = s + x * e;
@@ -215,6 +216,7 @@ static inline void closest_in_roundbox(float4 parameters, float3 o, float3 d, fl
     if (box_interval(o, d, slab, &t, &axis_in, &axis_out))
       span = (float2)(fmin(span.x, t.x), fmax(span.y, t.y));
   }
+#pragma unroll 1
   for (u32 corner = 0; corner < 8u; ++corner) {
     const float3 center = (float3)(corner & 1u ? core.x : -core.x, corner & 2u ? core.y : -core.y,
                                    corner & 4u ? core.z : -core.z);

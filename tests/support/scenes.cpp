@@ -72,9 +72,7 @@ void place(SceneDescription& scene, Shape shape, int material, const glm::dmat4&
 
 RenderResult render_on(const DeviceInfo& device, const SceneDescription& scene,
                        const RenderOptions& options) {
-  RenderOptions chosen = options;
-  chosen.generic_kernels = device.native_vector_width <= 1;
-  return render(compile(scene), {device}, chosen);
+  return render(compile(scene), {device}, options);
 }
 
 glm::dvec3 pixel_on(const DeviceInfo& device, const SceneDescription& scene) {

@@ -29,7 +29,7 @@ int add_mirror(sundog::SceneDescription& scene, double reflection, glm::dvec3 gl
 void place(sundog::SceneDescription& scene, sundog::Shape shape, int material,
            const glm::dmat4& world_from_object = glm::dmat4(1));
 
-/// Renders on one device; with one kernel for all scenes where the driver (llvmpipe) takes half a minute for
+/// Renders on one device.
 /// each.
 sundog::RenderResult render_on(const sundog::DeviceInfo& device, const sundog::SceneDescription& scene,
                                const sundog::RenderOptions& options = {});
