@@ -1,6 +1,7 @@
 #include "scene/bounds.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace sundog {
@@ -26,6 +27,13 @@ struct HalfSize {
   }
 };
 
+std::array<dvec3, 8> corners_of(const dvec3& half) {
+  std::array<dvec3, 8> corners;
+  for (std::size_t i = 0; i < 8; ++i)
+    corners[i] = half * dvec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+  return corners;
+}
+
 }  // namespace
 
 Bounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes) {
@@ -37,8 +45,7 @@ Bounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes) 
     if (const auto* shape = std::get_if<MeshShape>(&object.shape)) {
       for (const glm::vec3& point : meshes[static_cast<std::size_t>(shape->mesh)].positions) add(point);
     } else if (const dvec3 half = std::visit(HalfSize{}, object.shape); half.x >= 0) {
-      for (int corner = 0; corner < 8; ++corner)
-        add(half * dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
+      for (const dvec3& corner : corners_of(half)) add(corner);
     }
   }
   return bounds;
@@ -46,12 +53,19 @@ Bounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes) 
 
 Camera frame(const Bounds& bounds, double aspect, Camera camera) {
   if (bounds.empty()) return camera;
-  const double half_diagonal = glm::length(bounds.upper - bounds.lower) / 2;
-  const double radius = half_diagonal > 0 ? half_diagonal : 1;
-  const double half_height = std::tan(glm::radians(camera.fov) / 2);
-  const double half_angle = std::atan(half_height * std::min(aspect, 1.0));
+  const double tall = std::tan(glm::radians(camera.fov) / 2), wide = tall * aspect;
+  const dvec3 back = glm::normalize(dvec3(0.55, 0.4, 1)),
+              right = glm::normalize(glm::cross(dvec3(0, 1, 0), back));
+  const dvec3 up = glm::cross(back, right), half = (bounds.upper - bounds.lower) * 0.5;
+  // Each corner asks for a distance from which it is seen at the edge of the image.
+  double distance = 0;
+  for (const dvec3& corner : corners_of(half)) {
+    const double across =
+        std::max(std::abs(glm::dot(corner, right)) / wide, std::abs(glm::dot(corner, up)) / tall);
+    distance = std::max(distance, across * 1.05 + glm::dot(corner, back));
+  }
   camera.target = (bounds.lower + bounds.upper) * 0.5;
-  camera.position = camera.target + glm::normalize(dvec3(0.55, 0.4, 1)) * (radius / std::sin(half_angle));
+  camera.position = camera.target + back * (distance > 0 ? distance : 1);
   camera.up = dvec3(0, 1, 0);
   return camera;
 }

@@ -19,8 +19,8 @@ struct Bounds {
 /// solids.
 Bounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes);
 
-/// `camera` moved so that the box just fills an image of width / height `aspect`, seen from the front, right
-/// and above (y is up). An empty box leaves it where it is.
+/// `camera` moved so that the box all but fills an image of width / height `aspect`, seen from the front,
+/// right and above (y is up). An empty box leaves it where it is.
 Camera frame(const Bounds& bounds, double aspect, Camera camera);
 
 }  // namespace sundog

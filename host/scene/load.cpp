@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "base/error.h"
@@ -17,9 +18,32 @@ using nlohmann::json;
 
 namespace {
 
+void apply_overrides(json& document, const fs::path& file, const std::vector<std::string>& overrides) {
+  for (const std::string& setting : overrides) apply_override(document, setting, file);
+}
+
+/// Width over height of a document's image; 0 where it gives none (reading it says what is wrong).
+double aspect_of(const json& document) {
+  const auto size = [&](const char* pointer) {
+    const json::json_pointer place(pointer);
+    return document.contains(place) && document[place].is_number() ? document[place].get<double>() : 0;
+  };
+  const double height = size("/image/height");
+  return height > 0 ? std::max(size("/image/width"), 0.0) / height : 0;
+}
+
+/// The document made up around a model. Its camera fits the image that the overrides ask for.
+json make_scene(const fs::path& file, const Model& model, const std::vector<std::string>& overrides) {
+  const json document = make_model_scene(file, model);
+  json changed = document;
+  apply_overrides(changed, file, overrides);
+  const double aspect = aspect_of(changed);
+  return aspect > 0 && aspect != aspect_of(document) ? make_model_scene(file, model, aspect) : document;
+}
+
 SceneDescription read_with_overrides(json document, const fs::path& file,
                                      const std::vector<std::string>& overrides, std::optional<Model> model) {
-  for (const std::string& setting : overrides) apply_override(document, setting, file);
+  apply_overrides(document, file, overrides);
   const JsonContext context{file};
   try {
     return read_scene(JsonValue(document, context), std::move(model));
@@ -40,7 +64,7 @@ SceneDescription load_scene(const fs::path& path, const std::vector<std::string>
   require_readable(path, path, "");
   if (is_model_file(path)) {
     Model model = load_model(path);
-    json document = make_model_scene(path, model);
+    json document = make_scene(path, model, overrides);
     return read_with_overrides(std::move(document), path, overrides, std::move(model));
   }
   if (path.extension() != ".json")

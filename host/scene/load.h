@@ -8,11 +8,12 @@
 
 namespace sundog {
 
-/// Loads sundog's .json, or .gltf .glb .obj .ply .stl .nff (each also .gz) as a scene by itself: a camera that
-/// frames the bounds, lights and a grey material are made up where the file has none.
-/// `overrides` are "JSON_POINTER=VALUE" settings, applied in turn before the scene is checked (for a model file
-/// they apply to the scene that is made of it). Throws SceneError{file, place, what}, and UsageError for an
-/// override that is not of that form.
-SceneDescription load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+/// Loads sundog's .json, or .gltf .glb .obj .ply .stl .nff (each also .gz) as a scene by itself: a camera
+/// that frames the bounds, lights and a grey material are made up where the file has none. `overrides` are
+/// "JSON_POINTER=VALUE" settings, applied in turn before the scene is checked (for a model file they apply to
+/// the scene that is made of it). Throws SceneError{file, place, what}, and UsageError for an override that
+/// is not of that form.
+SceneDescription load_scene(const std::filesystem::path& path,
+                            const std::vector<std::string>& overrides = {});
 
 }  // namespace sundog

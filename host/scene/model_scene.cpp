@@ -55,13 +55,13 @@ json make_lights(const Camera& camera) {
 
 }  // namespace
 
-json make_model_scene(const std::filesystem::path& file, const Model& model) {
+json make_model_scene(const std::filesystem::path& file, const Model& model, std::optional<double> aspect) {
   ImageSettings image;
   image.background_bottom = {0.75, 0.75, 0.75}, image.background_top = {0.35, 0.42, 0.5};
   image = model.image.value_or(image);
-  const double aspect = static_cast<double>(image.width) / image.height;
+  const double fitted = aspect.value_or(static_cast<double>(image.width) / image.height);
   const Camera camera =
-      model.camera ? *model.camera : frame(bounds_of(model.objects, model.meshes), aspect, {});
+      model.camera ? *model.camera : frame(bounds_of(model.objects, model.meshes), fitted, {});
   json lights = json::array();
   for (const LightDescription& light : model.lights) lights.push_back(to_json(light));
   return {{"camera", to_json(camera)},

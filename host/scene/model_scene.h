@@ -2,14 +2,16 @@
 #pragma once
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "scene/model.h"
 
 namespace sundog {
 
 /// A scene document that places `file` (whose content is `model`): its own camera, lights, image size and
-/// background where it has them; else a camera that frames its bounds, a key light and an ambient one, and a
-/// light background.
-nlohmann::json make_model_scene(const std::filesystem::path& file, const Model& model);
+/// background where it has them; else a camera that frames its bounds in an image of width / height `aspect`
+/// (without one: the document's image), a key light and an ambient one, and a light background.
+nlohmann::json make_model_scene(const std::filesystem::path& file, const Model& model,
+                                std::optional<double> aspect = std::nullopt);
 
 }  // namespace sundog

@@ -1,4 +1,7 @@
 // What a scene file says is what the SceneDescription holds.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -72,19 +75,26 @@ TEST_CASE("camera, image and render settings are read") {
   CHECK(scene.render.tracer == Tracer::compact);
 }
 
-TEST_CASE("a scene without a camera is framed") {
-  const SceneDescription scene =
-      load_scene_text(scene_with(R"("camera": {"fov": 60}, "image": {"width": 100, "height": 200})"));
-  CHECK(scene.camera.fov == 60);
-  CHECK(scene.camera.target == dvec3(0));
-  // The corners of the box around the sphere are seen: their angles from the axis are within the narrower
-  // half angle.
-  const dvec3 view = glm::normalize(scene.camera.target - scene.camera.position);
-  const double half_width = std::atan(std::tan(glm::radians(30.0)) / 2);
-  for (int corner = 0; corner < 8; ++corner) {
-    const dvec3 to =
-        dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1) - scene.camera.position;
-    CHECK(std::acos(glm::dot(view, glm::normalize(to))) <= half_width + 1e-12);
+TEST_CASE("a scene without a camera is framed: all is seen, and it fills the image") {
+  for (const char* size : {R"("width": 100, "height": 200)", R"("width": 300, "height": 100)"}) {
+    const SceneDescription scene =
+        load_scene_text(scene_with(fmt::format(R"("camera": {{"fov": 60}}, "image": {{{}}})", size)));
+    CHECK(scene.camera.fov == 60);
+    CHECK(scene.camera.target == dvec3(0));
+    const dvec3 view = glm::normalize(scene.camera.target - scene.camera.position);
+    const dvec3 right = glm::normalize(glm::cross(view, scene.camera.up)), up = glm::cross(right, view);
+    const double tall = std::tan(glm::radians(30.0)), wide = tall * scene.image.width / scene.image.height;
+    double reach = 0;  // of the corners of the box around the sphere: 1 is the image's edge
+    for (int corner = 0; corner < 8; ++corner) {
+      const dvec3 to =
+          dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1) - scene.camera.position;
+      const double depth = glm::dot(to, view);
+      CHECK(depth > 0);
+      reach = std::max(
+          {reach, std::abs(glm::dot(to, right)) / depth / wide, std::abs(glm::dot(to, up)) / depth / tall});
+    }
+    CHECK(reach < 1);
+    CHECK(reach > 0.9);
   }
 }
 

@@ -91,13 +91,13 @@ TEST_CASE("overrides change what is made up around a model") {
   const TemporaryFolder folder;
   const auto file = folder.write("tetra.ply", tetrahedron_ply);
   const SceneDescription plain = load_scene(file);
-  const SceneDescription changed =
-      load_scene(file, {"/camera/fov=10", "/image/width=33", "/image/background=[1, 0, 0]",
-                        "/lights/1/intensity=7", "/camera/position/1=50", "/render/max_depth=2"});
+  const SceneDescription changed = load_scene(
+      file, {"/camera/fov=10", "/image/width=64", "/image/height=48", "/image/background=[1, 0, 0]",
+             "/lights/1/intensity=7", "/camera/position/1=50", "/render/max_depth=2"});
   CHECK(plain.camera.fov == 45);
   CHECK(changed.camera.fov == 10);
   CHECK(changed.camera.position == dvec3(plain.camera.position.x, 50, plain.camera.position.z));
-  CHECK(changed.image.width == 33);
+  CHECK(changed.image.width == 64);
   CHECK(changed.image.background_top == dvec3(1, 0, 0));
   CHECK(changed.lights[1].intensity == 7);
   CHECK(changed.render.max_depth == 2);
@@ -108,4 +108,19 @@ TEST_CASE("overrides change what is made up around a model") {
     CHECK(error.file == file.string());
     CHECK(error.place == "/camera/fov");
   }
+}
+
+TEST_CASE("a made-up camera fits the image that overrides ask for") {
+  const TemporaryFolder folder;
+  const auto file = folder.write("tetra.ply", tetrahedron_ply);
+  const auto distance = [&](const std::vector<std::string>& overrides) {
+    const Camera camera = load_scene(file, overrides).camera;
+    return glm::length(camera.position - camera.target);
+  };
+  const double plain = distance({});
+  CHECK(distance({"/image/width=100", "/image/height=400"}) > 1.5 * plain);
+  CHECK(distance({"/image/width=1280", "/image/height=960"}) == plain);
+  CHECK_THROWS_AS(distance({"/image/width=none"}), SceneError);
+  CHECK_THROWS_AS(distance({"/image=3"}), SceneError);
+  CHECK_THROWS_AS(distance({"/image/width=-5"}), SceneError);
 }
