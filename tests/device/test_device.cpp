@@ -33,3 +33,14 @@ TEST_CASE("a launch covers exactly the items it was asked for, whatever the loca
       CHECK(device.times().at("square").host_ms > 0);
     }
 }
+
+// Hidden: run under Oclgrind alone, to see that it notices (tests/CMakeLists.txt).
+TEST_CASE("a kernel writes past the end of its buffer", "[.][out-of-bounds]") {
+  Device device(test_devices().front());
+  auto stray =
+      build_text(device, "__kernel void stray(__global float* a) { a[get_global_id(0) + 64] = 1.0f; }")
+          .kernel<Buffer<float>>("stray");
+  const auto buffer = device.make<float>(64);
+  device.run(stray, {.x = 1, .local_x = 1}, buffer);
+  device.finish();
+}
