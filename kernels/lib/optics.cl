@@ -22,10 +22,10 @@ static inline float fresnel_reflectance(float cos_i, float cos_t, float eta) {
 }
 
 // d unit, n unit and against d.
-static inline float3 reflect_direction(float3 d, float3 n) { return unit(d - 2.0f * dot(d, n) * n); }
+static inline float3 reflect_direction(float3 d, float3 n) { return renormalized(d - 2.0f * dot(d, n) * n); }
 
 static inline float3 refract_direction(float3 d, float3 n, float cos_i, float cos_t, float eta) {
-  return unit(d / eta + (cos_i / eta - cos_t) * n);
+  return renormalized(d / eta + (cos_i / eta - cos_t) * n);
 }
 
 #endif
