@@ -42,22 +42,28 @@ static inline void spawn(RayStack* stack, const PathRay* child, __global const S
   }
 }
 
-// Ambient and local reflection of every light in sight: the first terms of I = ka Ia + sum Ij (kd n.l + ks
-// (r.v)^b) Vj.
-static inline float3 local_light(TRACE_PARAMETERS, SHADE_PARAMETERS, const SurfaceInteraction* s,
-                                 const PathRay* ray, u32* counts) {
-  __global const Material* material = materials + s->material;
-  float3 sum = s->ambient * info->ambient.xyz;
-  for (u32 i = 0; i < info->light_count; ++i) {
-    const LightSample light = sample_light(lights + i, s->p);
+// What the rays of a batch met.
+typedef struct BatchSurfaces {
+  Encounter met[BATCH];
+  SurfaceInteraction surface[BATCH];  // where met[i].hit.instance is not NO_INSTANCE
+  float3 own_light[BATCH];            // light that the surface itself sends back along the ray
+} BatchSurfaces;
+
+// Adds what one light does to every surface of the batch: Ij (kd n.l + ks (r.v)^b) Vj.
+static inline void add_light(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, const PathRay* rays,
+                             u32 ray_count, BatchSurfaces* batch, u32* counts) {
+  for (u32 i = 0; i < ray_count; ++i) {
+    if (batch->met[i].hit.instance == NO_INSTANCE) continue;
+    const SurfaceInteraction* s = &batch->surface[i];
+    const LightSample light = sample_light(lights + index, s->p);
     if (!(dot(s->ns, light.wi) > 0.0f)) continue;
-    const float3 possible = light.radiance * local_reflection(material, s, ray->d, light.wi);
+    const float3 possible =
+        light.radiance * local_reflection(materials + s->material, s, rays[i].d, light.wi);
     if (!(greatest(possible) > 0.0f)) continue;
     counts[COUNT_SHADOW] += 1u;
-    sum += possible * visibility(TRACE_ARGUMENTS, SHADE_ARGUMENTS, s->p + s->offset * s->ng, light.wi,
-                                 light.distance, ray->media, counts);
+    batch->own_light[i] += possible * visibility(TRACE_ARGUMENTS, SHADE_ARGUMENTS, s->p + s->offset * s->ng,
+                                                 light.wi, light.distance, rays[i].media, counts);
   }
-  return sum;
 }
 
 // The two children of a surface: kr I(reflected) + kt I(transmitted).
@@ -106,27 +112,38 @@ static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const Surf
   spawn(stack, &child, info, COUNT_REFRACTION, counts);
 }
 
-// Takes one ray to the next surface, adds what it sees there to its pixel and leaves its children on the
+// Takes a batch to the next surfaces, adds what it sees there to the pixels and leaves the children on the
 // stack.
-static inline void trace_path_ray(TRACE_PARAMETERS, SHADE_PARAMETERS, PathRay* ray, RayStack* stack,
-                                  float4* radiance, u32* counts) {
-  const Encounter e = next_surface(TRACE_ARGUMENTS, SHADE_ARGUMENTS, ray->o, ray->d, ray->t_min, ray->t_max,
-                                   &ray->media, counts);
-  ray->throughput *= e.absorbed;
-  if (e.hit.instance == NO_INSTANCE) {
-    radiance[ray->pixel].xyz += ray->throughput * background_along(info, ray->d);
-    return;
+static inline void trace_batch(TRACE_PARAMETERS, SHADE_PARAMETERS, PathRay* rays, u32 ray_count,
+                               RayStack* stack, float4* radiance, u32* counts) {
+  BatchSurfaces batch;
+  for (u32 i = 0; i < ray_count; ++i) {
+    PathRay* ray = &rays[i];
+    batch.met[i] = next_surface(TRACE_ARGUMENTS, SHADE_ARGUMENTS, ray->o, ray->d, ray->t_min, ray->t_max,
+                                &ray->media, counts);
+    ray->throughput *= batch.met[i].absorbed;
+    if (batch.met[i].hit.instance == NO_INSTANCE) continue;
+    batch.surface[i] = interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, ray->o, ray->d, &batch.met[i].hit);
+    batch.own_light[i] = batch.surface[i].ambient * info->ambient.xyz;
   }
-  if (ray->depth == 1u) {
-    counts[COUNT_PRIMARY_HIT] += 1u;
-    radiance[ray->pixel].w = 1.0f;
-  }
-  const SurfaceInteraction s = interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, ray->o, ray->d, &e.hit);
-  radiance[ray->pixel].xyz +=
-      ray->throughput * local_light(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &s, ray, counts);
+  for (u32 light = 0; light < info->light_count; ++light)
+    add_light(TRACE_ARGUMENTS, SHADE_ARGUMENTS, light, rays, ray_count, &batch, counts);
+  for (u32 i = 0; i < ray_count; ++i) {
+    const PathRay* ray = &rays[i];
+    float4* pixel = &radiance[ray->pixel];
+    if (batch.met[i].hit.instance == NO_INSTANCE) {
+      pixel->xyz += ray->throughput * background_along(info, ray->d);
+      continue;
+    }
+    if (ray->depth == 1u) {
+      counts[COUNT_PRIMARY_HIT] += 1u;
+      pixel->w = 1.0f;
+    }
+    pixel->xyz += ray->throughput * batch.own_light[i];
 #if HAS_SECONDARY
-  spawn_children(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &s, &e, ray, stack, counts);
+    spawn_children(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &batch.surface[i], &batch.met[i], ray, stack, counts);
 #endif
+  }
 }
 
 // Empties the stack. radiance[i].xyz receives the light of pixel i of the tile, w whether its camera ray hit
@@ -134,12 +151,11 @@ static inline void trace_path_ray(TRACE_PARAMETERS, SHADE_PARAMETERS, PathRay* r
 static inline void trace_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, RayStack* stack, float4* radiance,
                                  u32* counts) {
   while (stack->count) {
-    PathRay batch[BATCH];
-    const u32 taken = min(stack->count, (u32)BATCH);
-    stack->count -= taken;
-    for (u32 i = 0; i < taken; ++i) batch[i] = stack->rays[stack->count + i];
-    for (u32 i = 0; i < taken; ++i)
-      trace_path_ray(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &batch[i], stack, radiance, counts);
+    PathRay rays[BATCH];
+    const u32 ray_count = min(stack->count, (u32)BATCH);
+    stack->count -= ray_count;
+    for (u32 i = 0; i < ray_count; ++i) rays[i] = stack->rays[stack->count + i];
+    trace_batch(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, ray_count, stack, radiance, counts);
   }
 }
 
