@@ -5,6 +5,7 @@
 
 #include "app/commands.h"
 #include "app/scene_figures.h"
+#include "app/warnings.h"
 #include "scene/load.h"
 
 namespace sundog {
@@ -52,6 +53,7 @@ void print_text(const json& figures) {
 
 int info_command(const InfoCommand& command) {
   const SceneDescription scene = load_scene(command.scene);
+  print_warnings(scene.warnings);
   const CompiledScene flat = compile(scene);
   json figures = scene_figures(scene, flat);
   figures["schema"] = 1;

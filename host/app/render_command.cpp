@@ -7,6 +7,7 @@
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/stats.h"
+#include "app/warnings.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -75,7 +76,7 @@ double write(const RenderCommand& command, const RenderResult& result) {
 }
 
 void warn(const RenderResult& result) {
-  for (const std::string& loss : losses(result.counts)) fmt::print(stderr, "sundog: warning: {}\n", loss);
+  print_warnings(losses(result.counts));
   for (const DeviceReport& report : result.devices)
     for (const std::string& message : report.messages)
       fmt::print(stderr, "sundog: warning: {}{}\n", message,
@@ -108,6 +109,7 @@ int render_command(const RenderCommand& command) {
   check_outputs(command);
   TimeLedger times;
   const SceneDescription scene = timed(times.load, [&] { return load(command); });
+  print_warnings(scene.warnings);
   const CompiledScene flat = timed(times.compile_scene, [&] { return compile(scene); });
   const std::vector<DeviceInfo> devices = select_devices(enumerate_devices(), command.devices);
 
