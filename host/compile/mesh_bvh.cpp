@@ -101,10 +101,10 @@ TriangleBlock make_block(const Mesh& mesh, std::span<const u32> members, u32 fir
   for (std::size_t lane = 0; lane < members.size(); ++lane) {
     const glm::uvec3& triangle = mesh.triangles[members[lane]];
     const glm::vec3& v0 = mesh.positions[triangle.x];
-    const glm::vec3 e1 = mesh.positions[triangle.y] - v0, e2 = mesh.positions[triangle.z] - v0;
+    const glm::vec3 &v1 = mesh.positions[triangle.y], &v2 = mesh.positions[triangle.z];
     block.v0_x[lane] = v0.x, block.v0_y[lane] = v0.y, block.v0_z[lane] = v0.z;
-    block.e1_x[lane] = e1.x, block.e1_y[lane] = e1.y, block.e1_z[lane] = e1.z;
-    block.e2_x[lane] = e2.x, block.e2_y[lane] = e2.y, block.e2_z[lane] = e2.z;
+    block.v1_x[lane] = v1.x, block.v1_y[lane] = v1.y, block.v1_z[lane] = v1.z;
+    block.v2_x[lane] = v2.x, block.v2_y[lane] = v2.y, block.v2_z[lane] = v2.z;
     block.prim[lane] = first_triangle + members[lane];
   }
   return block;

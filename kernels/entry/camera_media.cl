@@ -12,7 +12,7 @@ __kernel void find_camera_media(TRACE_PARAMETERS, SHADE_PARAMETERS, __global u32
   MediaStack entered = 0, holding = 0;
   float t_min = 0.0f;
   for (u32 i = 0; i < 4096u; ++i) {
-    const Hit hit = trace_ray(TRACE_ARGUMENTS, o, d, t_min, INFINITY, false);
+    const Hit hit = trace_closest(TRACE_ARGUMENTS, o, d, t_min, INFINITY);
     if (hit.instance == NO_INSTANCE) break;
     t_min = hit.t;
     __global const Material* material = materials + hit_material(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &hit);

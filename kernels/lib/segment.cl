@@ -37,7 +37,7 @@ static inline Encounter next_surface(TRACE_PARAMETERS, SHADE_PARAMETERS, float3 
   float from = 0.0f;
   for (u32 crossing = 0;; ++crossing) {
     const u32 here = current_medium(media, *stack);
-    e.hit = trace_ray(TRACE_ARGUMENTS, o, d, t_min, t_max, false);
+    e.hit = trace_closest(TRACE_ARGUMENTS, o, d, t_min, t_max);
     e.before = here;
     e.after = here;
     if (e.hit.instance == NO_INSTANCE) {
@@ -67,7 +67,7 @@ static inline Encounter next_surface(TRACE_PARAMETERS, SHADE_PARAMETERS, float3 
     return e;
   }
 #else
-  e.hit = trace_ray(TRACE_ARGUMENTS, o, d, t_min, t_max, false);
+  e.hit = trace_closest(TRACE_ARGUMENTS, o, d, t_min, t_max);
   e.before = 0;
   e.after = 0;
   if (e.hit.instance != NO_INSTANCE) {

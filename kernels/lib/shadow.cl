@@ -14,7 +14,7 @@ static inline float3 visibility(TRACE_PARAMETERS, SHADE_PARAMETERS, float3 o, fl
   float3 through = (float3)(1.0f);
   float t_min = 0.0f, from = 0.0f;
   for (u32 filter = 0; filter < MAX_FILTERS; ++filter) {
-    const Hit hit = trace_ray(TRACE_ARGUMENTS, o, wi, t_min, distance, false);
+    const Hit hit = trace_closest(TRACE_ARGUMENTS, o, wi, t_min, distance);
     const u32 here = current_medium(media, stack);
     const float end = hit.instance == NO_INSTANCE ? distance : hit.t;
     if (hit.instance == NO_INSTANCE) return through * absorb(media, here, end - from);
@@ -42,8 +42,7 @@ static inline float3 visibility(TRACE_PARAMETERS, SHADE_PARAMETERS, float3 o, fl
   counts[COUNT_SHADOW_LIMIT] += 1u;
   return (float3)(0.0f);
 #else
-  const Hit hit = trace_ray(TRACE_ARGUMENTS, o, wi, 0.0f, distance, true);
-  return hit.instance == NO_INSTANCE ? (float3)(1.0f) : (float3)(0.0f);
+  return trace_any(TRACE_ARGUMENTS, o, wi, 0.0f, distance) ? (float3)(0.0f) : (float3)(1.0f);
 #endif
 }
 

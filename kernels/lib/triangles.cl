@@ -1,112 +1,152 @@
-// Eight triangles against one ray (Moeller and Trumbore 1997): no division before a hit, and tests against
-// zero that are free of scale. The result does not depend on the order in which blocks are visited: equal t
-// goes to the lower index.
+// Eight triangles against one ray, watertight (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle
+// Intersection"): corners are moved into a space in which the ray is the z axis, and there the sign of an
+// edge's function is right or the function is zero, so neighbours agree on each edge and a ray cannot pass
+// between them. That needs products and difference rounded one by one: no fma in edge_function. The result
+// does not depend on the order in which blocks are visited: equal t goes to the lower index.
 #ifndef SUNDOG_LIB_TRIANGLES_CL
 #define SUNDOG_LIB_TRIANGLES_CL
 #include "lib/config.h"
+#include "lib/masks.cl"
 #include "shared/bvh.h"
 
-// Bit i of the result is lane i's sign bit.
-static inline u32 lane_mask(int8 lanes) {
-#if defined(__AVX__) && !defined(SUNDOG_PORTABLE)
-  return (u32)__builtin_ia32_movmskps256(as_float8(lanes));
-#else
-  // One byte a lane keeps one bit; the product gathers the eight of them in its top byte.
-  const ulong bits = as_ulong(convert_char8(lanes)) & 0x8040201008040201UL;
-  return (u32)((bits * 0x0101010101010101UL) >> 56);
-#endif
+// A ray as the test sees it: axes permuted so that z is where the direction is largest.
+typedef struct ShearRay {
+  u32 x, y, z;       // float offsets of the permuted axes in a corner of a TriangleBlock
+  float ox, oy, oz;  // origin, permuted
+  float sx, sy;      // the direction's slopes: x/z, y/z
+  float sz;          // -1 / direction z
+} ShearRay;
+
+static inline ShearRay make_shear_ray(float3 o, float3 d) {
+  const float3 size = fabs(d);
+  ShearRay ray;
+  float dx, dy, dz;
+  if (size.x >= size.y && size.x >= size.z) {
+    ray.x = 8u, ray.y = 16u, ray.z = 0u;
+    ray.ox = o.y, ray.oy = o.z, ray.oz = o.x;
+    dx = d.y, dy = d.z, dz = d.x;
+  } else if (size.y >= size.z) {
+    ray.x = 16u, ray.y = 0u, ray.z = 8u;
+    ray.ox = o.z, ray.oy = o.x, ray.oz = o.y;
+    dx = d.z, dy = d.x, dz = d.y;
+  } else {
+    ray.x = 0u, ray.y = 8u, ray.z = 16u;
+    ray.ox = o.x, ray.oy = o.y, ray.oz = o.z;
+    dx = d.x, dy = d.y, dz = d.z;
+  }
+  ray.sz = -1.0f / dz;
+  ray.sx = dx / dz;
+  ray.sy = dy / dz;
+  return ray;
 }
 
-static inline u32 lowest_bit(u32 mask) { return 31u - clz(mask & (0u - mask)); }
-
-// Takes triangle i of the block at t as the hit when it is nearer than *hit, or as near and earlier in the
-// tables.
-static inline void offer_triangle(__global const TriangleBlock* block, u32 i, float t, float u, float v,
-                                  float t_min, u32 instance, Hit* hit) {
-  const u32 prim = block->prim[i];
-  const bool nearer =
-      t < hit->t || (t == hit->t && (hit->instance == NO_INSTANCE || instance < hit->instance ||
-                                     (instance == hit->instance && prim < hit->prim)));
-  if (!(nearer && t > t_min)) return;
-  hit->t = t;
-  hit->u = u;
-  hit->v = v;
-  hit->prim = prim;
-  hit->instance = instance;
-  const float3 ng = cross((float3)(block->e1_x[i], block->e1_y[i], block->e1_z[i]),
-                          (float3)(block->e2_x[i], block->e2_y[i], block->e2_z[i]));
+// The geometric normal of a triangle and its index, for a hit whose prim is still `block * 8 + lane`.
+static inline void finish_triangle(__global const TriangleBlock* restrict blocks, Hit* hit) {
+  __global const TriangleBlock* block = blocks + (hit->prim >> 3);
+  const u32 i = hit->prim & 7u;
+  const float3 v0 = (float3)(block->v0_x[i], block->v0_y[i], block->v0_z[i]);
+  const float3 e1 = (float3)(block->v1_x[i], block->v1_y[i], block->v1_z[i]) - v0;
+  const float3 e2 = (float3)(block->v2_x[i], block->v2_y[i], block->v2_z[i]) - v0;
+  const float3 ng = cross(e1, e2);
+  hit->prim = block->prim[i];
   hit->ng_x = ng.x;
   hit->ng_y = ng.y;
   hit->ng_z = ng.z;
 }
 
+// Whether a triangle at the same t as *hit goes before it.
+static inline bool wins_tie(__global const TriangleBlock* restrict blocks, u32 instance, u32 place,
+                            const Hit* hit) {
+  if (instance != hit->instance) return instance < hit->instance;  // NO_INSTANCE is the greatest
+  return blocks[place >> 3].prim[place & 7u] < blocks[hit->prim >> 3].prim[hit->prim & 7u];
+}
+
+// Takes the triangle at `place` as the hit when it is nearer than *hit, or as near and earlier in the tables.
+static inline void offer_triangle(__global const TriangleBlock* restrict blocks, u32 place, float t, float u,
+                                  float v, u32 instance, Hit* hit) {
+  if (t > hit->t || (t == hit->t && !wins_tie(blocks, instance, place, hit))) return;
+  hit->t = t;
+  hit->u = u;
+  hit->v = v;
+  hit->prim = place;
+  hit->instance = instance;
+}
+
 #if WIDE_VECTORS
-// What the eight lanes have in common with the hit test: sign-corrected, not divided by |det|.
+static inline float8 edge_function(float8 ax, float8 ay, float8 bx, float8 by) { return ax * by - ay * bx; }
+
+// What the eight lanes have in common with the hit test; t, u, v are set where `lanes` is not 0.
 typedef struct BlockTest {
-  float8 u, v, t, det;
-  int8 hit;
+  float8 t, u, v;
+  u32 lanes;
 } BlockTest;
 
-static inline BlockTest test_block(__global const TriangleBlock* block, float3 o, float3 d, float t_min,
+// Lanes hit in (t_min, t_max].
+static inline BlockTest test_block(__global const TriangleBlock* block, const ShearRay* ray, float t_min,
                                    float t_max) {
-  const float8 e1_x = vload8(0, block->e1_x), e1_y = vload8(0, block->e1_y), e1_z = vload8(0, block->e1_z);
-  const float8 e2_x = vload8(0, block->e2_x), e2_y = vload8(0, block->e2_y), e2_z = vload8(0, block->e2_z);
-  const float8 s_x = o.x - vload8(0, block->v0_x), s_y = o.y - vload8(0, block->v0_y),
-               s_z = o.z - vload8(0, block->v0_z);
-  const float8 p_x = fma((float8)(d.y), e2_z, -(d.z * e2_y)), p_y = fma((float8)(d.z), e2_x, -(d.x * e2_z)),
-               p_z = fma((float8)(d.x), e2_y, -(d.y * e2_x));
-  const float8 det = fma(e1_x, p_x, fma(e1_y, p_y, e1_z * p_z));
-  const int8 sign = as_int8(det) & (int)0x80000000;
-  const float8 q_x = fma(s_y, e1_z, -(s_z * e1_y)), q_y = fma(s_z, e1_x, -(s_x * e1_z)),
-               q_z = fma(s_x, e1_y, -(s_y * e1_x));
+  __global const float *vx = block->v0_x + ray->x, *vy = block->v0_x + ray->y, *vz = block->v0_x + ray->z;
+  const float8 z0 = ray->oz - vload8(0, vz), z1 = ray->oz - vload8(3, vz), z2 = ray->oz - vload8(6, vz);
+  const float8 x0 = fma(-(float8)(ray->sx), z0, ray->ox - vload8(0, vx)),
+               x1 = fma(-(float8)(ray->sx), z1, ray->ox - vload8(3, vx)),
+               x2 = fma(-(float8)(ray->sx), z2, ray->ox - vload8(6, vx));
+  const float8 y0 = fma(-(float8)(ray->sy), z0, ray->oy - vload8(0, vy)),
+               y1 = fma(-(float8)(ray->sy), z1, ray->oy - vload8(3, vy)),
+               y2 = fma(-(float8)(ray->sy), z2, ray->oy - vload8(6, vy));
+  const float8 e0 = edge_function(x2, y2, x1, y1), e1 = edge_function(x0, y0, x2, y2),
+               e2 = edge_function(x1, y1, x0, y0);
   BlockTest test;
-  test.det = as_float8(as_int8(det) ^ sign);
-  test.u = as_float8(as_int8(fma(s_x, p_x, fma(s_y, p_y, s_z * p_z))) ^ sign);
-  test.v = as_float8(as_int8(fma((float8)(d.x), q_x, fma((float8)(d.y), q_y, d.z * q_z))) ^ sign);
-  test.t = as_float8(as_int8(fma(e2_x, q_x, fma(e2_y, q_y, e2_z * q_z))) ^ sign);
-  // The margin on t_max keeps every candidate that the exact comparison after the division would take.
-  test.hit = (test.u >= 0.0f) & (test.v >= 0.0f) & (test.u + test.v <= test.det) & (test.det > 0.0f) &
-             (test.t > t_min * test.det) & (test.t <= (t_max * 1.000001f) * test.det);
+  const int8 inside = (least8(least8(e0, e1), e2) >= 0.0f) | (greatest8(greatest8(e0, e1), e2) <= 0.0f);
+  test.lanes = lane_mask(inside);
+  if (!test.lanes) return test;
+  // Without area everything below is NaN, which fails the comparisons. Weights first: no overflow of a
+  // product of three lengths.
+  const float8 scale = 1.0f / (e0 + e1 + e2);
+  const float8 w0 = e0 * scale;
+  test.u = e1 * scale;
+  test.v = e2 * scale;
+  test.t = fma(w0, z0, fma(test.u, z1, test.v * z2)) * ray->sz;
+  test.lanes &= lane_mask((test.t > t_min) & (test.t <= t_max));
   return test;
 }
 
-// Nearest hit of the block in (t_min, hit->t]; updates *hit, whose instance is NO_INSTANCE before the first
-// hit.
-static inline void closest_in_block(__global const TriangleBlock* block, float3 o, float3 d, float t_min,
-                                    u32 instance, Hit* hit) {
-  const BlockTest test = test_block(block, o, d, t_min, hit->t);
-  u32 lanes = lane_mask(test.hit);
+// Nearest hit of the block in (t_min, hit->t]; updates *hit, whose prim becomes the triangle's place (see
+// finish_triangle).
+static inline void closest_in_block(__global const TriangleBlock* restrict blocks, u32 index,
+                                    const ShearRay* ray, float t_min, u32 instance, Hit* hit) {
+  const BlockTest test = test_block(blocks + index, ray, t_min, hit->t);
+  u32 lanes = test.lanes;
   if (!lanes) return;
-  float t[8], det[8], u[8], v[8];
-  vstore8(test.t / test.det, 0, t);
-  vstore8(test.det, 0, det);
+  float t[8], u[8], v[8];
+  vstore8(test.t, 0, t);
   vstore8(test.u, 0, u);
   vstore8(test.v, 0, v);
   while (lanes) {
     const u32 i = lowest_bit(lanes);
     lanes &= lanes - 1u;
-    offer_triangle(block, i, t[i], u[i] / det[i], v[i] / det[i], t_min, instance, hit);
+    offer_triangle(blocks, index * 8u + i, t[i], u[i], v[i], instance, hit);
   }
 }
 #else
-static inline void closest_in_block(__global const TriangleBlock* block, float3 o, float3 d, float t_min,
-                                    u32 instance, Hit* hit) {
+static inline float edge_function(float ax, float ay, float bx, float by) { return ax * by - ay * bx; }
+
+static inline void closest_in_block(__global const TriangleBlock* restrict blocks, u32 index,
+                                    const ShearRay* ray, float t_min, u32 instance, Hit* hit) {
+  __global const float* corners = blocks[index].v0_x;
 #pragma unroll 1
-  for (u32 i = 0; i < 8u && block->prim[i] != NO_PRIM; ++i) {
-    const float3 e1 = (float3)(block->e1_x[i], block->e1_y[i], block->e1_z[i]);
-    const float3 e2 = (float3)(block->e2_x[i], block->e2_y[i], block->e2_z[i]);
-    const float3 s = o - (float3)(block->v0_x[i], block->v0_y[i], block->v0_z[i]);
-    const float3 p =
-        (float3)(fma(d.y, e2.z, -(d.z * e2.y)), fma(d.z, e2.x, -(d.x * e2.z)), fma(d.x, e2.y, -(d.y * e2.x)));
-    const float3 q =
-        (float3)(fma(s.y, e1.z, -(s.z * e1.y)), fma(s.z, e1.x, -(s.x * e1.z)), fma(s.x, e1.y, -(s.y * e1.x)));
-    const float signed_det = fma(e1.x, p.x, fma(e1.y, p.y, e1.z * p.z));
-    const float det = fabs(signed_det), sign = copysign(1.0f, signed_det);
-    const float u = sign * fma(s.x, p.x, fma(s.y, p.y, s.z * p.z)),
-                v = sign * fma(d.x, q.x, fma(d.y, q.y, d.z * q.z));
-    const float t = sign * fma(e2.x, q.x, fma(e2.y, q.y, e2.z * q.z));
-    if (u >= 0.0f && v >= 0.0f && u + v <= det && det > 0.0f)
-      offer_triangle(block, i, t / det, u / det, v / det, t_min, instance, hit);
+  for (u32 i = 0; i < 8u && blocks[index].prim[i] != NO_PRIM; ++i) {
+    __global const float *vx = corners + ray->x + i, *vy = corners + ray->y + i, *vz = corners + ray->z + i;
+    const float z0 = ray->oz - vz[0], z1 = ray->oz - vz[24], z2 = ray->oz - vz[48];
+    const float x0 = fma(-ray->sx, z0, ray->ox - vx[0]), x1 = fma(-ray->sx, z1, ray->ox - vx[24]),
+                x2 = fma(-ray->sx, z2, ray->ox - vx[48]);
+    const float y0 = fma(-ray->sy, z0, ray->oy - vy[0]), y1 = fma(-ray->sy, z1, ray->oy - vy[24]),
+                y2 = fma(-ray->sy, z2, ray->oy - vy[48]);
+    const float e0 = edge_function(x2, y2, x1, y1), e1 = edge_function(x0, y0, x2, y2),
+                e2 = edge_function(x1, y1, x0, y0);
+    if (!((e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) || (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f))) continue;
+    const float scale = 1.0f / (e0 + e1 + e2);
+    const float w0 = e0 * scale, u = e1 * scale, v = e2 * scale;
+    const float t = fma(w0, z0, fma(u, z1, v * z2)) * ray->sz;
+    if (t > t_min && t <= hit->t) offer_triangle(blocks, index * 8u + i, t, u, v, instance, hit);
   }
 }
 #endif

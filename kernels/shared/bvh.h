@@ -26,12 +26,13 @@ typedef struct Bvh8Node {
 } Bvh8Node;
 SUNDOG_SHARED_SIZE(Bvh8Node, 256)
 
-// 320 bytes: eight triangles as first vertex and two edges (Moeller and Trumbore 1997), object space.
-// `prim` indexes TriangleShading; an unused lane holds zeros and NO_PRIM (its determinant is zero: never hit).
+// 320 bytes: eight triangles by their corners, object space. Neighbours hold the same bits of a shared corner, which
+// is what makes the hit test watertight. `prim` indexes TriangleShading; an unused lane holds zeros and NO_PRIM
+// (a triangle without area: never hit).
 typedef struct TriangleBlock {
   float v0_x[8], v0_y[8], v0_z[8];
-  float e1_x[8], e1_y[8], e1_z[8];
-  float e2_x[8], e2_y[8], e2_z[8];
+  float v1_x[8], v1_y[8], v1_z[8];
+  float v2_x[8], v2_y[8], v2_z[8];
   u32 prim[8];
 } TriangleBlock;
 SUNDOG_SHARED_SIZE(TriangleBlock, 320)

@@ -16,8 +16,8 @@ void cross_block(const TriangleBlock& block, const HostRay& ray, std::vector<Hos
   for (std::size_t i = 0; i < 8; ++i) {
     if (block.prim[i] == NO_PRIM) continue;
     const dvec3 v0(block.v0_x[i], block.v0_y[i], block.v0_z[i]);
-    const dvec3 e1(block.e1_x[i], block.e1_y[i], block.e1_z[i]),
-        e2(block.e2_x[i], block.e2_y[i], block.e2_z[i]);
+    const dvec3 e1 = dvec3(block.v1_x[i], block.v1_y[i], block.v1_z[i]) - v0,
+                e2 = dvec3(block.v2_x[i], block.v2_y[i], block.v2_z[i]) - v0;
     const dvec3 p = glm::cross(ray.direction, e2);
     const double det = glm::dot(e1, p);
     if (det == 0) continue;

@@ -47,16 +47,15 @@ void check_node(const CompiledScene& scene, u32 index, const Bounds& outer, std:
       const TriangleBlock& block = scene.blocks.at(item);
       for (std::size_t lane = 0; lane < 8; ++lane) {
         if (block.prim[lane] == NO_PRIM) {
-          CHECK((block.e1_x[lane] == 0 && block.e2_x[lane] == 0));
+          CHECK((block.v0_x[lane] == 0 && block.v1_x[lane] == 0 && block.v2_x[lane] == 0));
           continue;
         }
         CHECK(prims.insert(block.prim[lane]).second);
-        CHECK((block.v0_x[lane] >= box.lower[0] && block.v0_x[lane] <= box.upper[0]));
-        CHECK((block.v0_y[lane] >= box.lower[1] && block.v0_y[lane] <= box.upper[1]));
-        CHECK((block.v0_z[lane] >= box.lower[2] && block.v0_z[lane] <= box.upper[2]));
-        const double slack = 1e-6 * (std::abs(double(box.lower[0])) + std::abs(double(box.upper[0])));
-        const double x1 = double(block.v0_x[lane]) + double(block.e1_x[lane]);
-        CHECK((x1 >= double(box.lower[0]) - slack && x1 <= double(box.upper[0]) + slack));
+        for (const auto* corner : {&block.v0_x, &block.v1_x, &block.v2_x})
+          for (int axis = 0; axis < 3; ++axis) {
+            const float value = corner[axis][lane];  // the corner's x, y and z arrays follow each other
+            CHECK((value >= box.lower[axis] && value <= box.upper[axis]));
+          }
       }
     }
   }

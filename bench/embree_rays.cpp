@@ -1,0 +1,200 @@
+// embree_rays MODEL... : traces the same rays with sundog's tracer and with Embree, in turn, on the same
+// number of threads, and prints millions of rays a second and their ratio by kind of ray. Embree is given
+// what it takes to answer in its own form (a filled RTCRayHit a ray); sundog is charged for launch and wait.
+// Hits are compared before a time counts.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "bench/ray_sets.h"
+#include "bench/ray_tracer.h"
+#include "bench/samples.h"
+#include "embree_peer.h"
+#include "scene/model.h"
+
+using namespace sundog;
+
+namespace {
+
+struct Options {
+  std::vector<std::string> models, kinds;
+  std::vector<float> from{0.25f, 0.2f, 1.0f};
+  std::string device = "cpu", json;
+  unsigned size = 1024, threads = 1, repeats = 7;
+  bool wall = false, packets = false;
+  EmbreeOptions embree;
+};
+
+/// One model's meshes where they lie.
+SceneDescription scene_of_model(const std::string& path) {
+  Model model = load_model(path);
+  SceneDescription scene;
+  scene.file = path;
+  scene.media.resize(1);
+  scene.materials = std::move(model.materials);
+  scene.meshes = std::move(model.meshes);
+  scene.objects = std::move(model.objects);
+  return scene;
+}
+
+struct Sample {
+  double wall = 0, processor = 0;
+};
+
+template <class Work>
+Sample timed(const Work& work) {
+  const double start = processor_seconds();
+  const Stopwatch clock;
+  work();
+  return {clock.seconds(), processor_seconds() - start};
+}
+
+/// Rays for which the two disagree: one hits and the other does not, or the distances differ.
+std::size_t count_mismatches(const std::vector<Hit>& ours, const std::vector<EmbreeHit>& theirs) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    const bool a = ours[i].instance != NO_INSTANCE, b = theirs[i].prim != NO_PRIM;
+    count += a != b || (a && std::abs(ours[i].t - theirs[i].t) > 1e-4f * theirs[i].t);
+  }
+  return count;
+}
+
+class Comparison {
+ public:
+  Comparison(const Options& options, RayTracer& tracer, const EmbreePeer& embree)
+      : options_(options), tracer_(tracer), embree_(embree) {}
+
+  nlohmann::json run(const RaySet& set) {
+    set_ = &set;
+    hits_.resize(set.rays.size());
+    occluded_.resize(set.rays.size());
+    tracer_.upload(set.rays);
+    ours();
+    theirs(EmbreeWidth::single);
+    const std::size_t mismatches = compare();
+    std::vector<double> a, b, c, ratio, packet_ratio;
+    for (unsigned i = 0; i < options_.repeats; ++i) {
+      const double mine = rate([&] { ours(); });
+      const double single = rate([&] { theirs(EmbreeWidth::single); });
+      a.push_back(mine);
+      b.push_back(single);
+      ratio.push_back(mine / single);
+      if (options_.packets) {
+        c.push_back(rate([&] { theirs(EmbreeWidth::packet16); }));
+        packet_ratio.push_back(mine / c.back());
+      }
+    }
+    const Spread r = spread(ratio);
+    fmt::print("  {:<11}{:>9}{:>9.2f}{:>9.2f}{:>8.2f} ({:.2f}..{:.2f})", set.kind, set.rays.size(),
+               spread(a).median, spread(b).median, r.median, r.min, r.max);
+    if (options_.packets) fmt::print("{:>9.2f}{:>7.2f}", spread(c).median, spread(packet_ratio).median);
+    fmt::print("{:>8}\n", mismatches);
+    std::fflush(stdout);
+    return {{"kind", set.kind},
+            {"rays", set.rays.size()},
+            {"sundog_mrays", to_json(spread(a))},
+            {"embree_mrays", to_json(spread(b))},
+            {"embree_packet16_mrays", to_json(spread(c))},
+            {"ratio", to_json(r)},
+            {"ratio_to_packet16", to_json(spread(packet_ratio))},
+            {"mismatches", mismatches}};
+  }
+
+ private:
+  static nlohmann::json to_json(const Spread& s) {
+    return {{"median", s.median}, {"min", s.min}, {"max", s.max}};
+  }
+  void ours() { tracer_.run({set_->any, set_->coherent}); }
+  void theirs(EmbreeWidth width) {
+    if (set_->any)
+      embree_.occluded(set_->rays, occluded_, options_.threads, width, set_->coherent);
+    else
+      embree_.intersect(set_->rays, hits_, options_.threads, width, set_->coherent);
+  }
+  std::size_t compare() {
+    if (!set_->any) return count_mismatches(tracer_.hits(), hits_);
+    const std::vector<u32> mine = tracer_.occluded();
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < mine.size(); ++i) count += mine[i] != occluded_[i];
+    return count;
+  }
+  template <class Work>
+  double rate(const Work& work) const {
+    const Sample sample = timed(work);
+    const double seconds = options_.wall ? sample.wall : sample.processor / options_.threads;
+    return static_cast<double>(set_->rays.size()) / seconds * 1e-6;
+  }
+
+  const Options& options_;
+  RayTracer& tracer_;
+  const EmbreePeer& embree_;
+  const RaySet* set_ = nullptr;
+  std::vector<EmbreeHit> hits_;
+  std::vector<u32> occluded_;
+};
+
+nlohmann::json compare_model(const Options& options, const std::string& path) {
+  const SceneDescription description = scene_of_model(path);
+  const CompiledScene scene = compile(description);
+  DeviceInfo info = select_devices(enumerate_devices(), {options.device}).at(0);
+  info.sub_units = options.threads < info.compute_units ? options.threads : 0;
+  Device device(info);
+  RayTracer tracer(device, scene);
+  const EmbreePeer embree(description, options.embree);
+  fmt::print("{}: {} triangles, {} thread(s) of {}; build {:.0f} ms, Embree {:.0f} ms\n", path,
+             scene.figures.triangles, options.threads, info.label(), scene.figures.build_seconds * 1e3,
+             embree.build_seconds() * 1e3);
+  fmt::print("  {:<11}{:>9}{:>9}{:>9}{:>8}{:>15}\n", "Mrays/s", "rays", "sundog", "Embree", "ratio",
+             "differ");
+  const TraceFunction trace = [&](std::span<const Ray> rays) { return tracer.trace(rays); };
+  const Viewpoint view = framing_viewpoint(scene, {options.from[0], options.from[1], options.from[2]}, trace);
+  std::vector<RaySet> sets{primary_rays(view, options.size)};
+  for (RaySet& set : secondary_rays(scene, view, sets[0], trace)) sets.push_back(std::move(set));
+  nlohmann::json result{{"model", path},
+                        {"triangles", scene.figures.triangles},
+                        {"device", info.label()},
+                        {"driver", info.driver},
+                        {"threads", options.threads},
+                        {"clock", options.wall ? "wall" : "processor"},
+                        {"sets", nlohmann::json::array()}};
+  Comparison comparison(options, tracer, embree);
+  for (const RaySet& set : sets) {
+    const auto& kinds = options.kinds;
+    if (set.rays.empty() || (!kinds.empty() && !std::count(kinds.begin(), kinds.end(), set.kind))) continue;
+    result["sets"].push_back(comparison.run(set));
+  }
+  return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"The same rays through sundog's tracer and through Embree, in turn"};
+  app.add_option("models", options.models, ".obj, .ply, .stl, .gltf")->required();
+  app.add_option("--from", options.from, "direction from the model to the camera")->expected(3);
+  app.add_option("--size", options.size, "pixels along each side of the image");
+  app.add_option("--threads", options.threads, "compute units and Embree threads");
+  app.add_option("--repeats", options.repeats, "pairs of measurements");
+  app.add_option("--device", options.device, "SPEC of the device");
+  app.add_option("--kinds", options.kinds, "kinds of rays; all without it");
+  app.add_option("--json", options.json, "file for the figures");
+  app.add_flag("--wall", options.wall, "wall clock; without it processor time over threads");
+  app.add_flag("--packets", options.packets, "also Embree's 16-wide packets");
+  app.add_flag("--robust", options.embree.robust, "Embree's watertight mode");
+  app.add_flag("--high", options.embree.high_quality, "Embree's high build quality");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    nlohmann::json results = nlohmann::json::array();
+    for (const std::string& model : options.models) results.push_back(compare_model(options, model));
+    if (!options.json.empty()) write_file(options.json, results.dump(2) + "\n");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "embree_rays: {}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,52 @@
+// The rays of a frame by kind, for timing a tracer apart from shading: what the camera, a point light, a
+// diffuse bounce and a glass surface would send. The same rays on every machine: randomness is a hash of the
+// pixel.
+#pragma once
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compile/compiled_scene.h"
+
+namespace sundog {
+
+/// Rays in the order in which a renderer meets them: 4x4 pixels after 4x4 pixels, so 16 in a row belong
+/// together.
+struct RaySet {
+  std::string kind;
+  bool any = false;       // only whether there is a hit matters
+  bool coherent = false;  // 16 in a row run close together
+  std::vector<Ray> rays;
+};
+
+/// Finds the nearest hits of rays: the tracer that makes the secondary rays' origins.
+using TraceFunction = std::function<std::vector<Hit>(std::span<const Ray>)>;
+
+/// A pinhole camera and a point light.
+struct Viewpoint {
+  glm::vec3 eye{0}, forward{0, 0, -1}, right{1, 0, 0}, up{0, 1, 0};  // unit vectors
+  float tangent = 0.5f;                                              // of half the angle of view
+  glm::vec3 light{0};
+};
+
+/// The scene's own camera, and its first point or spot light (else one beside the camera).
+Viewpoint scene_viewpoint(const CompiledScene& scene);
+
+/// A view along -`from` in which 65 % of the rays meet the scene, with a light on the upper right.
+Viewpoint framing_viewpoint(const CompiledScene& scene, const glm::vec3& from, const TraceFunction& trace);
+
+/// size x size pixels (rounded up to a multiple of 16), through their centres.
+RaySet primary_rays(const Viewpoint& view, unsigned size);
+
+/// What follows from the hits of the primary rays; each set may be empty.
+///   shadow      from the point towards the light, where the light is in front of the surface
+///   bounce      cosine-weighted about the normal (towards the camera)
+///   shuffled    the same in random order
+///   reflection  the mirrored camera rays
+///   glass       the rays inside and behind a solid of index 1.5: refracted, then refracted and reflected at
+///               each further surface, up to 5 surfaces along a path
+std::vector<RaySet> secondary_rays(const CompiledScene& scene, const Viewpoint& view, const RaySet& primary,
+                                   const TraceFunction& trace);
+
+}  // namespace sundog

@@ -1,0 +1,73 @@
+// See ray_tracer.h.
+#include "bench/ray_tracer.h"
+
+#include <algorithm>
+
+#include "render/kernel_config.h"
+
+namespace sundog {
+namespace {
+
+std::size_t divide_up(std::size_t a, std::size_t b) { return (a + b - 1) / b; }
+
+}  // namespace
+
+RayTracer::RayTracer(Device& device, const CompiledScene& scene, const KernelDefines& extra)
+    : device_(device), tables_(upload_scene(device, scene)) {
+  KernelConfig config = make_kernel_config(scene, device.info());
+  for (const auto& [name, value] : extra) config.defines[name] = value;
+  batch_ = static_cast<unsigned>(std::stoul(config.defines.at("TILE_W")) *
+                                 std::stoul(config.defines.at("TILE_H")));
+  const Program program = device.build("entry/trace_rays.cl", config.defines);
+  trace_rays_ = program.kernel<Buffer<SceneInfo>, Buffer<Bvh8Node>, Buffer<TriangleBlock>, Buffer<Instance>,
+                               Buffer<Ray>, Buffer<Hit>, u32, u32>("trace_rays");
+  occluded_rays_ = program.kernel<Buffer<SceneInfo>, Buffer<Bvh8Node>, Buffer<TriangleBlock>,
+                                  Buffer<Instance>, Buffer<Ray>, Buffer<u32>, u32, u32>("occluded_rays");
+}
+
+void RayTracer::upload(std::span<const Ray> rays) {
+  rays_ = device_.upload(rays);
+  hits_ = device_.make<Hit>(rays.size());
+  occluded_ = device_.make<u32>(rays.size());
+}
+
+void RayTracer::run(const RayQuery& query) {
+  const std::size_t local = std::min<std::size_t>(device_.info().device_class == DeviceClass::cpu ? 16 : 64,
+                                                  device_.info().max_work_group);
+  const LaunchSize size{divide_up(rays_.count, batch_), 1, local, 1};
+  const auto count = static_cast<u32>(rays_.count);
+  const u32 coherent = query.coherent ? 1 : 0;
+  if (query.any)
+    device_.run(occluded_rays_, size, tables_.info, tables_.nodes, tables_.blocks, tables_.instances, rays_,
+                occluded_, count, coherent);
+  else
+    device_.run(trace_rays_, size, tables_.info, tables_.nodes, tables_.blocks, tables_.instances, rays_,
+                hits_, count, coherent);
+  device_.finish();
+}
+
+std::vector<Hit> RayTracer::hits() {
+  std::vector<Hit> result(hits_.count);
+  device_.read(hits_, std::span<Hit>(result));
+  return result;
+}
+
+std::vector<u32> RayTracer::occluded() {
+  std::vector<u32> result(occluded_.count);
+  device_.read(occluded_, std::span<u32>(result));
+  return result;
+}
+
+std::vector<Hit> RayTracer::trace(std::span<const Ray> rays, bool coherent) {
+  upload(rays);
+  run({false, coherent});
+  return hits();
+}
+
+std::vector<u32> RayTracer::occlusion(std::span<const Ray> rays, bool coherent) {
+  upload(rays);
+  run({true, coherent});
+  return occluded();
+}
+
+}  // namespace sundog

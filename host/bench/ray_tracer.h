@@ -1,0 +1,52 @@
+// A compiled scene on a device, with the kernels that trace given rays: for benchmarks and tests of the
+// tracer alone.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "render/device_scene.h"
+
+namespace sundog {
+
+/// What to find out of a ray, and how. `coherent`: the rays of a work-item (16 in a row) run close together.
+struct RayQuery {
+  bool any = false;  // only whether there is a hit
+  bool coherent = false;
+};
+
+class RayTracer {
+ public:
+  /// Builds the kernels for the scene and the device's class, and uploads the scene. `extra` definitions
+  /// overrule those of the scene. Throws DeviceError, BuildError.
+  RayTracer(Device& device, const CompiledScene& scene, const KernelDefines& extra = {});
+
+  /// The rays that run() traces from now on.
+  void upload(std::span<const Ray> rays);
+
+  /// Traces all rays and waits for the end.
+  void run(const RayQuery& query);
+
+  /// Results of the last run() with any = false.
+  std::vector<Hit> hits();
+  /// Results of the last run() with any = true: 1 where something is hit, else 0.
+  std::vector<u32> occluded();
+
+  std::vector<Hit> trace(std::span<const Ray> rays, bool coherent = false);
+  std::vector<u32> occlusion(std::span<const Ray> rays, bool coherent = false);
+
+ private:
+  template <class Result>
+  using RayKernel = Kernel<Buffer<SceneInfo>, Buffer<Bvh8Node>, Buffer<TriangleBlock>, Buffer<Instance>,
+                           Buffer<Ray>, Buffer<Result>, u32, u32>;
+
+  Device& device_;
+  unsigned batch_ = 1;  // rays a work-item traces
+  DeviceScene tables_;
+  RayKernel<Hit> trace_rays_;
+  RayKernel<u32> occluded_rays_;
+  Buffer<Ray> rays_;
+  Buffer<Hit> hits_;
+  Buffer<u32> occluded_;
+};
+
+}  // namespace sundog

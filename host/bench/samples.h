@@ -1,0 +1,18 @@
+// Repeated measurements and what is quoted of them.
+#pragma once
+#include <vector>
+
+namespace sundog {
+
+/// Median and range of measurements; zeros when there are none.
+struct Spread {
+  double median = 0, min = 0, max = 0;
+};
+
+Spread spread(std::vector<double> values);
+
+/// Seconds of processor time that this process has used, all threads together: on a machine that others use
+/// too it says more than the wall clock.
+double processor_seconds();
+
+}  // namespace sundog

@@ -1,0 +1,150 @@
+// One ray against the eight children of a BVH node. Slabs are widened to be conservative (Ize 2013), so that
+// what is found does not depend on the order of visits.
+#ifndef SUNDOG_LIB_NODES_CL
+#define SUNDOG_LIB_NODES_CL
+#include "lib/config.h"
+#include "lib/masks.cl"
+#include "shared/bvh.h"
+
+// A ray prepared for slab tests: a plane at b is crossed at fma(b, rcp, shift). near_* and far_* are float
+// offsets into Bvh8Node, by the direction's signs.
+typedef struct SlabRay {
+  float3 rcp_near, rcp_far, shift_near, shift_far;
+  u32 near_x, near_y, near_z, far_x, far_y, far_z;
+} SlabRay;
+
+// A component too small to divide by stands for a slope that never crosses a slab within a float's range.
+static inline float safe_reciprocal(float d) { return 1.0f / (fabs(d) < 1e-18f ? copysign(1e-18f, d) : d); }
+
+static inline SlabRay make_slab_ray(float3 o, float3 d) {
+  SlabRay ray;
+  const float3 rcp = (float3)(safe_reciprocal(d.x), safe_reciprocal(d.y), safe_reciprocal(d.z));
+  ray.rcp_near = rcp * 0.9999997f;
+  ray.rcp_far = rcp * 1.0000003f;
+  const float3 near = o * ray.rcp_near, far = o * ray.rcp_far;
+  ray.shift_near = -(near + fabs(near) * 2.4e-7f);
+  ray.shift_far = -(far - fabs(far) * 2.4e-7f);
+  ray.near_x = d.x < 0.0f ? 24u : 0u;
+  ray.near_y = d.y < 0.0f ? 32u : 8u;
+  ray.near_z = d.z < 0.0f ? 40u : 16u;
+  ray.far_x = 24u - ray.near_x;
+  ray.far_y = 40u - ray.near_y;
+  ray.far_z = 56u - ray.near_z;
+  return ray;
+}
+
+// A child's key is the bits of its entry distance (non-negative floats order like integers) with the slot in
+// the lowest three.
+#define KEY_SLOT 7u
+
+#if WIDE_VECTORS
+// The children crossed in [t_min, t_max]; writes their keys.
+static inline u32 cross_children(__global const Bvh8Node* node, const SlabRay* ray, float t_min, float t_max,
+                                 u32* keys) {
+  __global const float* bounds = node->lower_x;
+  const int8 near_x =
+      as_int8(fma(vload8(0, bounds + ray->near_x), (float8)(ray->rcp_near.x), (float8)(ray->shift_near.x)));
+  const int8 near_y =
+      as_int8(fma(vload8(0, bounds + ray->near_y), (float8)(ray->rcp_near.y), (float8)(ray->shift_near.y)));
+  const int8 near_z =
+      as_int8(fma(vload8(0, bounds + ray->near_z), (float8)(ray->rcp_near.z), (float8)(ray->shift_near.z)));
+  const int8 far_x =
+      as_int8(fma(vload8(0, bounds + ray->far_x), (float8)(ray->rcp_far.x), (float8)(ray->shift_far.x)));
+  const int8 far_y =
+      as_int8(fma(vload8(0, bounds + ray->far_y), (float8)(ray->rcp_far.y), (float8)(ray->shift_far.y)));
+  const int8 far_z =
+      as_int8(fma(vload8(0, bounds + ray->far_z), (float8)(ray->rcp_far.z), (float8)(ray->shift_far.z)));
+  const int8 near = max(max(near_x, near_y), max(near_z, (int8)(as_int(t_min))));
+  const int8 far = min(min(far_x, far_y), min(far_z, (int8)(as_int(t_max))));
+  const u32 crossed = lane_mask(near <= far) & node->valid;
+  if (crossed) vstore8((as_uint8(near) & ~KEY_SLOT) | (uint8)(0, 1, 2, 3, 4, 5, 6, 7), 0, keys);
+  return crossed;
+}
+#else
+static inline u32 cross_children(__global const Bvh8Node* node, const SlabRay* ray, float t_min, float t_max,
+                                 u32* keys) {
+  __global const float* bounds = node->lower_x;
+  u32 crossed = 0;
+#pragma unroll 1
+  for (u32 i = 0; i < 8u; ++i) {
+    const int near =
+        max(max(as_int(fma(bounds[ray->near_x + i], ray->rcp_near.x, ray->shift_near.x)),
+                as_int(fma(bounds[ray->near_y + i], ray->rcp_near.y, ray->shift_near.y))),
+            max(as_int(fma(bounds[ray->near_z + i], ray->rcp_near.z, ray->shift_near.z)), as_int(t_min)));
+    const int far =
+        min(min(as_int(fma(bounds[ray->far_x + i], ray->rcp_far.x, ray->shift_far.x)),
+                as_int(fma(bounds[ray->far_y + i], ray->rcp_far.y, ray->shift_far.y))),
+            min(as_int(fma(bounds[ray->far_z + i], ray->rcp_far.z, ray->shift_far.z)), as_int(t_max)));
+    if (near <= far) crossed |= 1u << i;
+    keys[i] = ((u32)near & ~KEY_SLOT) | i;
+  }
+  return crossed & node->valid;
+}
+#endif
+
+static inline void order_pair(u32* a, u32* b) {
+  const u32 low = min(*a, *b), high = max(*a, *b);
+  *a = low;
+  *b = high;
+}
+
+// Pushes the crossed children (at least one), farthest first, and returns the nearest one's word. A key packs
+// the entry distance and the slot.
+static inline u32 push_children(__global const Bvh8Node* node, u32 crossed, const u32* keys, u32* stack,
+                                float* stack_t, u32* top) {
+  u32 first = lowest_bit(crossed);
+  crossed &= crossed - 1u;
+  if (!crossed) return node->child[first];
+  u32 a = keys[first], b = keys[lowest_bit(crossed)];
+  crossed &= crossed - 1u;
+  order_pair(&a, &b);
+  u32 at = *top;
+  if (crossed) {
+    u32 c = keys[lowest_bit(crossed)];
+    crossed &= crossed - 1u;
+    order_pair(&b, &c);
+    order_pair(&a, &b);
+    // Four and more are rare: insertion into what already waits.
+    const u32 base = at;
+    stack[at] = node->child[c & KEY_SLOT];
+    stack_t[at] = as_float(c & ~KEY_SLOT);
+    ++at;
+    while (crossed) {
+      u32 next = keys[lowest_bit(crossed)];
+      crossed &= crossed - 1u;
+      order_pair(&b, &next);
+      order_pair(&a, &b);
+      const float t = as_float(next & ~KEY_SLOT);
+      u32 to = at;
+      while (to > base && stack_t[to - 1u] < t) {
+        stack[to] = stack[to - 1u];
+        stack_t[to] = stack_t[to - 1u];
+        --to;
+      }
+      stack[to] = node->child[next & KEY_SLOT];
+      stack_t[to] = t;
+      ++at;
+    }
+  }
+  stack[at] = node->child[b & KEY_SLOT];
+  stack_t[at] = as_float(b & ~KEY_SLOT);
+  *top = at + 1u;
+  return node->child[a & KEY_SLOT];
+}
+
+// Pushes all crossed children (at least one) but the last and returns that one's word: where any hit will do,
+// an order is not worth its price.
+static inline u32 push_children_unsorted(__global const Bvh8Node* node, u32 crossed, u32* stack, u32* top) {
+  u32 at = *top;
+  u32 word = node->child[lowest_bit(crossed)];
+  crossed &= crossed - 1u;
+  while (crossed) {
+    stack[at++] = word;
+    word = node->child[lowest_bit(crossed)];
+    crossed &= crossed - 1u;
+  }
+  *top = at;
+  return word;
+}
+
+#endif

@@ -1,0 +1,219 @@
+// See embree_peer.h.
+#include "embree_peer.h"
+
+#include <embree3/rtcore.h>
+#include <pmmintrin.h>
+#include <xmmintrin.h>
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "base/clock.h"
+#include "base/error.h"
+
+namespace sundog {
+namespace {
+
+constexpr std::size_t chunk_size = 4096;
+
+/// Calls work(begin, end) for chunks of [0, count) on `threads` threads, denormals as zero, as Embree wants
+/// it.
+template <class Work>
+void in_chunks(std::size_t count, unsigned threads, const Work& work) {
+  std::atomic<std::size_t> next{0};
+  const auto loop = [&] {
+    const unsigned mode = _mm_getcsr();
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+    for (std::size_t begin; (begin = next.fetch_add(chunk_size)) < count;)
+      work(begin, std::min(begin + chunk_size, count));
+    _mm_setcsr(mode);
+  };
+  std::vector<std::thread> others;
+  for (unsigned i = 1; i < threads; ++i) others.emplace_back(loop);
+  loop();
+  for (std::thread& other : others) other.join();
+}
+
+RTCIntersectContext make_context(bool coherent) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  return context;
+}
+
+void set_ray(RTCRay& to, const Ray& from) {
+  to.org_x = from.ox, to.org_y = from.oy, to.org_z = from.oz, to.tnear = from.t_min;
+  to.dir_x = from.dx, to.dir_y = from.dy, to.dir_z = from.dz, to.tfar = from.t_max;
+  to.time = 0, to.mask = ~0u, to.id = 0, to.flags = 0;
+}
+
+/// Sixteen rays from `from` on; lanes beyond `count` are switched off.
+void set_rays(RTCRay16& to, std::span<const Ray> from, int* valid) {
+  for (std::size_t i = 0; i < 16; ++i) {
+    const Ray& ray = from[i < from.size() ? i : 0];
+    valid[i] = i < from.size() ? -1 : 0;
+    to.org_x[i] = ray.ox, to.org_y[i] = ray.oy, to.org_z[i] = ray.oz, to.tnear[i] = ray.t_min;
+    to.dir_x[i] = ray.dx, to.dir_y[i] = ray.dy, to.dir_z[i] = ray.dz, to.tfar[i] = ray.t_max;
+    to.time[i] = 0, to.mask[i] = ~0u, to.id[i] = 0, to.flags[i] = 0;
+  }
+}
+
+RTCGeometry make_mesh(RTCDevice device, const Mesh& mesh, RTCBuildQuality quality) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.positions.size()));
+  std::copy(mesh.positions.begin(), mesh.positions.end(), vertices);
+  auto* triangles = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), mesh.triangles.size()));
+  std::copy(mesh.triangles.begin(), mesh.triangles.end(), triangles);
+  rtcSetGeometryBuildQuality(geometry, quality);
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+}  // namespace
+
+struct EmbreePeer::State {
+  RTCDevice device = rtcNewDevice(nullptr);
+  RTCScene scene = nullptr;
+  std::vector<RTCScene> meshes;
+  bool instanced = false;
+  double seconds = 0;
+
+  ~State() {
+    if (scene) rtcReleaseScene(scene);
+    for (RTCScene mesh : meshes) rtcReleaseScene(mesh);
+    rtcReleaseDevice(device);
+  }
+
+  RTCScene new_scene(const EmbreeOptions& options) const {
+    RTCScene made = rtcNewScene(device);
+    rtcSetSceneBuildQuality(made, options.high_quality ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneFlags(made, options.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    return made;
+  }
+
+  void attach(RTCScene to, RTCGeometry geometry) const {
+    rtcAttachGeometry(to, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+
+  void attach_instance(const Object& object, RTCScene mesh) const {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, mesh);
+    const glm::mat4 transform(object.world_from_object);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &transform);
+    rtcCommitGeometry(geometry);
+    attach(scene, geometry);
+  }
+
+  template <class RTCHitType>
+  u32 object(const RTCHitType& hit) const {
+    return instanced ? hit.instID[0] : hit.geomID;
+  }
+};
+
+EmbreePeer::EmbreePeer(const SceneDescription& scene, const EmbreeOptions& options)
+    : state_(std::make_unique<State>()) {
+  const RTCBuildQuality quality = options.high_quality ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
+  State& state = *state_;
+  for (const Object& object : scene.objects) {
+    if (!std::holds_alternative<MeshShape>(object.shape))
+      throw SceneError(scene.file.string(), object.place,
+                       "an exact solid, which Embree does not know; use a scene of meshes");
+    state.instanced = state.instanced || scene.objects.size() > 1 || object.world_from_object != dmat4(1);
+  }
+  const auto shape = [](const Object& object) {
+    return static_cast<std::size_t>(std::get<MeshShape>(object.shape).mesh);
+  };
+  state.scene = state.new_scene(options);
+  std::vector<RTCGeometry> geometries;
+  for (const Mesh& mesh : scene.meshes) geometries.push_back(make_mesh(state.device, mesh, quality));
+  const Stopwatch clock;
+  if (state.instanced) {
+    for (RTCGeometry geometry : geometries) {
+      state.meshes.push_back(state.new_scene(options));
+      state.attach(state.meshes.back(), geometry);
+      rtcCommitScene(state.meshes.back());
+    }
+    for (const Object& object : scene.objects) state.attach_instance(object, state.meshes[shape(object)]);
+  } else {
+    for (RTCGeometry geometry : geometries) state.attach(state.scene, geometry);
+  }
+  rtcCommitScene(state.scene);
+  state.seconds = clock.seconds();
+}
+
+EmbreePeer::~EmbreePeer() = default;
+
+double EmbreePeer::build_seconds() const { return state_->seconds; }
+
+void EmbreePeer::intersect(std::span<const Ray> rays, std::span<EmbreeHit> hits, unsigned threads,
+                           EmbreeWidth width, bool coherent) const {
+  const auto single = [&](std::size_t begin, std::size_t end) {
+    RTCIntersectContext context = make_context(coherent);
+    for (std::size_t i = begin; i < end; ++i) {
+      RTCRayHit ray;
+      set_ray(ray.ray, rays[i]);
+      ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(state_->scene, &context, &ray);
+      hits[i] = {ray.ray.tfar, ray.hit.u, ray.hit.v, NO_PRIM, NO_INSTANCE};
+      if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+      hits[i].prim = ray.hit.primID;
+      hits[i].object = state_->object(ray.hit);
+    }
+  };
+  const auto packets = [&](std::size_t begin, std::size_t end) {
+    RTCIntersectContext context = make_context(coherent);
+    for (std::size_t i = begin; i < end; i += 16) {
+      RTCRayHit16 packet;
+      alignas(64) int valid[16];
+      set_rays(packet.ray, rays.subspan(i, std::min<std::size_t>(16, end - i)), valid);
+      for (int k = 0; k < 16; ++k) packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect16(valid, state_->scene, &context, &packet);
+      for (std::size_t k = 0; k < 16 && i + k < end; ++k) {
+        const bool hit = packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
+        hits[i + k] = {packet.ray.tfar[k], packet.hit.u[k], packet.hit.v[k],
+                       hit ? packet.hit.primID[k] : NO_PRIM,
+                       !hit                ? NO_INSTANCE
+                       : state_->instanced ? packet.hit.instID[0][k]
+                                           : packet.hit.geomID[k]};
+      }
+    }
+  };
+  if (width == EmbreeWidth::single)
+    in_chunks(rays.size(), threads, single);
+  else
+    in_chunks(rays.size(), threads, packets);
+}
+
+void EmbreePeer::occluded(std::span<const Ray> rays, std::span<u32> result, unsigned threads,
+                          EmbreeWidth width, bool coherent) const {
+  const auto single = [&](std::size_t begin, std::size_t end) {
+    RTCIntersectContext context = make_context(coherent);
+    for (std::size_t i = begin; i < end; ++i) {
+      RTCRay ray;
+      set_ray(ray, rays[i]);
+      rtcOccluded1(state_->scene, &context, &ray);
+      result[i] = ray.tfar < 0;
+    }
+  };
+  const auto packets = [&](std::size_t begin, std::size_t end) {
+    RTCIntersectContext context = make_context(coherent);
+    for (std::size_t i = begin; i < end; i += 16) {
+      RTCRay16 packet;
+      alignas(64) int valid[16];
+      set_rays(packet, rays.subspan(i, std::min<std::size_t>(16, end - i)), valid);
+      rtcOccluded16(valid, state_->scene, &context, &packet);
+      for (std::size_t k = 0; k < 16 && i + k < end; ++k) result[i + k] = packet.tfar[k] < 0;
+    }
+  };
+  if (width == EmbreeWidth::single)
+    in_chunks(rays.size(), threads, single);
+  else
+    in_chunks(rays.size(), threads, packets);
+}
+
+}  // namespace sundog
