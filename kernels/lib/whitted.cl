@@ -114,8 +114,8 @@ static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const Surf
 
 // Takes a batch to the next surfaces, adds what it sees there to the pixels and leaves the children on the
 // stack.
-static inline void trace_batch(TRACE_PARAMETERS, SHADE_PARAMETERS, PathRay* rays, u32 ray_count,
-                               RayStack* stack, float4* radiance, u32* counts) {
+static inline void follow_batch(TRACE_PARAMETERS, SHADE_PARAMETERS, PathRay* rays, u32 ray_count,
+                                RayStack* stack, float4* radiance, u32* counts) {
   BatchSurfaces batch;
   for (u32 i = 0; i < ray_count; ++i) {
     PathRay* ray = &rays[i];
@@ -155,7 +155,7 @@ static inline void trace_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, RayStack* s
     const u32 ray_count = min(stack->count, (u32)BATCH);
     stack->count -= ray_count;
     for (u32 i = 0; i < ray_count; ++i) rays[i] = stack->rays[stack->count + i];
-    trace_batch(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, ray_count, stack, radiance, counts);
+    follow_batch(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, ray_count, stack, radiance, counts);
   }
 }
 
