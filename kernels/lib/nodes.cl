@@ -24,9 +24,10 @@ static inline SlabRay make_slab_ray(float3 o, float3 d) {
   const float3 near = o * ray.rcp_near, far = o * ray.rcp_far;
   ray.shift_near = -(near + fabs(near) * 2.4e-7f);
   ray.shift_far = -(far - fabs(far) * 2.4e-7f);
-  ray.near_x = d.x < 0.0f ? 24u : 0u;
-  ray.near_y = d.y < 0.0f ? 32u : 8u;
-  ray.near_z = d.z < 0.0f ? 40u : 16u;
+  // By the sign of the reciprocal: a component of -0 has a negative one.
+  ray.near_x = rcp.x < 0.0f ? 24u : 0u;
+  ray.near_y = rcp.y < 0.0f ? 32u : 8u;
+  ray.near_z = rcp.z < 0.0f ? 40u : 16u;
   ray.far_x = 24u - ray.near_x;
   ray.far_y = 40u - ray.near_y;
   ray.far_z = 56u - ray.near_z;

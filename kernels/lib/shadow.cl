@@ -33,7 +33,10 @@ static inline float3 visibility(TRACE_PARAMETERS, SHADE_PARAMETERS, float3 o, fl
     }
     through *= material->transmission.xyz;
     if (material->kind == MATERIAL_DIELECTRIC) {
-      const float eta = media[there].absorption.w / media[here].absorption.w;
+      // The straight ray stands for one that bends, whose slant is this one in the rarer medium: a pane at
+      // any angle then loses (1 - F)^2, and nothing to a total reflection that the bent ray would not meet.
+      const float ratio = media[there].absorption.w / media[here].absorption.w;
+      const float eta = fmax(ratio, 1.0f / ratio);
       const float cos_i = fmin(fabs(dot(unit(normal), wi)), 1.0f);
       through *= 1.0f - fresnel_reflectance(cos_i, refracted_cosine(cos_i, eta), eta);
     }
