@@ -183,7 +183,7 @@ class LeafEmitter {
     return code;
   }
 
-  /// Length of the gradient of |z| times |z|: |J^T z|.
+  /// The gradient of |z| times |z|: J^T z.
   std::string gradient_of_length() const {
     std::string out;
     for (int axis = 0; axis < 3; ++axis) {
@@ -194,10 +194,14 @@ class LeafEmitter {
     }
     return out;
   }
-  /// dr from the Jacobian, as the running derivative would be used.
+  /// dr from the Jacobian: the most that lengths grow in any direction.
   std::string derivative_from_jacobian() const {
-    return gradient_of_length() +
-           "    const REAL dr = sqrt(square_length3(g0, g1, g2) / real_max(r2, (REAL)(1e-30f)));\n";
+    std::string rows;
+    for (int i = 0; i < 4; ++i)
+      rows += fmt::format("{}real3({})", i ? ", " : "",
+                          i < size_ ? fmt::format("t{}, t{}, t{}", i * 3, i * 3 + 1, i * 3 + 2)
+                                    : "(REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f)");
+    return fmt::format("    const REAL dr = stretch_of({});\n", rows);
   }
 
   std::string inner_distance() const {
@@ -266,10 +270,8 @@ class LeafEmitter {
   std::string iterated() {
     std::string out = start() + loop();
     std::string gradient = "real3(g0, g1, g2)";
-    if (jacobian_)
-      out += derivative_from_jacobian();
-    else if (variant_ == Variant::sample && escapes())
-      out += gradient_of_length();
+    if (jacobian_) out += derivative_from_jacobian();
+    if (variant_ == Variant::sample && escapes()) out += gradient_of_length();
     out += escapes() ? escape_distance() : folded_distance(&gradient);
     const std::string distance = fmt::format("finite_distance(found * q[{}])", safety_slot);
     if (variant_ != Variant::sample) return out + "    return " + distance + ";\n";

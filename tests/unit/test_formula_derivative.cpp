@@ -63,7 +63,8 @@ std::vector<double> triplex_power(const std::vector<double>& z, double n) {
 TEST_CASE("the Mandelbulb's derivative is the hand-written n r^(n-1) dr + 1 to rounding, for every power") {
   std::mt19937 random(1);
   for (const double n : {2.0, 3.0, 5.0, 8.0, 9.0, 16.0, 2.5, 7.3}) {
-    const FormulaDefinition& d = *find_formula("mandelbulb");
+    FormulaDefinition d = *find_formula("mandelbulb");
+    d.derivative = FormulaDerivative::radial;
     const LoweredFormula f = lower(d, {n});
     REQUIRE_FALSE(f.jacobian);
     for (int i = 0; i < 200; ++i) {
@@ -76,6 +77,41 @@ TEST_CASE("the Mandelbulb's derivative is the hand-written n r^(n-1) dr + 1 to r
       const double wanted = n * std::pow(length(s.z), n - 1) * s.derivative + 1;
       CHECK(std::abs(found - wanted) <= 1e-13 * wanted);
     }
+  }
+}
+
+TEST_CASE(
+    "the Mandelbulb's own derivative is the norm of its map's, never less than any direction's growth") {
+  std::mt19937 random(7);
+  for (const double n : {2.0, 3.0, 8.0, 2.5}) {
+    const LoweredFormula f = lower(*find_formula("mandelbulb"), {n});
+    REQUIRE_FALSE(f.jacobian);
+    double tightest = 1e9;
+    for (int i = 0; i < 300; ++i) {
+      State s;
+      s.z = random_point(random, 3);
+      s.c = {0, 0, 0};
+      s.parameters = {n};
+      const double bound =
+          evaluate(f.map.graph, std::vector<NodeId>{f.map.derivative}, s)[0] - 1;  // less c's
+      const double t = std::acos(s.z[2] / length(s.z));
+      const double wanted =
+          n * std::pow(length(s.z), n - 1) * std::max(1.0, std::abs(std::sin(n * t) / std::sin(t)));
+      CHECK(std::abs(bound - wanted) <= 1e-9 * (1 + wanted));
+      const auto from = triplex_power(s.z, n);
+      for (int k = 0; k < 20; ++k) {
+        const auto step = random_point(random, 3);
+        std::vector<double> moved = s.z;
+        for (std::size_t j = 0; j < 3; ++j) moved[j] += 1e-7 * step[j];
+        auto to = triplex_power(moved, n);
+        for (std::size_t j = 0; j < 3; ++j) to[j] -= from[j];
+        if (std::abs(std::atan2(moved[1], moved[0]) - std::atan2(s.z[1], s.z[0])) > 1)
+          continue;  // across the cut
+        CHECK(length(to) <= bound * 1e-7 * length(step) * (1 + 1e-4) + 1e-14);
+        tightest = std::min(tightest, bound * 1e-7 * length(step) / length(to));
+      }
+    }
+    CHECK(tightest < 1.02);
   }
 }
 

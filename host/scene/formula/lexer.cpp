@@ -94,7 +94,8 @@ class Lexer {
       std::string what = "unexpected character";
       if (c > ' ' && c < 127) what += std::string(" '") + c + "'";
       if (c == '#') what += ": a formula has no directives and includes nothing";
-      if (std::string_view("{}[]").find(c) != std::string_view::npos && c) what += ": a formula has only round brackets";
+      if (std::string_view("{}[]").find(c) != std::string_view::npos && c)
+        what += ": a formula has only round brackets";
       throw FormulaError(place_.line, place_.column, what);
     }
     brackets_ += c == '(' ? 1 : c == ')' ? -1 : 0;

@@ -18,6 +18,7 @@ FormulaDefinition triplex(const char* name, const char* title, const char* sourc
   d.source = source;
   d.map = map;
   d.parameters = {power(exponent)};
+  d.iterations = 16;
   return d;
 }
 
@@ -27,7 +28,6 @@ FormulaDefinition mandelbulb() {
               "D. White and P. Nylander, 2009 (skytopia.com/project/fractal/mandelbulb.html)",
               "z = z ^ power + c", 8);
   d.bounds = {-1.25, -1.25, -1.25, 1.25, 1.25, 1.25};
-  d.safety = 0.9;
   return d;
 }
 
@@ -49,7 +49,7 @@ FormulaDefinition julia() {
   d.start = "z = quat(p, slice); c = seed";
   d.parameters.push_back({"seed", {-0.2, 0.8, 0, 0}, -2, 2, false, "c = x + y i + z j + w k"});
   d.parameters.push_back(slice);
-  d.iterations = 11;
+  d.iterations = 32;
   return d;
 }
 
@@ -61,7 +61,7 @@ FormulaDefinition quaternion_mandelbrot() {
   d.quaternion = true;
   d.start = "z = quat(p, slice)";
   d.parameters.push_back(slice);
-  d.iterations = 16;
+  d.iterations = 32;
   d.bounds = {-2.1, -1.5, -1.5, 1.2, 1.5, 1.5};
   return d;
 }
@@ -71,7 +71,7 @@ FormulaDefinition tricorn() {
       triplex("tricorn", "Tricorn bulb: the conjugate's triplex power",
               "after W. Crowe et al., On the structure of the Mandelbar set, Nonlinearity 2, 1989",
               "z = (z * vec3(1, -1, 1)) ^ power + c", 2);
-  d.iterations = 12;
+  d.iterations = 24;
   d.bounds = {-2.2, -2.2, -2.2, 2.2, 2.2, 2.2};
   return d;
 }
@@ -81,7 +81,7 @@ FormulaDefinition burning_ship() {
       triplex("burning_ship", "Burning Ship bulb: absolute values before the triplex power",
               "after M. Michelitsch and O. Roessler, The Burning Ship and its quasi-Julia sets, 1992",
               "z = abs(z) ^ power + c", 2);
-  d.iterations = 12;
+  d.iterations = 24;
   d.bounds = {-2.2, -2.2, -2.2, 2.2, 2.2, 2.2};
   return d;
 }
@@ -94,7 +94,7 @@ FormulaDefinition bicomplex() {
   d.quaternion = true;
   d.start = "z = quat(p, slice)";
   d.parameters = {slice};
-  d.iterations = 16;
+  d.iterations = 32;
   d.bounds = {-2.1, -1.5, -1.5, 1.2, 1.5, 1.5};
   return d;
 }
@@ -110,7 +110,7 @@ FormulaDefinition mandelbox() {
                   {"fold_limit", {1}, 0.1, 4, false, "half size of the box fold"},
                   {"least_radius", {0.5}, 0.01, 4, false, "of the ball fold: linear inside"},
                   {"fixed_radius", {1}, 0.01, 4, false, "of the ball fold: inversion inside"}};
-  d.iterations = 14;
+  d.iterations = 32;
   d.bailout = 1000;
   d.inside_radius = 1000;
   d.bounds = {-6.1, -6.1, -6.1, 6.1, 6.1, 6.1};
@@ -132,7 +132,7 @@ FormulaDefinition amazing_surf() {
       {"fold_y", {1}, 0.1, 4, false, ""},         {"least_radius", {0.5}, 0.01, 4, false, ""},
       {"fixed_radius", {1}, 0.01, 4, false, ""},  {"axis", {1, 1, 0}, -1, 1, false, "of the turn; not zero"},
       {"angle", {0}, -180, 180, false, "degrees"}};
-  d.iterations = 12;
+  d.iterations = 32;
   d.bailout = 1000;
   d.inside_radius = 1000;
   d.bounds = {-4, -4, -4, 4, 4, 4};

@@ -138,6 +138,7 @@ FormulaDefinition pseudo_kleinian() {
       {"radius", {1}, 0.1, 4, false, "of the inversion"},
       {"thickness", {0.01}, 0, 0.2, false, "half thickness of the sheets, before they are scaled"}};
   d.bailout = 0;
+  d.safety = 0.6;
   d.bounds = {-1.5, -1.5, -1.5, 1.5, 1.5, 1.5};
   return d;
 }

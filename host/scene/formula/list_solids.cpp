@@ -49,7 +49,7 @@ FormulaDefinition torus_knot() {
              length("tube", 0.15),
              {"windings", {2}, 1, 16, true, "about the axis"},
              {"turns", {3}, 1, 16, true, "about the circle in it"}});
-  d.safety = 0.5;
+  d.safety = 0.45;
   d.bounds = {-1.6, -0.6, -1.6, 1.6, 0.6, 1.6};
   return d;
 }
@@ -61,7 +61,7 @@ FormulaDefinition heart() {
             "q * q * q - (p.x * p.x + 0.1125 * p.z * p.z) * p.y * p.y * p.y",
             {});
   d.normalize = true;
-  d.safety = 0.4;
+  d.safety = 0.35;
   return d;
 }
 
@@ -70,7 +70,7 @@ FormulaDefinition ellipsoid() {
                               "r0 = length(p / size); g = length(p / (size * size))\nr0 < 1e-3 ? "
                               "-min(min(size.x, size.y), size.z) : r0 * (r0 - 1) / g",
                               {{"size", {1, 0.6, 0.4}, 0.01, 100, false, "half axes"}});
-  d.safety = 0.6;
+  d.safety = 0.8;
   return d;
 }
 
@@ -101,7 +101,7 @@ std::vector<FormulaDefinition> solid_formulas() {
       periodic("schwarz_p", "Schwarz P, a periodic minimal surface, as a wall", "(cos(x) + cos(y) + cos(z))",
                1.7320509),
       periodic("schwarz_d", "Schwarz D (diamond), a periodic minimal surface, as a wall",
-               "(cos(x) * cos(y) * cos(z) - sin(x) * sin(y) * sin(z))", 1.0),
+               "(cos(x) * cos(y) * cos(z) - sin(x) * sin(y) * sin(z))", 1.25),
       torus_knot(),
       heart(),
       solid("blobs", "Three spheres in a smooth union", quilez,

@@ -20,6 +20,7 @@ class Lowering {
  public:
   Lowering(Graph& graph, const FormulaDefinition& definition, const std::vector<double>& values)
       : v(graph), g(graph), parameter_values_(values) {
+    v.radial = definition.derivative == FormulaDerivative::radial;
     int slot = 0;
     for (const FormulaParameter& parameter : definition.parameters) {
       Value p;
@@ -357,7 +358,9 @@ LoweredFormula lower(const FormulaDefinition& definition, const std::vector<doub
   section("map", lower_map);
   if (definition.kind == FormulaKind::folded) section("distance", lower_finish);
   const bool running = out.map.derivative != no_node && out.start.derivative != no_node;
-  if (definition.derivative == FormulaDerivative::running && !running)
+  const bool wanted = definition.derivative == FormulaDerivative::running ||
+                      definition.derivative == FormulaDerivative::radial;
+  if (wanted && !running)
     throw FormulaError(0, 0, "the map has no tight running derivative; use \"derivative\": \"jacobian\"");
   out.jacobian = definition.derivative == FormulaDerivative::jacobian || !running;
   return out;

@@ -2,10 +2,11 @@
 //
 // The derivative comes in two forms (definition.h). The running one is a dual number that carries, with every
 // value v(p), a bound on |v(p + h) - v(p)| / |h|: rotations, reflections and translations keep it, a scale
-// multiplies it, z^n turns it into n |z|^(n-1) times it (exact along z; the rule every Mandelbulb program
-// uses), sums add it. It is used where no rule had to give away more than that (see Value::tight). The
-// Jacobian is the exact derivative by forward-mode differentiation of the scalar graph; the estimate divides
-// by the length of the gradient of |z|.
+// multiplies it, a power z^n turns it into the norm of its derivative times it (n r^(n-1) for quaternions, n
+// r^(n-1) max(1, |sin nt / sin t|) for triplex numbers at the angle t from their axis), sums add it. It is
+// used where no rule had to give away more than that (see Value::tight). The Jacobian is the exact derivative
+// by forward-mode differentiation of the scalar graph; the estimate divides by the most that it stretches any
+// direction.
 #pragma once
 #include <string>
 #include <vector>

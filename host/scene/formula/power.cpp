@@ -60,7 +60,7 @@ class Powers {
     const Pair polar = imaginary(v.z(), square, rho_square, n);
     const Pair around = turned(g.mul(v.x(), inverse_rho), g.mul(v.y(), inverse_rho), n);
     const NodeId rho = g.mul(g.mul(rho_square, inverse_rho), polar.b);
-    Value r = grown(v, square, n);
+    Value r = grown(v, square, n, polar.b);
     r.part = {g.mul(rho, around.a), g.mul(rho, around.b), polar.a, no_node};
     return r;
   }
@@ -72,7 +72,9 @@ class Powers {
     const NodeId f = g.mul(n.x(), g.apply(Op::arc_tangent, v.y(), v.x()));
     const NodeId grown_r = g.apply(Op::power, r, n.x());
     const NodeId rho = g.mul(grown_r, g.apply(Op::sine, t));
-    Value result = grown(v, r, n);
+    const NodeId axis_distance =
+        g.sqrt(g.max(g.add(g.mul(v.x(), v.x()), g.mul(v.y(), v.y())), g.constant(1e-30)));
+    Value result = grown(v, r, n, g.apply(Op::divide, g.apply(Op::absolute, rho), axis_distance));
     result.part = {g.mul(rho, g.apply(Op::cosine, f)), g.mul(rho, g.apply(Op::sine, f)),
                    g.mul(grown_r, g.apply(Op::cosine, t)), no_node};
     return result;
@@ -103,17 +105,23 @@ class Powers {
     return g.add(g.mul(v.y(), v.y()), g.add(g.mul(v.z(), v.z()), g.mul(v.w(), v.w())));
   }
 
-  /// A value without parts whose slope is n |v|^(n-1) times v's.
-  Value grown(const Value& v, NodeId square, int n) {
+  /// A value without parts whose slope is n |v|^(n-1) times v's. Around the axis a triplex power stretches by
+  /// n |sin nt / sin t| |v|^(n-1) = n `around`, which is more near the poles.
+  Value grown(const Value& v, NodeId square, int n, NodeId around = no_node) {
     Value r = v_.isometry(v);
-    if (v.varies && v.tight) r.slope = g.mul(g.scaled(length_power(square, n - 1), n), v.slope);
+    if (!v.varies || !v.tight) return r;
+    NodeId stretch = length_power(square, n - 1);
+    if (around != no_node && !v_.radial) stretch = g.max(stretch, g.apply(Op::absolute, around));
+    r.slope = g.mul(g.scaled(stretch, n), v.slope);
     return r;
   }
-  Value grown(const Value& v, NodeId length, const Value& n) {
+  Value grown(const Value& v, NodeId length, const Value& n, NodeId around = no_node) {
     Value r = v_.isometry(v);
     r.tight &= !n.varies;
-    if (v.varies && r.tight)
-      r.slope = g.mul(g.mul(n.x(), g.apply(Op::power, length, g.sub(n.x(), g.constant(1)))), v.slope);
+    if (!v.varies || !r.tight) return r;
+    NodeId stretch = g.apply(Op::power, length, g.sub(n.x(), g.constant(1)));
+    if (around != no_node && !v_.radial) stretch = g.max(stretch, around);
+    r.slope = g.mul(g.mul(g.apply(Op::absolute, n.x()), stretch), v.slope);
     return r;
   }
 

@@ -71,6 +71,7 @@ class Values {
   Value clamped(const Value& v, const Value& low, const Value& high);
 
   Graph& g;
+  bool radial = false;  // a triplex power's slope is the one along z alone
 
  private:
   friend class Powers;
