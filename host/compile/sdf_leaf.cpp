@@ -14,7 +14,7 @@ namespace in = formula_input;
 
 // The table of a leaf: these, then the parameters of its steps in order.
 constexpr int iterations_slot = 0, bailout_slot = 1, inside_slot = 2, safety_slot = 3,
-              first_parameter_slot = 4;
+              inside_safety_slot = 4, first_parameter_slot = 5;
 
 enum class Variant { distance, two_sided, sample };
 
@@ -249,8 +249,9 @@ class LeafEmitter {
                ? "    const REAL outer = 0.25f * real_log(real_max(capped, (REAL)(1.0f))) * sqrt(capped) / "
                  "real_max(dr, (REAL)(1e-30f));\n"
                : "    const REAL outer = sqrt(capped) / real_max(dr, (REAL)(1e-30f));\n";
-    const std::string inside =
-        variant_ == Variant::two_sided ? "-real_max(inner, (REAL)(0.0f))" : "(REAL)(0.0f)";
+    const std::string inside = variant_ == Variant::two_sided
+                                   ? fmt::format("-real_max(inner, (REAL)(0.0f)) * q[{}]", inside_safety_slot)
+                                   : "(REAL)(0.0f)";
     return out + "    const REAL found = select(outer, " + inside + ", alive);\n";
   }
 
@@ -317,7 +318,8 @@ LeafCode leaf_code(const FormulaField& field) {
   for (const Variant variant : {Variant::distance, Variant::two_sided, Variant::sample})
     code.functions += LeafEmitter(field, variant).function();
   const double inside = std::min(field.bailout, field.steps.back().definition.inside_radius);
-  for (const double value : {double(field.iterations), field.bailout * field.bailout, inside, field.safety})
+  for (const double value : {double(field.iterations), field.bailout * field.bailout, inside, field.safety,
+                             field.steps.back().definition.inside_safety})
     code.parameters.push_back(static_cast<float>(value));
   for (const FormulaStep& step : field.steps)
     for (const double value : step.values) code.parameters.push_back(static_cast<float>(value));

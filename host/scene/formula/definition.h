@@ -45,7 +45,10 @@ struct FormulaDefinition {
   int iterations = 8;        // 1..max_iterations
   double bailout = 16;       // radius at which an orbit has escaped, 0: never
   double inside_radius = 2;  // escape: an orbit within it may still be inside (at most the bailout)
-  double safety = 1;         // (0, 1]: the estimate times this is a bound, as measured by the tests
+  // escape: share of the depth's estimate that is taken. No proven bound: orbits inside grow faster than
+  // their derivative foretells.
+  double inside_safety = 0.1;
+  double safety = 1;  // (0, 1]: the estimate times this is a bound, as measured by the tests
   std::array<double, 6> bounds{-1.5, -1.5, -1.5, 1.5, 1.5, 1.5};  // default interval: lower, upper
   bool smooth = false;  // a surface without detail at every scale: hits are refined
   static constexpr int max_iterations = 1000;

@@ -4,6 +4,7 @@
 
 #include "scene/formula/functions.h"
 #include "scene/formula/list_parts.h"
+#include "scene/formula/lower.h"
 #include "scene/formula/syntax.h"
 
 namespace sundog {
@@ -43,6 +44,15 @@ const FormulaDefinition* find_formula(const std::string& name) {
   for (const FormulaDefinition& d : formula_list())
     if (d.name == name) return &d;
   return nullptr;
+}
+
+SdfDescription default_field(const FormulaDefinition& d) {
+  SdfDescription field;
+  field.name = d.name;
+  field.root.formula = {{{d, default_values(d), 1}}, d.iterations, d.bailout, d.safety};
+  field.lower = {d.bounds[0], d.bounds[1], d.bounds[2]};
+  field.upper = {d.bounds[3], d.bounds[4], d.bounds[5]};
+  return field;
 }
 
 std::string formula_list_text() {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/formula/definition.h"
+#include "scene/formula/sdf.h"
 
 namespace sundog {
 
@@ -12,6 +12,9 @@ const std::vector<FormulaDefinition>& formula_list();
 
 /// nullptr when there is no such name.
 const FormulaDefinition* find_formula(const std::string& name);
+
+/// One formula with its default parameters, iterations and bailout, in its default interval.
+SdfDescription default_field(const FormulaDefinition& definition);
 
 /// The text of `sundog formulas`: every surface with its parameters, defaults, ranges and source; then the
 /// language.

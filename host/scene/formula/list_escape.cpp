@@ -49,7 +49,7 @@ FormulaDefinition julia() {
   d.start = "z = quat(p, slice); c = seed";
   d.parameters.push_back({"seed", {-0.2, 0.8, 0, 0}, -2, 2, false, "c = x + y i + z j + w k"});
   d.parameters.push_back(slice);
-  d.iterations = 32;
+  d.iterations = 100;
   return d;
 }
 
@@ -61,7 +61,7 @@ FormulaDefinition quaternion_mandelbrot() {
   d.quaternion = true;
   d.start = "z = quat(p, slice)";
   d.parameters.push_back(slice);
-  d.iterations = 32;
+  d.iterations = 100;
   d.bounds = {-2.1, -1.5, -1.5, 1.2, 1.5, 1.5};
   return d;
 }
@@ -94,7 +94,7 @@ FormulaDefinition bicomplex() {
   d.quaternion = true;
   d.start = "z = quat(p, slice)";
   d.parameters = {slice};
-  d.iterations = 32;
+  d.iterations = 100;
   d.bounds = {-2.1, -1.5, -1.5, 1.2, 1.5, 1.5};
   return d;
 }
@@ -112,7 +112,9 @@ FormulaDefinition mandelbox() {
                   {"fixed_radius", {1}, 0.01, 4, false, "of the ball fold: inversion inside"}};
   d.iterations = 32;
   d.bailout = 1000;
+  d.safety = 0.95;
   d.inside_radius = 1000;
+  d.inside_safety = 1;
   d.bounds = {-6.1, -6.1, -6.1, 6.1, 6.1, 6.1};
   return d;
 }
@@ -135,6 +137,7 @@ FormulaDefinition amazing_surf() {
   d.iterations = 32;
   d.bailout = 1000;
   d.inside_radius = 1000;
+  d.inside_safety = 1;
   d.bounds = {-4, -4, -4, 4, 4, 4};
   return d;
 }

@@ -40,14 +40,42 @@ static inline REAL march_estimate(u32 field, REAL3 p, MASK active, MASK inside,
   return sdf_distance(field, p, active, q);
 }
 
-// A few plain steps more, which bring a closed form from within its threshold to its surface.
-static inline REAL refine_hit(SDF_PARAMETERS, u32 field, const MarchRays* rays, REAL t, REAL inverse_length,
-                              MASK hit) {
-  const float safety = sdf_fields[field].safety;
-  for (int i = 0; i < 4; ++i) {
-    const REAL3 p = along3(rays->origin, t, rays->direction);
-    const REAL f = march_estimate(field, p, hit, rays->inside, sdf_parameters) * safety;
-    t = select(t, fma(f, inverse_length, t), hit);
+// From within the threshold of a closed form to its surface: Newton's method along the ray, the slope taken
+// from the last two points, never further from the hit than a few thresholds. A ray that only grazes the
+// surface stays where it comes nearest.
+static inline REAL refine_hit(SDF_PARAMETERS, u32 field, const MarchRays* rays, REAL t, REAL inverse_speed,
+                              REAL threshold, MASK hit) {
+  const REAL reach = 64.0f * threshold * inverse_speed, low = t - reach, high = t + reach;
+  REAL before = t, f_before = march_estimate(field, along3(rays->origin, t, rays->direction), hit,
+                                             rays->inside, sdf_parameters);
+  REAL best = t, f_best = f_before;
+  t = fma(f_before, inverse_speed, t);
+  for (int i = 0; i < 5; ++i) {
+    const REAL f =
+        march_estimate(field, along3(rays->origin, t, rays->direction), hit, rays->inside, sdf_parameters);
+    const MASK nearer = MASK_OF(fabs(f) < fabs(f_best));
+    best = select(best, t, nearer);
+    f_best = select(f_best, f, nearer);
+    const REAL slope = (f - f_before) / nonzero(t - before);
+    const REAL next = fmin(fmax(t - f / nonzero(slope), low), high);
+    const MASK falling = MASK_OF(slope < 0.0f);
+    before = select(before, t, falling);
+    f_before = select(f_before, f, falling);
+    t = select(t, next, falling);
+  }
+  return select(rays->t_max, best, MASK_OF(best < rays->t_max));
+}
+
+// A ray inside that has come out since `before`: halves the way between until the surface is found.
+static inline REAL bisect_exit(SDF_PARAMETERS, u32 field, const MarchRays* rays, REAL before, REAL t,
+                               MASK lanes) {
+  for (int i = 0; i < 12; ++i) {
+    const REAL middle = 0.5f * (before + t);
+    const REAL f = march_estimate(field, along3(rays->origin, middle, rays->direction), lanes, rays->inside,
+                                  sdf_parameters);
+    const MASK out = MASK_OF(f < 0.0f);
+    t = select(t, middle, out);
+    before = select(middle, before, out);
   }
   return t;
 }
@@ -65,6 +93,10 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   MASK active = rays->active & MASK_OF(first <= last), leaving = rays->leaving, relaxed = NO_LANES;
   REAL t = first;
   REAL previous = (REAL)(0.0f), step = (REAL)(0.0f), slope = (REAL)(-1.0f);
+#if SDF_TWO_SIDED
+  MASK overshot = NO_LANES;
+  REAL inside_at = first;  // the last point that was still inside
+#endif
   for (u32 i = 0; i < field->step_limit && any(active); ++i) {
     const REAL3 p = along3(rays->origin, t, rays->direction);
     const REAL f = march_estimate(index, p, active, rays->inside, sdf_parameters) * field->safety;
@@ -83,6 +115,10 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
     hits.hit |= arrived;
     hits.t = select(hits.t, t, arrived);
     hits.threshold = select(hits.threshold, threshold, active);
+#if SDF_TWO_SIDED
+    overshot |= arrived & rays->inside & MASK_OF(f < 0.0f);
+    inside_at = select(inside_at, t, forward & ~arrived);
+#endif
     if (i == 0) hits.cut = arrived & from_cut & ~rays->inside & MASK_OF(f <= 0.0f);
 
     // Along a plane the estimate changes linearly: the longest step whose spheres still touch solves
@@ -107,10 +143,16 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   hits.limited = active;
   hits.t = select(select(hits.t, t, active), last, hits.cut & ~hits.hit);
   hits.hit |= active | hits.cut;
-  if (field->flags & SDF_SMOOTH)
-    hits.t =
-        select(hits.t, refine_hit(SDF_ARGUMENTS, index, rays, hits.t, inverse_speed, hits.hit & ~hits.cut),
-               hits.hit & ~hits.cut);
+#if SDF_TWO_SIDED  // depths are no proven bound in every fractal (definition.h)
+  if (any(overshot))
+    hits.t = select(hits.t, bisect_exit(SDF_ARGUMENTS, index, rays, inside_at, hits.t, overshot), overshot);
+#endif
+  if (field->flags & SDF_SMOOTH) {
+    const MASK on_surface = hits.hit & ~hits.cut;
+    const REAL refined =
+        refine_hit(SDF_ARGUMENTS, index, rays, hits.t, inverse_speed, hits.threshold, on_surface);
+    hits.t = select(hits.t, refined, on_surface);
+  }
   return hits;
 }
 
