@@ -9,6 +9,8 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <type_traits>
+#include <typeinfo>
 #include <vector>
 
 #include "device/devices.h"
@@ -62,22 +64,37 @@ struct Kernel {
   std::shared_ptr<ProgramRecord> program;
 };
 
-/// A built kernel file. Throws BuildError for a kernel that is not in it.
+/// A type's name as kernels spell it: "u32", "float4", "Ray"; with a * for a buffer.
+std::string kernel_type_name(const std::type_info& type);
+template <class T>
+struct ArgumentType {
+  static std::string name() { return kernel_type_name(typeid(T)); }
+};
+template <class T>
+struct ArgumentType<Buffer<T>> {
+  static std::string name() { return kernel_type_name(typeid(T)) + "*"; }
+};
+
+/// A built kernel file.
 class Program {
  public:
   Program() = default;
   explicit Program(std::shared_ptr<ProgramRecord> record) : record_(std::move(record)) {}
+
+  /// Throws BuildError for a kernel that is not in the file, or whose parameters are not Args. No Args: they
+  /// are not compared.
   template <class... Args>
   Kernel<Args...> kernel(const std::string& name) const {
-    return {make_kernel(name), name, record_};
+    return {make_kernel(name, {ArgumentType<Args>::name()...}), name, record_};
   }
 
  private:
-  cl::Kernel make_kernel(const std::string& name) const;
+  cl::Kernel make_kernel(const std::string& name, const std::vector<std::string>& host_types) const;
   std::shared_ptr<ProgramRecord> record_;
 };
 
-/// The types of a kernel's parameters as its source spells them: {"Ray*", "u32"}.
+/// The types of a kernel's parameters as its source spells them: {"Ray*", "u32"}; none where the driver does
+/// not tell.
 std::vector<std::string> argument_types(const cl::Kernel& kernel);
 
 /// Not shared between threads: one host thread a device.

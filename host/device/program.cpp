@@ -152,29 +152,4 @@ void save_program(ProgramRecord& record) {
   record.stored = true;
 }
 
-cl::Kernel Program::make_kernel(const std::string& name) const {
-  cl_int status = CL_INVALID_PROGRAM;
-  if (record_) {
-    cl::Kernel kernel(record_->program, name.c_str(), &status);
-    if (status == CL_SUCCESS) return kernel;
-  }
-  throw BuildError(fmt::format("{} has no kernel {}: {}", record_ ? record_->entry : "an empty program", name,
-                               cl_status_name(status)),
-                   "");
-}
-
-std::vector<std::string> argument_types(const cl::Kernel& kernel) {
-  std::vector<std::string> types;
-  for (cl_uint i = 0; i < kernel.getInfo<CL_KERNEL_NUM_ARGS>(); ++i) {
-    cl_int status = CL_SUCCESS;
-    std::string type = kernel.getArgInfo<CL_KERNEL_ARG_TYPE_NAME>(i, &status);
-    if (status != CL_SUCCESS)
-      throw DeviceError(fmt::format("CL_KERNEL_ARG_TYPE_NAME of argument {}: {}", i, cl_status_name(status)),
-                        status);
-    while (!type.empty() && type.back() == '\0') type.pop_back();
-    types.push_back(std::move(type));
-  }
-  return types;
-}
-
 }  // namespace sundog

@@ -1,6 +1,9 @@
 // Devices at work: launches, memory, failures, times.
+#include <ctime>
+
 #include "base/error.h"
 #include "catch.h"
+#include "device/cl_status.h"
 #include "devices.h"
 
 using namespace sundog;
@@ -32,6 +35,95 @@ TEST_CASE("a launch covers exactly the items it was asked for, whatever the loca
       CHECK(device.times().at("square").launches == 4);
       CHECK(device.times().at("square").host_ms > 0);
     }
+}
+
+TEST_CASE("a two-dimensional launch is padded in both directions") {
+  const std::string text = R"(
+    __kernel void place(__global uint* seen, uint width, uint height) {
+      const uint x = get_global_id(0), y = get_global_id(1);
+      if (x < width && y < height) seen[y * width + x] += 1u + get_local_size(0) * 1000u + get_local_size(1) * 100000u;
+    })";
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      Device device(info);
+      auto place = build_text(device, text).kernel<Buffer<u32>, u32, u32>("place");
+      const auto seen = device.upload<u32>(std::vector<u32>(13 * 7));
+      device.run(place, {.x = 13, .y = 7, .local_x = 8, .local_y = 4}, seen, 13u, 7u);
+      std::vector<u32> result(seen.count);
+      device.read(seen, std::span<u32>(result));
+      CHECK(result == std::vector<u32>(13 * 7, 408001u));
+      CHECK_NOTHROW(device.run(place, {.x = 0, .y = 7}, seen, 13u, 7u));  // nothing to do
+    }
+}
+
+TEST_CASE("reads and writes of a part of a buffer touch that part alone") {
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      Device device(info);
+      auto buffer = device.upload<u32>(std::vector<u32>{0, 1, 2, 3, 4, 5});
+      device.write<u32>(buffer, std::vector<u32>{20, 30}, 2);
+      std::vector<u32> part(3);
+      device.read(buffer, std::span<u32>(part), 1);
+      CHECK(part == std::vector<u32>{1, 20, 30});
+      CHECK(device.upload<u32>({}).count == 0);
+    }
+}
+
+TEST_CASE("a failed call is a DeviceError that names the device and OpenCL's status") {
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      Device device(info);
+      auto kernel = build_text(device, "__kernel void f(__global uint* a) { a[get_global_id(0)] = 1u; }")
+                        .kernel<Buffer<u32>>("f");
+      const auto buffer = device.make<u32>(64);
+      const std::size_t local = info.max_work_group * 2;
+      try {
+        device.run(kernel, {.x = local, .local_x = local}, buffer);
+        FAIL("the launch was taken");
+      } catch (const DeviceError& error) {
+        CHECK_THAT(error.what(), ContainsSubstring(info.label()));
+        CHECK_THAT(error.what(), ContainsSubstring("launch of f"));
+        CHECK_THAT(error.what(), ContainsSubstring(cl_status_name(error.status)));
+        CHECK((error.status == CL_INVALID_WORK_GROUP_SIZE || error.status == CL_INVALID_WORK_ITEM_SIZE));
+      }
+      CHECK_THROWS_WITH(device.make<u32>(info.max_allocation / 2),
+                        ContainsSubstring("CL_MEM_OBJECT_ALLOCATION_FAILURE"));
+    }
+}
+
+TEST_CASE("a device with a problem is not opened") {
+  DeviceInfo info;
+  info.platform_name = "Clover";
+  info.problem = "the platform has no device";
+  CHECK_THROWS_WITH(Device(info), "0 Clover: the platform has no device");
+}
+
+TEST_CASE("a sub-device of one unit keeps one processor busy, whatever the device has") {
+  const std::string text = R"(
+    __kernel void spin(__global float* out, uint rounds) {
+      float x = (float)get_global_id(0);
+      for (uint i = 0; i < rounds; ++i) x = sin(x) + 1.0f;
+      out[get_global_id(0)] = x;
+    })";
+  for (const DeviceInfo& whole : test_devices()) {
+    if (whole.max_sub_devices == 0) {
+      CHECK_THROWS_WITH(select_devices(test_devices(), {whole.name + "/1"}),
+                        ContainsSubstring("cannot be split"));
+      continue;
+    }
+    DYNAMIC_SECTION(whole.label()) {
+      Device device(select_devices(test_devices(), {whole.name + "/1"}).at(0));
+      auto spin = build_text(device, text).kernel<Buffer<float>, u32>("spin");
+      const auto out = device.make<float>(4096);
+      device.run(spin, {.x = 4096}, out, 1u);  // compiles
+      device.finish();
+      const auto start = std::chrono::steady_clock::now();
+      const std::clock_t processor = std::clock();
+      device.run(spin, {.x = 4096}, out, 2000u);
+      device.finish();
+      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const double busy = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC / seconds;
+      INFO(seconds << " s");
+      CHECK(busy < 1.2);
+    }
+  }
 }
 
 // Hidden: run under Oclgrind alone, to see that it notices (tests/CMakeLists.txt).

@@ -7,6 +7,7 @@
 #include "device/program_cache.h"
 #include "devices.h"
 #include "environment.h"
+#include "shared/bvh.h"
 #include "temporary_folder.h"
 
 using namespace sundog;
@@ -171,5 +172,21 @@ TEST_CASE("a kernel's parameter types are known by their names") {
       Device device(info);
       const auto types = argument_types(build_text(device, text).kernel<>("f").kernel);
       CHECK(types == std::vector<std::string>{"Ray*", "Hit*", "u32", "float4"});
+    }
+}
+
+TEST_CASE("a kernel whose parameters are not those that the host passes is refused") {
+  const std::string text =
+      "#include \"shared/bvh.h\"\n"
+      "__kernel void f(__global const Ray* rays, __global Hit* hits, uint count, int offset) {}\n";
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      Device device(info);
+      const Program program = build_text(device, text);
+      CHECK_NOTHROW(program.kernel<Buffer<Ray>, Buffer<Hit>, u32, i32>("f"));
+      CHECK_THROWS_WITH(
+          (program.kernel<Buffer<Hit>, Buffer<Ray>, u32, i32>("f")),
+          "test.cl: kernel f takes (Ray*, Hit*, u32, i32), the host passes (Hit*, Ray*, u32, i32)");
+      CHECK_THROWS_AS((program.kernel<Buffer<Ray>, Buffer<Hit>, i32, u32>("f")), BuildError);
+      CHECK_THROWS_AS((program.kernel<Buffer<Ray>, Buffer<Hit>, u32>("f")), BuildError);
     }
 }
