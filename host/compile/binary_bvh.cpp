@@ -37,27 +37,30 @@ struct BinaryTree::Builder {
   const WideBvhSettings& settings;
   const bool balanced;
   SplitSettings split;
-  std::span<Ref> refs;
-  std::vector<u32>& members;
   tbb::enumerable_thread_specific<NodePool> pools;
 
   BinaryNode* build(const RefSet& set, int depth, NodePool& pool);
-  void make_leaf(BinaryNode& node) const;
+  void make_leaf(BinaryNode& node, std::span<Ref> refs) const;
   void collapse(BinaryNode& node) const;
   float blocks(u32 count) const {
     return static_cast<float>((count + settings.block_width - 1) / settings.block_width);
   }
 };
 
-BinaryTree::BinaryTree(std::span<Ref> refs, const WideBvhSettings& settings, bool balanced)
-    : members_(refs.size()) {
-  const RefSet all = make_ref_set(refs);
-  const auto scratch = std::make_unique_for_overwrite<Ref[]>(refs.size());
-  SplitSettings split{settings.block_width, 1.0f, refs, scratch.get()};
+BinaryTree::BinaryTree(std::span<Ref> refs, std::size_t spare, const WideBvhSettings& settings,
+                       bool balanced) {
+  const RefSet all = make_ref_set(refs, spare);
+  const auto scratch = std::make_unique_for_overwrite<Ref[]>(refs.size() + spare);
+  SplitSettings split;
+  split.block_width = settings.block_width;
   const Lanes extent = all.box.upper - all.box.lower;
   const float longest = std::max({extent[0], extent[1], extent[2]});
   if (longest > 0) split.area_scale = std::min(1 / longest, std::numeric_limits<float>::max());
-  builder_.reset(new Builder{settings, balanced, split, refs, members_, {}});
+  split.root_area = half_area(all.box, split.area_scale);
+  split.all = {refs.data(), refs.size() + spare};
+  split.scratch = scratch.get();
+  split.mesh = settings.cut;
+  builder_.reset(new Builder{settings, balanced, split, {}});
   root_ = builder_->build(all, 0, builder_->pools.local());
 }
 
@@ -66,10 +69,9 @@ BinaryTree::~BinaryTree() = default;
 BinaryNode* BinaryTree::Builder::build(const RefSet& set, int depth, NodePool& pool) {
   BinaryNode* node = pool.make();
   node->box = set.box;
-  node->first = static_cast<u32>(set.refs.data() - refs.data());
   node->count = static_cast<u32>(set.refs.size());
   if (set.refs.size() <= settings.block_width) {
-    make_leaf(*node);
+    make_leaf(*node, set.refs);
     return node;
   }
   const RefSplit parts = balanced || depth >= depth_limit ? split_by_median(set) : split_by_area(set, split);
@@ -80,14 +82,14 @@ BinaryNode* BinaryTree::Builder::build(const RefSet& set, int depth, NodePool& p
     tbb::parallel_invoke([&] { node->left = build(parts.left, depth + 1, pools.local()); },
                          [&] { node->right = build(parts.right, depth + 1, pools.local()); });
   }
+  node->count = node->left->count + node->right->count;
   collapse(*node);
   return node;
 }
 
-void BinaryTree::Builder::make_leaf(BinaryNode& node) const {
-  const auto first = members.begin() + node.first;
-  for (u32 i = 0; i < node.count; ++i) members[node.first + i] = refs[node.first + i].prim();
-  std::sort(first, first + node.count);
+void BinaryTree::Builder::make_leaf(BinaryNode& node, std::span<Ref> refs) const {
+  std::sort(refs.begin(), refs.end(), [](const Ref& a, const Ref& b) { return a.prim() < b.prim(); });
+  node.refs = refs.data();
   node.leaf = true;
   node.cost.fill(half_area(node.box, split.area_scale) * settings.block_cost * blocks(node.count));
 }

@@ -12,10 +12,10 @@
 
 namespace sundog {
 
-/// A node over members[first, first + count) of the tree's order.
 struct BinaryNode {
   Bounds box;
-  u32 first = 0, count = 0;
+  const Ref* refs = nullptr;   // of a node without children: its members, in order of their numbers
+  u32 count = 0;               // members of the subtree; the halves of a cut triangle count apart
   BinaryNode* left = nullptr;  // both or neither
   BinaryNode* right = nullptr;
   /// cost[i]: least expected cost of this subtree as at most i children of a wide node (i = 1..7).
@@ -29,15 +29,15 @@ struct BinaryNode {
 /// Owns the nodes; they stay where they are.
 class BinaryTree {
  public:
-  BinaryTree(std::span<Ref> refs, const WideBvhSettings& settings, bool balanced);
+  /// `refs` are used until the end; `spare` places are free behind them. `balanced`: halved by number, not by
+  /// area.
+  BinaryTree(std::span<Ref> refs, std::size_t spare, const WideBvhSettings& settings, bool balanced);
   ~BinaryTree();
   const BinaryNode& root() const { return *root_; }
-  std::vector<u32> take_members() { return std::move(members_); }
 
  private:
   struct Builder;
   std::unique_ptr<Builder> builder_;
-  std::vector<u32> members_;
   BinaryNode* root_ = nullptr;
 };
 

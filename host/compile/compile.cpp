@@ -50,9 +50,6 @@ void set_figures(CompiledScene& out) {
   figures.blocks = out.blocks.size();
   figures.triangles = out.triangles.size();
   figures.instances = out.instances.size();
-  if (!out.blocks.empty())
-    figures.mean_block_fill =
-        static_cast<double>(out.triangles.size()) / static_cast<double>(out.blocks.size());
   figures.bytes = sizeof(SceneInfo) + bytes(out.nodes) + bytes(out.blocks) + bytes(out.triangles) +
                   bytes(out.vertices) + bytes(out.instances) + bytes(out.materials) + bytes(out.media) +
                   bytes(out.lights);

@@ -27,7 +27,7 @@ struct BvhFigures {
   double sah_cost =
       0;  // expected cost of a ray that crosses the root: node visits + block visits, area-weighted
   double build_seconds = 0;    // not part of the pure result's bytes
-  double mean_block_fill = 0;  // triangles a block, 1..8
+  double mean_block_fill = 0;  // triangles in a block, 1..8; a cut triangle counts in each
   std::size_t bytes = 0;
 };
 

@@ -207,11 +207,13 @@ bool may_contain(const Placed& placed, const dvec3& camera) {
 
 /// The scene BVH over the bounded instances, which are put in its leaf order.
 void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_stack) {
-  std::vector<Ref> refs;
-  for (std::size_t i = 0; i < bounded.size(); ++i)
-    refs.push_back(Ref::of(bounded[i].box, static_cast<u32>(i)));
-  WideBvh tree =
-      build_wide_bvh(refs, {.block_width = 1, .max_leaf_blocks = 16, .node_cost = 1, .block_cost = 3});
+  const auto fill = [&](std::span<Ref> refs) {
+    for (std::size_t i = 0; i < refs.size(); ++i) refs[i] = Ref::of(bounded[i].box, static_cast<u32>(i));
+  };
+  WideBvhSettings settings;
+  settings.block_width = 1;
+  settings.block_cost = 3;  // an instance costs more than a node
+  const WideBvh tree = build_wide_bvh(bounded.size(), fill, settings);
 
   const auto root = static_cast<u32>(out.nodes.size());
   for (Bvh8Node node : tree.nodes) {

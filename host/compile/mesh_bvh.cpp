@@ -82,17 +82,20 @@ Bounds triangle_box(const Mesh& mesh, const glm::uvec3& triangle) {
 WideBvh build_mesh(const SceneDescription& scene, std::size_t index) {
   check_attributes(scene, index);
   const Mesh& mesh = scene.meshes[index];
-  const auto refs = std::make_unique_for_overwrite<Ref[]>(mesh.triangles.size());
-  std::atomic<bool> bad{false};
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 4096), [&](const auto& range) {
-    for (std::size_t t = range.begin(); t != range.end(); ++t) {
-      const Bounds box = triangle_box(mesh, mesh.triangles[t]);
-      if (box.empty()) bad = true;
-      refs[t] = Ref::of(box, static_cast<u32>(t));
-    }
-  });
-  if (bad) fail_corner(scene, index);
-  return build_wide_bvh({refs.get(), mesh.triangles.size()}, WideBvhSettings{});
+  const auto fill = [&](std::span<Ref> refs) {
+    std::atomic<bool> bad{false};
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, refs.size(), 4096), [&](const auto& range) {
+      for (std::size_t t = range.begin(); t != range.end(); ++t) {
+        const Bounds box = triangle_box(mesh, mesh.triangles[t]);
+        if (box.empty()) bad = true;
+        refs[t] = Ref::of(box, static_cast<u32>(t));
+      }
+    });
+    if (bad) fail_corner(scene, index);
+  };
+  WideBvhSettings settings;
+  if (scene.render.spatial_splits) settings.cut = &mesh;
+  return build_wide_bvh(mesh.triangles.size(), fill, settings);
 }
 
 TriangleBlock make_block(const Mesh& mesh, std::span<const u32> members, u32 first_triangle) {
@@ -155,15 +158,19 @@ std::vector<PlacedMesh> add_meshes(const SceneDescription& scene, u32 default_ma
 
   std::vector<TableSizes> first(placed.size());
   TableSizes sum;
+  std::size_t members = 0;
   for (std::size_t i = 0; i < placed.size(); ++i) {
     first[i] = sum;
     if (!placed[i].used) continue;
+    members += trees[i].members.size();
     sum.nodes += trees[i].nodes.size();
     sum.blocks += trees[i].blocks.size();
     sum.triangles += scene.meshes[i].triangles.size();
     sum.vertices += vertex_count(scene.meshes[i]);
   }
   check_sizes(scene, sum);
+  if (sum.blocks > 0)
+    out.figures.mean_block_fill = static_cast<double>(members) / static_cast<double>(sum.blocks);
   tbb::parallel_invoke([&] { out.nodes.resize(sum.nodes); }, [&] { out.blocks.resize(sum.blocks); },
                        [&] { out.triangles.resize(sum.triangles); },
                        [&] { out.vertices.resize(sum.vertices); });

@@ -15,8 +15,6 @@ namespace {
 
 constexpr int max_bins = 32;
 constexpr std::size_t parallel_size = 1u << 16;  // sets from this size on are worked on by several threads
-constexpr std::size_t chunk_size = 1u << 13;
-constexpr float least_extent = 1e-34f;  // below, a bin's width is no number to divide by
 
 /// Bin number of a doubled centre, by axis.
 struct BinMap {
@@ -68,19 +66,13 @@ struct Bins {
   }
 };
 
-/// Whether several threads should work on one set: it is large, and there are too few others for them.
-bool share_work(std::size_t members, const SplitSettings& settings) {
-  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-  return members >= parallel_size && members * threads > settings.all.size();
-}
-
 void fill_bins(Bins& bins, std::span<const Ref> refs, const BinMap& map, bool parallel) {
   if (!parallel) {
     for (const Ref& ref : refs) bins.add(ref, map);
     return;
   }
   bins = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, refs.size(), chunk_size), Bins(map.count),
+      tbb::blocked_range<std::size_t>(0, refs.size(), split_chunk), Bins(map.count),
       [&](const tbb::blocked_range<std::size_t>& range, Bins sum) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) sum.add(refs[i], map);
         return sum;
@@ -94,18 +86,13 @@ void fill_bins(Bins& bins, std::span<const Ref> refs, const BinMap& map, bool pa
 /// Members whose bin on `axis` is below `bin` go left.
 struct Plane {
   int axis = -1, bin = 0;
+  float cost = std::numeric_limits<float>::infinity();
+  u32 unevenness = 0;
   Bounds left, right;
 };
 
-/// Blocks that `members` fill.
-float blocks(u32 members, const SplitSettings& settings) {
-  return static_cast<float>((members + settings.block_width - 1) / settings.block_width);
-}
-
-/// The planes of one axis; keeps the best in `plane` and its cost in `least`. Equal costs: the more even
-/// split.
-void search_axis(const Bins& bins, int axis, int count, const SplitSettings& settings, Plane& plane,
-                 float& least, u32& unevenness) {
+/// The planes of one axis; keeps the best in `plane`. Of equal costs, the more even split.
+void search_axis(const Bins& bins, int axis, int count, const SplitSettings& settings, Plane& plane) {
   const auto& box = bins.box[static_cast<std::size_t>(axis)];
   const auto& members = bins.members[static_cast<std::size_t>(axis)];
   std::array<Bounds, max_bins> right;
@@ -126,11 +113,8 @@ void search_axis(const Bins& bins, int axis, int count, const SplitSettings& set
     const float cost = half_area(sum, settings.area_scale) * blocks(n, settings) +
                        half_area(right[i], settings.area_scale) * blocks(right_members[i], settings);
     const u32 uneven = n > right_members[i] ? n - right_members[i] : right_members[i] - n;
-    if (cost < least || (cost == least && uneven < unevenness)) {
-      least = cost;
-      unevenness = uneven;
-      plane = {axis, static_cast<int>(i), sum, right[i]};
-    }
+    if (cost < plane.cost || (cost == plane.cost && uneven < plane.unevenness))
+      plane = {axis, static_cast<int>(i), cost, uneven, sum, right[i]};
   }
 }
 
@@ -139,10 +123,8 @@ Plane find_plane(const RefSet& set, const BinMap& map, const SplitSettings& sett
   if (!map.usable(0) && !map.usable(1) && !map.usable(2)) return plane;
   Bins bins(map.count);
   fill_bins(bins, set.refs, map, share_work(set.refs.size(), settings));
-  float least = std::numeric_limits<float>::infinity();
-  u32 unevenness = std::numeric_limits<u32>::max();
   for (int axis = 0; axis < 3; ++axis)
-    if (map.usable(axis)) search_axis(bins, axis, map.count, settings, plane, least, unevenness);
+    if (map.usable(axis)) search_axis(bins, axis, map.count, settings, plane);
   return plane;
 }
 
@@ -152,6 +134,17 @@ struct Parts {
   std::array<Bounds, 2> centers{Bounds::none(), Bounds::none()};
 };
 
+/// Part of the boxes' overlap in the whole tree's box from which on a cut through triangles is worth a try.
+constexpr float least_overlap = 1e-4f;
+
+bool overlaps(const Plane& plane, const SplitSettings& settings) {
+  const Bounds common{lanes_max(plane.left.lower, plane.right.lower),
+                      lanes_min(plane.left.upper, plane.right.upper)};
+  for (int axis = 0; axis < 3; ++axis)
+    if (common.lower[axis] > common.upper[axis]) return false;
+  return half_area(common, settings.area_scale) > least_overlap * settings.root_area;
+}
+
 /// Which side of a plane a centre is on: 0 left, 1 right.
 struct Side {
   const BinMap& map;
@@ -159,8 +152,8 @@ struct Side {
   std::size_t operator()(Lanes center2) const { return map(center2)[plane.axis] >= plane.bin; }
 };
 
-/// Moves the members left of the plane to the front. Each ref is written to both sides and one of them
-/// advances: no branch to mispredict.
+/// Moves the members left of the plane to the front and the others to `scratch`. Each ref is written to both
+/// and one of them advances: no branch to mispredict.
 Parts partition_serial(std::span<Ref> refs, Ref* scratch, const Side& side_of) {
   Parts parts;
   std::size_t right_count = 0;
@@ -173,16 +166,23 @@ Parts partition_serial(std::span<Ref> refs, Ref* scratch, const Side& side_of) {
     right_count += side;
     parts.centers[side].extend(center);
   }
-  std::copy(scratch, scratch + right_count, refs.begin() + static_cast<std::ptrdiff_t>(parts.left_count));
   return parts;
 }
 
-/// The same for large sets: chunks are counted, then scattered through the scratch array.
+void copy_parallel(const Ref* from, std::size_t count, Ref* to) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, split_chunk), [&](const auto& range) {
+    std::copy(from + range.begin(), from + range.end(), to + range.begin());
+  });
+}
+
+/// The same for large sets, by several threads: chunks are counted, then scattered to `scratch`, the left
+/// ones last.
 Parts partition_parallel(std::span<Ref> refs, Ref* scratch, const Side& side_of) {
-  std::vector<Parts> chunks((refs.size() + chunk_size - 1) / chunk_size);
+  std::vector<Parts> chunks((refs.size() + split_chunk - 1) / split_chunk);
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
     Parts chunk;
-    for (const Ref& ref : refs.subspan(c * chunk_size, std::min(chunk_size, refs.size() - c * chunk_size))) {
+    for (const Ref& ref :
+         refs.subspan(c * split_chunk, std::min(split_chunk, refs.size() - c * split_chunk))) {
       const Lanes center = ref.center2();
       const std::size_t side = side_of(center);
       chunk.centers[side].extend(center);
@@ -196,20 +196,18 @@ Parts partition_parallel(std::span<Ref> refs, Ref* scratch, const Side& side_of)
     parts.left_count += std::exchange(chunk.left_count, parts.left_count);
   }
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
-    const std::size_t begin = c * chunk_size;
-    std::array<std::size_t, 2> to = {chunks[c].left_count, parts.left_count + begin - chunks[c].left_count};
-    for (const Ref& ref : refs.subspan(begin, std::min(chunk_size, refs.size() - begin)))
+    const std::size_t begin = c * split_chunk;
+    const std::size_t right_count = refs.size() - parts.left_count;
+    std::array<std::size_t, 2> to = {right_count + chunks[c].left_count, begin - chunks[c].left_count};
+    for (const Ref& ref : refs.subspan(begin, std::min(split_chunk, refs.size() - begin)))
       scratch[to[side_of(ref.center2())]++] = ref;
   });
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, refs.size(), chunk_size), [&](const auto& range) {
-    std::copy(scratch + range.begin(), scratch + range.end(),
-              refs.begin() + static_cast<std::ptrdiff_t>(range.begin()));
-  });
+  copy_parallel(scratch + (refs.size() - parts.left_count), parts.left_count, refs.data());
   return parts;
 }
 
 RefSet bounds_of(std::span<Ref> refs, std::size_t begin, std::size_t end) {
-  RefSet set{refs, Bounds::none(), Bounds::none()};
+  RefSet set{refs, Bounds::none(), Bounds::none(), 0};
   for (std::size_t i = begin; i != end; ++i) {
     set.box.extend(refs[i].box);
     set.centers.extend(refs[i].center2());
@@ -219,36 +217,56 @@ RefSet bounds_of(std::span<Ref> refs, std::size_t begin, std::size_t end) {
 
 }  // namespace
 
-RefSet make_ref_set(std::span<Ref> refs) {
-  if (refs.size() < parallel_size) return bounds_of(refs, 0, refs.size());
+bool share_work(std::size_t members, const SplitSettings& settings) {
+  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  return members >= parallel_size && members * threads > settings.all.size();
+}
+
+RefSplit place_parts(const RefSet& set, std::size_t left_count, std::size_t right_count) {
+  const std::size_t spare = set.refs.size() + set.spare - left_count - right_count;
+  const std::size_t left_spare = spare * left_count / (left_count + right_count);
+  RefSplit split;
+  Ref* const first = set.refs.data();
+  split.left.refs = {first, left_count};
+  split.left.spare = left_spare;
+  split.right.refs = {first + left_count + left_spare, right_count};
+  split.right.spare = spare - left_spare;
+  return split;
+}
+
+RefSet make_ref_set(std::span<Ref> refs, std::size_t spare) {
+  RefSet set{refs, Bounds::none(), Bounds::none(), spare};
+  const auto add = [](RefSet sum, const RefSet& part) {
+    sum.box.extend(part.box);
+    sum.centers.extend(part.centers);
+    return sum;
+  };
+  if (refs.size() < parallel_size) return add(set, bounds_of(refs, 0, refs.size()));
   return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, refs.size(), chunk_size),
-      RefSet{refs, Bounds::none(), Bounds::none()},
-      [&](const tbb::blocked_range<std::size_t>& range, RefSet sum) {
-        const RefSet part = bounds_of(refs, range.begin(), range.end());
-        sum.box.extend(part.box);
-        sum.centers.extend(part.centers);
-        return sum;
+      tbb::blocked_range<std::size_t>(0, refs.size(), split_chunk), set,
+      [&](const tbb::blocked_range<std::size_t>& range, const RefSet& sum) {
+        return add(sum, bounds_of(refs, range.begin(), range.end()));
       },
-      [](RefSet a, const RefSet& b) {
-        a.box.extend(b.box);
-        a.centers.extend(b.centers);
-        return a;
-      });
+      add);
 }
 
 RefSplit split_by_area(const RefSet& set, const SplitSettings& settings) {
   const BinMap map(set.centers, set.refs.size());
   const Plane plane = find_plane(set, map, settings);
+  if (settings.mesh && (plane.axis < 0 || overlaps(plane, settings)))
+    if (const auto cut = split_in_space(set, settings, plane.cost)) return *cut;
   if (plane.axis < 0) return split_by_median(set);
-  RefSplit split;
+
+  const bool shared = share_work(set.refs.size(), settings);
+  Ref* const scratch = settings.scratch + (set.refs.data() - settings.all.data());
+  const Parts parts = (shared ? partition_parallel : partition_serial)(set.refs, scratch, Side{map, plane});
+  RefSplit split = place_parts(set, parts.left_count, set.refs.size() - parts.left_count);
+  if (shared)
+    copy_parallel(scratch, split.right.refs.size(), split.right.refs.data());
+  else
+    std::copy_n(scratch, split.right.refs.size(), split.right.refs.data());
   split.left.box = plane.left;
   split.right.box = plane.right;
-  const auto partition = share_work(set.refs.size(), settings) ? partition_parallel : partition_serial;
-  const Parts parts =
-      partition(set.refs, settings.scratch + (set.refs.data() - settings.all.data()), Side{map, plane});
-  split.left.refs = set.refs.first(parts.left_count);
-  split.right.refs = set.refs.subspan(parts.left_count);
   split.left.centers = parts.centers[0];
   split.right.centers = parts.centers[1];
   return split;
@@ -264,7 +282,7 @@ RefSplit split_by_median(const RefSet& set) {
                      const float ca = a.center2()[axis], cb = b.center2()[axis];
                      return ca != cb ? ca < cb : a.prim() < b.prim();
                    });
-  return {make_ref_set(set.refs.first(middle)), make_ref_set(set.refs.subspan(middle))};
+  return {make_ref_set(set.refs.first(middle), 0), make_ref_set(set.refs.subspan(middle), set.spare)};
 }
 
 }  // namespace sundog

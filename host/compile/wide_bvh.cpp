@@ -2,6 +2,7 @@
 #include "compile/wide_bvh.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "compile/binary_bvh.h"
 
@@ -71,10 +72,29 @@ class Layout {
 
   u32 leaf(const BinaryNode& binary) {
     const auto first = static_cast<u32>(tree_.blocks.size());
-    for (u32 i = 0; i < binary.count; i += block_width_)
-      tree_.blocks.push_back({binary.first + i, std::min(block_width_, binary.count - i)});
+    const auto begin = static_cast<u32>(tree_.members.size());
+    take_members(binary);
+    if (binary.left) {  // several leaves merged: both halves of a cut triangle may be here
+      const auto from = tree_.members.begin() + begin;
+      std::sort(from, tree_.members.end());
+      tree_.members.erase(std::unique(from, tree_.members.end()), tree_.members.end());
+    }
+    const auto end = static_cast<u32>(tree_.members.size());
+    for (u32 i = begin; i < end; i += block_width_)
+      tree_.blocks.push_back({i, std::min(block_width_, end - i)});
     const auto count = static_cast<u32>(tree_.blocks.size()) - first;
     return BVH_LEAF | (count - 1) << BVH_LEAF_SHIFT | first;
+  }
+
+  void take_members(const BinaryNode& binary) {
+    if (binary.left) {
+      take_members(*binary.left);
+      take_members(*binary.right);
+      return;
+    }
+    for (u32 i = 0; i < binary.count; ++i)
+      if (i == 0 || binary.refs[i].prim() != binary.refs[i - 1].prim())
+        tree_.members.push_back(binary.refs[i].prim());
   }
 
   WideBvh& tree_;
@@ -113,19 +133,22 @@ Bounds node_bounds(const Bvh8Node& node) {
   return box;
 }
 
-WideBvh build_wide_bvh(std::span<Ref> refs, const WideBvhSettings& settings) {
+WideBvh build_wide_bvh(std::size_t count, const std::function<void(std::span<Ref>)>& fill,
+                       const WideBvhSettings& settings) {
   WideBvh tree;
-  if (refs.empty()) {
+  if (count == 0) {
     tree.nodes.push_back(empty_node());
     return tree;
   }
-  // A tree so lopsided that a traversal's stack would not hold is built again, balanced.
+  const auto spare = settings.cut ? static_cast<std::size_t>(settings.spare * static_cast<float>(count)) : 0;
+  const auto refs = std::make_unique_for_overwrite<Ref[]>(count + spare);
   for (const bool balanced : {false, true}) {
-    BinaryTree binary(refs, settings, balanced);
+    fill({refs.get(), count});
+    const BinaryTree binary({refs.get(), count}, spare, settings, balanced);
     tree = WideBvh{};
     tree.box = binary.root().box;
+    tree.members.reserve(count);
     Layout(tree, settings.block_width).root(binary.root());
-    tree.members = binary.take_members();
     if (stack_need(tree.nodes, 0) <= stack_limit) break;
   }
   return tree;

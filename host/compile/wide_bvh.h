@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compile/bounds.h"
+#include "scene/description.h"
 #include "shared/bvh.h"
 
 namespace sundog {
@@ -18,6 +19,9 @@ struct WideBvhSettings {
   u32 block_width = 8;       // members of a leaf block (triangles: 8; instances: 1)
   u32 max_leaf_blocks = 16;  // blocks of a leaf
   float node_cost = 1, block_cost = 1;
+  const Mesh* cut =
+      nullptr;         // the refs' triangles, when they may be cut: a primitive may then be in several leaves
+  float spare = 0.3f;  // the further refs that cuts may make, as a part of the first ones
 };
 
 /// The tree's shape. Child words count from node 0 and block 0 of this tree. The inner children of a node are
@@ -32,9 +36,10 @@ struct WideBvh {
   Bounds box = Bounds::none();  // empty when there are no members
 };
 
-/// Builds the tree over `refs` (reordered), whose numbers are below 2^27. Deterministic at any number of
-/// threads.
-WideBvh build_wide_bvh(std::span<Ref> refs, const WideBvhSettings& settings);
+/// Builds the tree over `count` members, whose refs `fill` writes (numbers below 2^27; it may be called
+/// twice). Deterministic at any number of threads.
+WideBvh build_wide_bvh(std::size_t count, const std::function<void(std::span<Ref>)>& fill,
+                       const WideBvhSettings& settings);
 
 /// Expected cost of a ray that crosses the root's box: 1 a node visited, and `leaf_cost` of the first and the
 /// count that a leaf word holds.

@@ -35,6 +35,7 @@ struct RenderSettings {
   double cutoff = 1e-3;    // throughput below which a ray ends, [0, 1]
   std::string integrator = "whitted";
   Tracer tracer = Tracer::automatic;
+  bool spatial_splits = false;  // build the BVH with cut triangles: slower to build, better for long thin ones
 };
 
 enum class LightType { ambient, directional, point, spot };

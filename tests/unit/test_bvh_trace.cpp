@@ -68,6 +68,14 @@ TEST_CASE("the mesh BVH finds the nearest triangle") {
   CHECK(check_agreement(scene_of(bumpy_sphere(25)), 600) > 200);
 }
 
+TEST_CASE("a mesh BVH with cut triangles finds the nearest too") {
+  for (const float size : {0.1f, 0.7f, 3.0f}) {
+    SceneDescription scene = scene_of(random_triangles(1000, size));
+    scene.render.spatial_splits = true;
+    CHECK(check_agreement(scene, 1000) > 200);
+  }
+}
+
 TEST_CASE("the scene BVH finds the nearest of many instances") {
   SceneDescription scene = scene_of(bumpy_sphere(12));
   const std::vector<Shape> shapes = {SphereShape{0.5},

@@ -107,6 +107,7 @@ RenderSettings read_render(const JsonValue& value) {
     render.tracer = tracer == "wide"      ? Tracer::wide
                     : tracer == "compact" ? Tracer::compact
                                           : Tracer::automatic;
+    render.spatial_splits = object.boolean("spatial_splits", render.spatial_splits);
     return render;
   });
 }
