@@ -40,7 +40,10 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
 
 std::vector<std::string> devices_of_environment() {
   const char* text = std::getenv("SUNDOG_DEVICE");
-  return text && *text ? CLI::detail::split(text, ',') : std::vector<std::string>();
+  if (!text || !*text) return {};
+  std::vector<std::string> specs = CLI::detail::split(text, ',');
+  for (std::string& spec : specs) CLI::detail::trim(spec);
+  return specs;
 }
 
 RenderCommand checked(const TypedRender& typed) {
