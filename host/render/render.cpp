@@ -42,11 +42,12 @@ void report_progress(Frame& frame) {
   frame.options.on_progress({frame.pixels_done, total, frame.clock.seconds()});
 }
 
-void keep_tile(Frame& frame, const Tile& tile, const TileResult& tile_result) {
+void keep_tile(Frame& frame, const TileResult& tile_result) {
   const std::lock_guard lock(frame.mutex);
-  frame.film.put(tile, tile_result.sums, tile_result.weights, tile_result.aovs);
+  frame.film.put(tile_result.tile, tile_result.sums, tile_result.weights, tile_result.aovs);
   for (std::size_t i = 0; i < COUNTERS; ++i) frame.result.counts[i] += tile_result.counts[i];
-  frame.pixels_done += tile_result.weights.size();
+  frame.pixels_done += static_cast<std::uint64_t>(tile_result.tile.width) *
+                       static_cast<std::uint64_t>(tile_result.tile.height);
   report_progress(frame);
 }
 
@@ -57,11 +58,11 @@ void work(Frame& frame, TileRenderer& renderer, DeviceReport& report) {
     try {
       const TileResult tile_result = renderer.render(*tile);
       report.busy_seconds += busy.seconds();
-      if (!tile_result.complete) {
+      keep_tile(frame, tile_result);
+      if (tile_result.tile != *tile) {  // stopped on the way
         frame.queue.close();
         return;
       }
-      keep_tile(frame, *tile, tile_result);
       report.tiles += 1;
       frame.queue.finished();
     } catch (const DeviceError& error) {

@@ -1,8 +1,11 @@
 #include "render/tile_renderer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/clock.h"
+#include "base/error.h"
 #include "render/tiles.h"
 
 namespace sundog {
@@ -11,6 +14,19 @@ namespace {
 // A launch is short enough for a watchdog and for Ctrl-C, and long against its overhead of some microseconds.
 constexpr double launch_seconds = 0.05;
 constexpr std::size_t first_launch_size = 4096;  // pixel-samples, before anything is known of the device
+
+// A CPU's driver keeps the private memory of a whole group on a thread's stack: beyond this some crash.
+constexpr std::size_t largest_cpu_group = 1024;
+
+void check_work_group(const DeviceInfo& device, const WorkGroup& group) {
+  const std::size_t most = device.device_class == DeviceClass::cpu
+                               ? std::min(device.max_work_group, largest_cpu_group)
+                               : device.max_work_group;
+  if (group.kind == WorkGroup::Kind::fixed && most > 0 && group.x * group.y > most)
+    throw UsageError(
+        fmt::format("{}: a work-group of {} is more than the {} that this device is given; ask for less",
+                    device.label(), group.x * group.y, most));
+}
 
 unsigned divide_up(unsigned a, unsigned b) { return (a + b - 1) / b; }
 
@@ -23,11 +39,12 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
       options_(options),
       config_(make_kernel_config(scene, device.info())),
       next_size_(first_launch_size) {
+  check_work_group(device.info(), options.work_group);
   const Stopwatch building;
   BuildReport report;
-  render_ =
-      scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32, u32, u32,
-                   u32>(device.build("entry/render_whitted.cl", config_.defines, &report), "render_whitted");
+  render_ = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32,
+                         u32, u32, u32, u32>(
+      device.build("entry/render_whitted.cl", config_.defines, &report), "render_whitted");
   times.cached = report.cached;
   if (!options.aovs.empty()) {
     first_surfaces_ = scene_kernel<Buffer<u32>, Buffer<float4>, u32, u32, u32, u32>(
@@ -48,14 +65,14 @@ void TileRenderer::find_camera_media() {
   device_.finish();
 }
 
-LaunchSize TileRenderer::launch_size(std::size_t items) const {
-  switch (options_.work_group.kind) {
-    case WorkGroup::Kind::driver:
-      return {items, 1, 0, 0};
-    case WorkGroup::Kind::fixed:
-      return {items, 1, options_.work_group.x * options_.work_group.y, 1};
-    case WorkGroup::Kind::automatic:
-      break;
+// columns x rows work-items: as a grid where the user asked for a group of two dimensions, else in one row.
+LaunchSize TileRenderer::launch_size(std::size_t columns, std::size_t rows) const {
+  const WorkGroup& group = options_.work_group;
+  const std::size_t items = columns * rows;
+  if (group.kind == WorkGroup::Kind::driver) return {items, 1, 0, 0};
+  if (group.kind == WorkGroup::Kind::fixed) {
+    if (group.y > 1) return {columns, rows, group.x, group.y};
+    return {items, 1, group.x, 1};
   }
   // With many pixels a work-item, small groups leave no unit idle at a launch's end; one ray a lane wants a
   // full group.
@@ -64,31 +81,29 @@ LaunchSize TileRenderer::launch_size(std::size_t items) const {
 }
 
 // Cuts the tile into bands of rows, and long rows of samples into several launches, by what the last launch
-// took. Samples are added one by one in the kernel, so where they are cut does not change a bit.
-void TileRenderer::launch_samples(const Tile& tile, const std::atomic<bool>* stop, bool& complete) {
+// took. Samples are added one by one in the kernel, so where they are cut does not change a bit. Returns the
+// rows that have all their samples.
+unsigned TileRenderer::launch_samples(const Tile& tile, const std::atomic<bool>* stop) {
   const unsigned width = static_cast<unsigned>(tile.width), height = static_cast<unsigned>(tile.height);
   const unsigned samples = scene_.info.samples;
   const unsigned columns = divide_up(width, config_.tile_w);
-  for (unsigned row = 0; row < height;) {
-    unsigned rows =
-        static_cast<unsigned>(std::min<std::size_t>(next_size_ / (width * config_.tile_h), height)) *
-        config_.tile_h;
-    rows = std::min(std::max(rows, config_.tile_h), height - row);
+  unsigned row = 0;
+  while (row < height) {
+    const std::size_t bands = std::min<std::size_t>(next_size_ / (width * config_.tile_h), height);
+    const unsigned wanted = static_cast<unsigned>(std::max<std::size_t>(bands, 1)) * config_.tile_h;
+    const unsigned rows = std::min(wanted, height - row), tile_rows = divide_up(rows, config_.tile_h);
+    const std::size_t pixels = static_cast<std::size_t>(width) * rows;
     for (unsigned sample = 0; sample < samples;) {
-      if (stop && stop->load()) {
-        complete = false;
-        return;
-      }
-      const std::size_t pixels = static_cast<std::size_t>(width) * rows;
+      if (stop && stop->load()) return row;
       const unsigned count =
           static_cast<unsigned>(std::clamp<std::size_t>(next_size_ / pixels, 1, samples - sample));
-      const unsigned items = columns * divide_up(rows, config_.tile_h);
+      const LaunchSize size = launch_size(columns, tile_rows);
       const Stopwatch clock;
       run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32, u32,
-                       u32, u32>(device_, render_, launch_size(items), tables_, tables_.camera_media, film_,
-                                 weights_, counters_, static_cast<u32>(tile.x),
-                                 static_cast<u32>(tile.y) + row, width, rows, items, row * width, sample,
-                                 count);
+                       u32, u32, u32>(device_, render_, size, tables_, tables_.camera_media, film_, weights_,
+                                      counters_, static_cast<u32>(tile.x), static_cast<u32>(tile.y) + row,
+                                      width, rows, static_cast<u32>(size.x), columns * tile_rows, row * width,
+                                      sample, count);
       device_.finish();
       next_size_ = next_launch_size(pixels * count, clock.seconds(), launch_seconds, width * config_.tile_h,
                                     std::size_t{1} << 30);
@@ -96,33 +111,38 @@ void TileRenderer::launch_samples(const Tile& tile, const std::atomic<bool>* sto
     }
     row += rows;
   }
+  return height;
+}
+
+void TileRenderer::launch_aovs(const Tile& tile, std::vector<float4>& aovs) {
+  const std::size_t pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+  if (aovs_.count < 3 * pixels) aovs_ = device_.make<float4>(3 * pixels);
+  aovs.resize(3 * pixels);
+  if (pixels == 0) return;
+  run_scene_kernel<Buffer<u32>, Buffer<float4>, u32, u32, u32, u32>(
+      device_, first_surfaces_, {pixels, 1, 16, 1}, tables_, tables_.camera_media, aovs_,
+      static_cast<u32>(tile.x), static_cast<u32>(tile.y), static_cast<u32>(tile.width),
+      static_cast<u32>(pixels));
+  device_.finish();
+  device_.read(aovs_, std::span<float4>(aovs));
 }
 
 TileResult TileRenderer::render(const Tile& tile) {
   const std::size_t pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
   TileResult result;
+  result.tile = tile;
   result.sums.resize(pixels);
   result.weights.resize(pixels);
   std::array<u32, COUNTERS> counts{};
   if (film_.count < pixels) {
     film_ = device_.make<float4>(pixels);
     weights_ = device_.make<float>(pixels);
-    if (!options_.aovs.empty()) aovs_ = device_.make<float4>(3 * pixels);
   }
   device_.write(film_, std::span<const float4>(result.sums));
   device_.write(weights_, std::span<const float>(result.weights));
   counters_ = device_.upload(std::span<const u32>(counts));
-  launch_samples(tile, options_.stop, result.complete);
-  if (!result.complete) return result;
-  if (!options_.aovs.empty()) {
-    result.aovs.resize(3 * pixels);
-    run_scene_kernel<Buffer<u32>, Buffer<float4>, u32, u32, u32, u32>(
-        device_, first_surfaces_, launch_size(pixels), tables_, tables_.camera_media, aovs_,
-        static_cast<u32>(tile.x), static_cast<u32>(tile.y), static_cast<u32>(tile.width),
-        static_cast<u32>(pixels));
-    device_.finish();
-    device_.read(aovs_, std::span<float4>(result.aovs));
-  }
+  result.tile.height = static_cast<int>(launch_samples(tile, options_.stop));
+  if (!options_.aovs.empty()) launch_aovs(result.tile, result.aovs);
   const Stopwatch reading;
   device_.read(film_, std::span<float4>(result.sums));
   device_.read(weights_, std::span<float>(result.weights));

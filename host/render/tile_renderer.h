@@ -10,9 +10,10 @@
 
 namespace sundog {
 
-/// A finished tile's pixels and ray counts; `complete` is false when it was stopped on the way.
+/// A tile's pixels and ray counts. `tile` is what was finished: less rows than asked for when it was stopped
+/// on the way.
 struct TileResult {
-  bool complete = true;
+  Tile tile;
   std::vector<float4> sums;
   std::vector<float> weights;
   std::vector<float4> aovs;
@@ -31,15 +32,17 @@ class TileRenderer {
 
  private:
   void find_camera_media();
-  void launch_samples(const Tile& tile, const std::atomic<bool>* stop, bool& complete);
-  LaunchSize launch_size(std::size_t items) const;
+  unsigned launch_samples(const Tile& tile, const std::atomic<bool>* stop);
+  void launch_aovs(const Tile& tile, std::vector<float4>& aovs);
+  LaunchSize launch_size(std::size_t columns, std::size_t rows) const;
 
   Device& device_;
   const CompiledScene& scene_;
   const RenderOptions& options_;
   KernelConfig config_;
   DeviceScene tables_;
-  SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32, u32, u32, u32>
+  SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32, u32, u32, u32,
+              u32>
       render_;
   SceneKernel<Buffer<u32>, Buffer<float4>, u32, u32, u32, u32> first_surfaces_;
   Buffer<float4> film_;

@@ -24,9 +24,11 @@ static inline u32 lane_pixel(u32 item, u32 lane, u32 x0, u32 y0, u32 width, u32 
 __kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const u32* restrict camera_media,
                              __global float4* restrict film, __global float* restrict weights,
                              __global u32* restrict counters, u32 x0, u32 y0, u32 width, u32 height,
-                             u32 item_count, u32 film_first, u32 first_sample, u32 sample_count) {
-  const u32 item = get_global_id(0);
-  if (item >= item_count) return;
+                             u32 row_items, u32 item_count, u32 film_first, u32 first_sample,
+                             u32 sample_count) {
+  // In two dimensions the launch is the grid of tiles itself, in one it is that grid row by row.
+  const u32 item = get_global_id(1) * row_items + get_global_id(0);
+  if (get_global_id(0) >= row_items || item >= item_count) return;
   u32 counts[COUNTERS];
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
   const MediaStack start = (MediaStack)camera_media[1] << 32 | camera_media[0];
