@@ -28,8 +28,14 @@ auto timed(double& seconds, const Step& step) {
 }
 
 /// What would otherwise be found out after the render.
+bool drops_alpha(const std::filesystem::path& path) {
+  return path.extension() != ".exr" && path.extension() != ".EXR";
+}
+
 void check_outputs(const RenderCommand& command) {
   check_image_path(command.out, !command.aovs.empty());
+  if (command.full_floats && drops_alpha(command.out))
+    throw UsageError(fmt::format("{}: --float is for .exr files", command.out));
   check_writable(command.out);
   for (const std::string& file : {command.stats, command.resume})
     if (!file.empty()) check_writable(file);
@@ -63,10 +69,6 @@ Image without_alpha(const Image& image) {
   return opaque;
 }
 
-bool drops_alpha(const std::filesystem::path& path) {
-  return path.extension() != ".exr" && path.extension() != ".EXR";
-}
-
 double write(const RenderCommand& command, const RenderResult& result) {
   const Stopwatch clock;
   const Image& image = result.image;
@@ -97,7 +99,7 @@ int report_interrupt(const RenderCommand& command, const RenderProgress& progres
   const double percent = progress.pixels_total == 0 ? 0
                                                     : 100 * static_cast<double>(progress.pixels_done) /
                                                           static_cast<double>(progress.pixels_total);
-  fmt::print(stderr, "sundog: interrupted: {:.0f} % of the pixels are in {}{}\n", percent, command.out,
+  fmt::print(stderr, "sundog: interrupted: {:.3g} % of the pixels are in {}{}\n", percent, command.out,
              command.resume.empty() ? "" : "; the same command goes on from there");
   return exit_interrupted;
 }
@@ -107,6 +109,7 @@ int report_interrupt(const RenderCommand& command, const RenderProgress& progres
 int render_command(const RenderCommand& command) {
   const Stopwatch clock;
   check_outputs(command);
+  const StopOnSignal stop;
   TimeLedger times;
   const SceneDescription scene = timed(times.load, [&] { return load(command); });
   print_warnings(scene.warnings);
@@ -115,7 +118,6 @@ int render_command(const RenderCommand& command) {
 
   ProgressBar bar(!command.quiet);
   RenderProgress progress;
-  const StopOnSignal stop;
   RenderOptions options = render_options(command);
   options.stop = &stop.flag();
   options.on_progress = [&](const RenderProgress& now) { bar.update(progress = now); };

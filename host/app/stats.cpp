@@ -112,7 +112,8 @@ std::vector<std::string> losses(const RayCounts& counts) {
       {COUNT_SHADOW_LIMIT, "shadow rays were given up after too many transmissive surfaces"},
       {COUNT_NON_FINITE, "samples were dropped because they were not finite"},
       {COUNT_STRAY_EXIT,
-       "rays left a solid that they had not entered: a mesh with an interior may not be closed"}};
+       "rays left a solid that they had not entered: a mesh with an interior may not be closed, or surfaces "
+       "coincide"}};
   // A handful of stray exits comes from rays that start within rounding of an edge of a closed mesh; an open
   // mesh gives many more.
   constexpr std::uint64_t rays_per_stray = 1'000'000;

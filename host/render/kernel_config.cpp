@@ -59,8 +59,9 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   define("WIDE_VECTORS", vectors);
   // Depth first, `batch` rays at a time, at most that many wait on each level, and one batch of children
   // more. Beyond 32 levels the kernel counts what does not fit, and the frame reports it.
-  define("RAY_STACK",
-         scene.features.secondary_rays ? batch * (std::min(scene.info.max_depth, 32u) + 2u) : batch);
+  config.ray_stack =
+      scene.features.secondary_rays ? batch * (std::min(scene.info.max_depth, 32u) + 2u) : batch;
+  define("RAY_STACK", config.ray_stack);
   // Rounded up, so that similar scenes share their kernels.
   define("BVH_STACK", (traversal_stack_size(scene) + 31u) / 32u * 32u);
   static constexpr const char* shape_names[SHAPE_SDF] = {"HAS_MESH", "HAS_SPHERE",   "HAS_PLANE",

@@ -8,7 +8,8 @@ namespace sundog {
 /// The shape of a work-item's pixels, and the definitions that the kernels are built with
 /// (kernels/lib/config.h has their defaults).
 struct KernelConfig {
-  unsigned tile_w = 4, tile_h = 4;
+  unsigned tile_w = 4, tile_h = 4;  // pixels a work-item
+  unsigned ray_stack = 0;           // rays that may wait in a work-item
   KernelDefines defines;
 };
 

@@ -15,16 +15,19 @@ namespace {
 constexpr double launch_seconds = 0.05;
 constexpr std::size_t first_launch_size = 4096;  // pixel-samples, before anything is known of the device
 
-// A CPU's driver keeps the private memory of a whole group on a thread's stack: beyond this some crash.
-constexpr std::size_t largest_cpu_group = 1024;
+// A CPU's driver keeps the private memory of a whole group on a thread's stack, 8 MiB by default, and crashes
+// when that is full. What a work-item holds is its ray stack and its batch.
+constexpr std::size_t group_memory = std::size_t{6} << 20, ray_bytes = 80, batch_bytes = 640;
 
-void check_work_group(const DeviceInfo& device, const WorkGroup& group) {
-  const std::size_t most = device.device_class == DeviceClass::cpu
-                               ? std::min(device.max_work_group, largest_cpu_group)
-                               : device.max_work_group;
+void check_work_group(const DeviceInfo& device, const KernelConfig& config, const WorkGroup& group) {
+  std::size_t most = device.max_work_group;
+  if (device.device_class == DeviceClass::cpu)
+    most = std::min(
+        most, group_memory / (config.ray_stack * ray_bytes + config.tile_w * config.tile_h * batch_bytes));
   if (group.kind == WorkGroup::Kind::fixed && most > 0 && group.x * group.y > most)
     throw UsageError(
-        fmt::format("{}: a work-group of {} is more than the {} that this device is given; ask for less",
+        fmt::format("{}: a work-group of {} is more than the {} that it can have in this scene; ask for "
+                    "less, or for a smaller max_depth",
                     device.label(), group.x * group.y, most));
 }
 
@@ -39,7 +42,7 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
       options_(options),
       config_(make_kernel_config(scene, device.info())),
       next_size_(first_launch_size) {
-  check_work_group(device.info(), options.work_group);
+  check_work_group(device.info(), config_, options.work_group);
   const Stopwatch building;
   BuildReport report;
   render_ = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32,
