@@ -126,6 +126,8 @@ int render_command(const RenderCommand& command) {
 
   times.render = result.times;
   times.write = write(command, result);
+  if (result.complete && !command.resume.empty())
+    std::filesystem::remove(command.resume);  // not before the image is safe
   times.total = clock.seconds();
   if (!command.stats.empty()) {
     using nlohmann::json;

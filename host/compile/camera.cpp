@@ -56,6 +56,11 @@ void set_camera(const SceneDescription& scene, SceneInfo& info) {
   info.background_bottom = pack(image.background_bottom, camera.far);
   info.background_top = pack(image.background_top);
   info.up = pack(up);
+  constexpr double most_pixels = 1 << 28;  // a film of 16 bytes a pixel: 4 GiB
+  if (static_cast<double>(image.width) * image.height > most_pixels)
+    fail(scene, "/image",
+         fmt::format("wanted at most {:.0f} pixels in all, found {} x {}", most_pixels, image.width,
+                     image.height));
   info.width = static_cast<u32>(image.width);
   info.height = static_cast<u32>(image.height);
   info.max_depth = static_cast<u32>(scene.render.max_depth);

@@ -124,11 +124,8 @@ void finish_frame(Frame& frame, std::uint64_t key) {
   result.times.readback = frame.readback;
   result.times.render =
       std::max(0.0, total - result.times.build_kernels - result.times.upload - frame.readback);
-  if (frame.options.resume.empty()) return;
-  if (!result.complete)
+  if (!frame.options.resume.empty() && !result.complete)
     write_checkpoint(frame.options.resume, frame.film, key);
-  else if (std::filesystem::exists(frame.options.resume))
-    std::filesystem::remove(frame.options.resume);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ struct RenderOptions {
   WorkGroup work_group;
   int tile = 0;                   // tile edge in pixels, rounded up to a multiple of 4; 0: chosen
   std::vector<std::string> aovs;  // of aov_names()
-  std::filesystem::path resume;   // checkpoint: read when it exists, written on interrupt, removed at the end
+  std::filesystem::path resume;   // checkpoint: read when it exists, written on interrupt; the caller removes it
   std::function<void(const RenderProgress&)> on_progress;  // called by one thread at a time
   const std::atomic<bool>* stop = nullptr;                 // set: finish what runs, return what there is
 };

@@ -18,7 +18,7 @@ int default_tile_edge(int width, int height, std::size_t devices) {
   const double pixels = static_cast<double>(width) * height;
   const double wanted = devices > 1 ? pixels / (16.0 * static_cast<double>(devices)) : pixels / 4.0;
   const int edge = static_cast<int>(std::sqrt(wanted));
-  return std::clamp(edge / 4 * 4, 32, 512);
+  return std::clamp(edge / 4 * 4, 32, 128);  // small enough that a progress bar moves
 }
 
 std::size_t next_launch_size(std::size_t last_size, double last_seconds, double target_seconds,
