@@ -26,16 +26,17 @@ struct Options {
   std::vector<float> from{0.25f, 0.2f, 1.0f};
   std::string device = "cpu", json;
   unsigned size = 1024, threads = 1, repeats = 7;
-  bool wall = false, packets = false;
+  bool wall = false, packets = false, spatial_splits = false;
   EmbreeOptions embree;
 };
 
 /// One model's meshes where they lie.
-SceneDescription scene_of_model(const std::string& path) {
+SceneDescription scene_of_model(const std::string& path, const Options& options) {
   Model model = load_model(path);
   SceneDescription scene;
   scene.file = path;
   scene.media.resize(1);
+  scene.render.spatial_splits = options.spatial_splits;
   scene.materials = std::move(model.materials);
   scene.meshes = std::move(model.meshes);
   scene.objects = std::move(model.objects);
@@ -139,7 +140,7 @@ class Comparison {
 };
 
 nlohmann::json compare_model(const Options& options, const std::string& path) {
-  const SceneDescription description = scene_of_model(path);
+  const SceneDescription description = scene_of_model(path, options);
   const CompiledScene scene = compile(description);
   DeviceInfo info = select_devices(enumerate_devices(), {options.device}).at(0);
   info.sub_units = options.threads < info.compute_units ? options.threads : 0;
@@ -187,6 +188,7 @@ int main(int argc, char** argv) {
   app.add_flag("--wall", options.wall, "wall clock; without it processor time over threads");
   app.add_flag("--packets", options.packets, "also Embree's 16-wide packets");
   app.add_flag("--robust", options.embree.robust, "Embree's watertight mode");
+  app.add_flag("--spatial", options.spatial_splits, "sundog's BVH with spatial splits");
   app.add_flag("--high", options.embree.high_quality, "Embree's high build quality");
   CLI11_PARSE(app, argc, argv);
   try {
