@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "compile/instance_bounds.h"
 #include "compile/shapes.h"
 #include "compile/wide_bvh.h"
 
@@ -20,13 +21,6 @@ struct Placed {
   double cost = 1;
   bool bounded() const { return instance.shape != SHAPE_PLANE; }
 };
-
-float round_down(double value) {
-  const auto rounded = static_cast<float>(value);
-  return double(rounded) > value ? std::nextafter(rounded, -std::numeric_limits<float>::infinity()) : rounded;
-}
-
-float round_up(double value) { return -round_down(-value); }
 
 [[noreturn]] void fail_transform(const SceneDescription& scene, const Object& object) {
   throw SceneError(scene.file.string(), object.place,
@@ -58,50 +52,6 @@ dmat4 set_transform(const SceneDescription& scene, const Object& object, const d
   return back;
 }
 
-/// How far the shape reaches along `direction` (unit space): of a mesh, the boxes of its root's
-/// grandchildren.
-double reach(const UnitShape& unit, const std::vector<Bounds>& boxes, const dvec3& d) {
-  if (unit.shape != SHAPE_MESH) return reach(unit, d);
-  double most = -std::numeric_limits<double>::infinity();
-  for (const Bounds& box : boxes) {
-    double sum = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      sum += d[axis] * double(d[axis] > 0 ? box.upper[axis] : box.lower[axis]);
-    most = std::max(most, sum);
-  }
-  return most;
-}
-
-std::vector<Bounds> two_levels(const std::vector<Bvh8Node>& nodes, u32 root) {
-  std::vector<Bounds> boxes;
-  const auto visit = [&](const auto& self, u32 index, int level) -> void {
-    const Bvh8Node& node = nodes[index];
-    for (u32 slot = 0; slot < BVH_WIDTH && (node.valid >> slot & 1u); ++slot)
-      if (level == 0 || node.child[slot] & BVH_LEAF)
-        boxes.push_back(child_bounds(node, slot));
-      else
-        self(self, node.child[slot], level - 1);
-  };
-  visit(visit, root, 1);
-  return boxes;
-}
-
-/// World bounds, rounded outwards and widened by what a kernel's transform of a ray may round.
-Bounds world_bounds(const UnitShape& unit, const std::vector<Bounds>& boxes, const dmat4& world_from_unit,
-                    bool exact) {
-  Bounds bounds = Bounds::none();
-  for (int axis = 0; axis < 3; ++axis) {
-    const dvec3 row(world_from_unit[0][axis], world_from_unit[1][axis], world_from_unit[2][axis]);
-    const double offset = world_from_unit[3][axis];
-    double lower = offset - reach(unit, boxes, -row), upper = offset + reach(unit, boxes, row);
-    const double slack = exact ? 0 : 0x1p-22 * std::max({std::abs(lower), std::abs(upper), std::abs(offset)});
-    bounds.lower[axis] = round_down(lower - slack);
-    bounds.upper[axis] = round_up(upper + slack);
-  }
-  bounds.lower[3] = bounds.upper[3] = 0;
-  return bounds;
-}
-
 u32 surface_flags(const Material& material) {
   u32 flags = 0;
   if (material.flags & MATERIAL_TRANSMITS && !(material.flags & MATERIAL_SHADOW_OPAQUE))
@@ -110,6 +60,7 @@ u32 surface_flags(const Material& material) {
   return flags;
 }
 
+/// Turns objects into instances and notes what their materials ask of the kernels.
 class Placer {
  public:
   Placer(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, u32 default_material,
@@ -123,44 +74,38 @@ class Placer {
     instance.shape = unit.shape;
     instance.parameters = unit.parameters;
     instance.object = index;
-    instance.material = object.material >= 0 ? static_cast<u32>(object.material) : NO_MATERIAL;
     instance.pattern_scale = {static_cast<float>(unit.scale.x), static_cast<float>(unit.scale.y),
                               static_cast<float>(unit.scale.z), 0};
-    std::vector<Bounds> boxes;
-    if (const auto* shape = std::get_if<MeshShape>(&object.shape)) {
-      const PlacedMesh& mesh = meshes_[static_cast<std::size_t>(shape->mesh)];
-      instance.root = mesh.root;
-      placed.cost = mesh.cost;
-      boxes = two_levels(out_.nodes, mesh.root);
+    const auto* shape = std::get_if<MeshShape>(&object.shape);
+    const PlacedMesh* mesh = shape ? &meshes_[static_cast<std::size_t>(shape->mesh)] : nullptr;
+    if (mesh) {
+      instance.root = mesh->root;
+      placed.cost = mesh->cost;
     }
-    set_surface(object, instance);
-    set_place(object, unit, boxes, placed);
+    set_surface(object, mesh, instance);
+    set_place(object, unit, mesh, placed);
     return placed;
   }
 
  private:
-  void set_place(const Object& object, const UnitShape& unit, const std::vector<Bounds>& boxes,
-                 Placed& placed) {
+  void set_place(const Object& object, const UnitShape& unit, const PlacedMesh* mesh, Placed& placed) {
+    const dmat4 scale(glm::dmat3(unit.scale.x, 0, 0, 0, unit.scale.y, 0, 0, 0, unit.scale.z));
     const dmat4 world_from_unit =
-        set_transform(scene_, object,
-                      object.world_from_object *
-                          dmat4(glm::dmat3x3(unit.scale.x, 0, 0, 0, unit.scale.y, 0, 0, 0, unit.scale.z)),
-                      placed.instance);
+        set_transform(scene_, object, object.world_from_object * scale, placed.instance);
     if (!placed.bounded()) return;
     const bool exact = placed.instance.flags & INSTANCE_IDENTITY;
+    const auto boxes = mesh ? std::span<const Bounds>(mesh->boxes) : std::span<const Bounds>();
     placed.box = world_bounds(unit, boxes, world_from_unit, exact);
     placed.instance.world_center = sphere_around(placed.box);
   }
 
-  void set_surface(const Object& object, Instance& instance) {
-    const auto* shape = std::get_if<MeshShape>(&object.shape);
-    if (instance.material == NO_MATERIAL && shape) {
-      const PlacedMesh& mesh = meshes_[static_cast<std::size_t>(shape->mesh)];
-      for (u32 i = 0; i < mesh.triangle_count; ++i)
-        use(out_.triangles[mesh.first_triangle + i].material, instance);
+  void set_surface(const Object& object, const PlacedMesh* mesh, Instance& instance) {
+    instance.material = object.material >= 0 ? static_cast<u32>(object.material) : NO_MATERIAL;
+    if (mesh && object.material < 0) {
+      for (const u32 material : mesh->materials) use(material, instance);
       return;
     }
-    if (instance.material == NO_MATERIAL) instance.material = default_material_;
+    if (object.material < 0) instance.material = default_material_;
     use(instance.material, instance);
   }
 
@@ -173,17 +118,6 @@ class Placer {
     if (flags & INSTANCE_FILTERS) out_.features.shadow_filters = true;
   }
 
- public:
-  static float4 sphere_around(const Bounds& box) {
-    const auto edge = [&](int axis) { return double(box.upper[axis]) - double(box.lower[axis]); };
-    const auto middle = [&](int axis) {
-      return static_cast<float>(0.5 * (double(box.upper[axis]) + double(box.lower[axis])));
-    };
-    const double half_diagonal = 0.5 * std::sqrt(edge(0) * edge(0) + edge(1) * edge(1) + edge(2) * edge(2));
-    return {middle(0), middle(1), middle(2), round_up(half_diagonal)};
-  }
-
- private:
   const SceneDescription& scene_;
   const std::vector<PlacedMesh>& meshes_;
   u32 default_material_;
@@ -227,7 +161,7 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
 
   out.info.tlas_root = root;
   out.info.bounded_count = static_cast<u32>(bounded.size());
-  out.info.scene_center = bounded.empty() ? float4{} : Placer::sphere_around(tree.box);
+  out.info.scene_center = bounded.empty() ? float4{} : sphere_around(tree.box);
   out.features.bvh_stack = std::max(1u, stack_need(tree.nodes, 0) + mesh_stack);
   out.figures.sah_cost = expected_cost(tree.nodes, 0, [&](u32 first, u32 count) {
     double sum = 0;

@@ -130,17 +130,92 @@ void append_tree(const WideBvh& tree, const Mesh& mesh, u32 first_triangle, std:
   });
 }
 
-struct TableSizes {
+/// Rows of the tables: how many there are, or where a mesh begins.
+struct Rows {
   std::size_t nodes = 0, blocks = 0, triangles = 0, vertices = 0;
 };
 
-void check_sizes(const SceneDescription& scene, const TableSizes& sizes) {
-  if (sizes.blocks > BVH_FIRST_MASK || sizes.nodes >= BVH_LEAF || sizes.triangles >= NO_PRIM ||
-      sizes.vertices >= NO_PRIM)
+/// Where each mesh begins, and at the end the sums.
+std::vector<Rows> lay_out(const SceneDescription& scene, const std::vector<WideBvh>& trees) {
+  std::vector<Rows> first(1);
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    Rows next = first.back();
+    if (!trees[i].nodes.empty()) {
+      next.nodes += trees[i].nodes.size();
+      next.blocks += trees[i].blocks.size();
+      next.triangles += scene.meshes[i].triangles.size();
+      next.vertices += vertex_count(scene.meshes[i]);
+    }
+    first.push_back(next);
+  }
+  const Rows& sum = first.back();
+  if (sum.blocks > BVH_FIRST_MASK || sum.nodes >= BVH_LEAF || sum.triangles >= NO_PRIM ||
+      sum.vertices >= NO_PRIM)
     throw SceneError(
         scene.file.string(), "",
         fmt::format("{} triangles in {} blocks are more than the tables can index; use smaller meshes",
-                    sizes.triangles, sizes.blocks));
+                    sum.triangles, sum.blocks));
+  return first;
+}
+
+void resize_tables(const Rows& rows, CompiledScene& out) {
+  tbb::parallel_invoke([&] { out.nodes.resize(rows.nodes); }, [&] { out.blocks.resize(rows.blocks); },
+                       [&] { out.triangles.resize(rows.triangles); },
+                       [&] { out.vertices.resize(rows.vertices); });
+}
+
+std::vector<Bounds> grandchildren(const std::vector<Bvh8Node>& nodes) {
+  std::vector<Bounds> boxes;
+  const auto visit = [&](const auto& self, u32 index, int level) -> void {
+    const Bvh8Node& node = nodes[index];
+    for (u32 slot = 0; slot < BVH_WIDTH && (node.valid >> slot & 1u); ++slot)
+      if (level == 0 || node.child[slot] & BVH_LEAF)
+        boxes.push_back(child_bounds(node, slot));
+      else
+        self(self, node.child[slot], level - 1);
+  };
+  visit(visit, 0, 1);
+  return boxes;
+}
+
+std::vector<u32> distinct_materials(std::span<const TriangleShading> triangles) {
+  std::vector<u32> materials;
+  for (const TriangleShading& triangle : triangles) {
+    if (!materials.empty() && materials.back() == triangle.material) continue;
+    if (std::find(materials.begin(), materials.end(), triangle.material) == materials.end())
+      materials.push_back(triangle.material);
+  }
+  return materials;
+}
+
+/// Writes one mesh's rows, its parts in parallel.
+void fill_tables(const Mesh& mesh, const WideBvh& tree, const Rows& first, u32 default_material,
+                 CompiledScene& out, PlacedMesh& placed) {
+  placed.root = static_cast<u32>(first.nodes);
+  placed.triangle_count = static_cast<u32>(mesh.triangles.size());
+  placed.boxes = grandchildren(tree.nodes);
+  const auto triangles = std::span(out.triangles).subspan(first.triangles, mesh.triangles.size());
+  tbb::parallel_invoke(
+      [&] { placed.cost = expected_cost(tree.nodes, 0, [](u32, u32 count) { return double(count); }); },
+      [&] { placed.stack = stack_need(tree.nodes, 0); },
+      [&] {
+        append_tree(tree, mesh, static_cast<u32>(first.triangles), std::span(out.nodes).subspan(first.nodes),
+                    placed.root, std::span(out.blocks).subspan(first.blocks), static_cast<u32>(first.blocks));
+      },
+      [&] {
+        fill_vertices(mesh, static_cast<u32>(first.vertices), default_material,
+                      std::span(out.vertices).subspan(first.vertices, vertex_count(mesh)), triangles);
+        placed.materials = distinct_materials(triangles);
+      });
+}
+
+double mean_fill(const std::vector<WideBvh>& trees) {
+  std::size_t members = 0, blocks = 0;
+  for (const WideBvh& tree : trees) {
+    members += tree.members.size();
+    blocks += tree.blocks.size();
+  }
+  return blocks > 0 ? static_cast<double>(members) / static_cast<double>(blocks) : 0;
 }
 
 }  // namespace
@@ -150,54 +225,16 @@ std::vector<PlacedMesh> add_meshes(const SceneDescription& scene, u32 default_ma
   for (const Object& object : scene.objects)
     if (const auto* shape = std::get_if<MeshShape>(&object.shape))
       placed[std::size_t(shape->mesh)].used = true;
-
-  std::vector<WideBvh> trees(placed.size());
+  std::vector<WideBvh> trees(placed.size());  // of a mesh that is not used: without nodes
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
     if (placed[i].used) trees[i] = build_mesh(scene, i);
   });
-
-  std::vector<TableSizes> first(placed.size());
-  TableSizes sum;
-  std::size_t members = 0;
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    first[i] = sum;
-    if (!placed[i].used) continue;
-    members += trees[i].members.size();
-    sum.nodes += trees[i].nodes.size();
-    sum.blocks += trees[i].blocks.size();
-    sum.triangles += scene.meshes[i].triangles.size();
-    sum.vertices += vertex_count(scene.meshes[i]);
-  }
-  check_sizes(scene, sum);
-  if (sum.blocks > 0)
-    out.figures.mean_block_fill = static_cast<double>(members) / static_cast<double>(sum.blocks);
-  tbb::parallel_invoke([&] { out.nodes.resize(sum.nodes); }, [&] { out.blocks.resize(sum.blocks); },
-                       [&] { out.triangles.resize(sum.triangles); },
-                       [&] { out.vertices.resize(sum.vertices); });
-
+  const std::vector<Rows> first = lay_out(scene, trees);
+  resize_tables(first.back(), out);
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
-    if (!placed[i].used) return;
-    const Mesh& mesh = scene.meshes[i];
-    const auto node = static_cast<u32>(first[i].nodes), block = static_cast<u32>(first[i].blocks);
-    const auto triangle = static_cast<u32>(first[i].triangles), vertex = static_cast<u32>(first[i].vertices);
-    placed[i].root = node;
-    placed[i].first_triangle = triangle;
-    placed[i].triangle_count = static_cast<u32>(mesh.triangles.size());
-    tbb::parallel_invoke(
-        [&] {
-          placed[i].cost = expected_cost(trees[i].nodes, 0, [](u32, u32 count) { return double(count); });
-        },
-        [&] { placed[i].stack = stack_need(trees[i].nodes, 0); },
-        [&] {
-          append_tree(trees[i], mesh, triangle, std::span(out.nodes).subspan(node), node,
-                      std::span(out.blocks).subspan(block), block);
-        },
-        [&] {
-          fill_vertices(mesh, vertex, default_material,
-                        std::span(out.vertices).subspan(vertex, vertex_count(mesh)),
-                        std::span(out.triangles).subspan(triangle, mesh.triangles.size()));
-        });
+    if (placed[i].used) fill_tables(scene.meshes[i], trees[i], first[i], default_material, out, placed[i]);
   });
+  out.figures.mean_block_fill = mean_fill(trees);
   return placed;
 }
 

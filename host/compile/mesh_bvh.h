@@ -7,13 +7,15 @@
 
 namespace sundog {
 
-/// Where a mesh lies in the tables.
+/// A mesh in the tables, and what its instances need to know of it.
 struct PlacedMesh {
   bool used = false;  // some object places it
   u32 root = 0;       // its first node
-  u32 first_triangle = 0, triangle_count = 0;
-  double cost = 0;  // expected cost of a ray that crosses its box
-  u32 stack = 0;    // entries its traversal may need
+  u32 triangle_count = 0;
+  double cost = 0;             // expected cost of a ray that crosses its box
+  u32 stack = 0;               // entries its traversal may need
+  std::vector<Bounds> boxes;   // of its root's grandchildren: a tight hull for a rotated instance
+  std::vector<u32> materials;  // of its triangles, each once
 };
 
 /// Appends the meshes that `scene`'s objects use to nodes, blocks, triangles and vertices of `out`; one

@@ -1,0 +1,18 @@
+// Boxes of placed shapes in the world.
+#pragma once
+#include <span>
+
+#include "compile/bounds.h"
+#include "compile/shapes.h"
+
+namespace sundog {
+
+/// World bounds of a bounded shape, rounded outwards; unless `exact`, widened by what a kernel's transform of
+/// a ray may round. `boxes` cover a mesh (unit.shape is SHAPE_MESH), and are ignored else.
+Bounds world_bounds(const UnitShape& unit, std::span<const Bounds> boxes, const dmat4& world_from_unit,
+                    bool exact);
+
+/// The box's centre, and in w half its diagonal, rounded up.
+float4 sphere_around(const Bounds& box);
+
+}  // namespace sundog
