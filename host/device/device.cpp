@@ -105,8 +105,8 @@ cl::Buffer Device::allocate(std::size_t bytes, const void* data) {
              fmt::format("a buffer of {} bytes where {} is the limit", bytes, info_.max_allocation));
   cl_int status = CL_SUCCESS;
   const bool copy = bytes > 0 && data;
-  cl::Buffer buffer(context_, CL_MEM_READ_WRITE | (copy ? CL_MEM_COPY_HOST_PTR : 0u), std::max(bytes, unused),
-                    copy ? const_cast<void*>(data) : nullptr, &status);
+  cl::Buffer buffer(context_, CL_MEM_READ_WRITE | (copy ? CL_MEM_COPY_HOST_PTR : 0u),
+                    bytes > 0 ? bytes : unused, copy ? const_cast<void*>(data) : nullptr, &status);
   check_cl(status, info_, fmt::format("a buffer of {} bytes", bytes));
   return buffer;
 }

@@ -64,6 +64,7 @@ TEST_CASE("reads and writes of a part of a buffer touch that part alone") {
       device.read(buffer, std::span<u32>(part), 1);
       CHECK(part == std::vector<u32>{1, 20, 30});
       CHECK(device.upload<u32>({}).count == 0);
+      CHECK(device.upload<u32>(part).memory.getInfo<CL_MEM_SIZE>() == 12);  // no byte beyond the host's is read
     }
 }
 
