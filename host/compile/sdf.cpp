@@ -223,6 +223,7 @@ class FieldsEmitter {
     if (d.sphere) r.sphere = {f(d.sphere->x), f(d.sphere->y), f(d.sphere->z), f(d.sphere->w)};
     r.safety = 1;
     r.detail = f(d.detail);
+    r.normal_width = 0.5f;
     r.step_limit = static_cast<u32>(d.step_limit);
     r.flags = (is_smooth(d.root) ? SDF_SMOOTH : 0u) | (d.sphere ? SDF_CUT_SPHERE : 0u);
     r.color_by = d.coloring.palette.empty() ? SDF_COLOR_NONE : static_cast<u32>(d.coloring.by);

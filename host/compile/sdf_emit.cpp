@@ -103,7 +103,9 @@ std::string GraphPrinter::value(NodeId id) const {
     case Op::round_down:
       return call("floor");
     case Op::square_root:
-      return call("sqrt");
+      return call("real_sqrt");
+    case Op::inverse_root:
+      return call("real_rsqrt");
     case Op::sine:
       return call("sin");
     case Op::cosine:

@@ -13,8 +13,8 @@ namespace {
 namespace in = formula_input;
 
 // The table of a leaf: these, then the parameters of its steps in order.
-constexpr int iterations_slot = 0, bailout_slot = 1, inside_slot = 2, safety_slot = 3,
-              inside_safety_slot = 4, first_parameter_slot = 5;
+constexpr int iterations_slot = 0, bailout_slot = 1, inside_slot = 2, safety_slot = 3, inside_safety_slot = 4,
+              first_parameter_slot = 5;
 
 enum class Variant { distance, two_sided, sample };
 
@@ -92,7 +92,7 @@ class LeafEmitter {
         "    const REAL r2 = square_length3(p.x, p.y, p.z);\n    SdfSample s = {{finite_distance({}), "
         "real3({}, {}, {}),\n"
         "        r2, real_min(fabs(p.x), real_min(fabs(p.y), fabs(p.z))), r2, (REAL)(0.0f)}};\n"
-        "    s.point = sqrt(r2);\n    s.axis = axis_distance(p.x, p.y, p.z);\n    return s;\n",
+        "    s.point = real_sqrt(r2);\n    s.axis = axis_distance(p.x, p.y, p.z);\n    return s;\n",
         distance, print.text(s.gradient[0]), print.text(s.gradient[1]), print.text(s.gradient[2]));
     return out;
   }
@@ -207,7 +207,7 @@ class LeafEmitter {
   std::string inner_distance() const {
     std::string out = jacobian_ ? "    {\n" + derivative_from_jacobian() : "    {\n";
     return out + fmt::format(
-                     "    const REAL room = (q[{}] - sqrt(r2)) / real_max(dr, (REAL)(1e-30f));\n"
+                     "    const REAL room = (q[{}] - real_sqrt(r2)) / real_max(dr, (REAL)(1e-30f));\n"
                      "    inner = select(inner, real_min(room, inner), alive);\n    }}\n",
                      inside_slot);
   }
@@ -234,7 +234,7 @@ class LeafEmitter {
     out +=
         fmt::format("    const u32 iterations = (u32)q[{}];\n    for (u32 i = 0; i < iterations; ++i) {{\n",
                     iterations_slot);
-    if (bails_out()) out += "    if (!any(alive)) break;\n";
+    if (bails_out()) out += "    if (!any_lane(alive)) break;\n";
     out += code.inside + "    r2 = " + square() + ";\n";
     if (variant_ == Variant::sample) out += traps();
     if (variant_ == Variant::two_sided && escapes()) out += inner_distance();
@@ -245,10 +245,11 @@ class LeafEmitter {
   /// Distance of an escaped orbit; what stays is inside, at distance 0 or as deep as `inner`.
   std::string escape_distance() const {
     std::string out = "    const REAL capped = real_min(r2, (REAL)(1e36f));\n";
-    out += last_->estimate == EscapeEstimate::logarithmic
-               ? "    const REAL outer = 0.25f * real_log(real_max(capped, (REAL)(1.0f))) * sqrt(capped) / "
-                 "real_max(dr, (REAL)(1e-30f));\n"
-               : "    const REAL outer = sqrt(capped) / real_max(dr, (REAL)(1e-30f));\n";
+    out +=
+        last_->estimate == EscapeEstimate::logarithmic
+            ? "    const REAL outer = 0.25f * real_log(real_max(capped, (REAL)(1.0f))) * real_sqrt(capped) / "
+              "real_max(dr, (REAL)(1e-30f));\n"
+            : "    const REAL outer = real_sqrt(capped) / real_max(dr, (REAL)(1e-30f));\n";
     const std::string inside = variant_ == Variant::two_sided
                                    ? fmt::format("-real_max(inner, (REAL)(0.0f)) * q[{}]", inside_safety_slot)
                                    : "(REAL)(0.0f)";
@@ -278,12 +279,13 @@ class LeafEmitter {
     if (variant_ != Variant::sample) return out + "    return " + distance + ";\n";
     const std::string rest =
         bails_out()
-            ? fmt::format(" + sqrt(clamp(q[{}] / real_max(r2, (REAL)(1e-30f)), (REAL)(0.0f), (REAL)(1.0f)))",
-                          bailout_slot)
+            ? fmt::format(
+                  " + real_sqrt(clamp(q[{}] / real_max(r2, (REAL)(1e-30f)), (REAL)(0.0f), (REAL)(1.0f)))",
+                  bailout_slot)
             : "";
     return out +
            fmt::format(
-               "    const SdfSample s = {{{}, {}, sqrt(point), plane, axis, count{}}};\n    return s;\n",
+               "    const SdfSample s = {{{}, {}, real_sqrt(point), plane, axis, count{}}};\n    return s;\n",
                distance, gradient, rest);
   }
 

@@ -31,7 +31,8 @@ typedef struct SdfField {
   u32 palette_count;
   float palette_scale;
   float palette_offset;
-  u32 pad0, pad1, pad2;
+  float normal_width;  // of the differences that give a fractal's normal, in thresholds
+  u32 pad0, pad1;
 } SdfField;
 SUNDOG_SHARED_SIZE(SdfField, 96)
 

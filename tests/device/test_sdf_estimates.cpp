@@ -47,7 +47,7 @@ __kernel void bound(__global const SdfField* fields, __global const float* q, __
     const REAL3 d = k == 0u ? ahead : random_directions(ahead, k == 1u ? 0.7f : 2.0f, item * LANES * 16u + 3u * k);
     REAL t = (REAL)(0.0f), here = first;
     MASK active = MASK_OF(first > 1e-4f);
-    for (u32 i = 0; i < 64u && any(active); ++i) {
+    for (u32 i = 0; i < 64u && any_lane(active); ++i) {
       t = select(t, t + fmax(0.15f * here, first * 0.01f), active);
       active &= MASK_OF(t < first);
       here = sdf_distance(field, along3(p, t, d), active, q);

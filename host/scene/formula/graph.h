@@ -16,7 +16,8 @@ using NodeId = std::uint32_t;
 inline constexpr NodeId no_node = 0xFFFFFFFFu;
 
 /// less, less_equal, both, either and opposite give conditions; choose(condition, a, b) is a where it holds,
-/// else b. All else gives numbers. power takes a base >= 0.
+/// else b. All else gives numbers. power takes a base >= 0;
+/// inverse_root is 1 / sqrt(a) of an a > 0.
 enum class Op {
   constant,
   input,
@@ -30,6 +31,7 @@ enum class Op {
   maximum,
   round_down,
   square_root,
+  inverse_root,
   sine,
   cosine,
   arc_cosine,

@@ -27,7 +27,7 @@ static inline void clip_to_interval(__global const SdfField* restrict field, REA
   const REAL a = dot3(d, d), middle = -dot3(c, d) / a;
   const REAL3 nearest = along3(c, middle, d);  // its distance from the centre loses nothing to cancellation
   const REAL square = fma((REAL)(field->sphere.w), (REAL)(field->sphere.w), -dot3(nearest, nearest)) / a;
-  const REAL half_chord = sqrt(fmax(square, 0.0f));
+  const REAL half_chord = real_sqrt(fmax(square, 0.0f));
   const MASK missed = MASK_OF(square < 0.0f);
   *enter = select(fmax(*enter, middle - half_chord), (REAL)(INFINITY), missed);
   *leave = select(fmin(*leave, middle + half_chord), (REAL)(-INFINITY), missed);

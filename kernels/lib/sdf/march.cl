@@ -32,7 +32,7 @@ typedef struct MarchHits {
 static inline REAL march_estimate(u32 field, REAL3 p, MASK active, MASK inside,
                                   __global const float* restrict q) {
 #if SDF_TWO_SIDED
-  if (any(inside & active)) {
+  if (any_lane(inside & active)) {
     const REAL d = sdf_signed(field, p, active, q);
     return select(d, -d, inside);
   }
@@ -97,7 +97,7 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   MASK overshot = NO_LANES;
   REAL inside_at = first;  // the last point that was still inside
 #endif
-  for (u32 i = 0; i < field->step_limit && any(active); ++i) {
+  for (u32 i = 0; i < field->step_limit && any_lane(active); ++i) {
     const REAL3 p = along3(rays->origin, t, rays->direction);
     const REAL f = march_estimate(index, p, active, rays->inside, sdf_parameters) * field->safety;
     const REAL threshold = clamp(fma(t, rays->spread, rays->footprint) * speed * field->detail,
@@ -144,7 +144,7 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   hits.t = select(select(hits.t, t, active), last, hits.cut & ~hits.hit);
   hits.hit |= active | hits.cut;
 #if SDF_TWO_SIDED  // depths are no proven bound in every fractal (definition.h)
-  if (any(overshot))
+  if (any_lane(overshot))
     hits.t = select(hits.t, bisect_exit(SDF_ARGUMENTS, index, rays, inside_at, hits.t, overshot), overshot);
 #endif
   if (field->flags & SDF_SMOOTH) {

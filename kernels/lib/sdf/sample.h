@@ -50,13 +50,13 @@ static inline REAL stretch_of(REAL3 a, REAL3 b, REAL3 c, REAL3 d) {  // rows of 
   const REAL off = fma(xy, xy, fma(yz, yz, zx * zx));
   const REAL u = xx - mean, v = yy - mean, w = zz - mean;
   const REAL spread = fma(u, u, fma(v, v, fma(w, w, 2.0f * off))) * (1.0f / 6.0f);
-  return size * sqrt(mean + 2.0f * sqrt(spread));
+  return size * real_sqrt(mean + 2.0f * real_sqrt(spread));
 }
 
 // Distance of a point from the nearest coordinate axis.
 static inline REAL axis_distance(REAL x, REAL y, REAL z) {
   const REAL xx = x * x, yy = y * y, zz = z * z;
-  return sqrt(real_min(xx + yy, real_min(yy + zz, xx + zz)));
+  return real_sqrt(real_min(xx + yy, real_min(yy + zz, xx + zz)));
 }
 
 // A formula that gives no number there counts as empty: the march goes on by a small step.

@@ -25,24 +25,47 @@ static inline REAL3 palette_color(SDF_PARAMETERS, __global const SdfField* restr
 
 static inline REAL trap_value(u32 color_by, SdfSample s, REAL3 p) {
   switch (color_by) {
-    case SDF_COLOR_POINT: return s.point;
-    case SDF_COLOR_PLANE: return s.plane;
-    case SDF_COLOR_AXIS: return s.axis;
-    case SDF_COLOR_ITERATIONS: return s.iterations;
-    default: return length3(p);
+    case SDF_COLOR_POINT:
+      return s.point;
+    case SDF_COLOR_PLANE:
+      return s.plane;
+    case SDF_COLOR_AXIS:
+      return s.axis;
+    case SDF_COLOR_ITERATIONS:
+      return s.iterations;
+    default:
+      return length3(p);
   }
 }
 
+// Differences of the estimate at the corners of a tetrahedron (I. Quilez, Normals for an SDF). As wide as the
+// threshold, it leaves out what is finer than the pixel: on fractals the derivative itself is speckled.
+static inline REAL3 difference_normal(SDF_PARAMETERS, u32 index, REAL3 p, REAL width, MASK active) {
+  REAL3 sum = real3((REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f));
+  for (u32 i = 0; i < 4u; ++i) {
+    const REAL x = i == 0u || i == 3u ? width : -width, y = i >= 2u ? width : -width;
+    const REAL z = i == 1u || i == 3u ? width : -width;
+    const REAL d = sdf_distance(index, real3(p.x + x, p.y + y, p.z + z), active, sdf_parameters);
+    sum = along3(sum, d, real3(x, y, z));
+  }
+  return sum;
+}
+
 // At p, a hit of march_rays. `cut`: it lies on the interval's boundary.
-static inline SdfSurface sdf_surface(SDF_PARAMETERS, u32 index, REAL3 p, MASK cut) {
+static inline SdfSurface sdf_surface(SDF_PARAMETERS, u32 index, REAL3 p, REAL threshold, MASK hit, MASK cut) {
   __global const SdfField* restrict field = sdf_fields + index;
-  const SdfSample s = sdf_sample(index, p, sdf_parameters);
+  const bool exact = field->flags & SDF_SMOOTH, colored = field->color_by != SDF_COLOR_NONE;
   SdfSurface surface;
-  surface.normal = unit3(s.gradient);
-  if (any(cut)) surface.normal = select3(surface.normal, cut_normal(field, p), cut);
   surface.color = real3((REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f));
-  if (field->color_by != SDF_COLOR_NONE)
-    surface.color = palette_color(SDF_ARGUMENTS, field, trap_value(field->color_by, s, p));
+  REAL3 gradient = surface.color;
+  if (exact || colored) {
+    const SdfSample s = sdf_sample(index, p, sdf_parameters);
+    gradient = s.gradient;
+    if (colored) surface.color = palette_color(SDF_ARGUMENTS, field, trap_value(field->color_by, s, p));
+  }
+  if (!exact) gradient = difference_normal(SDF_ARGUMENTS, index, p, threshold * field->normal_width, hit);
+  surface.normal = unit3(gradient);
+  if (any_lane(cut)) surface.normal = select3(surface.normal, cut_normal(field, p), cut);
   return surface;
 }
 

@@ -1,0 +1,40 @@
+// Light that a field itself can tell about: how much of the sky a point sees, and soft shadows (A. Evans
+// 2006; I. Quilez, Soft shadows in raymarched SDFs, 2010).
+#ifndef SUNDOG_LIB_SDF_LIGHT_CL
+#define SUNDOG_LIB_SDF_LIGHT_CL
+#include "lib/sdf/march.cl"
+
+// 1 in the open, towards 0 in a crevice: five estimates along the normal, up to `reach` off the surface.
+static inline REAL sdf_openness(SDF_PARAMETERS, u32 index, REAL3 p, REAL3 normal, float reach, MASK active) {
+  const float safety = sdf_fields[index].safety;
+  REAL missing = (REAL)(0.0f);
+  float weight = 1.0f, total = 0.0f;
+  for (int i = 1; i <= 5; ++i) {
+    const float h = reach * (float)i * 0.2f;
+    const REAL d = sdf_distance(index, along3(p, (REAL)(h), normal), active, sdf_parameters) * safety;
+    missing += weight * fmax(h - d, 0.0f) / h;
+    total += weight;
+    weight *= 0.6f;
+  }
+  return clamp(1.0f - missing / total, (REAL)(0.0f), (REAL)(1.0f));
+}
+
+// The part of a light that reaches p along the unit direction wi, within t_max: 0 behind the surface, between
+// 0 and 1 where the way to the light passes it within 1 / hardness of the distance.
+static inline REAL sdf_soft_shadow(SDF_PARAMETERS, u32 index, REAL3 p, REAL3 wi, REAL t_min, REAL t_max,
+                                   float hardness, MASK active) {
+  __global const SdfField* restrict field = sdf_fields + index;
+  REAL enter = t_min, leave = t_max;
+  clip_to_interval(field, p, wi, &enter, &leave);
+  active &= MASK_OF(enter <= leave);
+  REAL t = enter, open = (REAL)(1.0f);
+  for (u32 i = 0; i < field->step_limit && any_lane(active); ++i) {
+    const REAL d = sdf_distance(index, along3(p, t, wi), active, sdf_parameters) * field->safety;
+    open = select(open, fmin(open, hardness * d / t), active);
+    t += fmax(d, 0.02f * t);  // a penumbra is not looked at more closely than this
+    active &= MASK_OF(open > 0.002f) & MASK_OF(t < leave);
+  }
+  return clamp(open, (REAL)(0.0f), (REAL)(1.0f));
+}
+
+#endif
