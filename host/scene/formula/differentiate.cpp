@@ -63,7 +63,8 @@ class Tangents {
         return pick(g_.less(node.a, g_.constant(0)), minus(da), da);
       case Op::square_root:
         return over(times(g_.constant(0.5), da), kept_from_zero(id));
-      case Op::inverse_root: return times(g_.scaled(g_.mul(g_.mul(id, id), id), -0.5), da);
+      case Op::inverse_root:
+        return times(g_.scaled(g_.mul(g_.mul(id, id), id), -0.5), da);
       case Op::sine:
         return times(g_.apply(Op::cosine, node.a), da);
       case Op::cosine:

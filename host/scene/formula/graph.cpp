@@ -39,7 +39,8 @@ double evaluate(Op op, double a, double b, double c) {
       return std::floor(a);
     case Op::square_root:
       return std::sqrt(a);
-    case Op::inverse_root: return 1 / std::sqrt(a);
+    case Op::inverse_root:
+      return 1 / std::sqrt(a);
     case Op::sine:
       return std::sin(a);
     case Op::cosine:
