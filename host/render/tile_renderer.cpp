@@ -17,7 +17,7 @@ constexpr std::size_t first_launch_size = 4096;  // pixel-samples, before anythi
 
 // A CPU's driver keeps the private memory of a whole group on a thread's stack, 8 MiB by default, and crashes
 // when that is full. What a work-item holds is its ray stack and its batch.
-constexpr std::size_t group_memory = std::size_t{6} << 20, ray_bytes = 80, batch_bytes = 640;
+constexpr std::size_t group_memory = std::size_t{6} << 20, ray_bytes = 96, batch_bytes = 640;
 
 void check_work_group(const DeviceInfo& device, const KernelConfig& config, const WorkGroup& group) {
   std::size_t most = device.max_work_group;
@@ -123,9 +123,10 @@ void TileRenderer::launch_aovs(const Tile& tile, std::vector<float4>& aovs) {
   aovs.resize(3 * pixels);
   if (pixels == 0) return;
   run_scene_kernel<Buffer<u32>, Buffer<float4>, u32, u32, u32, u32>(
-      device_, first_surfaces_, {pixels, 1, 16, 1}, tables_, tables_.camera_media, aovs_,
-      static_cast<u32>(tile.x), static_cast<u32>(tile.y), static_cast<u32>(tile.width),
-      static_cast<u32>(pixels));
+      device_, first_surfaces_,
+      {divide_up(static_cast<unsigned>(pixels), config_.tile_w * config_.tile_h), 1, 16, 1}, tables_,
+      tables_.camera_media, aovs_, static_cast<u32>(tile.x), static_cast<u32>(tile.y),
+      static_cast<u32>(tile.width), static_cast<u32>(pixels));
   device_.finish();
   device_.read(aovs_, std::span<float4>(aovs));
 }

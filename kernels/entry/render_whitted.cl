@@ -42,15 +42,11 @@ __kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const 
       if (lane_pixel(item, lane, x0, y0, width, height, &x, &y) == NO_PIXEL) continue;
       const float2 at = sample_offset(x, y, sample, info->samples);
       const CameraRay camera = camera_ray(info, (float)x + at.x, (float)y + at.y);
-      PathRay* ray = &stack.rays[stack.count++];
-      ray->o = camera.o;
-      ray->d = camera.d;
-      ray->t_min = camera.t_min;
-      ray->t_max = camera.t_max;
-      ray->throughput = (float3)(1.0f);
-      ray->pixel = lane;
-      ray->depth = 1u;
-      ray->media = start;
+      stack.rays[stack.count] = scene_ray(&camera, start);
+      PathState* path = &stack.paths[stack.count++];
+      path->throughput = (float3)(1.0f);
+      path->pixel = lane;
+      path->depth = 1u;
       counts[COUNT_PRIMARY] += 1u;
     }
     trace_whitted(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &stack, radiance, counts);

@@ -20,6 +20,12 @@ static inline CameraRay camera_ray(__global const SceneInfo* restrict info, floa
   return ray;
 }
 
+// How much wider a pixel's footprint becomes on each unit of a ray's way.
+static inline float pixel_spread(__global const SceneInfo* restrict info) {
+  const float3 dx = info->camera_dx.xyz;
+  return sqrt(dot(dx, dx));
+}
+
 // What a ray sees that meets nothing, by its unit direction.
 static inline float3 background_along(__global const SceneInfo* restrict info, float3 d) {
   const float s = clamp(0.5f + 0.5f * dot(d, info->up.xyz), 0.0f, 1.0f);

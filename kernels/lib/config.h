@@ -68,6 +68,9 @@
 #ifndef HAS_ROUNDBOX
 #define HAS_ROUNDBOX 1
 #endif
+#ifndef HAS_SDF
+#define HAS_SDF 0
+#endif
 #ifndef HAS_SECONDARY
 #define HAS_SECONDARY 1
 #endif

@@ -8,29 +8,29 @@
 #include "lib/segment.cl"
 #include "lib/shadow.cl"
 
-// A ray that waits.
-typedef struct PathRay {
-  float3 o, d;  // d unit
+// What a ray carries besides its way.
+typedef struct PathState {
   float3 throughput;
-  float t_min, t_max;
   u32 pixel;  // in the work-item's tile
   u32 depth;  // the camera's ray has 1
-  MediaStack media;
-} PathRay;
+} PathState;
+
+// The rays that wait.
 
 typedef struct RayStack {
-  PathRay rays[RAY_STACK];
+  SceneRay rays[RAY_STACK];
+  PathState paths[RAY_STACK];
   u32 count;
 } RayStack;
 
 static inline float greatest(float3 v) { return fmax(v.x, fmax(v.y, v.z)); }
 
 // Puts a child on the stack unless it is too weak, too deep or there is no room; each case is counted.
-static inline void spawn(RayStack* stack, const PathRay* child, __global const SceneInfo* restrict info,
-                         u32 kind, u32* counts) {
-  const float weight = greatest(child->throughput);
+static inline void spawn(RayStack* stack, const SceneRay* ray, const PathState* path,
+                         __global const SceneInfo* restrict info, u32 kind, u32* counts) {
+  const float weight = greatest(path->throughput);
   if (!(weight > 0.0f)) return;
-  if (child->depth > info->max_depth)
+  if (path->depth > info->max_depth)
     counts[COUNT_DEPTH_LIMIT] += 1u;
   else if (weight < info->cutoff)
     counts[COUNT_CUT_OFF] += 1u;
@@ -38,7 +38,8 @@ static inline void spawn(RayStack* stack, const PathRay* child, __global const S
     counts[COUNT_RAY_STACK_OVERFLOW] += 1u;
   else {
     counts[kind] += 1u;
-    stack->rays[stack->count++] = *child;
+    stack->rays[stack->count] = *ray;
+    stack->paths[stack->count++] = *path;
   }
 }
 
@@ -49,26 +50,41 @@ typedef struct BatchSurfaces {
   float3 own_light[BATCH];            // light that the surface itself sends back along the ray
 } BatchSurfaces;
 
-// Adds what one light does to every surface of the batch: Ij (kd n.l + ks (r.v)^b) Vj.
-static inline void add_light(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, const PathRay* rays,
-                             u32 ray_count, BatchSurfaces* batch, u32* counts) {
+// Adds what one light does to every surface of the batch: Ij (kd n.l + ks (r.v)^b) Vj. `coherent`: the points
+// lie close together.
+static inline void add_light(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, const SceneRay* rays,
+                             u32 ray_count, bool coherent, BatchSurfaces* batch, u32* counts) {
+  SceneRay to_light[BATCH];
+  float3 possible[BATCH], through[BATCH];
+  u32 lit[BATCH], lit_count = 0;
   for (u32 i = 0; i < ray_count; ++i) {
     if (batch->met[i].hit.instance == NO_INSTANCE) continue;
     const SurfaceInteraction* s = &batch->surface[i];
     const LightSample light = sample_light(lights + index, s->p);
     if (!(dot(s->ns, light.wi) > 0.0f)) continue;
-    const float3 possible =
+    const float3 radiance =
         light.radiance * local_reflection(materials + s->material, s, rays[i].d, light.wi);
-    if (!(greatest(possible) > 0.0f)) continue;
-    counts[COUNT_SHADOW] += 1u;
-    batch->own_light[i] += possible * visibility(TRACE_ARGUMENTS, SHADE_ARGUMENTS, s->p + s->offset * s->ng,
-                                                 light.wi, light.distance, rays[i].media, counts);
+    if (!(greatest(radiance) > 0.0f)) continue;
+    SceneRay* ray = &to_light[lit_count];
+    *ray = rays[i];
+    start_on_surface(info, instances, ray, &batch->met[i].hit, !s->entering);
+    ray->o = s->p + s->offset * s->ng;
+    ray->d = light.wi;
+    ray->t_min = 0.0f;
+    ray->t_max = light.distance;
+    possible[lit_count] = radiance;
+    lit[lit_count++] = i;
   }
+  counts[COUNT_SHADOW] += lit_count;
+  if (!lit_count) return;
+  visibilities(TRACE_ARGUMENTS, SHADE_ARGUMENTS, to_light, lit_count, coherent, through, counts);
+  for (u32 k = 0; k < lit_count; ++k) batch->own_light[lit[k]] += possible[k] * through[k];
 }
 
 // The two children of a surface: kr I(reflected) + kt I(transmitted).
 static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const SurfaceInteraction* s,
-                                  const Encounter* e, const PathRay* ray, RayStack* stack, u32* counts) {
+                                  const Encounter* e, const SceneRay* ray, const PathState* path,
+                                  RayStack* stack, u32* counts) {
   __global const Material* material = materials + s->material;
   if (!(material->flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS))) return;
   float3 kr = material->reflection.xyz, kt = material->transmission.xyz;
@@ -83,17 +99,19 @@ static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const Surf
     kr += kt;
     kt = (float3)(0.0f);
   }
-  PathRay child = *ray;
-  child.depth = ray->depth + 1u;
+  SceneRay child = *ray;
+  PathState state = *path;
+  state.depth = path->depth + 1u;
   child.t_min = 0.0f;
   child.t_max = INFINITY;
+  start_on_surface(info, instances, &child, &e->hit, !s->entering);
 
   child.d = reflect_direction(ray->d, s->ns);
   if (!(dot(child.d, s->ng) > 0.0f))
     child.d = reflect_direction(ray->d, s->ng);  // a shading normal must not send it inside
   child.o = s->p + s->offset * s->ng;
-  child.throughput = ray->throughput * kr;
-  spawn(stack, &child, info, COUNT_REFLECTION, counts);
+  state.throughput = path->throughput * kr;
+  spawn(stack, &child, &state, info, COUNT_REFLECTION, counts);
 
   if (!transmits) return;
   child.d = ray->d;
@@ -105,43 +123,44 @@ static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const Surf
     }
   }
   child.o = s->p - s->offset * s->ng;
-  child.throughput = ray->throughput * kt;
+  state.throughput = path->throughput * kt;
+  start_on_hit(instances, &child, &e->hit, s->entering);
 #if HAS_MEDIA
   if (!thin) cross_boundary(&child.media, material->medium, e->entering);
 #endif
-  spawn(stack, &child, info, COUNT_REFRACTION, counts);
+  spawn(stack, &child, &state, info, COUNT_REFRACTION, counts);
 }
 
 // Takes a batch to the next surfaces, adds what it sees there to the pixels and leaves the children on the
 // stack.
-static inline void follow_batch(TRACE_PARAMETERS, SHADE_PARAMETERS, PathRay* rays, u32 ray_count,
-                                RayStack* stack, float4* radiance, u32* counts) {
+static inline void follow_batch(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* rays, PathState* paths,
+                                u32 ray_count, RayStack* stack, float4* radiance, u32* counts) {
   BatchSurfaces batch;
+  const bool coherent = paths[0].depth == 1u;
+  next_surfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, ray_count, coherent, batch.met, counts);
   for (u32 i = 0; i < ray_count; ++i) {
-    PathRay* ray = &rays[i];
-    batch.met[i] = next_surface(TRACE_ARGUMENTS, SHADE_ARGUMENTS, ray->o, ray->d, ray->t_min, ray->t_max,
-                                &ray->media, counts);
-    ray->throughput *= batch.met[i].absorbed;
+    paths[i].throughput *= batch.met[i].absorbed;
     if (batch.met[i].hit.instance == NO_INSTANCE) continue;
-    batch.surface[i] = interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, ray->o, ray->d, &batch.met[i].hit);
+    batch.surface[i] = interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays[i].o, rays[i].d, &batch.met[i].hit);
     batch.own_light[i] = batch.surface[i].ambient * info->ambient.xyz;
   }
   for (u32 light = 0; light < info->light_count; ++light)
-    add_light(TRACE_ARGUMENTS, SHADE_ARGUMENTS, light, rays, ray_count, &batch, counts);
+    add_light(TRACE_ARGUMENTS, SHADE_ARGUMENTS, light, rays, ray_count, coherent, &batch, counts);
   for (u32 i = 0; i < ray_count; ++i) {
-    const PathRay* ray = &rays[i];
-    float4* pixel = &radiance[ray->pixel];
+    const PathState* path = &paths[i];
+    float4* pixel = &radiance[path->pixel];
     if (batch.met[i].hit.instance == NO_INSTANCE) {
-      pixel->xyz += ray->throughput * background_along(info, ray->d);
+      pixel->xyz += path->throughput * background_along(info, rays[i].d);
       continue;
     }
-    if (ray->depth == 1u) {
+    if (path->depth == 1u) {
       counts[COUNT_PRIMARY_HIT] += 1u;
       pixel->w = 1.0f;
     }
-    pixel->xyz += ray->throughput * batch.own_light[i];
+    pixel->xyz += path->throughput * batch.own_light[i];
 #if HAS_SECONDARY
-    spawn_children(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &batch.surface[i], &batch.met[i], ray, stack, counts);
+    spawn_children(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &batch.surface[i], &batch.met[i], &rays[i], path, stack,
+                   counts);
 #endif
   }
 }
@@ -151,11 +170,15 @@ static inline void follow_batch(TRACE_PARAMETERS, SHADE_PARAMETERS, PathRay* ray
 static inline void trace_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, RayStack* stack, float4* radiance,
                                  u32* counts) {
   while (stack->count) {
-    PathRay rays[BATCH];
+    SceneRay rays[BATCH];
+    PathState paths[BATCH];
     const u32 ray_count = min(stack->count, (u32)BATCH);
     stack->count -= ray_count;
-    for (u32 i = 0; i < ray_count; ++i) rays[i] = stack->rays[stack->count + i];
-    follow_batch(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, ray_count, stack, radiance, counts);
+    for (u32 i = 0; i < ray_count; ++i) {
+      rays[i] = stack->rays[stack->count + i];
+      paths[i] = stack->paths[stack->count + i];
+    }
+    follow_batch(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, paths, ray_count, stack, radiance, counts);
   }
 }
 
