@@ -19,6 +19,7 @@ int run(const RenderCommand& command) { return render_command(command); }
 int run(const DevicesOptions& command) { return devices_command(command); }
 int run(const InfoCommand& command) { return info_command(command); }
 int run(const CompareCommand& command) { return compare_command(command); }
+int run(const RunLater& command) { return command.run(); }
 int run(const ShowText& command) {
   fmt::print("{}", command.text);
   return exit_done;

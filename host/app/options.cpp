@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <memory>
 
+#include "app/bench_options.h"
+#include "app/option_helpers.h"
 #include "app/option_values.h"
 #include "base/error.h"
 
@@ -14,7 +15,6 @@ namespace sundog {
 namespace {
 
 constexpr const char* more_help = "(sundog --help tells more)";
-constexpr const char* scene_help = "a .json scene, or a .gltf .glb .obj .ply .stl .nff model";
 
 /// The options of `render` as typed, before they are checked.
 struct TypedRender {
@@ -38,14 +38,6 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
   return all;
 }
 
-std::vector<std::string> devices_of_environment() {
-  const char* text = std::getenv("SUNDOG_DEVICE");
-  if (!text || !*text) return {};
-  std::vector<std::string> specs = CLI::detail::split(text, ',');
-  for (std::string& spec : specs) CLI::detail::trim(spec);
-  return specs;
-}
-
 RenderCommand checked(const TypedRender& typed) {
   RenderCommand command = typed.command;
   command.overrides = collect_overrides(typed);
@@ -58,29 +50,13 @@ RenderCommand checked(const TypedRender& typed) {
   return command;
 }
 
-template <class T>
-CLI::Option* value(CLI::App* app, const char* name, const char* type, T& target, const std::string& help) {
-  return app->add_option(name, target, help)->type_name(type);
-}
-
-/// An option that may be given several times, each time with one value.
-void values(CLI::App* app, const char* name, const char* type, std::vector<std::string>& target,
-            const std::string& help) {
-  value(app, name, type, target, help + "; repeatable")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
-
 void add_render(CLI::App& root, Command& chosen) {
   const auto typed = std::make_shared<TypedRender>();
   RenderCommand& command = typed->command;
   CLI::App* app = root.add_subcommand("render", "Render a scene to an image file");
   value(app, "SCENE", "FILE", command.scene, scene_help)->required();
   value(app, "-o,--out", "FILE", command.out, "image file: .png, .exr, .hdr or .pfm")->required();
-  values(app, "--device", "SPEC", command.devices,
-         "P:D, cpu, gpu, accelerator, all, part of a name, or !SPEC to take away; /N for N compute units "
-         "(default: SUNDOG_DEVICE, or the fastest)");
+  values(app, "--device", "SPEC", command.devices, device_help);
   value(app, "--size", "WxH", typed->size, "width and height in pixels");
   value(app, "--samples", "N", typed->samples, "samples a pixel");
   value(app, "--max-depth", "N", typed->max_depth,
@@ -143,6 +119,14 @@ void check_command_name(const CLI::App& root, int argc, const char* const* argv)
 
 }  // namespace
 
+std::vector<std::string> devices_of_environment() {
+  const char* text = std::getenv("SUNDOG_DEVICE");
+  if (!text || !*text) return {};
+  std::vector<std::string> specs = CLI::detail::split(text, ',');
+  for (std::string& spec : specs) CLI::detail::trim(spec);
+  return specs;
+}
+
 Command parse_command_line(int argc, const char* const* argv) {
   CLI::App root("sundog renders scenes with OpenCL, on any device there is.", "sundog");
   root.set_version_flag("--version", "sundog " SUNDOG_VERSION);
@@ -152,6 +136,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_devices(root, chosen);
   add_info(root, chosen);
   add_compare(root, chosen);
+  add_bench(root, chosen);
   check_command_name(root, argc, argv);
   try {
     root.parse(argc, argv);

@@ -1,5 +1,6 @@
 // The command line as values: what the user asked for, checked as far as it can be without reading a file.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -38,7 +39,12 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<RenderCommand, DevicesOptions, InfoCommand, CompareCommand, ShowText>;
+/// A command that needs no value here: its own file declares its options and does its work.
+struct RunLater {
+  std::function<int()> run;  // returns the exit status
+};
+
+using Command = std::variant<RenderCommand, DevicesOptions, InfoCommand, CompareCommand, RunLater, ShowText>;
 
 /// Throws UsageError. Reads the environment variable SUNDOG_DEVICE (SPECs separated by commas).
 Command parse_command_line(int argc, const char* const* argv);

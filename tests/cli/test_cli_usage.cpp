@@ -15,10 +15,15 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
   const CliFolder folder;
   const std::string scene = folder.scene, out = folder.file("out.png");
   const std::vector<BadLine> lines = {
-      {{}, "wanted a command (render, devices, info, compare), found none"},
+      {{}, "wanted a command (render, devices, "},
       {{""}, "found none"},
       {{"frobnicate"}, "found 'frobnicate'"},
-      {{"bench", "rays"}, "found 'bench'"},
+      {{"bench"}, "subcommand is required"},
+      {{"bench", "threads"}, "SCENE is required"},
+      {{"bench", "threads", scene, "--counts", "0"}, "--counts 0: wanted a whole number from 1"},
+      {{"bench", "threads", scene, "--sizes", "8,,9"}, "--sizes : wanted"},
+      {{"bench", "threads", scene, "--repeat", "0"}, "--repeat"},
+      {{"bench", "threads", scene, "--set", "fov=3"}, "--set fov=3: wanted JSON_POINTER=VALUE"},
       {{"check"}, "found 'check'"},
       {{"--frobnicate"}, "required"},
       {{"render"}, "SCENE is required"},

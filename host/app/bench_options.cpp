@@ -1,0 +1,102 @@
+// See bench_options.h.
+#include "app/bench_options.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+
+#include "app/commands.h"
+#include "app/option_helpers.h"
+#include "app/option_values.h"
+#include "app/warnings.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "bench/machine.h"
+#include "scene/json/override.h"
+#include "scene/load.h"
+
+namespace sundog {
+
+void add_bench_options(CLI::App* app, BenchOptions& options) {
+  value(app, "SCENE", "FILE", options.scenes, std::string(scene_help) + "; several may be given")->required();
+  values(app, "--device", "SPEC", options.devices, device_help);
+  values(app, "--set", "POINTER=VALUE", options.overrides, "change the scenes, as in /camera/fov=30");
+  app->add_option("--repeat", options.repeat, "runs of each measurement, in turn with the others (default 5)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10000));
+  value(app, "--json", "FILE", options.json, "write the measurements as JSON");
+  value(app, "--csv", "FILE", options.csv, "write the measurements as CSV");
+  value(app, "--html", "FILE", options.html, "write the report as one page with plots");
+  app->add_flag("-q,--quiet", options.quiet, "print nothing");
+}
+
+Report new_report(const std::string& name, const std::string& title, const BenchOptions& options) {
+  for (const std::string& file : {options.json, options.csv, options.html})
+    if (!file.empty()) check_writable(file);
+  for (const std::string& setting : options.overrides) check_override(setting);
+  Report report;
+  report.name = name;
+  report.title = title;
+  report.facts = machine_facts();
+  report.facts.insert(report.facts.begin(), {"sundog", SUNDOG_VERSION});
+  return report;
+}
+
+int publish(const Report& report, const BenchOptions& options) {
+  if (isatty(STDERR_FILENO) && !options.quiet) fmt::print(stderr, "\r\x1b[K");
+  if (!options.json.empty())
+    write_file(options.json,
+               report_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  if (!options.csv.empty()) write_file(options.csv, report_csv(report));
+  if (!options.html.empty()) write_file(options.html, report_html(report));
+  if (!options.quiet) fmt::print("{}", report_text(report));
+  return exit_done;
+}
+
+void show_step(const BenchOptions& options, const std::string& step) {
+  if (!options.quiet && isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K{}", step);
+}
+
+std::string scene_name(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
+CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
+                          const std::vector<std::string>& more) {
+  std::vector<std::string> overrides = more;
+  overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
+  try {
+    return compile(load_scene(file, overrides));
+  } catch (const SceneError& error) {
+    for (const std::string& setting : overrides)
+      if (error.file == file && concerns(setting, error.place)) throw UsageError(error.what());
+    throw;
+  }
+}
+
+std::vector<DeviceInfo> bench_devices(const BenchOptions& options) {
+  return select_devices(enumerate_devices(),
+                        options.devices.empty() ? devices_of_environment() : options.devices);
+}
+
+std::vector<int> parse_list(const char* option, const std::string& text, int low, int high) {
+  std::vector<int> numbers;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');)
+    numbers.push_back(parse_number(option, part, low, high));
+  if (numbers.empty() || text.ends_with(','))
+    throw UsageError(fmt::format("{} '{}': wanted numbers with commas between, such as 1,2,4", option, text));
+  std::ranges::sort(numbers);
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
+void add_bench(CLI::App& root, Command& chosen) {
+  CLI::App* bench = root.add_subcommand("bench", "Measure: threads, and what else the help of it lists");
+  bench->require_subcommand(1);
+  add_bench_threads(*bench, chosen);
+}
+
+}  // namespace sundog

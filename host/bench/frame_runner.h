@@ -1,0 +1,46 @@
+// One device that renders one scene again and again, for timing whole frames.
+#pragma once
+#include <memory>
+
+#include "render/film.h"
+#include "render/render.h"
+#include "render/tile_renderer.h"
+
+namespace sundog {
+
+/// Kernels are built and tables uploaded once. The scene must outlive it.
+class FrameRunner {
+ public:
+  /// Throws DeviceError, BuildError, UsageError as render() does.
+  FrameRunner(const DeviceInfo& device, const CompiledScene& scene, const RenderOptions& options = {});
+  FrameRunner(const FrameRunner&) = delete;
+  FrameRunner& operator=(const FrameRunner&) = delete;
+
+  /// Renders the frame in the tiles that `sundog render` would take, and returns the wall seconds from the
+  /// first launch until the film is on the host.
+  double run();
+
+  /// For the runs from now on. The size must be one that render() would take.
+  void use(const WorkGroup& group) { options_.work_group = group; }
+
+  /// Keeps what the driver has compiled so far for other programs and the next start.
+  void save_programs() { device_.save_programs(); }
+
+  /// Of the last run.
+  Image image() const { return film_.develop(); }
+  const RayCounts& counts() const { return counts_; }
+
+  /// Kernels and tables; not part of any run.
+  const RenderTimes& times() const { return times_; }
+
+ private:
+  Device device_;
+  RenderOptions options_;
+  std::vector<Tile> tiles_;
+  Film film_;
+  RayCounts counts_{};
+  RenderTimes times_;
+  std::unique_ptr<TileRenderer> renderer_;
+};
+
+}  // namespace sundog

@@ -1,0 +1,180 @@
+// See thread_scaling.h.
+#include "bench/thread_scaling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "bench/frame_runner.h"
+
+namespace sundog {
+namespace {
+
+/// One count at work on one size.
+struct Runner {
+  ThreadTime result;
+  std::unique_ptr<FrameRunner> frames;
+  std::vector<double> seconds, cores;
+
+  void warm_up(const DeviceInfo& whole, const CompiledScene& scene) {
+    DeviceInfo part = whole;
+    part.sub_units = result.threads;
+    if (result.threads > whole.compute_units) {
+      result.problem = fmt::format("the device has {} compute units", whole.compute_units);
+      return;
+    }
+    try {
+      frames = std::make_unique<FrameRunner>(part, scene);
+      frames->run();
+      frames->save_programs();
+    } catch (const DeviceError& error) {
+      fail(error.what());
+    }
+  }
+  void time() {
+    const Stopwatch clock;
+    const double processor = processor_seconds();
+    seconds.push_back(frames->run());
+    cores.push_back((processor_seconds() - processor) / clock.seconds());
+  }
+  void fail(const std::string& why) {
+    result.problem = why;
+    frames.reset();
+  }
+};
+
+/// The image of the first runner that works is what all must show.
+void check_images(std::vector<Runner>& runners) {
+  const Runner* first = nullptr;
+  Image expected;
+  for (Runner& runner : runners) {
+    if (!runner.frames) continue;
+    const Image image = runner.frames->image();
+    if (!first) {
+      first = &runner;
+      expected = image;
+    } else if (image.data != expected.data) {
+      runner.fail(fmt::format("its image is not that of {} threads", first->result.threads));
+    }
+  }
+}
+
+const ThreadTime* find(const std::vector<ThreadTime>& times, int size, unsigned threads) {
+  for (const ThreadTime& time : times)
+    if (time.size == size && time.threads == threads && time.problem.empty()) return &time;
+  return nullptr;
+}
+
+double milliseconds(double seconds) { return 1e3 * seconds; }
+
+Spread milliseconds(const Spread& spread) {
+  return {milliseconds(spread.median), milliseconds(spread.min), milliseconds(spread.max)};
+}
+
+/// How many times as fast as with the least count; the range from the extremes of both.
+std::optional<Spread> speed_up(const std::vector<ThreadTime>& times, const ThreadScaling& plan, int size,
+                               unsigned count) {
+  const ThreadTime *one = find(times, size, plan.counts.front()), *many = find(times, size, count);
+  if (!one || !many) return {};
+  const double base = plan.counts.front();
+  return Spread{base * one->seconds.median / many->seconds.median,
+                base * one->seconds.median / many->seconds.max,
+                base * one->seconds.median / many->seconds.min};
+}
+
+/// A row a size and a column a count, of what `cell` makes of them.
+Table pivot(const std::string& title, const std::string& unit, const ThreadScaling& plan,
+            const std::function<Cell(int, unsigned)>& cell) {
+  Table table{title, {{"pixels a side", ""}}, {}};
+  for (const unsigned count : plan.counts)
+    table.columns.push_back({fmt::format("{} thread{}", count, count == 1 ? "" : "s"), unit});
+  for (const int size : plan.sizes) {
+    std::vector<Cell> row{static_cast<double>(size)};
+    for (const unsigned count : plan.counts) row.push_back(cell(size, count));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+CurvePlot speed_up_curves(const ThreadScaling& plan, const std::vector<ThreadTime>& times) {
+  CurvePlot plot{plan.scene + ": speed-up by threads", "threads", "times as fast", {}, true};
+  for (const int size : plan.sizes) {
+    Curve curve{fmt::format("{0} × {0}", size), {}};
+    for (const unsigned count : plan.counts)
+      if (const auto value = speed_up(times, plan, size, count))
+        curve.points.push_back({static_cast<double>(count), *value});
+    if (!curve.points.empty()) plot.curves.push_back(std::move(curve));
+  }
+  return plot;
+}
+
+void add_measurements(Table& table, const ThreadScaling& plan, const std::vector<ThreadTime>& times) {
+  if (table.columns.empty())
+    table.columns = {{"scene", ""}, {"device", ""},   {"size", "pixels"}, {"threads", ""}, {"time", "ms"},
+                     {"runs", ""},  {"speed-up", ""}, {"cores used", ""}, {"problem", ""}};
+  for (const ThreadTime& time : times) {
+    std::vector<Cell> row{plan.scene, plan.device.label(), static_cast<double>(time.size),
+                          static_cast<double>(time.threads)};
+    if (!time.problem.empty()) {
+      row.resize(table.columns.size());
+    } else {
+      row.insert(row.end(), {milliseconds(time.seconds), static_cast<double>(plan.repeat)});
+      const auto gain = speed_up(times, plan, time.size, time.threads);
+      row.push_back(gain ? Cell(gain->median) : Cell());
+      row.insert(row.end(), {time.cores, Cell()});
+    }
+    if (!time.problem.empty()) row.back() = time.problem;
+    table.rows.push_back(std::move(row));
+  }
+}
+
+}  // namespace
+
+std::vector<ThreadTime> measure_threads(const ThreadScaling& plan,
+                                        const std::function<void(const std::string&)>& on_step) {
+  std::vector<ThreadTime> times;
+  for (const int size : plan.sizes) {
+    on_step(fmt::format("{}, {}x{}", plan.scene, size, size));
+    const CompiledScene scene = plan.compile_for(size);
+    std::vector<Runner> runners(plan.counts.size());
+    for (std::size_t i = 0; i < runners.size(); ++i) {
+      runners[i].result.size = size;
+      runners[i].result.threads = plan.counts[i];
+      runners[i].warm_up(plan.device, scene);
+    }
+    check_images(runners);
+    for (int i = 0; i < plan.repeat; ++i)
+      for (Runner& runner : runners)
+        if (runner.frames) runner.time();
+    for (Runner& runner : runners) {
+      runner.result.seconds = spread(runner.seconds);
+      runner.result.cores = spread(runner.cores).median;
+      times.push_back(runner.result);
+    }
+  }
+  return times;
+}
+
+void add_thread_tables(Report& report, const ThreadScaling& plan, const std::vector<ThreadTime>& times) {
+  const auto time_cell = [&](int size, unsigned count) -> Cell {
+    const ThreadTime* time = find(times, size, count);
+    return time ? Cell(milliseconds(time->seconds.median)) : Cell();
+  };
+  const auto gain_cell = [&](double scale, int size, unsigned count) -> Cell {
+    const auto gain = speed_up(times, plan, size, count);
+    return gain ? Cell(gain->median * scale) : Cell();
+  };
+  report.parts.push_back(pivot(plan.scene + ": time of a frame", "ms", plan, time_cell));
+  report.parts.push_back(pivot(plan.scene + ": speed-up", "", plan,
+                               [&](int size, unsigned count) { return gain_cell(1, size, count); }));
+  report.parts.push_back(
+      pivot(plan.scene + ": efficiency (speed-up by threads)", "", plan,
+            [&](int size, unsigned count) { return gain_cell(1.0 / count, size, count); }));
+  report.parts.push_back(speed_up_curves(plan, times));
+  add_measurements(report.measurements, plan, times);
+}
+
+}  // namespace sundog

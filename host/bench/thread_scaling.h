@@ -1,0 +1,41 @@
+// Times of one scene against image size and number of threads, the tables of many a paper: threads are the
+// compute units of a sub-device.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bench/report.h"
+#include "compile/compiled_scene.h"
+#include "device/devices.h"
+
+namespace sundog {
+
+struct ThreadScaling {
+  std::string scene;  // its name, for the report
+  /// The scene compiled for a square image of so many pixels a side.
+  std::function<CompiledScene(int size)> compile_for;
+  DeviceInfo device;  // splits into sub-devices
+  std::vector<int> sizes{128, 256, 352, 448, 512, 640};
+  std::vector<unsigned> counts{1, 2, 4, 8, 16};
+  int repeat = 5;
+};
+
+/// One size and count. `cores` is processor seconds by wall second: what the threads really had.
+struct ThreadTime {
+  int size = 0;
+  unsigned threads = 0;
+  Spread seconds;
+  double cores = 0;
+  std::string problem;  // not empty: no time counts, and why
+};
+
+/// Warms up once, then times `repeat` frames of each count in turn; a count whose image is not that of the
+/// first one to the bit has a problem instead of a time. `on_step` hears what is being measured.
+std::vector<ThreadTime> measure_threads(const ThreadScaling& plan,
+                                        const std::function<void(const std::string&)>& on_step);
+
+/// Adds the scene's tables (times, speed-up, efficiency), curves and measurements.
+void add_thread_tables(Report& report, const ThreadScaling& plan, const std::vector<ThreadTime>& times);
+
+}  // namespace sundog

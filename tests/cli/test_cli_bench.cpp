@@ -1,0 +1,48 @@
+// `sundog bench`: tiny runs; what the reports hold, never how long anything took.
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "catch.h"
+#include "cli_scene.h"
+
+using nlohmann::json;
+
+TEST_CASE("bench threads times every size and count on sub-devices, more than there are cores too") {
+  const CliFolder folder;
+  const CommandResult result =
+      run_sundog({"bench", "threads", folder.scene, "--device", "pthread", "--sizes", "24,16", "--counts",
+                  "1,2,5", "--repeat", "2", "--json", folder.file("t.json"), "--csv", folder.file("t.csv"),
+                  "--html", folder.file("t.html")});
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  CHECK_THAT(result.out, ContainsSubstring("scene: time of a frame") &&
+                             ContainsSubstring("scene: speed-up") && ContainsSubstring("scene: efficiency") &&
+                             ContainsSubstring("5 threads [ms]"));
+  const json report = json::parse(sundog::read_file(folder.file("t.json")));
+  CHECK(report.at("bench") == "threads");
+  CHECK_THAT(report.at("facts").at("device").get<std::string>(), ContainsSubstring("pthread"));
+  const json& rows = report.at("measurements");
+  REQUIRE(rows.size() == 6);
+  for (const json& row : rows) {
+    CAPTURE(row.dump());
+    CHECK(row.at("problem").is_null());
+    CHECK(row.at("time_ms").at("median") > 0);
+    CHECK(row.at("runs") == 2);
+  }
+  CHECK(rows[0].at("size_pixels") == 16);  // ascending, whatever the order that was asked for
+  CHECK(rows[0].at("speed-up") == 1);
+  CHECK(rows[5].at("threads") == 5);
+  CHECK(sundog::read_file(folder.file("t.csv")).starts_with("scene,device,size_pixels,threads,time_ms,"));
+  CHECK(sundog::read_file(folder.file("t.html")).starts_with("<!DOCTYPE html>"));
+}
+
+TEST_CASE("bench threads refuses what it cannot measure") {
+  const CliFolder folder;
+  CommandResult result = run_sundog({"bench", "threads", folder.scene, "--device", "nowhere"});
+  CHECK(result.status == 4);
+  result = run_sundog({"bench", "threads", folder.file("missing.json"), "--quiet"});
+  CHECK(result.status == 3);
+  result = run_sundog({"bench", "threads", folder.scene, "--json", folder.file("no/such/folder.json")});
+  CHECK(result.status == 1);
+  CHECK(is_one_error_line(result.err));
+}

@@ -1,0 +1,127 @@
+// Reports: the same figures as text, JSON, CSV and a page.
+#include <algorithm>
+
+#include "bench/report.h"
+#include "bench/samples.h"
+#include "bench/svg.h"
+#include "catch.h"
+
+using namespace sundog;
+
+namespace {
+
+Report small_report() {
+  Report report;
+  report.name = "threads";
+  report.title = "Times & <more>";
+  report.facts = {{"device", "a \"fast\" one"}};
+  report.notes = {"Median of 3."};
+  report.measurements = {"",
+                         {{"scene", ""}, {"time", "ms"}, {"runs", ""}},
+                         {{"ice, hollow", Spread{12.345, 12, 13}, 3.0}, {"say \"x\"", Cell(), Cell()}}};
+  return report;
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("numbers keep about three digits that count") {
+  CHECK(number_text(0) == "0");
+  CHECK(number_text(7) == "7");
+  CHECK(number_text(1234.5) == "1234");
+  CHECK(number_text(99.96) == "100");
+  CHECK(number_text(12.345) == "12.3");
+  CHECK(number_text(9.996) == "10.0");
+  CHECK(number_text(1.0) == "1");
+  CHECK(number_text(1.25) == "1.25");
+  CHECK(number_text(0.5) == "0.500");
+  CHECK(number_text(0.01234) == "0.0123");
+  CHECK(number_text(-2.5) == "-2.50");
+  CHECK(cell_text(Spread{10.04, 9, 11}) == "10.0 ±10%");
+  CHECK(cell_text(Spread{}) == "0 ±0%");
+  CHECK(cell_text(Cell()).empty());
+}
+
+TEST_CASE("a CSV has a line of names, three columns for a spread, and quotes what needs it") {
+  CHECK(report_csv(small_report()) ==
+        "scene,time_ms,time_ms_min,time_ms_max,runs\r\n"
+        "\"ice, hollow\",12.345,12,13,3\r\n"
+        "\"say \"\"x\"\"\",,,,\r\n");
+}
+
+TEST_CASE("JSON holds facts and a row a measurement, with null for what was not measured") {
+  const nlohmann::json json = report_json(small_report());
+  CHECK(json.at("schema") == 1);
+  CHECK(json.at("bench") == "threads");
+  CHECK(json.at("facts").at("device") == "a \"fast\" one");
+  CHECK(json.at("notes").at(0) == "Median of 3.");
+  const auto& rows = json.at("measurements");
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[0].at("time_ms").at("median") == 12.345);
+  CHECK(rows[0].at("time_ms").at("max") == 13);
+  CHECK(rows[0].at("runs") == 3);
+  CHECK(rows[1].at("time_ms").is_null());
+}
+
+TEST_CASE("text shows the parts' tables, or the measurements where there are none") {
+  Report report = small_report();
+  CHECK_THAT(report_text(report), ContainsSubstring("time [ms]") && ContainsSubstring("12.3 ±4%") &&
+                                      ContainsSubstring("device  a \"fast\" one"));
+  report.parts = {Table{"Best", {{"size", ""}}, {{64.0}}}};
+  CHECK_THAT(report_text(report), ContainsSubstring("Best\n") && !ContainsSubstring("time [ms]"));
+}
+
+TEST_CASE("columns of a text are aligned, whatever bytes their letters take") {
+  Report report;
+  report.measurements = {"", {{"a", ""}, {"b", ""}}, {{"x ±1", 1.0}, {"xxxx", 22.0}}};
+  const std::string text = report_text(report);
+  CHECK_THAT(text, ContainsSubstring("  x ±1   1\n") && ContainsSubstring("  xxxx  22\n"));
+}
+
+TEST_CASE("a page stands alone: nothing to load, everything escaped, plots and measurements in it") {
+  Report report = small_report();
+  report.parts = {
+      CurvePlot{
+          "Curves <1>", "threads", "times as fast", {{"a & b", {{1, {1, 1, 1}}, {4, {3, 2, 4}}}}}, true},
+      BarPlot{"Bars", "ms", {{"<bar>", {5, 4, 6}, "40 %"}}},
+      HeatMap{"Heat", "ms", "x", "y", {"1", "2"}, {"1"}, {{4.0, std::nullopt}}}};
+  const std::string page = report_html(report);
+  CHECK(page.starts_with("<!DOCTYPE html>"));
+  CHECK_THAT(page, ContainsSubstring("<title>Times &amp; &lt;more&gt;</title>") &&
+                       ContainsSubstring("&lt;bar&gt;") && ContainsSubstring("Curves &lt;1&gt;") &&
+                       ContainsSubstring("a &amp; b") && ContainsSubstring("All 2 measurements") &&
+                       ContainsSubstring("prefers-color-scheme: dark") && ContainsSubstring("@media print"));
+  for (const char* outside : {"<script", "http:", "https:", "src=", "href=", "url("})
+    CHECK(count(page, outside) == 0);
+  CHECK(count(page, "<svg") == 3);
+  CHECK(count(page, "</svg>") == 3);
+  CHECK(count(page, "class=\"cell") == 1);  // what was not measured has no cell
+}
+
+TEST_CASE("plots of nothing, of one point and of zeros are drawn without a number that is none") {
+  for (const std::string& text : {svg(CurvePlot{}), svg(CurvePlot{"", "", "", {{"one", {{4, {}}}}}, true}),
+                                  svg(BarPlot{}), svg(BarPlot{"", "", {{"zero", {}, ""}}}), svg(HeatMap{}),
+                                  svg(HeatMap{"", "", "", "", {"a"}, {"b"}, {{0.0}}})}) {
+    CAPTURE(text);
+    CHECK(count(text, "nan") == 0);
+    CHECK(count(text, "inf") == 0);
+    CHECK(text.ends_with("</svg>"));
+  }
+}
+
+TEST_CASE("an axis has round ticks from 0 that cover what is shown") {
+  for (const double most : {0.0031, 0.7, 1.0, 9.99, 16.0, 1234.0}) {
+    CAPTURE(most);
+    const std::vector<double> ticks = axis_ticks(most);
+    CHECK(ticks.front() == 0);
+    CHECK(ticks.back() >= most * (1 - 1e-9));
+    CHECK(ticks.back() <= most * 1.5);
+    CHECK((ticks.size() >= 3 && ticks.size() <= 9));
+  }
+  CHECK(axis_ticks(1) == std::vector<double>{0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0});
+}
