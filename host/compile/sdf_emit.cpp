@@ -105,7 +105,9 @@ std::string GraphPrinter::value(NodeId id) const {
     case Op::square_root:
       return call("real_sqrt");
     case Op::inverse_root:
-      return call("real_rsqrt");
+      return fmt::format("inverse_root_power({}, {})", text(node.a), graph_[node.b].value);
+    case Op::rough_inverse_root:
+      return call("rough_rsqrt");
     case Op::sine:
       return call("sin");
     case Op::cosine:

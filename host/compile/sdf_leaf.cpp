@@ -155,8 +155,11 @@ class LeafEmitter {
     for (std::size_t i = 0; i < s.z.size(); ++i)
       code.inside += fmt::format("    const REAL new{}_{} = {};\n", step, components[i], print.text(s.z[i]));
     if (running()) code.inside += assign("dr", print.text(s.derivative));
-    for (std::size_t i = 0; i < s.z.size(); ++i)
-      code.inside += assign(components[i], fmt::format("new{}_{}", step, components[i]));
+    for (std::size_t i = 0; i < s.z.size(); ++i) {
+      const std::string value = fmt::format("new{}_{}", step, components[i]);
+      code.inside +=
+          latched() ? fmt::format("    {} = {};\n", components[i], value) : assign(components[i], value);
+    }
     if (tangents_)
       for (std::size_t i = 0; i < s.z.size() * 3; ++i)
         code.inside += assign(fmt::format("t{}", i), fmt::format("n{}_{}", step, i));
@@ -221,7 +224,23 @@ class LeafEmitter {
     return out + "    count = select(count, count + 1.0f, alive);\n";
   }
 
+  /// Only |z| and its derivative at the escape are wanted: z itself may run on.
+  bool latched() const { return variant_ == Variant::distance && escapes() && running(); }
+
+  std::string latched_loop() {
+    const std::string look = fmt::format(
+        "r2 = {};\n    escaped_r2 = select(escaped_r2, r2, alive);\n    alive &= MASK_OF(r2 < q[{}]);\n",
+        square(), bailout_slot);
+    const MapCode code = iteration();
+    return fmt::format(
+        "    REAL r2 = (REAL)(0.0f), escaped_r2 = r2;\n    MASK alive = active;\n{}"
+        "    const u32 iterations = (u32)q[{}];\n    for (u32 i = 0; i < iterations; ++i) {{\n    {}"
+        "    if (!any_lane(alive)) break;\n{}    }}\n    {}",
+        code.before, iterations_slot, look, code.inside, look);
+  }
+
   std::string loop() {
+    if (latched()) return latched_loop();
     const MapCode code = iteration();
     std::string out = "    REAL r2 = " + square() + ";\n";
     out += bails_out() ? fmt::format("    MASK alive = active & MASK_OF(r2 < q[{}]);\n", bailout_slot)
@@ -244,12 +263,9 @@ class LeafEmitter {
 
   /// Distance of an escaped orbit; what stays is inside, at distance 0 or as deep as `inner`.
   std::string escape_distance() const {
-    std::string out = "    const REAL capped = real_min(r2, (REAL)(1e36f));\n";
-    out +=
-        last_->estimate == EscapeEstimate::logarithmic
-            ? "    const REAL outer = 0.25f * real_log(real_max(capped, (REAL)(1.0f))) * real_sqrt(capped) / "
-              "real_max(dr, (REAL)(1e-30f));\n"
-            : "    const REAL outer = real_sqrt(capped) / real_max(dr, (REAL)(1e-30f));\n";
+    const char* form = last_->estimate == EscapeEstimate::logarithmic ? "logarithmic" : "linear";
+    const char* square = latched() ? "escaped_r2" : "r2";
+    const std::string out = fmt::format("    const REAL outer = {}_distance({}, dr);\n", form, square);
     const std::string inside = variant_ == Variant::two_sided
                                    ? fmt::format("-real_max(inner, (REAL)(0.0f)) * q[{}]", inside_safety_slot)
                                    : "(REAL)(0.0f)";

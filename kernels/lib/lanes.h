@@ -105,33 +105,50 @@ static inline REAL3 select3(REAL3 a, REAL3 b, MASK m) {
 // One instruction each, which fmin and fmax are not: a NaN in a gives b.
 static inline REAL real_min(REAL a, REAL b) { return select(b, a, MASK_OF(a < b)); }
 static inline REAL real_max(REAL a, REAL b) { return select(b, a, MASK_OF(a > b)); }
+static inline REAL real_clamp(REAL a, REAL low, REAL high) { return real_min(real_max(a, low), high); }
 
-// 1 / sqrt(x) and sqrt(x), to 2 ulp for normal x >= 0 (and 0 for sqrt). AVX-512 starts from an estimate of 14
-// bits, of the same bits in registers of every width, in a quarter of the time that exact roots take;
-// elsewhere the exact root is used.
-#if defined(__AVX512VLX__) && !defined(SUNDOG_PORTABLE)
-static inline REAL rough_rsqrt(REAL x) {
+// 1 / sqrt(x) and 1 / x: the rough ones to 1e-4, for the scale of an estimate; the others to 2 ulp for x > 0
+// that are normal and below 1e37. AVX-512 starts from estimates of 14 bits, of the same bits in registers of
+// every width, in a quarter of the time that exact roots and quotients take; elsewhere these are used.
+#if defined(__AVX512VL__) && !defined(SUNDOG_PORTABLE)
 #if LANES == 16
-  return __builtin_ia32_rsqrt14ps512_mask(x, x, (ushort)0xFFFFu);
+#define ROUGHLY(what, x) __builtin_ia32_##what##14ps512_mask(x, x, (ushort)0xFFFFu)
 #elif LANES == 8
-  return __builtin_ia32_rsqrt14ps256_mask(x, x, (uchar)0xFFu);
+#define ROUGHLY(what, x) __builtin_ia32_##what##14ps256_mask(x, x, (uchar)0xFFu)
 #elif LANES == 4
-  return __builtin_ia32_rsqrt14ps128_mask(x, x, (uchar)0xFFu);
+#define ROUGHLY(what, x) __builtin_ia32_##what##14ps128_mask(x, x, (uchar)0xFFu)
 #else
-  const float4 four = (float4)(x);
-  const float4 roots = __builtin_ia32_rsqrt14ps128_mask(four, four, (uchar)0xFFu);
-  return roots.x;
+#define ROUGHLY(what, x) first_of(__builtin_ia32_##what##14ps128_mask((float4)(x), (float4)(x), (uchar)0xFFu))
+static inline float first_of(float4 four) { return four.x; }
 #endif
-}
+static inline REAL rough_rsqrt(REAL x) { return ROUGHLY(rsqrt, x); }
+static inline REAL rough_inverse(REAL x) { return ROUGHLY(rcp, x); }
 static inline REAL real_rsqrt(REAL x) {
   const REAL y = rough_rsqrt(x), half_x = 0.5f * x;
   return fma(y, fma(-half_x * y, y, (REAL)(0.5f)), y);
 }
-static inline REAL real_sqrt(REAL x) { return sqrt(x); }
+static inline REAL real_inverse(REAL x) {
+  const REAL y = rough_inverse(x);
+  return fma(y, fma(-x, y, (REAL)(1.0f)), y);
+}
 #else
+static inline REAL rough_rsqrt(REAL x) { return 1.0f / sqrt(x); }
+static inline REAL rough_inverse(REAL x) { return 1.0f / x; }
 static inline REAL real_rsqrt(REAL x) { return 1.0f / sqrt(x); }
-static inline REAL real_sqrt(REAL x) { return sqrt(x); }
+static inline REAL real_inverse(REAL x) { return 1.0f / x; }
 #endif
+// x^(-n/2), n constant; n ulp. With y the rough root and e = 1 - x y^2 it is y^n (1 - e)^(-n/2).
+static inline REAL inverse_root_power(REAL x, int n) {
+  const REAL y = rough_rsqrt(x);
+  REAL square = y * y, power = n & 1 ? y : (REAL)(1.0f);
+  const REAL mend = fma(fma(-x, square, (REAL)(1.0f)), (REAL)(0.5f * (float)n), (REAL)(1.0f));
+  for (int k = n >> 1; k; k >>= 1) {
+    if (k & 1) power *= square;
+    square *= square;
+  }
+  return power * mend;
+}
+static inline REAL real_sqrt(REAL x) { return sqrt(x); }
 
 static inline REAL length3(REAL3 a) { return real_sqrt(dot3(a, a)); }
 
@@ -149,18 +166,19 @@ static inline REAL nonzero(REAL b) {
 }
 
 // Natural logarithm of a positive normal number, to 2 ulp or 1e-7 absolute where that is more. Unlike the
-// library's it has the same bits on every device. x = 2^e m with m in [sqrt(1/2), sqrt(2)); log m by its odd
-// series in s = (m - 1) / (m + 1), the coefficients fitted on Chebyshev's nodes (error 6e-12).
+// library's it has the same bits on every device. x = 2^e m with m in [sqrt(1/2), sqrt(2)); log m = y - y^2/2
+// + y^3 p(y) in y = m - 1, p fitted on Chebyshev's nodes (error of the logarithm 7e-9). No division.
 static inline REAL real_log(REAL x) {
   const MASK bits = AS_MASK(x) - 0x3f3504f3;  // of sqrt(1/2)
   const REAL e = TO_REAL(bits >> 23);
-  const REAL m = AS_REAL((bits & 0x007fffff) + 0x3f3504f3);
-  const REAL s = (m - 1.0f) / (m + 1.0f), q = s * s;
-  REAL p = fma(q, (REAL)(0.233304672f), (REAL)(0.285508208f));
-  p = fma(q, p, (REAL)(0.400001218f));
-  p = fma(q, p, (REAL)(0.666666666f));
-  const REAL tail = fma(e, (REAL)(1.42860677e-6f), s * q * p);  // ln 2 in two parts: the first has few bits
-  return fma(e, (REAL)(0.693145752f), fma((REAL)(2.0f), s, tail));
+  const REAL y = AS_REAL((bits & 0x007fffff) + 0x3f3504f3) - 1.0f, z = y * y;
+  const REAL p01 = fma(y, (REAL)(-0.250003064f), (REAL)(0.333333307f));
+  const REAL p23 = fma(y, (REAL)(-0.166412815f), (REAL)(0.200010451f));
+  const REAL p45 = fma(y, (REAL)(-0.129981838f), (REAL)(0.142144959f));
+  const REAL p67 = fma(y, (REAL)(-0.0790274377f), (REAL)(0.126223198f));
+  const REAL p = fma(z * z, fma(z, p67, p45), fma(z, p23, p01));
+  const REAL tail = fma(y * z, p, e * 1.42860677e-6f);  // ln 2 in two parts: the first has few bits
+  return fma(e, (REAL)(0.693145752f), y + fma((REAL)(-0.5f), z, tail));
 }
 
 #endif

@@ -64,6 +64,10 @@ class Tangents {
       case Op::square_root:
         return over(times(g_.constant(0.5), da), kept_from_zero(id));
       case Op::inverse_root:
+        return times(g_.scaled(g_.mul(id, g_.apply(Op::inverse_root, node.a, g_.constant(2))),
+                               -0.5 * g_[node.b].value),
+                     da);
+      case Op::rough_inverse_root:
         return times(g_.scaled(g_.mul(g_.mul(id, id), id), -0.5), da);
       case Op::sine:
         return times(g_.apply(Op::cosine, node.a), da);

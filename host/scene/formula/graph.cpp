@@ -40,6 +40,8 @@ double evaluate(Op op, double a, double b, double c) {
     case Op::square_root:
       return std::sqrt(a);
     case Op::inverse_root:
+      return std::pow(a, -0.5 * b);
+    case Op::rough_inverse_root:
       return 1 / std::sqrt(a);
     case Op::sine:
       return std::sin(a);

@@ -17,7 +17,8 @@ inline constexpr NodeId no_node = 0xFFFFFFFFu;
 
 /// less, less_equal, both, either and opposite give conditions; choose(condition, a, b) is a where it holds,
 /// else b. All else gives numbers. power takes a base >= 0;
-/// inverse_root is 1 / sqrt(a) of an a > 0.
+/// inverse_root is 1 / sqrt(a)^b of an a > 0 and a whole constant b; rough_inverse_root is 1 / sqrt(a) to
+/// 1e-4, for slopes.
 enum class Op {
   constant,
   input,
@@ -32,6 +33,7 @@ enum class Op {
   round_down,
   square_root,
   inverse_root,
+  rough_inverse_root,
   sine,
   cosine,
   arc_cosine,

@@ -19,12 +19,12 @@ class Powers {
     return n % 2 ? g.mul(square, x) : square;
   }
 
-  /// |v|^n from its square; n >= 0.
+  /// |v|^n from its square, roughly where n is odd; n >= 0.
   NodeId length_power(NodeId square, int n) {
     if (n == 0) return g.constant(1);
     if (n % 2 == 0) return whole(square, n / 2);
-    const NodeId length = g.sqrt(square);
-    return n == 1 ? length : g.mul(whole(square, n / 2), length);
+    const NodeId inverse = g.apply(Op::rough_inverse_root, g.max(square, g.constant(1e-30)));
+    return g.mul(whole(square, n / 2 + 1), inverse);
   }
 
   struct Pair {
@@ -54,18 +54,18 @@ class Powers {
   /// axis.
   Value triplex_whole(const Value& v, int n) {
     const NodeId square = v_.square_length(v).x();
-    const NodeId rho_square = g.add(g.mul(v.x(), v.x()), g.mul(v.y(), v.y()));
+    const NodeId rho_square = g.add(g.mul(v.x(), v.x()), g.mul(v.y(), v.y()));  // as in square_length3
     const Pair polar = imaginary(v.z(), square, rho_square, n);
     Value r = grown(v, square, n, polar.b);
     if (n <= 8) {  // rho^(n-1) fits into a float: the shorter chain of dependent steps
       const Pair around = imaginary(v.x(), rho_square, g.mul(v.y(), v.y()), n);
       const NodeId kept = g.max(rho_square, g.constant(1e-10));
-      const NodeId inverse_rho = g.apply(Op::inverse_root, kept);
-      const NodeId factor = n > 1 ? g.mul(polar.b, whole(inverse_rho, n - 1)) : polar.b;
+      const NodeId factor =
+          n > 1 ? g.mul(polar.b, g.apply(Op::inverse_root, kept, g.constant(n - 1))) : polar.b;
       r.part = {g.mul(factor, around.a), g.mul(factor, g.mul(v.y(), around.b)), polar.a, no_node};
       return r;
     }
-    const NodeId inverse_rho = g.apply(Op::inverse_root, g.max(rho_square, g.constant(1e-30)));
+    const NodeId inverse_rho = g.apply(Op::inverse_root, g.max(rho_square, g.constant(1e-30)), g.constant(1));
     const Pair around = turned(g.mul(v.x(), inverse_rho), g.mul(v.y(), inverse_rho), n);
     const NodeId rho = g.mul(g.mul(rho_square, inverse_rho), polar.b);
     r.part = {g.mul(rho, around.a), g.mul(rho, around.b), polar.a, no_node};

@@ -12,7 +12,7 @@ static inline REAL sdf_openness(SDF_PARAMETERS, u32 index, REAL3 p, REAL3 normal
   for (int i = 1; i <= 5; ++i) {
     const float h = reach * (float)i * 0.2f;
     const REAL d = sdf_distance(index, along3(p, (REAL)(h), normal), active, sdf_parameters) * safety;
-    missing += weight * fmax(h - d, 0.0f) / h;
+    missing = fma((REAL)(weight / h), real_max(h - d, (REAL)(0.0f)), missing);
     total += weight;
     weight *= 0.6f;
   }
@@ -30,8 +30,8 @@ static inline REAL sdf_soft_shadow(SDF_PARAMETERS, u32 index, REAL3 p, REAL3 wi,
   REAL t = enter, open = (REAL)(1.0f);
   for (u32 i = 0; i < field->step_limit && any_lane(active); ++i) {
     const REAL d = sdf_distance(index, along3(p, t, wi), active, sdf_parameters) * field->safety;
-    open = select(open, fmin(open, hardness * d / t), active);
-    t += fmax(d, 0.02f * t);  // a penumbra is not looked at more closely than this
+    open = select(open, real_min(open, hardness * d * rough_inverse(t)), active);
+    t += real_max(d, 0.02f * t);  // a penumbra is not looked at more closely than this
     active &= MASK_OF(open > 0.002f) & MASK_OF(t < leave);
   }
   return clamp(open, (REAL)(0.0f), (REAL)(1.0f));

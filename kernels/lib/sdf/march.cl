@@ -97,11 +97,13 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   MASK overshot = NO_LANES;
   REAL inside_at = first;  // the last point that was still inside
 #endif
+  const REAL spread = rays->spread * speed * field->detail,
+             footprint = rays->footprint * speed * field->detail;
+  const REAL least = (REAL)(field->lower.w), greatest = (REAL)(field->upper.w);
   for (u32 i = 0; i < field->step_limit && any_lane(active); ++i) {
     const REAL3 p = along3(rays->origin, t, rays->direction);
     const REAL f = march_estimate(index, p, active, rays->inside, sdf_parameters) * field->safety;
-    const REAL threshold = clamp(fma(t, rays->spread, rays->footprint) * speed * field->detail,
-                                 (REAL)(field->lower.w), (REAL)(field->upper.w));
+    const REAL threshold = real_clamp(fma(t, spread, footprint), least, greatest);
     hits.steps -= active;
 
     // The spheres about the last point and this one must touch: else back to where the last one ended.
@@ -123,17 +125,18 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
 
     // Along a plane the estimate changes linearly: the longest step whose spheres still touch solves
     // f + (f + slope s) = s. The slope is smoothed, so that one odd sample does not spoil the next steps.
-    const REAL measured = clamp((f - previous) / fmax(step, 1e-30f), (REAL)(-1.0f), (REAL)(0.5f));
+    const REAL measured = real_clamp((f - previous) * rough_inverse(real_max(step, (REAL)(1e-30f))),
+                                     (REAL)(-1.0f), (REAL)(0.5f));
     slope = select(slope, 0.5f * (slope + measured), forward & MASK_OF(step > 0.0f));
     slope = select(slope, (REAL)(-1.0f), gap);
-    const REAL proven = fmax(f, 0.5f * threshold);
-    const REAL longer = 2.0f * f / (1.0f - slope);
+    const REAL proven = real_max(f, 0.5f * threshold);
+    const REAL longer = 2.0f * f * rough_inverse(1.0f - slope);
     const REAL remaining = (last - t) * speed;
     const MASK through = forward & ~arrived & MASK_OF(proven >= remaining);
     hits.cut |= through & to_cut & rays->inside;
     active &= ~(arrived | through);
 
-    const REAL stride = fmin(select(proven, fmax(longer, proven), ~leaving), remaining);
+    const REAL stride = real_min(select(proven, real_max(longer, proven), ~leaving), remaining);
     relaxed = MASK_OF(stride > proven) & forward;
     // Taken back: from the point before, exactly its proven distance.
     t = select(select(t, fma(stride, inverse_speed, t), active), fma(previous - step, inverse_speed, t), gap);

@@ -17,9 +17,19 @@ typedef struct SdfSample {
 } SdfSample;
 
 // Square of a quaternion's or a triplex number's length, in the order that every formula uses.
-static inline REAL square_length3(REAL x, REAL y, REAL z) { return fma(x, x, fma(y, y, z * z)); }
+static inline REAL square_length3(REAL x, REAL y, REAL z) { return fma(z, z, fma(x, x, y * y)); }
 static inline REAL square_length4(REAL x, REAL y, REAL z, REAL w) {
   return fma(x, x, fma(y, y, fma(z, z, w * w)));
+}
+
+// Distance to a set from the square of an escaped orbit's length and its derivative: half the logarithm's
+// form where the map is a power, else the plain quotient.
+static inline REAL logarithmic_distance(REAL square, REAL derivative) {
+  const REAL r2 = real_max(real_min(square, (REAL)(1e36f)), (REAL)(1.0f));
+  return 0.25f * real_log(r2) * (r2 * rough_rsqrt(r2)) * rough_inverse(real_max(derivative, (REAL)(1e-30f)));
+}
+static inline REAL linear_distance(REAL square, REAL derivative) {
+  return real_sqrt(real_min(square, (REAL)(1e36f))) * rough_inverse(real_max(derivative, (REAL)(1e-30f)));
 }
 
 static inline SdfSample no_sample(void) {
