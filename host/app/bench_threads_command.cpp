@@ -17,6 +17,7 @@ namespace {
 
 struct ThreadsOptions : BenchOptions {
   std::string sizes = "128,256,352,448,512,640", counts = "1,2,4,8,16";
+  bool no_plain = false;
 };
 
 /// PoCL has as many compute units as the machine has cores, unless told otherwise before the first OpenCL
@@ -55,9 +56,11 @@ int bench_threads(const ThreadsOptions& options) {
   const std::vector<int> counts = parse_list("--counts", options.counts, 1, 4096);
   plan.counts.assign(counts.begin(), counts.end());
   plan.repeat = options.repeat;
+  plan.plain = !options.no_plain;
   allow_threads(counts.back());
   plan.device = device_to_split(options);
   report.facts.emplace_back("device", device_fact(plan.device));
+  if (plan.plain) report.facts.emplace_back("plain C++", compiler_text() + ", one thread");
   for (const std::string& file : options.scenes) {
     plan.scene = scene_name(file);
     plan.compile_for = [&](int size) {
@@ -69,14 +72,22 @@ int bench_threads(const ThreadsOptions& options) {
     for (const ThreadTime& time : times)
       if (!time.problem.empty())
         report.notes.push_back(
-            fmt::format("{}, {} pixels, {} threads: {}", plan.scene, time.size, time.threads, time.problem));
+            fmt::format("{}, {} pixels, {}: {}", plan.scene, time.size,
+                        time.threads ? fmt::format("{} threads", time.threads) : "plain C++", time.problem));
   }
   report.notes.push_back(
       fmt::format("Median of {} frames, after one to warm up, the counts in turn; from the first launch "
                   "until the film is on the "
-                  "host, without building kernels. Threads are compute units of a sub-device. Images were "
-                  "compared to the bit.",
+                  "host, without building kernels. Threads are compute units of a sub-device; their images "
+                  "are the same to the "
+                  "bit.",
                   options.repeat));
+  if (plan.plain)
+    report.notes.push_back(
+        "Plain C++ is the same integrator written as an ordinary program: recursion, scalar floats, the same "
+        "BVH, none "
+        "of the kernels' code; its image is the device's but for rounding. Speed-ups are over one thread of "
+        "the device.");
   return publish(report, options);
 }
 
@@ -89,6 +100,7 @@ void add_bench_threads(CLI::App& bench, Command& chosen) {
   add_bench_options(app, *options);
   value(app, "--sizes", "N,N...", options->sizes, "pixels a side (default 128,256,352,448,512,640)");
   value(app, "--counts", "N,N...", options->counts, "threads (default 1,2,4,8,16)");
+  app->add_flag("--no-plain", options->no_plain, "without the column of plain single-threaded C++");
   app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_threads(*options); }}; });
 }
 

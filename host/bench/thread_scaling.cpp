@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "bench/frame_runner.h"
+#include "bench/plain/whitted.h"
 
 namespace sundog {
 namespace {
@@ -16,49 +17,70 @@ namespace {
 /// One count at work on one size.
 struct Runner {
   ThreadTime result;
-  std::unique_ptr<FrameRunner> frames;
+  std::function<double()> run;  // a frame's seconds; empty: there is a problem
+  std::function<Image()> image;
   std::vector<double> seconds, cores;
 
+  bool is_plain() const { return result.threads == 0; }
   void warm_up(const DeviceInfo& whole, const CompiledScene& scene) {
-    DeviceInfo part = whole;
-    part.sub_units = result.threads;
-    if (result.threads > whole.compute_units) {
-      result.problem = fmt::format("the device has {} compute units", whole.compute_units);
-      return;
-    }
     try {
-      frames = std::make_unique<FrameRunner>(part, scene);
-      frames->run();
-      frames->save_programs();
+      is_plain() ? prepare_plain(scene) : prepare(whole, scene);
+      if (run) run();
     } catch (const DeviceError& error) {
       fail(error.what());
     }
   }
+  void prepare(DeviceInfo part, const CompiledScene& scene) {
+    if (result.threads > part.compute_units)
+      return fail(fmt::format("the device has {} compute units", part.compute_units));
+    part.sub_units = result.threads;
+    const auto frames = std::make_shared<FrameRunner>(part, scene);
+    frames->run();
+    frames->save_programs();  // the next size's runner need not compile again
+    run = [frames] { return frames->run(); };
+    image = [frames] { return frames->image(); };
+  }
+  void prepare_plain(const CompiledScene& scene) {
+    if (const std::string refusal = plain_refusal(scene); !refusal.empty()) return fail(refusal);
+    const auto last = std::make_shared<Image>();
+    run = [last, &scene] {
+      const Stopwatch clock;
+      *last = render_plain(scene);
+      return clock.seconds();
+    };
+    image = [last] { return *last; };
+  }
   void time() {
     const Stopwatch clock;
     const double processor = processor_seconds();
-    seconds.push_back(frames->run());
+    seconds.push_back(run());
     cores.push_back((processor_seconds() - processor) / clock.seconds());
   }
   void fail(const std::string& why) {
     result.problem = why;
-    frames.reset();
+    run = nullptr;
   }
 };
 
-/// The image of the first runner that works is what all must show.
+/// The image of the first count that works is what all must show.
 void check_images(std::vector<Runner>& runners) {
   const Runner* first = nullptr;
   Image expected;
   for (Runner& runner : runners) {
-    if (!runner.frames) continue;
-    const Image image = runner.frames->image();
+    if (!runner.run || runner.is_plain()) continue;
+    const Image image = runner.image();
     if (!first) {
       first = &runner;
       expected = image;
     } else if (image.data != expected.data) {
       runner.fail(fmt::format("its image is not that of {} threads", first->result.threads));
     }
+  }
+  for (Runner& runner : runners) {
+    if (!runner.run || !runner.is_plain()) continue;
+    const std::string why =
+        first ? plain_difference(runner.image(), expected) : "no device's image to compare with";
+    if (!why.empty()) runner.fail(why);
   }
 }
 
@@ -74,7 +96,7 @@ Spread milliseconds(const Spread& spread) {
   return {milliseconds(spread.median), milliseconds(spread.min), milliseconds(spread.max)};
 }
 
-/// How many times as fast as with the least count; the range from the extremes of both.
+/// How many times as fast as one thread; where the least count is greater, that one counts as ideal.
 std::optional<Spread> speed_up(const std::vector<ThreadTime>& times, const ThreadScaling& plan, int size,
                                unsigned count) {
   const ThreadTime *one = find(times, size, plan.counts.front()), *many = find(times, size, count);
@@ -89,10 +111,12 @@ std::optional<Spread> speed_up(const std::vector<ThreadTime>& times, const Threa
 Table pivot(const std::string& title, const std::string& unit, const ThreadScaling& plan,
             const std::function<Cell(int, unsigned)>& cell) {
   Table table{title, {{"pixels a side", ""}}, {}};
+  if (plan.plain) table.columns.push_back({"plain C++", unit});
   for (const unsigned count : plan.counts)
     table.columns.push_back({fmt::format("{} thread{}", count, count == 1 ? "" : "s"), unit});
   for (const int size : plan.sizes) {
     std::vector<Cell> row{static_cast<double>(size)};
+    if (plan.plain) row.push_back(cell(size, 0));
     for (const unsigned count : plan.counts) row.push_back(cell(size, count));
     table.rows.push_back(std::move(row));
   }
@@ -116,8 +140,9 @@ void add_measurements(Table& table, const ThreadScaling& plan, const std::vector
     table.columns = {{"scene", ""}, {"device", ""},   {"size", "pixels"}, {"threads", ""}, {"time", "ms"},
                      {"runs", ""},  {"speed-up", ""}, {"cores used", ""}, {"problem", ""}};
   for (const ThreadTime& time : times) {
-    std::vector<Cell> row{plan.scene, plan.device.label(), static_cast<double>(time.size),
-                          static_cast<double>(time.threads)};
+    const bool is_plain = time.threads == 0;
+    std::vector<Cell> row{plan.scene, is_plain ? "plain C++" : plan.device.label(),
+                          static_cast<double>(time.size), is_plain ? 1.0 : time.threads};
     if (!time.problem.empty()) {
       row.resize(table.columns.size());
     } else {
@@ -139,16 +164,18 @@ std::vector<ThreadTime> measure_threads(const ThreadScaling& plan,
   for (const int size : plan.sizes) {
     on_step(fmt::format("{}, {}x{}", plan.scene, size, size));
     const CompiledScene scene = plan.compile_for(size);
-    std::vector<Runner> runners(plan.counts.size());
+    std::vector<unsigned> counts = plan.counts;
+    if (plan.plain) counts.insert(counts.begin(), 0);
+    std::vector<Runner> runners(counts.size());
     for (std::size_t i = 0; i < runners.size(); ++i) {
       runners[i].result.size = size;
-      runners[i].result.threads = plan.counts[i];
+      runners[i].result.threads = counts[i];
       runners[i].warm_up(plan.device, scene);
     }
     check_images(runners);
     for (int i = 0; i < plan.repeat; ++i)
       for (Runner& runner : runners)
-        if (runner.frames) runner.time();
+        if (runner.run) runner.time();
     for (Runner& runner : runners) {
       runner.result.seconds = spread(runner.seconds);
       runner.result.cores = spread(runner.cores).median;
@@ -172,7 +199,7 @@ void add_thread_tables(Report& report, const ThreadScaling& plan, const std::vec
                                [&](int size, unsigned count) { return gain_cell(1, size, count); }));
   report.parts.push_back(
       pivot(plan.scene + ": efficiency (speed-up by threads)", "", plan,
-            [&](int size, unsigned count) { return gain_cell(1.0 / count, size, count); }));
+            [&](int size, unsigned count) { return count ? gain_cell(1.0 / count, size, count) : Cell(); }));
   report.parts.push_back(speed_up_curves(plan, times));
   add_measurements(report.measurements, plan, times);
 }

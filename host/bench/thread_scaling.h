@@ -19,9 +19,11 @@ struct ThreadScaling {
   std::vector<int> sizes{128, 256, 352, 448, 512, 640};
   std::vector<unsigned> counts{1, 2, 4, 8, 16};
   int repeat = 5;
+  bool plain = true;  // time the plain C++ integrator too
 };
 
-/// One size and count. `cores` is processor seconds by wall second: what the threads really had.
+/// One size and count; 0 threads: the plain C++ program. `cores` is processor seconds by wall second: what
+/// the threads really had.
 struct ThreadTime {
   int size = 0;
   unsigned threads = 0;
@@ -31,7 +33,8 @@ struct ThreadTime {
 };
 
 /// Warms up once, then times `repeat` frames of each count in turn; a count whose image is not that of the
-/// first one to the bit has a problem instead of a time. `on_step` hears what is being measured.
+/// first one to the bit has a problem instead of a time, and so has the plain program when its image is
+/// another. `on_step` hears what is being measured.
 std::vector<ThreadTime> measure_threads(const ThreadScaling& plan,
                                         const std::function<void(const std::string&)>& on_step);
 

@@ -1,0 +1,22 @@
+// The exact solids of kernels/shared/bvh.h as a plain C++ program would have them: scalar floats, one ray.
+#pragma once
+#include <glm/glm.hpp>
+
+#include "shared/bvh.h"
+
+namespace sundog::plain {
+
+struct Ray {
+  glm::vec3 o{0}, d{0};
+  float t_min = 0, t_max = 0;  // a hit is in (t_min, t_max]
+};
+
+struct SolidHit {
+  float t = 0;
+  glm::vec3 ng{0};  // outward, not normalised
+};
+
+/// The nearest crossing of a unit solid, in its own space.
+bool closest_in_solid(u32 shape, const float4& parameters, const Ray& ray, SolidHit& hit);
+
+}  // namespace sundog::plain

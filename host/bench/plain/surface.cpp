@@ -1,0 +1,129 @@
+// See surface.h.
+#include "bench/plain/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sundog::plain {
+namespace {
+
+using glm::vec3;
+
+vec3 interpolate(const Hit& hit, const vec3& a, const vec3& b, const vec3& c) {
+  return (1 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
+}
+
+vec3 normal_of(const Vertex& v) { return {v.nx, v.ny, v.nz}; }
+vec3 color_of(const Vertex& v) { return {v.r, v.g, v.b}; }
+
+bool odd_cell(const vec3& p, float frequency) {
+  const vec3 cell = glm::floor(p * frequency + 0x1p-17f);
+  return std::fmod(cell.x + cell.y + cell.z, 2.0f) != 0;
+}
+
+/// A mesh's smooth normal, bent no further than the silhouette.
+void shade_mesh(const CompiledScene& scene, const Ray& ray, const Hit& hit, bool entering, Surface& s,
+                vec3& color) {
+  const TriangleShading& triangle = scene.triangles[hit.prim];
+  const Vertex &a = scene.vertices[triangle.vertex[0]], &b = scene.vertices[triangle.vertex[1]],
+               &c = scene.vertices[triangle.vertex[2]];
+  color = interpolate(hit, color_of(a), color_of(b), color_of(c));
+  const vec3 ns =
+      world_normal(scene.instances[hit.instance], interpolate(hit, normal_of(a), normal_of(b), normal_of(c)));
+  const float length = glm::length(ns);
+  if ((s.material->flags & MATERIAL_FLAT) || !(length > 0)) return;
+  const vec3 facing = ns / (entering ? length : -length);
+  const float towards = glm::dot(facing, ray.d);
+  s.ns = towards < 0 ? facing : glm::normalize(facing - (towards + 1e-4f) * ray.d);
+}
+
+}  // namespace
+
+glm::vec3 rgb(const float4& v) { return {v.x, v.y, v.z}; }
+
+float power(float x, float e) {
+  if (e != std::floor(e) || e > 65535) return std::pow(x, e);
+  float result = 1;
+  for (u32 bits = static_cast<u32>(e); bits; bits >>= 1) {
+    if (bits & 1u) result *= x;
+    x *= x;
+  }
+  return result;
+}
+
+const Material& material_of(const CompiledScene& scene, const Hit& hit) {
+  const u32 own = scene.instances[hit.instance].material;
+  return scene.materials[own != NO_MATERIAL ? own : scene.triangles[hit.prim].material];
+}
+
+Surface make_surface(const CompiledScene& scene, const Ray& ray, const Hit& hit) {
+  const Instance& instance = scene.instances[hit.instance];
+  Surface s;
+  s.material = &material_of(scene, hit);
+  const vec3 outward = glm::normalize(world_normal(instance, hit.ng));
+  const bool entering = glm::dot(outward, ray.d) < 0;
+  s.ng = s.ns = entering ? outward : -outward;
+  s.p = ray.o + hit.t * ray.d;
+  const vec3 size = glm::max(glm::abs(ray.o), glm::abs(s.p));
+  s.offset = std::max({size.x, size.y, size.z}) * 0x1p-19f;
+  vec3 color(1);
+  if (instance.shape == SHAPE_MESH) shade_mesh(scene, ray, hit, entering, s, color);
+  const u32 flags = s.material->flags;
+  const bool odd =
+      (flags & MATERIAL_CHECKER) &&
+      odd_cell(object_point(instance, s.p) * rgb(instance.pattern_scale), s.material->checker_diffuse.w);
+  s.ambient = rgb(odd ? s.material->checker_ambient : s.material->ambient);
+  s.diffuse = rgb(odd ? s.material->checker_diffuse : s.material->diffuse);
+  if (flags & MATERIAL_VERTEX_COLOR) s.ambient *= color, s.diffuse *= color;
+  return s;
+}
+
+LightSample sample_light(const Light& light, const vec3& p) {
+  LightSample sample;
+  sample.radiance = rgb(light.color);
+  if (light.kind == LIGHT_DIRECTIONAL) {
+    sample.wi = -rgb(light.direction);
+    sample.distance = std::numeric_limits<float>::infinity();
+    return sample;
+  }
+  const vec3 to = rgb(light.position) - p;
+  const float d = sample.distance = glm::length(to);
+  sample.wi = to / d;
+  sample.radiance /= light.falloff_constant + light.falloff_linear * d + light.falloff_quadratic * d * d;
+  if (light.kind == LIGHT_SPOT) {
+    const float cosine = -glm::dot(sample.wi, rgb(light.direction)), outer = light.direction.w,
+                inner = light.color.w;
+    const float s =
+        inner > outer ? std::clamp((cosine - outer) / (inner - outer), 0.0f, 1.0f) : cosine >= outer;
+    sample.radiance *= s * s * (3 - 2 * s);
+  }
+  return sample;
+}
+
+vec3 local_reflection(const Surface& surface, const vec3& d, const vec3& wi) {
+  const Material& material = *surface.material;
+  const float n_dot_l = glm::dot(surface.ns, wi);
+  const bool blinn = material.flags & MATERIAL_BLINN;
+  const float cosine =
+      blinn ? glm::dot(surface.ns, glm::normalize(wi - d)) : glm::dot(2 * n_dot_l * surface.ns - wi, -d);
+  vec3 sum = surface.diffuse * n_dot_l;
+  if (cosine > 0) sum += rgb(material.specular) * power(std::min(cosine, 1.0f), material.specular.w);
+  return sum;
+}
+
+float refracted_cosine(float cos_i, float eta) {
+  const float sin2 = (1 - cos_i * cos_i) / (eta * eta);
+  return sin2 < 1 ? std::sqrt(1 - sin2) : 0;
+}
+
+float fresnel(float cos_i, float eta) {
+  if (eta == 1) return 0;
+  const float cos_t = refracted_cosine(cos_i, eta);
+  if (cos_t <= 0) return 1;
+  const float parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+  const float perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+  return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+}
+
+}  // namespace sundog::plain

@@ -1,0 +1,41 @@
+// Surfaces and light in plain scalar C++: what a hit looks like, and what a light does to it.
+#pragma once
+#include "bench/plain/tracer.h"
+
+namespace sundog::plain {
+
+struct Surface {
+  glm::vec3 p{0};
+  glm::vec3 ng{0}, ns{0};  // unit, against the ray
+  float offset = 0;        // off the surface, for rays that start there
+  const Material* material = nullptr;
+  glm::vec3 ambient{0}, diffuse{0};  // with checker and vertex colour
+};
+
+glm::vec3 rgb(const float4& v);
+
+/// x^e, by squaring where e is whole.
+float power(float x, float e);
+
+const Material& material_of(const CompiledScene& scene, const Hit& hit);
+
+Surface make_surface(const CompiledScene& scene, const Ray& ray, const Hit& hit);
+
+struct LightSample {
+  glm::vec3 wi{0};  // unit, to the light
+  float distance = 0;
+  glm::vec3 radiance{0};  // before shadowing
+};
+
+LightSample sample_light(const Light& light, const glm::vec3& p);
+
+/// kd (n.l) + ks (r.v)^beta, or (n.h)^beta.
+glm::vec3 local_reflection(const Surface& surface, const glm::vec3& d, const glm::vec3& wi);
+
+/// Reflectance of an interface between dielectrics, unpolarised; eta is the far index over the near one.
+float fresnel(float cos_i, float eta);
+
+/// Cosine of the refracted angle; 0 where everything is reflected.
+float refracted_cosine(float cos_i, float eta);
+
+}  // namespace sundog::plain

@@ -1,0 +1,25 @@
+// Rays through a compiled scene in plain scalar C++.
+#pragma once
+#include "bench/plain/solids.h"
+#include "compile/compiled_scene.h"
+
+namespace sundog::plain {
+
+struct Hit {
+  float t = 0, u = 0, v = 0;  // u, v barycentric, of triangles
+  u32 prim = 0, instance = 0;
+  glm::vec3 ng{0};  // object space, outward, not normalised
+};
+
+/// The nearest hit in (t_min, t_max]; false: none.
+bool closest_hit(const CompiledScene& scene, const Ray& ray, Hit& hit);
+
+/// Whether there is any.
+bool any_hit(const CompiledScene& scene, const Ray& ray);
+
+glm::vec3 object_point(const Instance& instance, const glm::vec3& p);
+
+/// To world space, not normalised.
+glm::vec3 world_normal(const Instance& instance, const glm::vec3& n);
+
+}  // namespace sundog::plain
