@@ -22,7 +22,7 @@ using namespace sundog;
 namespace {
 
 struct Options {
-  std::vector<std::string> models, kinds;
+  std::vector<std::string> models, kinds, defines;
   std::vector<float> from{0.25f, 0.2f, 1.0f};
   std::string device = "cpu", json;
   unsigned size = 1024, threads = 1, repeats = 7;
@@ -139,13 +139,23 @@ class Comparison {
   std::vector<u32> occluded_;
 };
 
+/// "NAME=VALUE" or "NAME" to definitions.
+KernelDefines kernel_defines(const std::vector<std::string>& texts) {
+  KernelDefines defines;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    defines[text.substr(0, equals)] = equals == std::string::npos ? "1" : text.substr(equals + 1);
+  }
+  return defines;
+}
+
 nlohmann::json compare_model(const Options& options, const std::string& path) {
   const SceneDescription description = scene_of_model(path, options);
   const CompiledScene scene = compile(description);
   DeviceInfo info = select_devices(enumerate_devices(), {options.device}).at(0);
   info.sub_units = options.threads < info.compute_units ? options.threads : 0;
   Device device(info);
-  RayTracer tracer(device, scene);
+  RayTracer tracer(device, scene, kernel_defines(options.defines));
   const EmbreePeer embree(description, options.embree);
   fmt::print("{}: {} triangles, {} thread(s) of {}; build {:.0f} ms, Embree {:.0f} ms\n", path,
              scene.figures.triangles, options.threads, info.label(), scene.figures.build_seconds * 1e3,
@@ -155,7 +165,9 @@ nlohmann::json compare_model(const Options& options, const std::string& path) {
   const TraceFunction trace = [&](std::span<const Ray> rays) { return tracer.trace(rays); };
   const Viewpoint view = framing_viewpoint(scene, {options.from[0], options.from[1], options.from[2]}, trace);
   std::vector<RaySet> sets{primary_rays(view, options.size)};
-  for (RaySet& set : secondary_rays(scene, view, sets[0], trace)) sets.push_back(std::move(set));
+  if (options.kinds != std::vector<std::string>{"primary"})
+    for (RaySet& set : secondary_rays(scene, view, sets[0], trace, options.kinds))
+      sets.push_back(std::move(set));
   nlohmann::json result{{"model", path},
                         {"triangles", scene.figures.triangles},
                         {"device", info.label()},
@@ -184,6 +196,7 @@ int main(int argc, char** argv) {
   app.add_option("--repeats", options.repeats, "pairs of measurements");
   app.add_option("--device", options.device, "SPEC of the device");
   app.add_option("--kinds", options.kinds, "kinds of rays; all without it");
+  app.add_option("--define", options.defines, "NAME=VALUE for the kernels");
   app.add_option("--json", options.json, "file for the figures");
   app.add_flag("--wall", options.wall, "wall clock; without it processor time over threads");
   app.add_flag("--packets", options.packets, "also Embree's 16-wide packets");

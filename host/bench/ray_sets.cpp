@@ -165,7 +165,7 @@ RaySet primary_rays(const Viewpoint& view, unsigned size) {
 }
 
 std::vector<RaySet> secondary_rays(const CompiledScene& scene, const Viewpoint& view, const RaySet& primary,
-                                   const TraceFunction& trace) {
+                                   const TraceFunction& trace, const std::vector<std::string>& kinds) {
   const std::vector<Hit> hits = trace(primary.rays);
   RaySet shadow{"shadow", true, true, {}}, bounce{"bounce", false, false, {}},
       shuffled{"shuffled", false, false, {}}, reflection{"reflection", false, false, {}};
@@ -181,8 +181,14 @@ std::vector<RaySet> secondary_rays(const CompiledScene& scene, const Viewpoint& 
   }
   shuffled.rays = bounce.rays;
   shuffle(shuffled.rays);
-  RaySet glass = glass_rays(scene, primary.rays, hits, trace);
-  return {std::move(shadow), std::move(bounce), std::move(shuffled), std::move(reflection), std::move(glass)};
+  const auto wanted = [&](const std::string& kind) {
+    return kinds.empty() || std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+  };
+  std::vector<RaySet> sets;
+  for (RaySet* set : {&shadow, &bounce, &shuffled, &reflection})
+    if (wanted(set->kind)) sets.push_back(std::move(*set));
+  if (wanted("glass")) sets.push_back(glass_rays(scene, primary.rays, hits, trace));
+  return sets;
 }
 
 }  // namespace sundog

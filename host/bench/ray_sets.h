@@ -39,7 +39,8 @@ Viewpoint framing_viewpoint(const CompiledScene& scene, const glm::vec3& from, c
 /// size x size pixels (rounded up to a multiple of 16), through their centres.
 RaySet primary_rays(const Viewpoint& view, unsigned size);
 
-/// What follows from the hits of the primary rays; each set may be empty.
+/// What follows from the hits of the primary rays: those of `kinds`, or all when it is empty. Each set may be
+/// empty.
 ///   shadow      from the point towards the light, where the light is in front of the surface
 ///   bounce      cosine-weighted about the normal (towards the camera)
 ///   shuffled    the same in random order
@@ -47,6 +48,6 @@ RaySet primary_rays(const Viewpoint& view, unsigned size);
 ///   glass       the rays inside and behind a solid of index 1.5: refracted, then refracted and reflected at
 ///               each further surface, up to 5 surfaces along a path
 std::vector<RaySet> secondary_rays(const CompiledScene& scene, const Viewpoint& view, const RaySet& primary,
-                                   const TraceFunction& trace);
+                                   const TraceFunction& trace, const std::vector<std::string>& kinds = {});
 
 }  // namespace sundog

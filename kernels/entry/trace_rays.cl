@@ -17,20 +17,28 @@
     t_max[i] = ray.t_max;                               \
   }
 
-// Reads ray_count rays; writes the nearest hit of each in (t_min, t_max].
-__kernel void trace_rays(TRACE_PARAMETERS, __global const Ray* restrict rays, __global Hit* restrict hits,
-                         u32 ray_count, u32 coherent) {
+NEVER_INLINE void trace_rays_item(TRACE_PARAMETERS, __global const Ray* restrict rays,
+                                  __global Hit* restrict hits, u32 ray_count, u32 coherent, u32 item) {
   LOAD_BATCH
   Hit found[BATCH];
   trace_batch(TRACE_ARGUMENTS, o, d, t_min, t_max, count, coherent != 0u, found);
   for (u32 i = 0; i < count; ++i) hits[first + i] = found[i];
 }
-
-// Reads ray_count rays; writes 1 where anything is hit in (t_min, t_max], else 0.
-__kernel void occluded_rays(TRACE_PARAMETERS, __global const Ray* restrict rays,
-                            __global u32* restrict occluded, u32 ray_count, u32 coherent) {
+NEVER_INLINE void occluded_rays_item(TRACE_PARAMETERS, __global const Ray* restrict rays,
+                                     __global u32* restrict occluded, u32 ray_count, u32 coherent, u32 item) {
   LOAD_BATCH
   u32 found[BATCH];
   occluded_batch(TRACE_ARGUMENTS, o, d, t_min, t_max, count, coherent != 0u, found);
   for (u32 i = 0; i < count; ++i) occluded[first + i] = found[i];
+}
+// Reads ray_count rays; writes the nearest hit of each in (t_min, t_max].
+__kernel void trace_rays(TRACE_PARAMETERS, __global const Ray* restrict rays, __global Hit* restrict hits,
+                         u32 ray_count, u32 coherent) {
+  trace_rays_item(TRACE_ARGUMENTS, rays, hits, ray_count, coherent, get_global_id(0));
+}
+
+// Reads ray_count rays; writes 1 where anything is hit in (t_min, t_max], else 0.
+__kernel void occluded_rays(TRACE_PARAMETERS, __global const Ray* restrict rays,
+                            __global u32* restrict occluded, u32 ray_count, u32 coherent) {
+  occluded_rays_item(TRACE_ARGUMENTS, rays, occluded, ray_count, coherent, get_global_id(0));
 }

@@ -11,6 +11,13 @@
 #define fma(a, b, c) ((a) * (b) + (c))
 #endif
 
+// For the inner loops: a call there would save and restore every vector register.
+#define ALWAYS_INLINE static inline __attribute__((always_inline))
+
+// For the body of a kernel with private arrays: PoCL keeps the arrays of a kernel apart for each work-item of
+// a group, and those of a function once.
+#define NEVER_INLINE static __attribute__((noinline))
+
 // Rays a work-item carries together: TILE_W x TILE_H pixels of the image. 16 on CPU-class devices, 1 on
 // GPU-class ones.
 #ifndef TILE_W
@@ -27,6 +34,8 @@
 #ifndef WIDE_VECTORS
 #define WIDE_VECTORS 1
 #endif
+// Whether a batch of rays that run close together can go through the BVH as one.
+#define PACKETS (WIDE_VECTORS && BATCH == 16)
 
 // Pending rays of a work-item: enough for a full binary tree of max_depth levels walked BATCH rays at a time.
 #ifndef RAY_STACK

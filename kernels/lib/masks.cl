@@ -15,7 +15,14 @@ static inline u32 lane_mask(int8 lanes) {
 #endif
 }
 
-static inline u32 lowest_bit(u32 mask) { return 31u - clz(mask & (0u - mask)); }
+// Index of the lowest bit set; mask is not 0.
+static inline u32 lowest_bit(u32 mask) {
+#if defined(__AVX__) && !defined(SUNDOG_PORTABLE)
+  return (u32)__builtin_ctz(mask);
+#else
+  return 31u - clz(mask & (0u - mask));
+#endif
+}
 
 // Not fmin and fmax: those treat NaN apart, which costs instructions.
 static inline float8 least8(float8 a, float8 b) { return select(b, a, a < b); }

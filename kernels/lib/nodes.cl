@@ -40,7 +40,7 @@ static inline SlabRay make_slab_ray(float3 o, float3 d) {
 
 #if WIDE_VECTORS
 // The children crossed in [t_min, t_max]; writes their keys.
-static inline u32 cross_children(__global const Bvh8Node* node, const SlabRay* ray, float t_min, float t_max,
+ALWAYS_INLINE u32 cross_children(__global const Bvh8Node* node, const SlabRay* ray, float t_min, float t_max,
                                  u32* keys) {
   __global const float* bounds = node->lower_x;
   const int8 near_x =
@@ -57,12 +57,11 @@ static inline u32 cross_children(__global const Bvh8Node* node, const SlabRay* r
       as_int8(fma(vload8(0, bounds + ray->far_z), (float8)(ray->rcp_far.z), (float8)(ray->shift_far.z)));
   const int8 near = max(max(near_x, near_y), max(near_z, (int8)(as_int(t_min))));
   const int8 far = min(min(far_x, far_y), min(far_z, (int8)(as_int(t_max))));
-  const u32 crossed = lane_mask(near <= far) & node->valid;
-  if (crossed) vstore8((as_uint8(near) & ~KEY_SLOT) | (uint8)(0, 1, 2, 3, 4, 5, 6, 7), 0, keys);
-  return crossed;
+  vstore8((as_uint8(near) & ~KEY_SLOT) | (uint8)(0, 1, 2, 3, 4, 5, 6, 7), 0, keys);
+  return lane_mask(near <= far) & node->valid;
 }
 #else
-static inline u32 cross_children(__global const Bvh8Node* node, const SlabRay* ray, float t_min, float t_max,
+ALWAYS_INLINE u32 cross_children(__global const Bvh8Node* node, const SlabRay* ray, float t_min, float t_max,
                                  u32* keys) {
   __global const float* bounds = node->lower_x;
   u32 crossed = 0;
@@ -91,7 +90,7 @@ static inline void order_pair(u32* a, u32* b) {
 
 // Pushes the crossed children (at least one), farthest first, and returns the nearest one's word. A key packs
 // the entry distance and the slot.
-static inline u32 push_children(__global const Bvh8Node* node, u32 crossed, const u32* keys, u32* stack,
+ALWAYS_INLINE u32 push_children(__global const Bvh8Node* node, u32 crossed, const u32* keys, u32* stack,
                                 float* stack_t, u32* top) {
   u32 first = lowest_bit(crossed);
   crossed &= crossed - 1u;
@@ -135,7 +134,7 @@ static inline u32 push_children(__global const Bvh8Node* node, u32 crossed, cons
 
 // Pushes all crossed children (at least one) but the last and returns that one's word: where any hit will do,
 // an order is not worth its price.
-static inline u32 push_children_unsorted(__global const Bvh8Node* node, u32 crossed, u32* stack, u32* top) {
+ALWAYS_INLINE u32 push_children_unsorted(__global const Bvh8Node* node, u32 crossed, u32* stack, u32* top) {
   u32 at = *top;
   u32 word = node->child[lowest_bit(crossed)];
   crossed &= crossed - 1u;

@@ -1,14 +1,14 @@
-// The CPU-class tracer: one ray through the two-level BVH, eight children or eight triangles an instruction.
-// In: a ray and the tables. Out: the nearest hit, or whether there is any. This file is the narrow interface
-// that shading sees. What is found does not depend on the order of visits.
+// The narrow interface of the tracer that shading sees. In: a ray or a batch of rays, and the tables. Out:
+// the nearest hit, or whether there is any. What is found does not depend on the order of visits, nor on
+// whether a ray goes alone.
 #ifndef SUNDOG_LIB_TRAVERSE_CL
 #define SUNDOG_LIB_TRAVERSE_CL
 #include "lib/config.h"
-#include "lib/nodes.cl"
-#include "lib/solids.cl"
+#if PACKETS
+#include "lib/packet.cl"
+#endif
+#include "lib/single.cl"
 #include "lib/tables.h"
-#include "lib/transform.cl"
-#include "lib/triangles.cl"
 
 static inline bool finite3(float3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
 
@@ -22,104 +22,24 @@ static inline Hit no_hit(float t_max) {
   return hit;
 }
 
-#if HAS_MESH
-// Nearest hit in one mesh BVH, or with `any` whichever comes first; o, d in object space. Uses the stack from
-// `stack` on. A hit's prim is left as finish_triangle wants it.
-static inline void trace_mesh(TRACE_PARAMETERS, u32 root, float3 o, float3 d, float t_min, u32 instance,
-                              bool any, u32* stack, float* stack_t, Hit* hit) {
-  const SlabRay slabs = make_slab_ray(o, d);
-  const ShearRay shear = make_shear_ray(o, d);
-  u32 top = 0, word = root;
-  for (;;) {
-    if (word & BVH_LEAF) {
-      const u32 first = word & BVH_FIRST_MASK,
-                last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
-      for (u32 i = first; i <= last; ++i) closest_in_block(blocks, i, &shear, t_min, instance, hit);
-      if (any && hit->instance == instance) return;
-    } else {
-      u32 keys[8];
-      const u32 crossed = cross_children(nodes + word, &slabs, t_min, hit->t, keys);
-      if (crossed) {
-        word = any ? push_children_unsorted(nodes + word, crossed, stack, &top)
-                   : push_children(nodes + word, crossed, keys, stack, stack_t, &top);
-        continue;
-      }
-    }
-    do {
-      if (!top) return;
-      --top;
-    } while (!any && stack_t[top] > hit->t);
-    word = stack[top];
-  }
-}
-#endif
-
-static inline void trace_solid(__global const Instance* restrict instances, u32 index, float3 o, float3 d,
-                               float t_min, Hit* hit) {
-  __global const Instance* instance = instances + index;
-  SolidHit solid;
-  if (!closest_in_solid(instance->shape, instance->parameters, o, d, t_min, hit->t, &solid)) return;
-  if (solid.t == hit->t && hit->instance <= index) return;
-  hit->t = solid.t;
-  hit->u = 0.0f;
-  hit->v = 0.0f;
-  hit->prim = solid.part;
-  hit->instance = index;
-  hit->ng_x = solid.ng.x;
-  hit->ng_y = solid.ng.y;
-  hit->ng_z = solid.ng.z;
-}
-
-// One instance in (t_min, hit->t]; world-space ray.
-static inline void trace_instance(TRACE_PARAMETERS, u32 index, float3 o, float3 d, float t_min, bool any,
-                                  u32* stack, float* stack_t, Hit* hit) {
-  __global const Instance* instance = instances + index;
-  const float3 oo = object_point(instance, o), dd = object_vector(instance, d);
-#if HAS_MESH
-  if (instance->shape == SHAPE_MESH) {
-    trace_mesh(TRACE_ARGUMENTS, instance->root, oo, dd, t_min, index, any, stack, stack_t, hit);
-    return;
-  }
-#endif
-  trace_solid(instances, index, oo, dd, t_min, hit);
-}
-
-// The scene BVH over the bounded instances.
-static inline void trace_bounded(TRACE_PARAMETERS, float3 o, float3 d, float t_min, bool any, Hit* hit) {
-  u32 stack[BVH_STACK];
-  float stack_t[BVH_STACK];
-  const SlabRay slabs = make_slab_ray(o, d);
-  u32 top = 0, word = info->tlas_root;
-  for (;;) {
-    if (word & BVH_LEAF) {
-      const u32 first = word & BVH_FIRST_MASK,
-                last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
-      for (u32 i = first; i <= last; ++i) {
-        trace_instance(TRACE_ARGUMENTS, i, o, d, t_min, any, stack + top, stack_t + top, hit);
-        if (any && hit->instance != NO_INSTANCE) return;
-      }
-    } else {
-      u32 keys[8];
-      const u32 crossed = cross_children(nodes + word, &slabs, t_min, hit->t, keys);
-      if (crossed) {
-        word = push_children(nodes + word, crossed, keys, stack, stack_t, &top);
-        continue;
-      }
-    }
-    do {
-      if (!top) return;
-      --top;
-    } while (stack_t[top] > hit->t);
-    word = stack[top];
-  }
-}
-
 static inline void trace_scene(TRACE_PARAMETERS, float3 o, float3 d, float t_min, bool any, Hit* hit) {
-  if (info->bounded_count > 0u) trace_bounded(TRACE_ARGUMENTS, o, d, t_min, any, hit);
+  if (info->bounded_count == 1u) {
+    u32 stack[BVH_STACK];
+    float stack_t[BVH_STACK];
+    trace_instance(TRACE_ARGUMENTS, 0u, o, d, t_min, any, stack, stack_t, hit);
+  } else if (info->bounded_count > 0u)
+    trace_bounded(TRACE_ARGUMENTS, info->tlas_root, o, d, t_min, any, hit);
 #if HAS_PLANE
   if (any && hit->instance != NO_INSTANCE) return;
   for (u32 i = info->bounded_count; i < info->instance_count; ++i)
     trace_solid(instances, i, object_point(instances + i, o), object_vector(instances + i, d), t_min, hit);
+#endif
+}
+
+static inline void finish_hit(TRACE_PARAMETERS, Hit* hit) {
+#if HAS_MESH
+  if (hit->instance != NO_INSTANCE && instances[hit->instance].shape == SHAPE_MESH)
+    finish_triangle(blocks, hit);
 #endif
 }
 
@@ -128,10 +48,7 @@ static inline Hit trace_closest(TRACE_PARAMETERS, float3 o, float3 d, float t_mi
   Hit hit = no_hit(t_max);
   if (!traceable(o, d, t_min, t_max)) return hit;
   trace_scene(TRACE_ARGUMENTS, o, d, t_min, false, &hit);
-#if HAS_MESH
-  if (hit.instance != NO_INSTANCE && instances[hit.instance].shape == SHAPE_MESH)
-    finish_triangle(blocks, &hit);
-#endif
+  finish_hit(TRACE_ARGUMENTS, &hit);
   return hit;
 }
 
@@ -143,15 +60,65 @@ static inline bool trace_any(TRACE_PARAMETERS, float3 o, float3 d, float t_min, 
   return hit.instance != NO_INSTANCE;
 }
 
+#if PACKETS
+// Rays become a packet; a lane beyond `count` and a ray that hits nothing stand in as a copy of another and
+// are switched off. Returns false when the rays do not go as one.
+NEVER_INLINE bool make_packet(const float3* o, const float3* d, const float* t_min, const float* t_max,
+                              u32 count, PacketRays* rays, PacketHits* hits) {
+  for (u32 i = 0; i < count; ++i) {
+    set_packet_ray(rays, i, o[i], d[i]);
+    set_lane(&hits->t_min, i, t_min[i]);
+    set_lane(&hits->t, i, t_max[i]);
+  }
+  const u32 live = live_rays(rays, hits) & (ALL_RAYS >> (PACKET - count));
+  if (!live) return false;
+  if (live != ALL_RAYS) {
+    const u32 stand_in = lowest_bit(live);
+    for (u32 i = 0; i < PACKET; ++i) {
+      if (live >> i & 1u) continue;
+      set_packet_ray(rays, i, packet_origin(rays, stand_in), packet_direction(rays, stand_in));
+      set_lane(&hits->t_min, i, get_lane(&hits->t_min, stand_in));
+      set_lane(&hits->t, i, -1.0f);
+    }
+  }
+  hits->prim = (uint16)(NO_PRIM);
+  hits->instance = (uint16)(NO_INSTANCE);
+  hits->t_least = least_of(hits->t_min);
+  hits->t_most = most_of(hits->t);
+  return aim_packet(rays);
+}
+#endif
+
 // The first `count` (at most BATCH) of rays (o, d) in (t_min, t_max]. `coherent`: they run close together.
 static inline void trace_batch(TRACE_PARAMETERS, const float3* o, const float3* d, const float* t_min,
-                               const float* t_max, u32 count, bool coherent, Hit* hits) {
-  for (u32 i = 0; i < count; ++i) hits[i] = trace_closest(TRACE_ARGUMENTS, o[i], d[i], t_min[i], t_max[i]);
+                               const float* t_max, u32 count, bool coherent, Hit* found) {
+#if PACKETS
+  PacketRays rays;
+  PacketHits hits;
+  if (coherent && count > PACKET_LEAST && make_packet(o, d, t_min, t_max, count, &rays, &hits)) {
+    packet_in_scene(TRACE_ARGUMENTS, &rays, &hits, false);
+    for (u32 i = 0; i < count; ++i) {
+      found[i] = get_index(&hits.instance, i) == NO_INSTANCE ? no_hit(t_max[i]) : packet_hit(&hits, i);
+      finish_hit(TRACE_ARGUMENTS, &found[i]);
+    }
+    return;
+  }
+#endif
+  for (u32 i = 0; i < count; ++i) found[i] = trace_closest(TRACE_ARGUMENTS, o[i], d[i], t_min[i], t_max[i]);
 }
 
 // The same for whether anything is hit: occluded[i] becomes 1 or 0.
 static inline void occluded_batch(TRACE_PARAMETERS, const float3* o, const float3* d, const float* t_min,
                                   const float* t_max, u32 count, bool coherent, u32* occluded) {
+#if PACKETS
+  PacketRays rays;
+  PacketHits hits;
+  if (coherent && count > PACKET_LEAST && make_packet(o, d, t_min, t_max, count, &rays, &hits)) {
+    packet_in_scene(TRACE_ARGUMENTS, &rays, &hits, true);
+    for (u32 i = 0; i < count; ++i) occluded[i] = get_index(&hits.instance, i) != NO_INSTANCE;
+    return;
+  }
+#endif
   for (u32 i = 0; i < count; ++i)
     occluded[i] = trace_any(TRACE_ARGUMENTS, o[i], d[i], t_min[i], t_max[i]) ? 1u : 0u;
 }

@@ -19,24 +19,20 @@ typedef struct ShearRay {
 
 static inline ShearRay make_shear_ray(float3 o, float3 d) {
   const float3 size = fabs(d);
+  const int3 along_x = (int3)(-(size.x >= size.y && size.x >= size.z)),
+             along_y = (int3)(-(size.x < size.y && size.y >= size.z));
+  const float3 dd = select(select(d, d.zxy, along_y), d.yzx, along_x),
+               oo = select(select(o, o.zxy, along_y), o.yzx, along_x);
   ShearRay ray;
-  float dx, dy, dz;
-  if (size.x >= size.y && size.x >= size.z) {
-    ray.x = 8u, ray.y = 16u, ray.z = 0u;
-    ray.ox = o.y, ray.oy = o.z, ray.oz = o.x;
-    dx = d.y, dy = d.z, dz = d.x;
-  } else if (size.y >= size.z) {
-    ray.x = 16u, ray.y = 0u, ray.z = 8u;
-    ray.ox = o.z, ray.oy = o.x, ray.oz = o.y;
-    dx = d.z, dy = d.x, dz = d.y;
-  } else {
-    ray.x = 0u, ray.y = 8u, ray.z = 16u;
-    ray.ox = o.x, ray.oy = o.y, ray.oz = o.z;
-    dx = d.x, dy = d.y, dz = d.z;
-  }
-  ray.sz = -1.0f / dz;
-  ray.sx = dx / dz;
-  ray.sy = dy / dz;
+  ray.z = along_x.x ? 0u : along_y.x ? 8u : 16u;
+  ray.x = along_x.x ? 8u : along_y.x ? 16u : 0u;
+  ray.y = 24u - ray.x - ray.z;
+  ray.ox = oo.x;
+  ray.oy = oo.y;
+  ray.oz = oo.z;
+  ray.sz = -1.0f / dd.z;
+  ray.sx = dd.x / dd.z;
+  ray.sy = dd.y / dd.z;
   return ray;
 }
 
@@ -62,8 +58,8 @@ static inline bool wins_tie(__global const TriangleBlock* restrict blocks, u32 i
 }
 
 // Takes the triangle at `place` as the hit when it is nearer than *hit, or as near and earlier in the tables.
-static inline void offer_triangle(__global const TriangleBlock* restrict blocks, u32 place, float t, float u,
-                                  float v, u32 instance, Hit* hit) {
+ALWAYS_INLINE void offer_triangle(__global const TriangleBlock* blocks, u32 place, float t, float u, float v,
+                                  u32 instance, Hit* hit) {
   if (t > hit->t || (t == hit->t && !wins_tie(blocks, instance, place, hit))) return;
   hit->t = t;
   hit->u = u;
@@ -82,7 +78,7 @@ typedef struct BlockTest {
 } BlockTest;
 
 // Lanes hit in (t_min, t_max].
-static inline BlockTest test_block(__global const TriangleBlock* block, const ShearRay* ray, float t_min,
+ALWAYS_INLINE BlockTest test_block(__global const TriangleBlock* block, const ShearRay* ray, float t_min,
                                    float t_max) {
   __global const float *vx = block->v0_x + ray->x, *vy = block->v0_x + ray->y, *vz = block->v0_x + ray->z;
   const float8 z0 = ray->oz - vload8(0, vz), z1 = ray->oz - vload8(3, vz), z2 = ray->oz - vload8(6, vz);
@@ -111,8 +107,8 @@ static inline BlockTest test_block(__global const TriangleBlock* block, const Sh
 
 // Nearest hit of the block in (t_min, hit->t]; updates *hit, whose prim becomes the triangle's place (see
 // finish_triangle).
-static inline void closest_in_block(__global const TriangleBlock* restrict blocks, u32 index,
-                                    const ShearRay* ray, float t_min, u32 instance, Hit* hit) {
+ALWAYS_INLINE void closest_in_block(__global const TriangleBlock* blocks, u32 index, const ShearRay* ray,
+                                    float t_min, u32 instance, Hit* hit) {
   const BlockTest test = test_block(blocks + index, ray, t_min, hit->t);
   u32 lanes = test.lanes;
   if (!lanes) return;
@@ -129,8 +125,8 @@ static inline void closest_in_block(__global const TriangleBlock* restrict block
 #else
 static inline float edge_function(float ax, float ay, float bx, float by) { return ax * by - ay * bx; }
 
-static inline void closest_in_block(__global const TriangleBlock* restrict blocks, u32 index,
-                                    const ShearRay* ray, float t_min, u32 instance, Hit* hit) {
+ALWAYS_INLINE void closest_in_block(__global const TriangleBlock* blocks, u32 index, const ShearRay* ray,
+                                    float t_min, u32 instance, Hit* hit) {
   __global const float* corners = blocks[index].v0_x;
 #pragma unroll 1
   for (u32 i = 0; i < 8u && blocks[index].prim[i] != NO_PRIM; ++i) {

@@ -1,0 +1,262 @@
+// Sixteen rays that run close together go through the two-level BVH as one: a node's eight children are
+// tested at once against the interval that the rays span, and a child that survives against each ray. Where
+// few rays are left, they go on alone. A ray's own tests are those of single.cl to the bit, and so are the
+// hits.
+#ifndef SUNDOG_LIB_PACKET_CL
+#define SUNDOG_LIB_PACKET_CL
+#include "lib/config.h"
+#include "lib/packet_rays.cl"
+#include "lib/single.cl"
+#include "lib/tables.h"
+
+// This many rays or fewer in a node are faster alone.
+#ifndef PACKET_LEAST
+#define PACKET_LEAST 5
+#endif
+
+// Children that wait, each as the bits of its entry distance above its box, node * 8 + slot; nearest last.
+typedef struct PacketWalk {
+  ulong waiting[BVH_STACK + 1];
+  u32 top;
+} PacketWalk;
+
+// Puts the children that the interval crosses onto the stack.
+NEVER_INLINE void open_node(__global const Bvh8Node* restrict nodes, u32 index, const PacketRays* rays,
+                            const PacketHits* hits, PacketWalk* walk) {
+  __global const Bvh8Node* node = nodes + index;
+  __global const float* bounds = node->lower_x;
+  int8 near = (int8)(as_int(hits->t_least)), far = (int8)(as_int(hits->t_most));
+  for (u32 axis = 0; axis < 3u; ++axis) {
+    const float8 b = vload8(0, bounds + rays->near[axis]), c = vload8(0, bounds + rays->far[axis]);
+    const float8 near_0 = fma(b, (float8)(rays->near_rcp[axis][0]), (float8)(rays->near_shift[axis][0])),
+                 near_1 = fma(b, (float8)(rays->near_rcp[axis][1]), (float8)(rays->near_shift[axis][1]));
+    const float8 far_0 = fma(c, (float8)(rays->far_rcp[axis][0]), (float8)(rays->far_shift[axis][0])),
+                 far_1 = fma(c, (float8)(rays->far_rcp[axis][1]), (float8)(rays->far_shift[axis][1]));
+    near = max(near, as_int8(least8(near_0, near_1)));
+    far = min(far, as_int8(greatest8(far_0, far_1)));
+  }
+  u32 crossed = lane_mask(near <= far) & node->valid;
+  u32 entry[8];
+  vstore8(as_uint8(near), 0, entry);
+  const u32 base = walk->top;
+  while (crossed) {
+    const u32 slot = lowest_bit(crossed);
+    crossed &= crossed - 1u;
+    const ulong box = (ulong)entry[slot] << 32 | (index * 8u + slot);
+    u32 to = walk->top++;
+    while (to > base && walk->waiting[to - 1u] < box) {
+      walk->waiting[to] = walk->waiting[to - 1u];
+      --to;
+    }
+    walk->waiting[to] = box;
+  }
+}
+
+// The entry or the exit distances of the slabs of one axis for each ray.
+ALWAYS_INLINE int16 slab_distance(float bound, float16 rcp, float16 shift) {
+  return as_int16(fma((float16)(bound), rcp, shift));
+}
+
+// The rays that cross the box of one child.
+ALWAYS_INLINE u32 rays_in_child(__global const Bvh8Node* node, u32 slot, const PacketRays* rays,
+                                const PacketHits* hits) {
+  __global const float* bounds = node->lower_x + slot;
+  int16 near = as_int16(hits->t_min), far = as_int16(hits->t);
+  for (u32 axis = 0; axis < 3u; ++axis) {
+    near = max(near, slab_distance(bounds[rays->near[axis]], rays->rcp_near[axis], rays->shift_near[axis]));
+    far = min(far, slab_distance(bounds[rays->far[axis]], rays->rcp_far[axis], rays->shift_far[axis]));
+  }
+  return lane_mask16(near <= far);
+}
+
+// Goes on to the next place where something is to be done: a leaf, or a node that few rays cross. Writes its
+// word and the rays that cross it; returns false at the end.
+NEVER_INLINE bool next_place(__global const Bvh8Node* restrict nodes, const PacketRays* rays,
+                             const PacketHits* hits, PacketWalk* walk, u32* word, u32* active) {
+  while (walk->top) {
+    const ulong next = walk->waiting[--walk->top];
+    if (as_float((u32)(next >> 32)) > hits->t_most) continue;
+    __global const Bvh8Node* node = nodes + ((u32)next >> 3);
+    const u32 slot = (u32)next & 7u, crossing = rays_in_child(node, slot, rays, hits);
+    if (!crossing) continue;
+    *word = node->child[slot];
+    *active = crossing;
+    if ((*word & BVH_LEAF) || popcount(crossing) <= PACKET_LEAST) return true;
+    open_node(nodes, *word, rays, hits, walk);
+  }
+  return false;
+}
+
+#if HAS_MESH
+// The triangle at `place` against all rays. Returns whether it is a hit of any.
+ALWAYS_INLINE bool packet_triangle(__global const TriangleBlock* blocks, u32 place, const PacketRays* rays,
+                                   PacketHits* hits, u32 instance, bool any) {
+  __global const float* corners = blocks[place >> 3].v0_x + (place & 7u);
+  __global const float *vx = corners + rays->axis[0] * 8u, *vy = corners + rays->axis[1] * 8u,
+                       *vz = corners + rays->axis[2] * 8u;
+  const float16 ox = rays->o[rays->axis[0]], oy = rays->o[rays->axis[1]], oz = rays->o[rays->axis[2]];
+  const float16 z0 = oz - vz[0], z1 = oz - vz[24], z2 = oz - vz[48];
+  const float16 x0 = fma(-rays->sx, z0, ox - vx[0]), x1 = fma(-rays->sx, z1, ox - vx[24]),
+                x2 = fma(-rays->sx, z2, ox - vx[48]);
+  const float16 y0 = fma(-rays->sy, z0, oy - vy[0]), y1 = fma(-rays->sy, z1, oy - vy[24]),
+                y2 = fma(-rays->sy, z2, oy - vy[48]);
+  const float16 e0 = x2 * y1 - y2 * x1, e1 = x0 * y2 - y0 * x2, e2 = x1 * y0 - y1 * x0;
+  const float16 a = select(e1, e0, e0 < e1), b = select(e1, e0, e0 > e1);
+  int16 hit = (select(e2, a, a < e2) >= 0.0f) | (select(e2, b, b > e2) <= 0.0f);
+  if (!lane_mask16(hit)) return false;
+  const float16 scale = 1.0f / (e0 + e1 + e2);
+  const float16 w0 = e0 * scale, u = e1 * scale, v = e2 * scale;
+  const float16 t = fma(w0, z0, fma(u, z1, v * z2)) * rays->sz;
+  hit &= (t > hits->t_min) & (t <= hits->t);
+  if (!lane_mask16(hit)) return false;
+  u32 ties = lane_mask16(hit & (t == hits->t));
+  while (ties) {
+    const u32 i = lowest_bit(ties);
+    ties &= ties - 1u;
+    const Hit other = packet_hit(hits, i);
+    if (!wins_tie(blocks, instance, place, &other)) hit &= ~lanes_of(1u << i);
+  }
+  hits->t = select(hits->t, any ? (float16)(-1.0f) : t, hit);
+  hits->u = select(hits->u, u, hit);
+  hits->v = select(hits->v, v, hit);
+  hits->prim = select(hits->prim, (uint16)(place), hit);
+  hits->instance = select(hits->instance, (uint16)(instance), hit);
+  return true;
+}
+
+// The rays of `active` one by one from `word` on. Returns whether any hits something.
+NEVER_INLINE bool mesh_alone(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active, u32 word,
+                             u32 instance, bool any) {
+  u32 stack[BVH_STACK];
+  float stack_t[BVH_STACK];
+  bool any_hit = false;
+  while (active) {
+    const u32 i = lowest_bit(active);
+    active &= active - 1u;
+    const SlabRay slabs = packet_slab_ray(rays, i);
+    const ShearRay shear = packet_shear_ray(rays, i);
+    Hit hit = packet_hit(hits, i);
+    const float t = hit.t;
+    trace_mesh(TRACE_ARGUMENTS, word, &slabs, &shear, get_lane(&hits->t_min, i), instance, any, stack,
+               stack_t, &hit);
+    if (hit.t == t && hit.instance != instance) continue;
+    set_packet_hit(hits, i, &hit, any);
+    any_hit = true;
+  }
+  return any_hit;
+}
+
+NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 root,
+                                 u32 instance, bool any) {
+  PacketWalk walk;
+  walk.top = 0;
+  open_node(nodes, root, rays, hits, &walk);
+  u32 word, active;
+  while (next_place(nodes, rays, hits, &walk, &word, &active)) {
+    bool hit = false;
+    if (popcount(active) <= PACKET_LEAST) {
+      hit = mesh_alone(TRACE_ARGUMENTS, rays, hits, active, word, instance, any);
+    } else {
+      const u32 first = word & BVH_FIRST_MASK,
+                last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+      for (u32 index = first; index <= last; ++index)
+        for (u32 i = 0; i < 8u && blocks[index].prim[i] != NO_PRIM; ++i)
+          hit |= packet_triangle(blocks, index * 8u + i, rays, hits, instance, any);
+    }
+    if (hit) hits->t_most = most_of(hits->t);
+  }
+}
+#endif
+
+// The rays of `active` one by one against an instance.
+NEVER_INLINE void instance_alone(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,
+                                 u32 index, bool any) {
+  u32 stack[BVH_STACK];
+  float stack_t[BVH_STACK];
+  while (active) {
+    const u32 i = lowest_bit(active);
+    active &= active - 1u;
+    Hit hit = packet_hit(hits, i);
+    trace_instance(TRACE_ARGUMENTS, index, packet_origin(rays, i), packet_direction(rays, i),
+                   get_lane(&hits->t_min, i), any, stack, stack_t, &hit);
+    set_packet_hit(hits, i, &hit, any);
+  }
+}
+
+// The rays of `active` against an instance; world space.
+NEVER_INLINE void packet_in_instance(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,
+                                     u32 index, bool any) {
+#if HAS_MESH
+  __global const Instance* instance = instances + index;
+  if (instance->shape == SHAPE_MESH && popcount(active) > PACKET_LEAST) {
+    if (instance->flags & INSTANCE_IDENTITY) {
+      packet_in_mesh(TRACE_ARGUMENTS, rays, hits, instance->root, index, any);
+      return;
+    }
+    PacketRays object;
+    packet_in_object(instance, rays, active, &object);
+    if (aim_packet(&object)) {
+      const int16 lanes = lanes_of(active);
+      const float16 t = hits->t;  // of the others, for afterwards
+      hits->t = select((float16)(-1.0f), t, lanes);
+      packet_in_mesh(TRACE_ARGUMENTS, &object, hits, instance->root, index, any);
+      hits->t = select(t, hits->t, lanes);
+      return;
+    }
+  }
+#endif
+  instance_alone(TRACE_ARGUMENTS, rays, hits, active, index, any);
+}
+
+// The rays of `active` one by one from `word` of the scene BVH on.
+NEVER_INLINE void bounded_alone(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,
+                                u32 word, bool any) {
+  while (active) {
+    const u32 i = lowest_bit(active);
+    active &= active - 1u;
+    Hit hit = packet_hit(hits, i);
+    trace_bounded(TRACE_ARGUMENTS, word, packet_origin(rays, i), packet_direction(rays, i),
+                  get_lane(&hits->t_min, i), any, &hit);
+    set_packet_hit(hits, i, &hit, any);
+  }
+}
+
+NEVER_INLINE void packet_in_leaf(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,
+                                 u32 word, bool any) {
+  const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+  for (u32 i = first; i <= last; ++i) {
+    if (any) active &= ~lane_mask16(as_int16(hits->t));  // these have found something
+    if (active) packet_in_instance(TRACE_ARGUMENTS, rays, hits, active, i, any);
+  }
+  hits->t_most = most_of(hits->t);
+}
+
+// All instances; `rays` in world space and aimed.
+NEVER_INLINE void packet_in_scene(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, bool any) {
+  const u32 live = ALL_RAYS & ~lane_mask16(as_int16(hits->t)), root = info->tlas_root;
+  if (info->bounded_count == 1u) {
+    packet_in_instance(TRACE_ARGUMENTS, rays, hits, live, 0u, any);
+  } else if (info->bounded_count > 0u && (root & BVH_LEAF)) {
+    packet_in_leaf(TRACE_ARGUMENTS, rays, hits, live, root, any);
+  } else if (info->bounded_count > 0u) {
+    PacketWalk walk;
+    walk.top = 0;
+    open_node(nodes, root, rays, hits, &walk);
+    u32 word, active;
+    while (next_place(nodes, rays, hits, &walk, &word, &active)) {
+      if (word & BVH_LEAF)
+        packet_in_leaf(TRACE_ARGUMENTS, rays, hits, active, word, any);
+      else
+        bounded_alone(TRACE_ARGUMENTS, rays, hits, active, word, any);
+      hits->t_most = most_of(hits->t);
+    }
+  }
+#if HAS_PLANE
+  for (u32 i = info->bounded_count; i < info->instance_count; ++i) {
+    const u32 left = ALL_RAYS & ~lane_mask16(as_int16(hits->t));
+    if (left) instance_alone(TRACE_ARGUMENTS, rays, hits, left, i, any);
+  }
+#endif
+}
+
+#endif

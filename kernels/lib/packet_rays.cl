@@ -1,0 +1,191 @@
+// Sixteen rays that run close together as a value: each by itself, a lane a ray, and the interval that they
+// span. Nothing is found here; packet.cl takes them through the BVH.
+#ifndef SUNDOG_LIB_PACKET_RAYS_CL
+#define SUNDOG_LIB_PACKET_RAYS_CL
+#include "lib/config.h"
+#include "lib/nodes.cl"
+#include "lib/transform.cl"
+#include "lib/triangles.cl"
+
+#define PACKET 16u
+#define ALL_RAYS 0xFFFFu
+
+// The rays in world or object space; arrays are by axis.
+typedef struct PacketRays {
+  float16 o[3], d[3];
+  // SlabRay and ShearRay, a lane a ray.
+  float16 rcp_near[3], rcp_far[3], shift_near[3], shift_far[3], sx, sy, sz;
+  // The interval: the least and the greatest reciprocal of an axis, each with the origin on the safe side.
+  float near_rcp[3][2], near_shift[3][2], far_rcp[3][2], far_shift[3][2];
+  // What all rays share: float offsets into Bvh8Node, and the axes that a ShearRay permutes to x, y, z.
+  u32 near[3], far[3], axis[3];
+} PacketRays;
+
+// What the rays found so far. A lane without a ray, and with `any` one that has found something, has a t
+// below 0: it crosses nothing.
+typedef struct PacketHits {
+  float16 t_min, t, u, v;  // t: of the hit, or t_max
+  uint16 prim, instance;   // prim of a triangle is its place (see finish_triangle)
+  float16 ng[3];           // of solids
+  float t_least, t_most;   // of t_min and t over the rays
+} PacketHits;
+
+static inline u32 lane_mask16(int16 lanes) { return lane_mask(lanes.lo) | lane_mask(lanes.hi) << 8; }
+
+// All bits of lane i are bit i of the mask.
+static inline int16 lanes_of(u32 mask) {
+  const int16 bit = (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
+  return ((int16)((int)mask) & bit) != 0;
+}
+
+static inline float get_lane(const float16* v, u32 i) { return ((const float*)v)[i]; }
+static inline void set_lane(float16* v, u32 i, float value) { ((float*)v)[i] = value; }
+static inline u32 get_index(const uint16* v, u32 i) { return ((const u32*)v)[i]; }
+static inline void set_index(uint16* v, u32 i, u32 value) { ((u32*)v)[i] = value; }
+
+static inline float least_of(float16 v) {
+  const float8 a = least8(v.lo, v.hi);
+  const float4 b = select(a.hi, a.lo, a.lo < a.hi);
+  const float2 c = select(b.hi, b.lo, b.lo < b.hi);
+  return c.x < c.y ? c.x : c.y;
+}
+static inline float most_of(float16 v) { return -least_of(-v); }
+
+static inline float16 safe_reciprocal16(float16 d) {
+  const float16 tiny = as_float16((as_int16(d) & (int)0x80000000) | as_int(1e-18f));
+  return 1.0f / select(d, tiny, fabs(d) < 1e-18f);
+}
+
+// One axis of aim_packet.
+static inline bool aim_axis(PacketRays* rays, u32 axis) {
+  const float16 o = rays->o[axis], rcp = safe_reciprocal16(rays->d[axis]);
+  const u32 signs = lane_mask16(as_int16(rcp));
+  if (signs != 0u && signs != ALL_RAYS) return false;
+  rays->near[axis] = axis * 8u + (signs ? 24u : 0u);
+  rays->far[axis] = axis * 8u + (signs ? 0u : 24u);
+  const float16 rcp_near = rcp * 0.9999997f, rcp_far = rcp * 1.0000003f;
+  const float16 near = o * rcp_near, far = o * rcp_far;
+  rays->rcp_near[axis] = rcp_near;
+  rays->rcp_far[axis] = rcp_far;
+  rays->shift_near[axis] = -(near + fabs(near) * 2.4e-7f);
+  rays->shift_far[axis] = -(far - fabs(far) * 2.4e-7f);
+  // (b - o) / d is least where b - o is least, for d > 0 that is the greatest o, and with either end of 1 /
+  // d.
+  const float low = least_of(o), high = most_of(o), ends[2] = {least_of(rcp), most_of(rcp)};
+  for (u32 end = 0; end < 2u; ++end) {
+    const float r_near = ends[end] * 0.9999994f, r_far = ends[end] * 1.0000006f;
+    const float o_near = (signs ? low : high) * r_near, o_far = (signs ? high : low) * r_far;
+    rays->near_rcp[axis][end] = r_near;
+    rays->near_shift[axis][end] = -(o_near + fabs(o_near) * 4.8e-7f);
+    rays->far_rcp[axis][end] = r_far;
+    rays->far_shift[axis][end] = -(o_far - fabs(o_far) * 4.8e-7f);
+  }
+  return true;
+}
+
+// Prepares the rays for the tests, given o and d. Returns false when they cannot go as one: directions of
+// different signs or of different largest components.
+NEVER_INLINE bool aim_packet(PacketRays* rays) {
+  const float16 x = fabs(rays->d[0]), y = fabs(rays->d[1]), z = fabs(rays->d[2]);
+  const int16 along_x = (x >= y) & (x >= z);
+  const u32 xs = lane_mask16(along_x), ys = lane_mask16(~along_x & (y >= z));
+  if ((xs != 0u && xs != ALL_RAYS) || (ys != 0u && ys != ALL_RAYS)) return false;
+  for (u32 axis = 0; axis < 3u; ++axis)
+    if (!aim_axis(rays, axis)) return false;
+  rays->axis[2] = xs ? 0u : ys ? 1u : 2u;
+  rays->axis[0] = xs ? 1u : ys ? 2u : 0u;
+  rays->axis[1] = xs ? 2u : ys ? 0u : 1u;
+  const float16 along = rays->d[rays->axis[2]];
+  rays->sz = -1.0f / along;
+  rays->sx = rays->d[rays->axis[0]] / along;
+  rays->sy = rays->d[rays->axis[1]] / along;
+  return true;
+}
+
+// The rays as an instance sees them. A ray that is not in `active` becomes one that is.
+NEVER_INLINE void packet_in_object(__global const Instance* instance, const PacketRays* world, u32 active,
+                                   PacketRays* object) {
+  const u32 stand_in = lowest_bit(active);
+  const int16 lanes = lanes_of(active);
+  float16 o[3], d[3];
+  for (u32 axis = 0; axis < 3u; ++axis) {
+    o[axis] = select((float16)(get_lane(&world->o[axis], stand_in)), world->o[axis], lanes);
+    d[axis] = select((float16)(get_lane(&world->d[axis], stand_in)), world->d[axis], lanes);
+  }
+  for (u32 axis = 0; axis < 3u; ++axis) {
+    const float4 row = instance->object_from_world[axis];
+    object->o[axis] = fma((float16)(row.x), o[0],
+                          fma((float16)(row.y), o[1], fma((float16)(row.z), o[2], (float16)(row.w))));
+    object->d[axis] = fma((float16)(row.x), d[0], fma((float16)(row.y), d[1], (float16)(row.z) * d[2]));
+  }
+}
+
+static inline float3 packet_origin(const PacketRays* rays, u32 i) {
+  return (float3)(get_lane(rays->o, i), get_lane(rays->o + 1, i), get_lane(rays->o + 2, i));
+}
+static inline float3 packet_direction(const PacketRays* rays, u32 i) {
+  return (float3)(get_lane(rays->d, i), get_lane(rays->d + 1, i), get_lane(rays->d + 2, i));
+}
+
+static inline void set_packet_ray(PacketRays* rays, u32 i, float3 o, float3 d) {
+  for (u32 axis = 0; axis < 3u; ++axis) {
+    set_lane(&rays->o[axis], i, axis == 0u ? o.x : axis == 1u ? o.y : o.z);
+    set_lane(&rays->d[axis], i, axis == 0u ? d.x : axis == 1u ? d.y : d.z);
+  }
+}
+
+// The rays that can hit something: see traceable().
+static inline u32 live_rays(const PacketRays* rays, const PacketHits* hits) {
+  int16 live = hits->t > hits->t_min, still = -1;
+  for (u32 axis = 0; axis < 3u; ++axis) {
+    live &= isfinite(rays->o[axis]) & isfinite(rays->d[axis]);
+    still &= rays->d[axis] == 0.0f;
+  }
+  return lane_mask16(live & ~still);
+}
+
+static inline Hit packet_hit(const PacketHits* hits, u32 i) {
+  const Hit hit = {get_lane(&hits->t, i),     get_lane(&hits->u, i),         get_lane(&hits->v, i),
+                   get_index(&hits->prim, i), get_index(&hits->instance, i), get_lane(hits->ng, i),
+                   get_lane(hits->ng + 1, i), get_lane(hits->ng + 2, i)};
+  return hit;
+}
+
+static inline void set_packet_hit(PacketHits* hits, u32 i, const Hit* hit, bool any) {
+  set_lane(&hits->t, i, any && hit->instance != NO_INSTANCE ? -1.0f : hit->t);
+  set_lane(&hits->u, i, hit->u);
+  set_lane(&hits->v, i, hit->v);
+  set_index(&hits->prim, i, hit->prim);
+  set_index(&hits->instance, i, hit->instance);
+  set_lane(hits->ng, i, hit->ng_x);
+  set_lane(hits->ng + 1, i, hit->ng_y);
+  set_lane(hits->ng + 2, i, hit->ng_z);
+}
+
+// Ray i as the walk of one ray takes it.
+static inline SlabRay packet_slab_ray(const PacketRays* rays, u32 i) {
+  SlabRay ray;
+  ray.rcp_near =
+      (float3)(get_lane(rays->rcp_near, i), get_lane(rays->rcp_near + 1, i), get_lane(rays->rcp_near + 2, i));
+  ray.rcp_far =
+      (float3)(get_lane(rays->rcp_far, i), get_lane(rays->rcp_far + 1, i), get_lane(rays->rcp_far + 2, i));
+  ray.shift_near = (float3)(get_lane(rays->shift_near, i), get_lane(rays->shift_near + 1, i),
+                            get_lane(rays->shift_near + 2, i));
+  ray.shift_far = (float3)(get_lane(rays->shift_far, i), get_lane(rays->shift_far + 1, i),
+                           get_lane(rays->shift_far + 2, i));
+  ray.near_x = rays->near[0], ray.near_y = rays->near[1], ray.near_z = rays->near[2];
+  ray.far_x = rays->far[0], ray.far_y = rays->far[1], ray.far_z = rays->far[2];
+  return ray;
+}
+
+static inline ShearRay packet_shear_ray(const PacketRays* rays, u32 i) {
+  ShearRay ray;
+  ray.x = rays->axis[0] * 8u, ray.y = rays->axis[1] * 8u, ray.z = rays->axis[2] * 8u;
+  ray.ox = get_lane(rays->o + rays->axis[0], i);
+  ray.oy = get_lane(rays->o + rays->axis[1], i);
+  ray.oz = get_lane(rays->o + rays->axis[2], i);
+  ray.sx = get_lane(&rays->sx, i), ray.sy = get_lane(&rays->sy, i), ray.sz = get_lane(&rays->sz, i);
+  return ray;
+}
+
+#endif

@@ -1,0 +1,118 @@
+// One ray through the two-level BVH, eight children or eight triangles an instruction.
+#ifndef SUNDOG_LIB_SINGLE_CL
+#define SUNDOG_LIB_SINGLE_CL
+#include "lib/config.h"
+#include "lib/nodes.cl"
+#include "lib/solids.cl"
+#include "lib/tables.h"
+#include "lib/transform.cl"
+#include "lib/triangles.cl"
+
+#if HAS_MESH
+// Nearest hit in one mesh BVH, or with `any` whichever comes first; o, d in object space. Uses the stack from
+// `stack` on. A hit's prim is left as finish_triangle wants it.
+static inline void trace_mesh(TRACE_PARAMETERS, u32 root, const SlabRay* slab_ray, const ShearRay* shear_ray,
+                              float t_min, u32 instance, bool any, u32* stack, float* stack_t, Hit* found) {
+  // Copies that nothing else can point at stay in registers.
+  const SlabRay slabs = *slab_ray;
+  const ShearRay shear = *shear_ray;
+  Hit hit = *found;
+  u32 top = 0, word = root;
+  for (;;) {
+    if (word & BVH_LEAF) {
+      const u32 first = word & BVH_FIRST_MASK,
+                last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+      for (u32 i = first; i <= last; ++i) closest_in_block(blocks, i, &shear, t_min, instance, &hit);
+      if (any && hit.instance == instance) break;
+    } else {
+      u32 keys[8];
+      const u32 crossed = cross_children(nodes + word, &slabs, t_min, hit.t, keys);
+      if (crossed) {
+        word = any ? push_children_unsorted(nodes + word, crossed, stack, &top)
+                   : push_children(nodes + word, crossed, keys, stack, stack_t, &top);
+        continue;
+      }
+    }
+    bool more = false;
+    while (top) {
+      --top;
+      if (any || !(stack_t[top] > hit.t)) {
+        more = true;
+        break;
+      }
+    }
+    if (!more) break;
+    word = stack[top];
+  }
+  *found = hit;
+}
+#endif
+
+static inline void trace_solid(__global const Instance* restrict instances, u32 index, float3 o, float3 d,
+                               float t_min, Hit* hit) {
+  __global const Instance* instance = instances + index;
+  SolidHit solid;
+  if (!closest_in_solid(instance->shape, instance->parameters, o, d, t_min, hit->t, &solid)) return;
+  if (solid.t == hit->t && hit->instance <= index) return;
+  hit->t = solid.t;
+  hit->u = 0.0f;
+  hit->v = 0.0f;
+  hit->prim = solid.part;
+  hit->instance = index;
+  hit->ng_x = solid.ng.x;
+  hit->ng_y = solid.ng.y;
+  hit->ng_z = solid.ng.z;
+}
+
+// One instance in (t_min, hit->t]; world-space ray.
+static inline void trace_instance(TRACE_PARAMETERS, u32 index, float3 o, float3 d, float t_min, bool any,
+                                  u32* stack, float* stack_t, Hit* hit) {
+  __global const Instance* instance = instances + index;
+  float3 oo = o, dd = d;
+  if (!(instance->flags & INSTANCE_IDENTITY)) {
+    oo = object_point(instance, o);
+    dd = object_vector(instance, d);
+  }
+#if HAS_MESH
+  if (instance->shape == SHAPE_MESH) {
+    const SlabRay slabs = make_slab_ray(oo, dd);
+    const ShearRay shear = make_shear_ray(oo, dd);
+    trace_mesh(TRACE_ARGUMENTS, instance->root, &slabs, &shear, t_min, index, any, stack, stack_t, hit);
+    return;
+  }
+#endif
+  trace_solid(instances, index, oo, dd, t_min, hit);
+}
+
+// The bounded instances below `word` of the scene BVH.
+static inline void trace_bounded(TRACE_PARAMETERS, u32 word, float3 o, float3 d, float t_min, bool any,
+                                 Hit* hit) {
+  u32 stack[BVH_STACK];
+  float stack_t[BVH_STACK];
+  const SlabRay slabs = make_slab_ray(o, d);
+  u32 top = 0;
+  for (;;) {
+    if (word & BVH_LEAF) {
+      const u32 first = word & BVH_FIRST_MASK,
+                last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+      for (u32 i = first; i <= last; ++i) {
+        trace_instance(TRACE_ARGUMENTS, i, o, d, t_min, any, stack + top, stack_t + top, hit);
+        if (any && hit->instance != NO_INSTANCE) return;
+      }
+    } else {
+      u32 keys[8];
+      const u32 crossed = cross_children(nodes + word, &slabs, t_min, hit->t, keys);
+      if (crossed) {
+        word = push_children(nodes + word, crossed, keys, stack, stack_t, &top);
+        continue;
+      }
+    }
+    do {
+      if (!top) return;
+      --top;
+    } while (stack_t[top] > hit->t);
+    word = stack[top];
+  }
+}
+
+#endif

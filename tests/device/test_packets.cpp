@@ -1,0 +1,123 @@
+// Rays that go through the tracer together find what each finds alone, to the bit, and nothing else about a
+// batch matters: its company, rays that hit nothing, rays that are no rays.
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "bench/ray_tracer.h"
+#include "catch.h"
+#include "devices.h"
+#include "scenes.h"
+#include "test_meshes.h"
+
+using namespace sundog;
+
+namespace {
+
+using glm::vec3;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+float uniform(std::mt19937& random) { return static_cast<float>(random() >> 8) * 0x1p-24f; }
+vec3 in_cube(std::mt19937& random) {
+  const float x = uniform(random), y = uniform(random), z = uniform(random);
+  return 2.0f * vec3(x, y, z) - 1.0f;
+}
+
+/// One mesh where it lies.
+SceneDescription lone_mesh() { return scene_of(bumpy_sphere(40)); }
+
+/// Meshes turned, mirrored, squeezed and overlapping, solids and a plane.
+SceneDescription mixed_scene() {
+  SceneDescription scene = scenes::line_of_sight({0, 0, 5}, {0, 0, 0});
+  const int white = scenes::add_white(scene);
+  scene.meshes = {bumpy_sphere(30), random_triangles(300, 0.4f)};
+  const glm::dmat4 one(1);
+  scenes::place(scene, MeshShape{0}, white);
+  scenes::place(scene, MeshShape{0}, white);  // the same again: every hit a tie
+  scenes::place(scene, MeshShape{1}, white, glm::rotate(one, 0.7, glm::dvec3(1, 2, 3)));
+  scenes::place(scene, MeshShape{1}, white, glm::scale(glm::translate(one, {1.5, 0.2, 0}), {-0.5, 0.1, 1}));
+  for (int i = 0; i < 12; ++i) {
+    const glm::dmat4 there =
+        glm::scale(glm::translate(one, {1.2 * std::cos(i), 0.3 * i - 2, 1.2 * std::sin(i)}), glm::dvec3(0.3));
+    if (i % 2)
+      scenes::place(scene, SphereShape{}, white, there);
+    else
+      scenes::place(scene, BoxShape{}, white, glm::rotate(there, 0.2 * i, {0, 1, 1}));
+  }
+  scenes::place(scene, PlaneShape{}, white, glm::translate(one, {0, -1.7, 0}));
+  return scene;
+}
+
+/// Sixteens that run close together, wider and wider; every seventh holds rays of other kinds too.
+std::vector<Ray> bundles(std::size_t count) {
+  std::mt19937 random(3);
+  std::vector<Ray> rays;
+  vec3 from(0), to(0);
+  float width = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % 16 == 0) {
+      from = 3.0f * in_cube(random);
+      to = in_cube(random);
+      width = std::pow(10.0f, -4.0f * uniform(random));
+    }
+    const vec3 o = from + (i / 16 % 2 ? 0.1f * width * in_cube(random) : vec3(0));
+    vec3 d = to + width * in_cube(random) - o;
+    Ray ray{o.x, o.y, o.z, 0, d.x, d.y, d.z, infinity};
+    if (i / 16 % 3 == 1) ray.t_max = uniform(random) * 1.5f;
+    if (i / 16 % 5 == 1) ray.t_min = uniform(random);
+    if (i / 16 % 7 == 0 && random() % 3 == 0) switch (random() % 6) {
+        case 0:
+          ray.ox = std::numeric_limits<float>::quiet_NaN();
+          break;
+        case 1:
+          ray.dy = infinity;
+          break;
+        case 2:
+          ray.dx = ray.dy = ray.dz = 0;
+          break;
+        case 3:
+          ray.t_max = ray.t_min;
+          break;
+        case 4:
+          ray.dx = -0.0f;
+          break;
+        case 5:
+          ray.dy = 0.0f;
+          break;
+      }
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+void compare_together_and_alone(const SceneDescription& scene) {
+  const CompiledScene flat = compile(scene);
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      Device device(info);
+      RayTracer tracer(device, flat);
+      const std::vector<Ray> rays = bundles(info.native_vector_width > 1 ? 200'009 : 2'009);
+      const std::vector<Hit> together = tracer.trace(rays, true), alone = tracer.trace(rays, false);
+      const std::vector<u32> occluded = tracer.occlusion(rays, true);
+      std::size_t hits = 0, differ = 0, any_differs = 0;
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const bool hit = alone[i].instance != NO_INSTANCE;
+        hits += hit;
+        differ += std::memcmp(&together[i], &alone[i], sizeof(Hit)) != 0;
+        any_differs += hit != (occluded[i] != 0);
+      }
+      CHECK(hits > rays.size() / 10);
+      CHECK(hits < rays.size());
+      CHECK(differ == 0);
+      CHECK(any_differs == 0);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("rays together find what each finds alone: one mesh") { compare_together_and_alone(lone_mesh()); }
+TEST_CASE("rays together find what each finds alone: instances, solids and a plane") {
+  compare_together_and_alone(mixed_scene());
+}
