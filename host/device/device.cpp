@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <mutex>
 
 #include "base/error.h"
 #include "device/cl_status.h"
@@ -39,6 +40,15 @@ cl::Device sub_device(cl::Device parent, const DeviceInfo& info) {
   return parts.at(0);
 }
 
+/// PoCL's threads may still be at the last event of a queue whose work is done, and crash when its sub-device
+/// goes under them. A sub-device's queue takes little: it stays until the process ends.
+void keep_for_good(const cl::Device& device, const cl::CommandQueue& queue) {
+  static std::mutex mutex;
+  static auto* kept = new std::vector<std::pair<cl::Device, cl::CommandQueue>>;
+  const std::lock_guard lock(mutex);
+  kept->emplace_back(device, queue);
+}
+
 /// An event's time on the device; 0 where the driver does not measure.
 double event_ms(const cl::Event& event) {
   cl_int started = CL_SUCCESS, ended = CL_SUCCESS;
@@ -70,7 +80,10 @@ Device::Device(DeviceInfo info) : info_(std::move(info)) {
 
 Device::Device(Device&&) noexcept = default;
 
-Device::~Device() { save_programs(); }
+Device::~Device() {
+  save_programs();
+  if (info_.sub_units > 0 && queue_()) keep_for_good(device_, queue_);
+}
 
 Program Device::build(const std::string& entry, const KernelDefines& defines, BuildReport* report,
                       const GeneratedFiles& generated) {

@@ -47,3 +47,13 @@ TEST_CASE("bench threads refuses what it cannot measure") {
   CHECK(result.status == 1);
   CHECK(is_one_error_line(result.err));
 }
+
+// PoCL's threads crash when the sub-device of their last event goes under them, most often while the host is
+// busy with the next scene.
+TEST_CASE("bench threads goes on to further sizes after sub-devices were closed") {
+  const CommandResult result = run_sundog(
+      {"bench", "threads", SUNDOG_SOURCE_DIR "/scenes/hollow_ice.json", "--sizes", "8,12,16", "--counts",
+       "1,2", "--repeat", "1", "--no-plain", "--device", "pthread", "--set", "/render/samples=1"});
+  CAPTURE(result.out, result.err);
+  CHECK(result.status == 0);
+}
