@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/bench_options.h"
+#include "app/formulas_command.h"
 #include "app/option_helpers.h"
 #include "app/option_values.h"
 #include "base/error.h"
@@ -134,6 +135,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   Command chosen;
   add_render(root, chosen);
   add_devices(root, chosen);
+  add_formulas(root, chosen);
   add_info(root, chosen);
   add_compare(root, chosen);
   add_bench(root, chosen);

@@ -143,7 +143,9 @@ bool uses_transcendentals(const FormulaDefinition& definition) {
 
 }  // namespace
 
-TEST_CASE("no distance estimate is longer than the way to the surface") {
+TEST_CASE(
+    "no distance estimate is longer than the way to the surface, but for the exceptions that the list "
+    "states") {
   const auto descriptions = listed_fields();
   const CompiledFields fields = compile_fields(descriptions);
   for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
@@ -159,9 +161,12 @@ TEST_CASE("no distance estimate is longer than the way to the surface") {
         device.run(kernel, {.x = count / 16, .local_x = 16}, records, q, out, f, count);
         std::vector<float> ratios(count);
         device.read(out, std::span<float>(ratios));
+        std::sort(ratios.begin(), ratios.end());
+        const double exceptions = descriptions[f].root.formula.steps[0].definition.exceptions;
         INFO(descriptions[f].name);
         // the walk's own grain is 1 %
-        CHECK(*std::min_element(ratios.begin(), ratios.end()) > 0.98f);
+        CHECK(ratios[static_cast<std::size_t>(exceptions * count)] > 0.98f);
+        CHECK(ratios[static_cast<std::size_t>(0.1 * exceptions * count)] > (exceptions > 0 ? 0.6f : 0.98f));
       }
       device.finish();
     }

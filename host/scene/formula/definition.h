@@ -48,7 +48,8 @@ struct FormulaDefinition {
   // escape: share of the depth's estimate that is taken. No proven bound: orbits inside grow faster than
   // their derivative foretells.
   double inside_safety = 0.1;
-  double safety = 1;  // (0, 1]: the estimate times this is a bound, as measured by the tests
+  double safety = 1;      // (0, 1]: the estimate times this is a bound, as measured by the tests
+  double exceptions = 0;  // share of the interval in which it may fail (of triplex powers: near the poles)
   std::array<double, 6> bounds{-1.5, -1.5, -1.5, 1.5, 1.5, 1.5};  // default interval: lower, upper
   bool smooth = false;  // a surface without detail at every scale: hits are refined
   static constexpr int max_iterations = 1000;

@@ -16,8 +16,14 @@ const FormulaDefinition* find_formula(const std::string& name);
 /// One formula with its default parameters, iterations and bailout, in its default interval.
 SdfDescription default_field(const FormulaDefinition& definition);
 
+/// What puts fields together: the type in a scene file, its keys, what it does.
+struct FieldOperation {
+  std::string type, keys, meaning;
+};
+const std::vector<FieldOperation>& field_operations();
+
 /// The text of `sundog formulas`: every surface with its parameters, defaults, ranges and source; then the
-/// language.
+/// operations and the language.
 std::string formula_list_text();
 
 }  // namespace sundog

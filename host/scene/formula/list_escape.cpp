@@ -10,8 +10,8 @@ FormulaParameter power(double value,
 }
 const FormulaParameter slice{"slice", {0}, -2, 2, false, "fourth coordinate of the space that is looked at"};
 
-FormulaDefinition triplex(const char* name, const char* title, const char* source, const char* map,
-                          double exponent) {
+FormulaDefinition powers(const char* name, const char* title, const char* source, const char* map,
+                         double exponent) {
   FormulaDefinition d;
   d.name = name;
   d.title = title;
@@ -19,6 +19,14 @@ FormulaDefinition triplex(const char* name, const char* title, const char* sourc
   d.map = map;
   d.parameters = {power(exponent)};
   d.iterations = 16;
+  return d;
+}
+
+FormulaDefinition triplex(const char* name, const char* title, const char* source, const char* map,
+                          double exponent) {
+  FormulaDefinition d = powers(name, title, source, map, exponent);
+  d.derivative = FormulaDerivative::radial;  // as it is always shown: the proven bound has a rough look
+  d.exceptions = 0.01;
   return d;
 }
 
@@ -40,7 +48,7 @@ FormulaDefinition juliabulb() {
 }
 
 FormulaDefinition julia() {
-  FormulaDefinition d = triplex(
+  FormulaDefinition d = powers(
       "julia", "Quaternion Julia set",
       "A. Norton, Generation and display of geometric fractals in 3-D, SIGGRAPH 1982; J. Hart, D. Sandin and "
       "L. Kauffman, Ray tracing deterministic 3-D fractals, SIGGRAPH 1989",
@@ -55,9 +63,9 @@ FormulaDefinition julia() {
 
 FormulaDefinition quaternion_mandelbrot() {
   FormulaDefinition d =
-      triplex("quaternion_mandelbrot", "Mandelbrot set of the quaternions",
-              "A. Norton, Generation and display of geometric fractals in 3-D, SIGGRAPH 1982",
-              "z = z ^ power + c", 2);
+      powers("quaternion_mandelbrot", "Mandelbrot set of the quaternions",
+             "A. Norton, Generation and display of geometric fractals in 3-D, SIGGRAPH 1982",
+             "z = z ^ power + c", 2);
   d.quaternion = true;
   d.start = "z = quat(p, slice)";
   d.parameters.push_back(slice);
@@ -88,9 +96,9 @@ FormulaDefinition burning_ship() {
 
 FormulaDefinition bicomplex() {
   FormulaDefinition d =
-      triplex("bicomplex", "Tetrabrot: Mandelbrot set of the bicomplex numbers",
-              "D. Rochon, A generalized Mandelbrot set for bicomplex numbers, Fractals 8, 2000",
-              "z = bicomplex(z, z) + c", 2);
+      powers("bicomplex", "Tetrabrot: Mandelbrot set of the bicomplex numbers",
+             "D. Rochon, A generalized Mandelbrot set for bicomplex numbers, Fractals 8, 2000",
+             "z = bicomplex(z, z) + c", 2);
   d.quaternion = true;
   d.start = "z = quat(p, slice)";
   d.parameters = {slice};
@@ -129,11 +137,12 @@ FormulaDefinition amazing_surf() {
       "z = scale * ballfold(z, least_radius, fixed_radius) + c\n"
       "z = rotate(z, axis, radians(angle))";
   d.estimate = EscapeEstimate::linear;
+  d.exceptions = 0.01;  // |z| / dr leaves out how large the set itself is
   d.parameters = {
-      {"scale", {1.8}, -4, 4, false, ""},         {"fold_x", {1}, 0.1, 4, false, ""},
-      {"fold_y", {1}, 0.1, 4, false, ""},         {"least_radius", {0.5}, 0.01, 4, false, ""},
-      {"fixed_radius", {1}, 0.01, 4, false, ""},  {"axis", {1, 1, 0}, -1, 1, false, "of the turn; not zero"},
-      {"angle", {0}, -180, 180, false, "degrees"}};
+      {"scale", {1.5}, -4, 4, false, ""},          {"fold_x", {1}, 0.1, 4, false, ""},
+      {"fold_y", {1}, 0.1, 4, false, ""},          {"least_radius", {0.5}, 0.01, 4, false, ""},
+      {"fixed_radius", {1}, 0.01, 4, false, ""},   {"axis", {1, 0, 0}, -1, 1, false, "of the turn; not zero"},
+      {"angle", {30}, -180, 180, false, "degrees"}};
   d.iterations = 32;
   d.bailout = 1000;
   d.inside_radius = 1000;

@@ -63,7 +63,11 @@ static inline SdfSurface sdf_surface(SDF_PARAMETERS, u32 index, REAL3 p, REAL th
     gradient = s.gradient;
     if (colored) surface.color = palette_color(SDF_ARGUMENTS, field, trap_value(field->color_by, s, p));
   }
-  if (!exact) gradient = difference_normal(SDF_ARGUMENTS, index, p, threshold * field->normal_width, hit);
+  // On its edges, and where a minimum changes over on the surface itself, a closed form may have no gradient.
+  const MASK lost = exact ? hit & MASK_OF(dot3(gradient, gradient) < 1e-20f) : hit;
+  if (any_lane(lost))
+    gradient = select3(
+        gradient, difference_normal(SDF_ARGUMENTS, index, p, threshold * field->normal_width, lost), lost);
   surface.normal = unit3(gradient);
   if (any_lane(cut)) surface.normal = select3(surface.normal, cut_normal(field, p), cut);
   return surface;
