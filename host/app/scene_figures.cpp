@@ -11,7 +11,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::array shape_names = {"mesh", "sphere", "plane", "box",     "cylinder",
-                                    "cone", "disk",   "torus", "roundbox"};
+                                    "cone", "disk",   "torus", "roundbox", "field"};
 static_assert(shape_names.size() == std::variant_size_v<Shape>);
 constexpr std::array light_names = {"ambient", "directional", "point", "spot"};
 
@@ -50,7 +50,8 @@ json table_bytes(const CompiledScene& flat) {
   const std::size_t bvh = bytes_of(flat.nodes) + bytes_of(flat.blocks);
   const std::size_t shading = bytes_of(flat.triangles) + bytes_of(flat.vertices);
   const std::size_t rest =
-      bytes_of(flat.instances) + bytes_of(flat.materials) + bytes_of(flat.media) + bytes_of(flat.lights);
+      bytes_of(flat.instances) + bytes_of(flat.materials) + bytes_of(flat.media) + bytes_of(flat.lights) +
+      bytes_of(flat.fields.fields) + bytes_of(flat.fields.parameters);
   return {{"bvh", bvh}, {"shading", shading}, {"tables", rest}, {"total", bvh + shading + rest}};
 }
 
@@ -79,6 +80,7 @@ json scene_figures(const SceneDescription& scene, const CompiledScene& flat) {
           {"lights", count_lights(scene)},
           {"materials", scene.materials.size()},
           {"media", scene.media.size()},
+          {"fields", scene.fields.size()},
           {"bvh",
            {{"nodes", flat.figures.nodes},
             {"blocks", flat.figures.blocks},

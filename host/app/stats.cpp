@@ -50,7 +50,8 @@ json counters_json(const RayCounts& counts) {
           {"non_finite", counts[COUNT_NON_FINITE]},
           {"stray_exit", counts[COUNT_STRAY_EXIT]},
           {"shadow_limit", counts[COUNT_SHADOW_LIMIT]},
-          {"march_limit", counts[COUNT_MARCH_LIMIT]}};
+          {"march_limit", counts[COUNT_MARCH_LIMIT]},
+          {"march_taken_back", counts[COUNT_MARCH_BACK]}};
 }
 
 json rays_json(const RayCounts& counts) {

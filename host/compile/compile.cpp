@@ -21,6 +21,10 @@ void check_objects(const SceneDescription& scene) {
     if (shape && (shape->mesh < 0 || !fits(shape->mesh, scene.meshes.size())))
       throw SceneError(scene.file.string(), object.place,
                        "object \"" + object.name + "\" places a mesh that does not exist");
+    const auto* field = std::get_if<FieldShape>(&object.shape);
+    if (field && (field->field < 0 || !fits(field->field, scene.fields.size())))
+      throw SceneError(scene.file.string(), object.place,
+                       "object \"" + object.name + "\" places a field that does not exist");
     if (!fits(object.material, scene.materials.size()))
       throw SceneError(scene.file.string(), object.place,
                        "object \"" + object.name + "\" names a material that does not exist");
@@ -31,8 +35,16 @@ void check_objects(const SceneDescription& scene) {
                        "material \"" + material.name + "\" names a medium that does not exist");
 }
 
+/// Reading has checked each formula; what is left to fail is their number and how they are put together.
+CompiledFields fields_of(const SceneDescription& scene) {
+  try {
+    return compile_fields(scene.fields);
+  } catch (const FormulaError& error) {
+    throw SceneError(scene.file.string(), "", error.what());
+  }
+}
+
 void set_counts(CompiledScene& out) {
-  out.info.instance_count = static_cast<u32>(out.instances.size());
   out.info.light_count = static_cast<u32>(out.lights.size());
   out.info.material_count = static_cast<u32>(out.materials.size());
   out.info.medium_count = static_cast<u32>(out.media.size());
@@ -52,7 +64,7 @@ void set_figures(CompiledScene& out) {
   figures.instances = out.instances.size();
   figures.bytes = sizeof(SceneInfo) + bytes(out.nodes) + bytes(out.blocks) + bytes(out.triangles) +
                   bytes(out.vertices) + bytes(out.instances) + bytes(out.materials) + bytes(out.media) +
-                  bytes(out.lights);
+                  bytes(out.lights) + bytes(out.fields.fields) + bytes(out.fields.parameters);
 }
 
 }  // namespace
@@ -68,6 +80,9 @@ CompiledScene compile(const SceneDescription& scene) {
   out.features.media = world.x != 0 || world.y != 0 || world.z != 0;
   const std::vector<PlacedMesh> meshes = add_meshes(scene, default_material, out);
   add_instances(scene, meshes, default_material, out);
+  out.fields = fields_of(scene);
+  for (const SdfField& field : out.fields.fields) out.features.glow |= field.glow.w > 0;
+  add_fog(scene, out);
   set_counts(out);
   set_figures(out);
   out.figures.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

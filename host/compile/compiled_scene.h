@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compile/sdf.h"
 #include "scene/description.h"
 #include "shared/bvh.h"
 #include "shared/scene.h"
@@ -19,6 +20,9 @@ struct SceneFeatures {
   bool shadow_filters = false;  // shadow rays must look through transmissive things
   bool camera_inside = false;
   bool unbounded = false;  // there are planes
+  bool two_sided_fields = false;  // rays may be inside of a distance field
+  bool glow = false;              // some field glows
+  bool fog = false;
   u32 bvh_stack = 1;       // entries a traversal stack needs at most (scene BVH and the mesh BVH below it)
 };
 
@@ -41,6 +45,7 @@ struct CompiledScene {
   std::vector<Material> materials;
   std::vector<Medium> media;
   std::vector<Light> lights;
+  CompiledFields fields;
   SceneFeatures features;
   BvhFigures figures;
 };

@@ -14,9 +14,9 @@ float round_down(double value) {
 
 float round_up(double value) { return -round_down(-value); }
 
-/// How far the shape reaches along `direction` (unit space): of a mesh, its boxes.
+/// How far the shape reaches along `direction` (unit space): of a mesh or a field, its boxes.
 double reach(const UnitShape& unit, std::span<const Bounds> boxes, const dvec3& d) {
-  if (unit.shape != SHAPE_MESH) return reach(unit, d);
+  if (unit.shape != SHAPE_MESH && unit.shape != SHAPE_SDF) return reach(unit, d);
   double most = -std::numeric_limits<double>::infinity();
   for (const Bounds& box : boxes) {
     double sum = 0;

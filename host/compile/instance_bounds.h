@@ -8,7 +8,7 @@
 namespace sundog {
 
 /// World bounds of a bounded shape, rounded outwards; unless `exact`, widened by what a kernel's transform of
-/// a ray may round. `boxes` cover a mesh (unit.shape is SHAPE_MESH), and are ignored else.
+/// a ray may round. `boxes` cover a mesh or a field (SHAPE_MESH, SHAPE_SDF), and are ignored else.
 Bounds world_bounds(const UnitShape& unit, std::span<const Bounds> boxes, const dmat4& world_from_unit,
                     bool exact);
 

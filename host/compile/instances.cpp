@@ -60,6 +60,18 @@ u32 surface_flags(const Material& material) {
   return flags;
 }
 
+/// The box in which a field is built, rounded outwards.
+Bounds interval_of(const SdfDescription& field) {
+  Bounds box = Bounds::none();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto lower = static_cast<float>(field.lower[axis]), upper = static_cast<float>(field.upper[axis]);
+    box.lower[axis] = std::nextafter(lower, -std::numeric_limits<float>::infinity());
+    box.upper[axis] = std::nextafter(upper, std::numeric_limits<float>::infinity());
+  }
+  box.lower[3] = box.upper[3] = 0;
+  return box;
+}
+
 /// Turns objects into instances and notes what their materials ask of the kernels.
 class Placer {
  public:
@@ -82,19 +94,26 @@ class Placer {
       instance.root = mesh->root;
       placed.cost = mesh->cost;
     }
+    Bounds interval = Bounds::none();
+    std::span<const Bounds> boxes;
+    if (mesh) boxes = mesh->boxes;
+    if (const auto* field = std::get_if<FieldShape>(&object.shape)) {
+      instance.root = static_cast<u32>(field->field);
+      interval = interval_of(scene_.fields[static_cast<std::size_t>(field->field)]);
+      boxes = {&interval, 1};
+    }
     set_surface(object, mesh, instance);
-    set_place(object, unit, mesh, placed);
+    set_place(object, unit, boxes, placed);
     return placed;
   }
 
  private:
-  void set_place(const Object& object, const UnitShape& unit, const PlacedMesh* mesh, Placed& placed) {
+  void set_place(const Object& object, const UnitShape& unit, std::span<const Bounds> boxes, Placed& placed) {
     const dmat4 scale(glm::dmat3(unit.scale.x, 0, 0, 0, unit.scale.y, 0, 0, 0, unit.scale.z));
     const dmat4 world_from_unit =
         set_transform(scene_, object, object.world_from_object * scale, placed.instance);
     if (!placed.bounded()) return;
     const bool exact = placed.instance.flags & INSTANCE_IDENTITY;
-    const auto boxes = mesh ? std::span<const Bounds>(mesh->boxes) : std::span<const Bounds>();
     placed.box = world_bounds(unit, boxes, world_from_unit, exact);
     placed.instance.world_center = sphere_around(placed.box);
   }
@@ -115,6 +134,7 @@ class Placer {
     instance.flags |= flags;
     if (material.flags & (MATERIAL_TRANSMITS | MATERIAL_REFLECTS)) out_.features.secondary_rays = true;
     if (flags & INSTANCE_TRANSMITS) out_.features.media = true;
+    if (flags & INSTANCE_TRANSMITS && instance.shape == SHAPE_SDF) out_.features.two_sided_fields = true;
     if (flags & INSTANCE_FILTERS) out_.features.shadow_filters = true;
   }
 
@@ -174,7 +194,7 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
 
 void add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, u32 default_material,
                    CompiledScene& out) {
-  std::vector<Placed> bounded, unbounded;
+  std::vector<Placed> bounded, unbounded, fields;
   u32 mesh_stack = 0;
   Placer placer(scene, meshes, default_material, out);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -187,11 +207,14 @@ void add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>&
     const Placed placed = placer.place(object, static_cast<u32>(i));
     out.features.shapes[placed.instance.shape] = true;
     out.features.camera_inside |= may_contain(placed, scene.camera.position);
-    (placed.bounded() ? bounded : unbounded).push_back(placed);
+    (placed.instance.shape == SHAPE_SDF ? fields : placed.bounded() ? bounded : unbounded).push_back(placed);
   }
   add_scene_bvh(bounded, out, mesh_stack);
   for (const Placed& placed : bounded) out.instances.push_back(placed.instance);
   for (const Placed& placed : unbounded) out.instances.push_back(placed.instance);
+  out.info.instance_count = static_cast<u32>(out.instances.size());
+  for (const Placed& placed : fields) out.instances.push_back(placed.instance);
+  out.info.field_end = static_cast<u32>(out.instances.size());
   out.features.unbounded = !unbounded.empty();
 }
 

@@ -140,4 +140,9 @@ void add_lights(const SceneDescription& scene, CompiledScene& out) {
   out.info.ambient = pack(ambient);
 }
 
+void add_fog(const SceneDescription& scene, CompiledScene& out) {
+  out.info.fog = pack(scene.fog.color, scene.fog.density);
+  out.features.fog = scene.fog.density > 0;
+}
+
 }  // namespace sundog

@@ -14,4 +14,7 @@ u32 add_materials(const SceneDescription& scene, CompiledScene& out);
 /// Fills `out.lights` and `out.info.ambient`. Throws SceneError for a direction of length zero.
 void add_lights(const SceneDescription& scene, CompiledScene& out);
 
+/// The world's fog, into `out.info`.
+void add_fog(const SceneDescription& scene, CompiledScene& out);
+
 }  // namespace sundog

@@ -222,10 +222,11 @@ class FieldsEmitter {
     r.upper = {f(d.upper.x), f(d.upper.y), f(d.upper.z), f(d.greatest)};
     if (d.sphere) r.sphere = {f(d.sphere->x), f(d.sphere->y), f(d.sphere->z), f(d.sphere->w)};
     r.safety = 1;
-    r.detail = f(d.detail);
+    const bool smooth = is_smooth(d.root);
+    r.detail = f(d.detail.value_or(smooth ? 0.05 : 0.5));
     r.normal_width = 0.5f;
     r.step_limit = static_cast<u32>(d.step_limit);
-    r.flags = (is_smooth(d.root) ? SDF_SMOOTH : 0u) | (d.sphere ? SDF_CUT_SPHERE : 0u);
+    r.flags = (smooth ? SDF_SMOOTH : 0u) | (d.sphere ? SDF_CUT_SPHERE : 0u);
     r.color_by = d.coloring.palette.empty() ? SDF_COLOR_NONE : static_cast<u32>(d.coloring.by);
     std::vector<double> stops;
     for (const glm::dvec3& stop : d.coloring.palette) stops.insert(stops.end(), {stop.x, stop.y, stop.z});
@@ -233,6 +234,9 @@ class FieldsEmitter {
     r.palette_count = static_cast<u32>(d.coloring.palette.size());
     r.palette_scale = f(d.coloring.scale);
     r.palette_offset = f(d.coloring.offset);
+    r.occlusion_reach = f(d.occlusion);
+    r.shadow_hardness = f(d.soft_shadow);
+    r.glow = {f(d.glow.x), f(d.glow.y), f(d.glow.z), f(d.glow_width)};
     return r;
   }
 

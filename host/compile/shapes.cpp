@@ -25,6 +25,7 @@ struct ShapeReader {
   }
 
   UnitShape operator()(const MeshShape&) const { return {}; }
+  UnitShape operator()(const FieldShape&) const { return {SHAPE_SDF, dvec3(1), {}}; }
   UnitShape operator()(const PlaneShape&) const { return {SHAPE_PLANE, dvec3(1), {}}; }
   UnitShape operator()(const SphereShape& s) const {
     want_positive(s.radius, "radius");

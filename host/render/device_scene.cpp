@@ -22,6 +22,7 @@ std::size_t scene_bytes(const CompiledScene& scene) {
   return sizeof(SceneInfo) + table_bytes(scene.nodes) + table_bytes(scene.blocks) +
          table_bytes(scene.instances) + table_bytes(scene.triangles) + table_bytes(scene.vertices) +
          table_bytes(scene.materials) + table_bytes(scene.media) + table_bytes(scene.lights) +
+         table_bytes(scene.fields.fields) + table_bytes(scene.fields.parameters) +
          camera_media_words * sizeof(u32);
 }
 
@@ -47,6 +48,8 @@ DeviceScene upload_scene(Device& device, const CompiledScene& scene) {
   result.materials = table("materials", scene.materials);
   result.media = table("media", scene.media);
   result.lights = table("lights", scene.lights);
+  result.sdf_fields = table("fields", scene.fields.fields);
+  result.sdf_parameters = table("field parameters", scene.fields.parameters);
   constexpr std::array<u32, camera_media_words> outside{};
   result.camera_media = device.upload(std::span<const u32>(outside));
   return result;

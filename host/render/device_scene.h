@@ -16,6 +16,8 @@ struct DeviceScene {
   Buffer<Material> materials;
   Buffer<Medium> media;
   Buffer<Light> lights;
+  Buffer<SdfField> sdf_fields;
+  Buffer<float> sdf_parameters;
   Buffer<u32> camera_media;  // the MediaStack at the camera (kernels/lib/media.cl), low word first
 };
 
@@ -27,22 +29,23 @@ DeviceScene upload_scene(Device& device, const CompiledScene& scene);
 
 /// A kernel that reads the scene: its table parameters, then Args.
 template <class... Args>
-using SceneKernel =
-    Kernel<Buffer<SceneInfo>, Buffer<Bvh8Node>, Buffer<TriangleBlock>, Buffer<Instance>,
-           Buffer<TriangleShading>, Buffer<Vertex>, Buffer<Material>, Buffer<Medium>, Buffer<Light>, Args...>;
+using SceneKernel = Kernel<Buffer<SceneInfo>, Buffer<Bvh8Node>, Buffer<TriangleBlock>, Buffer<Instance>,
+                           Buffer<TriangleShading>, Buffer<Vertex>, Buffer<Material>, Buffer<Medium>,
+                           Buffer<Light>, Buffer<SdfField>, Buffer<float>, Args...>;
 
 template <class... Args>
 SceneKernel<Args...> scene_kernel(const Program& program, const std::string& name) {
   return program.kernel<Buffer<SceneInfo>, Buffer<Bvh8Node>, Buffer<TriangleBlock>, Buffer<Instance>,
                         Buffer<TriangleShading>, Buffer<Vertex>, Buffer<Material>, Buffer<Medium>,
-                        Buffer<Light>, Args...>(name);
+                        Buffer<Light>, Buffer<SdfField>, Buffer<float>, Args...>(name);
 }
 
 template <class... Args>
 cl::Event run_scene_kernel(Device& device, SceneKernel<Args...>& kernel, const LaunchSize& size,
                            const DeviceScene& scene, const std::type_identity_t<Args>&... args) {
   return device.run(kernel, size, scene.info, scene.nodes, scene.blocks, scene.instances, scene.triangles,
-                    scene.vertices, scene.materials, scene.media, scene.lights, args...);
+                    scene.vertices, scene.materials, scene.media, scene.lights, scene.sdf_fields,
+                    scene.sdf_parameters, args...);
 }
 
 }  // namespace sundog

@@ -31,6 +31,13 @@ unsigned tree_stack_size(const std::vector<Bvh8Node>& nodes, u32 root) {
   return most;
 }
 
+/// Rays that are marched together: all of a work-item's, as far as there are vectors for it.
+unsigned marched_lanes(unsigned batch) {
+  for (const unsigned lanes : {16u, 8u, 4u})
+    if (batch % lanes == 0) return lanes;
+  return 1;
+}
+
 }  // namespace
 
 unsigned traversal_stack_size(const CompiledScene& scene) {
@@ -72,6 +79,12 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   define("HAS_SECONDARY", scene.features.secondary_rays);
   define("HAS_MEDIA", scene.features.media);
   define("HAS_SHADOW_FILTERS", scene.features.shadow_filters);
+  define("HAS_SDF", scene.features.shapes[SHAPE_SDF]);
+  define("SDF_TWO_SIDED", scene.features.two_sided_fields);
+  define("HAS_GLOW", scene.features.glow);
+  define("HAS_FOG", scene.features.fog);
+  define("LANES", marched_lanes(batch));
+  if (!scene.fields.source.empty()) config.generated["generated/sdf.cl"] = scene.fields.source;
   return config;
 }
 

@@ -11,6 +11,7 @@ struct KernelConfig {
   unsigned tile_w = 4, tile_h = 4;  // pixels a work-item
   unsigned ray_stack = 0;           // rays that may wait in a work-item
   KernelDefines defines;
+  GeneratedFiles generated;  // the scene's formulas as kernel code
 };
 
 /// Pure. Devices with vectors take 4x4 pixels a work-item and eight boxes an instruction, the others a pixel.

@@ -47,11 +47,11 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
   BuildReport report;
   render_ = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32,
                          u32, u32, u32, u32>(
-      device.build("entry/render_whitted.cl", config_.defines, &report), "render_whitted");
+      device.build("entry/render_whitted.cl", config_.defines, &report, config_.generated), "render_whitted");
   times.cached = report.cached;
   if (!options.aovs.empty()) {
     first_surfaces_ = scene_kernel<Buffer<u32>, Buffer<float4>, u32, u32, u32, u32>(
-        device.build("entry/aov.cl", config_.defines, &report), "first_surfaces");
+        device.build("entry/aov.cl", config_.defines, &report, config_.generated), "first_surfaces");
     times.cached = times.cached && report.cached;
   }
   times.build_kernels = building.seconds();
@@ -62,8 +62,9 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
 }
 
 void TileRenderer::find_camera_media() {
-  auto kernel =
-      scene_kernel<Buffer<u32>>(device_.build("entry/camera_media.cl", config_.defines), "find_camera_media");
+  auto kernel = scene_kernel<Buffer<u32>>(
+      device_.build("entry/camera_media.cl", config_.defines, nullptr, config_.generated),
+      "find_camera_media");
   run_scene_kernel<Buffer<u32>>(device_, kernel, {1, 1, 1, 1}, tables_, tables_.camera_media);
   device_.finish();
 }

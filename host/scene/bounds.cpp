@@ -11,6 +11,7 @@ namespace {
 /// Half the size of the box of a solid about its origin; no size for what has no end.
 struct HalfSize {
   dvec3 operator()(const MeshShape&) const { return dvec3(-1); }
+  dvec3 operator()(const FieldShape&) const { return dvec3(-1); }
   dvec3 operator()(const PlaneShape&) const { return dvec3(-1); }
   dvec3 operator()(const SphereShape& s) const { return dvec3(s.radius); }
   dvec3 operator()(const BoxShape& s) const { return s.half; }
@@ -36,7 +37,8 @@ std::array<dvec3, 8> corners_of(const dvec3& half) {
 
 }  // namespace
 
-Bounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes) {
+Bounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes,
+                 std::span<const SdfDescription> fields) {
   Bounds bounds;
   for (const Object& object : objects) {
     const auto add = [&](const dvec3& point) {
@@ -44,6 +46,10 @@ Bounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes) 
     };
     if (const auto* shape = std::get_if<MeshShape>(&object.shape)) {
       for (const glm::vec3& point : meshes[static_cast<std::size_t>(shape->mesh)].positions) add(point);
+    } else if (const auto* field = std::get_if<FieldShape>(&object.shape)) {
+      const SdfDescription& f = fields[static_cast<std::size_t>(field->field)];
+      for (const dvec3& corner : corners_of((f.upper - f.lower) * 0.5))
+        add((f.lower + f.upper) * 0.5 + corner);
     } else if (const dvec3 half = std::visit(HalfSize{}, object.shape); half.x >= 0) {
       for (const dvec3& corner : corners_of(half)) add(corner);
     }

@@ -16,8 +16,9 @@ struct Bounds {
 };
 
 /// Around all objects with an end: planes do not count. Exact for meshes, the box of a box for the turned
-/// solids.
-Bounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes);
+/// solids and of the fields' intervals.
+Bounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes,
+                 std::span<const SdfDescription> fields = {});
 
 /// `camera` moved so that the box all but fills an image of width / height `aspect`, seen from the front,
 /// right and above (y is up). An empty box leaves it where it is.

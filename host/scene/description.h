@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "scene/formula/sdf.h"
+
 namespace sundog {
 
 using glm::dmat4;
@@ -100,8 +102,9 @@ struct ConeShape { double bottom_radius = 1, top_radius = 0, half_height = 1; bo
 struct DiskShape { double radius = 1, inner_radius = 0; };  // in y = 0
 struct TorusShape { double major_radius = 1, minor_radius = 0.25; };  // about y
 struct RoundBoxShape { dvec3 half{1, 1, 1}; double radius = 0.1; };  // outer half sizes, edge radius
+struct FieldShape { int field = 0; };  // index into fields
 using Shape = std::variant<MeshShape, SphereShape, PlaneShape, BoxShape, CylinderShape, ConeShape, DiskShape,
-                           TorusShape, RoundBoxShape>;
+                           TorusShape, RoundBoxShape, FieldShape>;
 
 /// One placed thing. Groups are already flattened: the transform is the product of the group's and the object's.
 struct Object {
@@ -112,15 +115,24 @@ struct Object {
   std::string place;  // JSON pointer, for messages
 };
 
+/// What lies between all things: light over a distance d keeps exp(-density d) of its own and gets the rest
+/// from the fog. Only in the world's medium.
+struct FogDescription {
+  dvec3 color{0};
+  double density = 0;  // per unit of world length
+};
+
 struct SceneDescription {
   std::filesystem::path file;
   Camera camera;
   ImageSettings image;
   RenderSettings render;
+  FogDescription fog;
   std::vector<LightDescription> lights;
   std::vector<MediumDescription> media;  // [0] is the world's, of priority world_priority
   std::vector<MaterialDescription> materials;
   std::vector<Mesh> meshes;
+  std::vector<SdfDescription> fields;
   std::vector<Object> objects;
   std::vector<std::string> warnings;  // one line each: what a model file held that was read past
 };

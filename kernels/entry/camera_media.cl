@@ -1,5 +1,4 @@
 // One stage: which media the camera is inside of, found by following a line from it to the outside.
-#include "lib/media.cl"
 #include "lib/segment.cl"
 
 // One work-item. Writes the camera's MediaStack to camera_media, low word first: a solid that the line leaves
@@ -9,15 +8,19 @@ __kernel void find_camera_media(TRACE_PARAMETERS, SHADE_PARAMETERS, __global u32
   const float3 o = info->camera_position.xyz;
   const float3 d =
       unit((float3)(0.3141f, 0.8660f, 0.3890f));  // off every axis that a scene is likely to be built along
+  const CameraRay line = {o, d, 0.0f, INFINITY};
+  SceneRay ray = scene_ray(&line, 0);
+  u32 counts[COUNTERS];  // marching counts, which nobody asks for here
+  for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
   MediaStack entered = 0, holding = 0;
-  float t_min = 0.0f;
   for (u32 i = 0; i < 4096u; ++i) {
-    const Hit hit = trace_closest(TRACE_ARGUMENTS, o, d, t_min, INFINITY);
+    Hit hit;
+    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &ray, 0, 1, false, false, &hit, counts);
     if (hit.instance == NO_INSTANCE) break;
-    t_min = hit.t;
+    const bool entering = dot(outward_normal(TRACE_ARGUMENTS, &hit), d) < 0.0f;
+    continue_behind(instances, &ray, &hit, entering);
     __global const Material* material = materials + hit_material(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &hit);
     if (!(material->flags & MATERIAL_TRANSMITS) || (material->flags & MATERIAL_THIN)) continue;
-    const bool entering = dot(outward_normal(TRACE_ARGUMENTS, &hit), d) < 0.0f;
     if (entering) {
       cross_boundary(&entered, material->medium, true);
     } else if (!cross_boundary(&entered, material->medium, false)) {

@@ -15,7 +15,8 @@
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 
 // For the body of a kernel with private arrays: PoCL keeps the arrays of a kernel apart for each work-item of
-// a group, and those of a function once.
+// a group, and those of a function once. Also for what is called from
+// several places, where copies would be compiled for longer than a call takes.
 #define NEVER_INLINE static __attribute__((noinline))
 
 // Rays a work-item carries together: TILE_W x TILE_H pixels of the image. 16 on CPU-class devices, 1 on
@@ -78,7 +79,18 @@
 #define HAS_ROUNDBOX 1
 #endif
 #ifndef HAS_SDF
-#define HAS_SDF 0
+#define HAS_SDF 1
+#endif
+// Some field glows.
+#ifndef HAS_GLOW
+#define HAS_GLOW HAS_SDF
+#endif
+#ifndef HAS_FOG
+#define HAS_FOG 1
+#endif
+// Some field transmits: rays may march inside of it.
+#ifndef SDF_TWO_SIDED
+#define SDF_TWO_SIDED 1
 #endif
 #ifndef HAS_SECONDARY
 #define HAS_SECONDARY 1

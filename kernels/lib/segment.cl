@@ -80,8 +80,8 @@ static inline void next_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* r
     met[i].absorbed = (float3)(1.0f);
   }
   for (u32 crossing = 0; count; ++crossing) {
-    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, count, coherent && crossing == 0u, hits,
-                 counts);
+    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, count, coherent && crossing == 0u, false,
+                 hits, counts);
     u32 left = 0;
     for (u32 k = 0; k < count; ++k) {
       const u32 i = waiting[k];
@@ -92,7 +92,7 @@ static inline void next_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* r
     count = left;
   }
 #else
-  nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, 0, count, coherent, hits, counts);
+  nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, 0, count, coherent, false, hits, counts);
   for (u32 i = 0; i < count; ++i) {
     met[i].hit = hits[i];
     met[i].before = 0;

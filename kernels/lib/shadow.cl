@@ -3,6 +3,7 @@
 // the straight line), and media absorb.
 #ifndef SUNDOG_LIB_SHADOW_CL
 #define SUNDOG_LIB_SHADOW_CL
+#include "lib/field_light.cl"
 #include "lib/segment.cl"
 
 #define MAX_FILTERS 64u
@@ -54,6 +55,10 @@ static inline bool passes_filter(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* r
 // through[i] becomes the factor on the light that comes along rays[i] from its end to its start, i < count.
 static inline void visibilities(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* rays, u32 count, bool coherent,
                                 float3* through, u32* counts) {
+  for (u32 i = 0; i < count; ++i) through[i] = (float3)(1.0f);
+#if HAS_SDF
+  soft_shadows(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, count, through);
+#endif
 #if HAS_SHADOW_FILTERS
   Hit hits[BATCH];
   u32 waiting[BATCH];
@@ -61,10 +66,9 @@ static inline void visibilities(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* ra
   for (u32 i = 0; i < count; ++i) {
     waiting[i] = i;
     from[i] = 0.0f;
-    through[i] = (float3)(1.0f);
   }
   for (u32 filter = 0; count && filter < MAX_FILTERS; ++filter) {
-    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, count, coherent && filter == 0u, hits,
+    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, count, coherent && filter == 0u, true, hits,
                  counts);
     u32 left = 0;
     for (u32 k = 0; k < count; ++k) {
@@ -79,7 +83,8 @@ static inline void visibilities(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* ra
 #else
   u32 occluded[BATCH];
   any_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, count, coherent, occluded, counts);
-  for (u32 i = 0; i < count; ++i) through[i] = occluded[i] ? (float3)(0.0f) : (float3)(1.0f);
+  for (u32 i = 0; i < count; ++i)
+    if (occluded[i]) through[i] = (float3)(0.0f);
 #endif
 }
 

@@ -83,6 +83,9 @@ static inline SurfaceInteraction interact(TRACE_PARAMETERS, SHADE_PARAMETERS, fl
       s.ns = towards < 0.0f ? facing : unit(facing - (towards + 1e-4f) * d);
     }
   }
+#if HAS_SDF
+  if (instance->shape == SHAPE_SDF) color = (float3)(hit->u, hit->v, as_float(hit->prim));
+#endif
   s.ambient = material->ambient.xyz;
   s.diffuse = material->diffuse.xyz;
   if (material->flags & MATERIAL_CHECKER) {
@@ -92,7 +95,7 @@ static inline SurfaceInteraction interact(TRACE_PARAMETERS, SHADE_PARAMETERS, fl
       s.diffuse = material->checker_diffuse.xyz;
     }
   }
-  if (material->flags & MATERIAL_VERTEX_COLOR) {
+  if ((material->flags & MATERIAL_VERTEX_COLOR) || instance->shape == SHAPE_SDF) {
     s.ambient *= color;
     s.diffuse *= color;
   }

@@ -5,6 +5,7 @@
 #define SUNDOG_LIB_TABLES_H
 #include "shared/bvh.h"
 #include "shared/scene.h"
+#include "shared/sdf.h"
 
 #define TRACE_PARAMETERS                                                            \
   __global const SceneInfo *restrict info, __global const Bvh8Node *restrict nodes, \
@@ -14,7 +15,8 @@
 #define SHADE_PARAMETERS                                                                        \
   __global const TriangleShading *restrict triangles, __global const Vertex *restrict vertices, \
       __global const Material *restrict materials, __global const Medium *restrict media,       \
-      __global const Light *restrict lights
-#define SHADE_ARGUMENTS triangles, vertices, materials, media, lights
+      __global const Light *restrict lights, __global const SdfField *restrict sdf_fields,      \
+      __global const float *restrict sdf_parameters
+#define SHADE_ARGUMENTS triangles, vertices, materials, media, lights, sdf_fields, sdf_parameters
 
 #endif

@@ -131,6 +131,30 @@ static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const Surf
   spawn(stack, &child, &state, info, COUNT_REFRACTION, counts);
 }
 
+#if HAS_SDF
+// Fields take ambient light from their own crevices.
+static inline void dim_crevices(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRay* rays, u32 ray_count,
+                                BatchSurfaces* batch) {
+  Hit hits[BATCH];
+  float open[BATCH];
+  for (u32 i = 0; i < ray_count; ++i) hits[i] = batch->met[i].hit;
+  field_openness(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, hits, ray_count, open);
+  for (u32 i = 0; i < ray_count; ++i)
+    if (hits[i].instance != NO_INSTANCE) batch->own_light[i] *= open[i];
+}
+#endif
+
+#if HAS_FOG
+// What the fog adds to a ray's light over `distance`, by which it weakens what comes from behind.
+static inline float3 go_through_fog(__global const SceneInfo* restrict info, float3* throughput,
+                                    float distance) {
+  const float kept = exp(-info->fog.w * distance);
+  const float3 added = *throughput * (1.0f - kept) * info->fog.xyz;
+  *throughput *= kept;
+  return added;
+}
+#endif
+
 // Takes a batch to the next surfaces, adds what it sees there to the pixels and leaves the children on the
 // stack.
 static inline void follow_batch(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* rays, PathState* paths,
@@ -139,11 +163,21 @@ static inline void follow_batch(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* ra
   const bool coherent = paths[0].depth == 1u;
   next_surfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, ray_count, coherent, batch.met, counts);
   for (u32 i = 0; i < ray_count; ++i) {
+#if HAS_GLOW
+    radiance[paths[i].pixel].xyz += paths[i].throughput * rays[i].glow;
+#endif
     paths[i].throughput *= batch.met[i].absorbed;
+#if HAS_FOG
+    if (batch.met[i].before == 0u)
+      radiance[paths[i].pixel].xyz += go_through_fog(info, &paths[i].throughput, batch.met[i].hit.t);
+#endif
     if (batch.met[i].hit.instance == NO_INSTANCE) continue;
     batch.surface[i] = interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays[i].o, rays[i].d, &batch.met[i].hit);
     batch.own_light[i] = batch.surface[i].ambient * info->ambient.xyz;
   }
+#if HAS_SDF
+  dim_crevices(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, ray_count, &batch);
+#endif
   for (u32 light = 0; light < info->light_count; ++light)
     add_light(TRACE_ARGUMENTS, SHADE_ARGUMENTS, light, rays, ray_count, coherent, &batch, counts);
   for (u32 i = 0; i < ray_count; ++i) {

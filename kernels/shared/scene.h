@@ -80,7 +80,9 @@ typedef struct SceneInfo {
   u32 camera_inside;         // 1: the camera may be inside a solid with a medium; its media stack must be found
   float4 scene_center;       // bounding sphere of the bounded instances; w = radius
   float4 up;                 // unit: the scene's up
-  float4 pad2, pad3;
+  float4 fog;                // colour of the world's fog; w = its density per unit of length (0: none)
+  u32 field_end;             // instances [instance_count, field_end) place distance fields
+  u32 pad0, pad1, pad2;
 } SceneInfo;
 SUNDOG_SHARED_SIZE(SceneInfo, 240)
 
@@ -98,7 +100,8 @@ SUNDOG_SHARED_SIZE(SceneInfo, 240)
 #define COUNT_NON_FINITE 10         // samples dropped
 #define COUNT_STRAY_EXIT 11         // a medium was left that had not been entered (an open mesh)
 #define COUNT_SHADOW_LIMIT 12       // shadow rays given up after too many filters
-#define COUNT_MARCH_LIMIT 13
+#define COUNT_MARCH_LIMIT 13        // marches that their step limit ended
+#define COUNT_MARCH_BACK 14         // relaxed steps that were taken back
 #define COUNTERS 16
 
 SUNDOG_SHARED_END

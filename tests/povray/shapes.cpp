@@ -2,6 +2,7 @@
 #include "shapes.h"
 
 #include <limits>
+#include <stdexcept>
 
 #include "text.h"
 
@@ -34,6 +35,9 @@ std::string open_round_box(const RoundBoxShape& s) {
 
 struct OpenShape {
   std::string operator()(const MeshShape& s) const { return "object { " + mesh_name(s.mesh) + " "; }
+  std::string operator()(const FieldShape&) const {
+    throw std::invalid_argument("POV-Ray has no counterpart of a distance field");
+  }
   std::string operator()(const SphereShape& s) const {
     return fmt::format("sphere {{ 0, {} ", text(s.radius));
   }
@@ -60,6 +64,9 @@ struct OpenShape {
 
 struct HalfSize {
   dvec3 operator()(const MeshShape&) const { return dvec3(0); }  // has bounds of its own
+  dvec3 operator()(const FieldShape&) const {
+    throw std::invalid_argument("POV-Ray has no counterpart of a distance field");
+  }
   dvec3 operator()(const SphereShape& s) const { return dvec3(s.radius); }
   dvec3 operator()(const PlaneShape&) const { return dvec3(std::numeric_limits<double>::infinity()); }
   dvec3 operator()(const BoxShape& s) const { return s.half; }

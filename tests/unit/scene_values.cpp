@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "scene_text.h"
 
@@ -10,6 +11,7 @@ std::string text(const dvec3& v) { return fmt::format("[{} {} {}]", v.x, v.y, v.
 
 struct ShapeText {
   std::string operator()(const MeshShape& s) const { return fmt::format("mesh {}", s.mesh); }
+  std::string operator()(const FieldShape& s) const { return fmt::format("field {}", s.field); }
   std::string operator()(const SphereShape& s) const { return fmt::format("sphere {}", s.radius); }
   std::string operator()(const PlaneShape&) const { return "plane"; }
   std::string operator()(const BoxShape& s) const { return fmt::format("box {}", text(s.half)); }
@@ -47,6 +49,22 @@ std::string line(const LightDescription& l) {
                      text(l.position), text(l.direction), l.inner_angle, l.outer_angle, text(l.falloff));
 }
 
+std::string tree(const SdfNode& n) {
+  std::string out = fmt::format("({} {} {} {} {} {} {}", static_cast<int>(n.kind), n.smooth, text(n.offset),
+                                n.scale, text(n.period), text(n.count), n.amount);
+  for (const FormulaStep& step : n.formula.steps)
+    out += fmt::format(" {} {} {}", step.definition.name, step.times, fmt::join(step.values, " "));
+  for (const SdfNode& child : n.children) out += tree(child);
+  return out + ")";
+}
+
+std::string line(const SdfDescription& f) {
+  return fmt::format("field {} {} {} {} {} {} {} {} {} {} {} {} {} {}\n", tree(f.root), text(f.lower),
+                     text(f.upper), f.detail.value_or(-1), f.least, f.greatest, f.step_limit,
+                     static_cast<int>(f.coloring.by), f.coloring.scale, f.coloring.offset, f.occlusion,
+                     f.soft_shadow, text(f.glow), f.glow_width);
+}
+
 std::string line(const MediumDescription& m) {
   return fmt::format("medium {} {} {} {}\n", m.name, m.ior, text(m.absorption), m.priority);
 }
@@ -80,6 +98,8 @@ std::string all_values(const SceneDescription& scene) {
   const auto add = [&](const auto& table) {
     for (const auto& entry : table) out += line(entry);
   };
-  add(scene.lights), add(scene.media), add(scene.materials), add(scene.meshes), add(scene.objects);
+  out += fmt::format("fog {} {}\n", text(scene.fog.color), scene.fog.density);
+  add(scene.lights), add(scene.media), add(scene.materials), add(scene.meshes), add(scene.fields),
+      add(scene.objects);
   return out;
 }

@@ -24,7 +24,7 @@ namespace {
 /// One thing of every kind, so that the reader asks for every key.
 const std::string everything = R"({
   "$schema": "scene.schema.json",
-  "camera": {}, "image": {"background": {"bottom": [0, 0, 0], "top": [1, 1, 1]}}, "render": {}, "world": {"medium": "a"},
+  "camera": {}, "image": {"background": {"bottom": [0, 0, 0], "top": [1, 1, 1]}}, "render": {}, "world": {"medium": "a", "fog": {"density": 1}},
   "media": {"a": {"absorption": {"color": [1, 1, 1], "distance": 1}}, "b": {"absorption": [0, 1, 2]}},
   "lights": [{"type": "ambient"}, {"type": "directional", "direction": [0, -1, 0]},
     {"type": "point", "position": [0, 0, 0], "falloff": {}},
@@ -37,7 +37,25 @@ const std::string everything = R"({
     "t": {"file": "tetra.ply", "crease_angle": 30},
     "i": {"generate": {"type": "ice_block", "subdivision": 4, "cavity": {}}},
     "l": {"generate": {"type": "ice_block", "subdivision": 4, "part": "liquid", "level": 0, "cavity": {}}}},
-  "objects": [{"type": "sphere"}, {"type": "plane"}, {"type": "box"}, {"type": "cylinder"}, {"type": "cone"},
+  "fields": {"f": {"field": {"type": "union", "fields": [
+      {"type": "intersection", "fields": [{"type": "fractal", "formula": "mandelbulb"}, {"type": "formula", "distance": "length(p) - 1"}]},
+      {"type": "difference", "fields": [{"type": "moved", "rotate": {"axis": [0, 1, 0], "degrees": 3}, "field": {"type": "fractal", "formula": "menger"}},
+        {"type": "thicken", "amount": 0.1, "field": {"type": "fractal", "formula": "menger"}}]},
+      {"type": "repeat", "period": [3, 0, 0], "field": {"type": "shell", "amount": 0.1, "field": {"type": "fractal", "formula": "menger"}}},
+      {"type": "hybrid", "steps": [{"type": "fractal", "formula": "menger"},
+        {"type": "formula", "map": "z = z * 2", "distance": "length(z) - 1"}]}]},
+    "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}}},
+  "objects": [{"type": "sphere"}, {"type": "field", "field": "f"},
+    {"type": "fractal", "formula": "julia", "ball": {"radius": 2}, "coloring": {"palette": [[1, 0, 0]]}, "glow": {"color": [1, 1, 1]}},
+    {"type": "formula", "distance": "length(p) - a", "parameters": {"a": {"value": 1}}},
+    {"type": "hybrid", "steps": [{"type": "fractal", "formula": "menger"}]},
+    {"type": "union", "fields": [{"type": "fractal", "formula": "menger"}, {"type": "fractal", "formula": "menger"}], "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}},
+    {"type": "intersection", "fields": [{"type": "fractal", "formula": "menger"}, {"type": "fractal", "formula": "menger"}], "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}},
+    {"type": "difference", "fields": [{"type": "fractal", "formula": "menger"}, {"type": "fractal", "formula": "menger"}], "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}},
+    {"type": "moved", "field": {"type": "fractal", "formula": "menger"}, "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}},
+    {"type": "repeat", "period": [3, 0, 0], "field": {"type": "fractal", "formula": "menger"}, "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}},
+    {"type": "thicken", "amount": 0.1, "field": {"type": "fractal", "formula": "menger"}, "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}},
+    {"type": "shell", "amount": 0.1, "field": {"type": "fractal", "formula": "menger"}, "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}}, {"type": "plane"}, {"type": "box"}, {"type": "cylinder"}, {"type": "cone"},
     {"type": "disk"}, {"type": "torus"}, {"type": "round_box"}, {"type": "mesh", "mesh": "t"},
     {"type": "box", "min": [0, 0, 0], "max": [1, 1, 1]}, {"type": "cone", "from": [0, 0, 0], "to": [1, 1, 1]},
     {"type": "cylinder", "from": [0, 0, 0], "to": [1, 1, 1]},
@@ -155,7 +173,7 @@ TEST_CASE("the schema's defaults are the reader's") {
   CHECK(filled.at("/materials/m/specular/exponent"_json_pointer) == 32);
   CHECK(filled.at("/meshes/i/generate/chips"_json_pointer) == 12);
   CHECK(filled.at("/objects/0/radius"_json_pointer) == 1);
-  CHECK(filled.at("/objects/4/capped"_json_pointer) == true);
+  CHECK(filled.at("/objects/15/capped"_json_pointer) == true);
   const std::string plain = all_values(read(document)), explicitly = all_values(read(filled));
   CHECK(plain == explicitly);
 }

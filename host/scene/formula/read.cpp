@@ -214,12 +214,12 @@ Leaf read_hybrid(JsonObject& object) {
 
 SdfNode read_node(JsonObject& object, std::string_view type, std::array<double, 6>* bounds, int depth);
 
-SdfNode read_child(const JsonValue& value, int depth) {
+SdfNode read_child(const JsonValue& value, int depth, std::array<double, 6>* bounds = nullptr) {
   if (depth > deepest) value.fail(fmt::format("fields nested deeper than {} levels", deepest));
   const std::string type = value.member("type", list_names(types)).choice(types);
   return value.object(type + "_field", [&](JsonObject& object) {
     object.at("type", "");
-    return read_node(object, type, nullptr, depth);
+    return read_node(object, type, bounds, depth);
   });
 }
 
@@ -301,15 +301,19 @@ void read_interval(JsonObject& object, SdfDescription& field, bool required) {
     interval->fail("wanted each of \"min\" below its part of \"max\"");
 }
 
-}  // namespace
+/// What the field does to light besides stopping it; `size` is half its interval's diagonal.
+void read_light(JsonObject& object, SdfDescription& field, double size) {
+  field.occlusion = object.number("occlusion", 0, {.low = 0, .high = size});
+  field.soft_shadow = object.number("soft_shadow", 0, {.low = 0, .high = 1e4});
+  if (const auto glow = object.find("glow"))
+    glow->object("glow", [&](JsonObject& o) {
+      field.glow = o.at("color", "a colour [r, g, b]").color();
+      field.glow_width = o.number("width", 0.05 * size, {.low = 0, .high = size, .low_open = true});
+    });
+}
 
-Names field_types() { return types; }
-
-SdfDescription read_field(JsonObject& object, std::string_view type) {
-  SdfDescription field;
-  field.name = type;
-  std::array<double, 6> bounds{};
-  field.root = read_node(object, type, &bounds, 1);
+/// What a field has besides its tree: where it is built, how closely it is followed, what it looks like.
+void read_whole(JsonObject& object, SdfDescription& field, const std::array<double, 6>& bounds) {
   const bool is_leaf = field.root.kind == SdfNode::Kind::formula;
   field.lower = {bounds[0], bounds[1], bounds[2]};
   field.upper = {bounds[3], bounds[4], bounds[5]};
@@ -319,17 +323,41 @@ SdfDescription read_field(JsonObject& object, std::string_view type) {
       return glm::dvec4(o.vec3("center", glm::dvec3(0)), o.at("radius", "a length").number(above_0));
     });
   const double size = glm::length(field.upper - field.lower) / 2;
-  field.detail = object.number("detail", 0.5, {.low = 0.01, .high = 16});
+  if (const auto detail = object.find("detail")) field.detail = detail->number({.low = 0.01, .high = 16});
   field.least = object.number("least_threshold", 3e-5 * size, {.low = 1e-7 * size, .high = size});
   field.greatest = object.number("greatest_threshold", std::max(0.03 * size, field.least),
                                  {.low = field.least, .high = size});
-  field.step_limit = object.integer("steps", field.step_limit, 16, 65536);
+  field.step_limit = object.integer("step_limit", field.step_limit, 16, 65536);
   if (const auto coloring = object.find("coloring")) field.coloring = read_coloring(*coloring);
-  if (type == "formula") try {
+  read_light(object, field, size);
+  if (is_leaf && field.root.formula.steps.size() == 1) try {
       probe_formula(field.root.formula, field.lower, field.upper);
     } catch (const FormulaError& error) {
       fail(object.value(), error);
     }
+}
+
+}  // namespace
+
+Names field_types() { return types; }
+
+SdfDescription read_field(JsonObject& object, std::string_view type) {
+  SdfDescription field;
+  field.name = type;
+  std::array<double, 6> bounds{};
+  field.root = read_node(object, type, &bounds, 1);
+  read_whole(object, field, bounds);
+  return field;
+}
+
+SdfDescription read_named_field(const JsonValue& value, std::string name) {
+  SdfDescription field;
+  field.name = std::move(name);
+  value.object("field_entry", [&](JsonObject& object) {
+    std::array<double, 6> bounds{};
+    field.root = read_child(object.at("field", "a field"), 1, &bounds);
+    read_whole(object, field, bounds);
+  });
   return field;
 }
 

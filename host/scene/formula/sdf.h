@@ -64,12 +64,18 @@ struct SdfColoring {
 struct SdfDescription {
   std::string name;
   SdfNode root;
-  glm::dvec3 lower{-1.5}, upper{1.5};   // the interval in which it is built; cuts the surface
-  std::optional<glm::dvec4> sphere;     // centre and radius of a cutting sphere
-  double detail = 0.5;                  // surface threshold in pixel footprints
+  glm::dvec3 lower{-1.5}, upper{1.5};  // the interval in which it is built; cuts the surface
+  std::optional<glm::dvec4> sphere;    // centre and radius of a cutting sphere
+  // Surface threshold in pixel footprints; without it 0.05 for closed forms, whose hits are refined (their
+  // silhouettes are as much too wide), and 0.5 for all others.
+  std::optional<double> detail;
   double least = 1e-4, greatest = 0.1;  // limits of the threshold, in units of the field
   int step_limit = 512;                 // 16..65536
   SdfColoring coloring;
+  double occlusion = 0;    // how far off the surface ambient light is looked for; 0: everywhere the same
+  double soft_shadow = 0;  // hardness of its shadows: a penumbra is 1 / hardness of its length; 0: sharp
+  glm::dvec3 glow{0};      // light gathered by rays that pass near it, linear RGB
+  double glow_width = 0;   // distance at which the glow has fallen to 1 / e; 0: none
 };
 
 }  // namespace sundog

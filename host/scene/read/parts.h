@@ -20,6 +20,7 @@ Camera read_camera(const JsonValue& value, bool& placed);
 ImageSettings read_image(const JsonValue& value);
 RenderSettings read_render(const JsonValue& value);
 LightDescription read_light(const JsonValue& value);
+FogDescription read_fog(const JsonValue& value);
 
 MediumDescription read_medium(const JsonValue& value, std::string name);
 /// Adds an anonymous medium to `media` when the material gives an "ior" of its own.

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scene/bounds.h"
+#include "scene/formula/read.h"
 #include "scene/json/parse.h"
 #include "scene/procedural/procedural.h"
 #include "scene/read/library.h"
@@ -40,7 +43,7 @@ class SceneReader {
     for (const JsonValue& item : object.at("objects", "an array of objects").items("objects"))
       read_object(item, Placement{});
     if (!placed)
-      scene_.camera = frame(bounds_of(scene_.objects, scene_.meshes),
+      scene_.camera = frame(bounds_of(scene_.objects, scene_.meshes, scene_.fields),
                             static_cast<double>(scene_.image.width) / scene_.image.height, scene_.camera);
   }
 
@@ -59,6 +62,11 @@ class SceneReader {
     if (const auto meshes = object.find("meshes"))
       for (const auto& [name, value] : meshes->members("meshes"))
         meshes_.emplace(name, read_mesh(value, name));
+    if (const auto fields = object.find("fields"))
+      for (const auto& [name, value] : fields->members("fields")) {
+        fields_.emplace(name, static_cast<int>(scene_.fields.size()));
+        scene_.fields.push_back(read_named_field(value, name));
+      }
   }
 
   /// The world gets a copy of its medium that gives way to all others, whatever the named one's priority.
@@ -68,6 +76,7 @@ class SceneReader {
         scene_.media[0] = scene_.media[static_cast<std::size_t>(find_name(*name, media_, "medium"))];
         scene_.media[0].priority = world_priority;
       }
+      if (const auto fog = object.find("fog")) scene_.fog = read_fog(*fog);
     });
   }
 
@@ -100,15 +109,25 @@ class SceneReader {
     });
   }
 
+  static bool is_one_of(const std::string& type, Names names) {
+    return std::find(names.begin(), names.end(), type) != names.end();
+  }
+
+  int add_field(JsonObject& object, const std::string& type) {
+    scene_.fields.push_back(read_field(object, type));
+    return static_cast<int>(scene_.fields.size()) - 1;
+  }
+
   void read_object(const JsonValue& value, const Placement& parent) {
     static const auto types = [] {
       std::vector<std::string_view> result(solid_types().begin(), solid_types().end());
-      result.insert(result.end(), {"mesh", "model", "group"});
+      result.insert(result.end(), field_types().begin(), field_types().end());
+      result.insert(result.end(), {"field", "mesh", "model", "group"});
       return result;
     }();
     const std::string type = value.member("type", list_names(types)).choice(types);
-    const bool solid = type != "mesh" && type != "model" && type != "group";
-    value.object(solid ? type : type + "_object", [&](JsonObject& object) {
+    const bool solid = is_one_of(type, solid_types()), field = is_one_of(type, field_types());
+    value.object(solid || field ? type : type + "_object", [&](JsonObject& object) {
       object.at("type", "");
       const Placement placement = read_placement(object, parent);
       if (type == "group") {
@@ -119,6 +138,11 @@ class SceneReader {
         library_.place(find_mesh(name), placement);
       } else if (type == "model") {
         library_.place(library_.load(find_model(object.at("file", "the path of a model file"))), placement);
+      } else if (type == "field") {
+        place_field(object, find_name(object.at("field", "the name of a field"), fields_, "field"),
+                    placement);
+      } else if (field) {
+        place_field(object, add_field(object, type), placement);
       } else {
         place_solid(object, type, placement);
       }
@@ -153,10 +177,16 @@ class SceneReader {
     check_transform(scene_.objects.back().world_from_object, object.value());
   }
 
+  void place_field(JsonObject& object, int field, const Placement& placement) {
+    if (placement.material < 0) object.at("material", "the name of a material, here or in a group around it");
+    scene_.objects.push_back({placement.name, FieldShape{field}, placement.material,
+                              placement.world_from_object, placement.place});
+  }
+
   const JsonValue& root_;
   SceneDescription scene_;
   ModelLibrary library_;
-  NameTable media_, materials_;
+  NameTable media_, materials_, fields_;
   std::map<std::string, ModelLibrary::Parts, std::less<>> meshes_;
 };
 

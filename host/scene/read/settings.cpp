@@ -112,6 +112,15 @@ RenderSettings read_render(const JsonValue& value) {
   });
 }
 
+FogDescription read_fog(const JsonValue& value) {
+  return value.object("fog", [](JsonObject& object) {
+    FogDescription fog;
+    fog.color = object.color("color", dvec3(1));
+    fog.density = object.at("density", "a number per unit of length").number(at_least_0);
+    return fog;
+  });
+}
+
 LightDescription read_light(const JsonValue& value) {
   static constexpr std::string_view types[] = {"ambient", "directional", "point", "spot"};
   const std::string type = value.member("type", list_names(types)).choice(types);

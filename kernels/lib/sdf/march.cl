@@ -26,6 +26,7 @@ typedef struct MarchHits {
   MASK steps;    // estimates used by each lane
   MASK taken_back;  // relaxed steps that had to be taken back
   REAL threshold;   // at the hit, in the field's space
+  REAL nearest;     // the least estimate on the way, in the field's space; only with HAS_GLOW
 } MarchHits;
 
 // Distance to the surface on the side that each lane travels on: negative when it is on the wrong side.
@@ -89,10 +90,14 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   first = fmax(first, rays->t_min);
   last = fmin(last, rays->t_max);
 
-  MarchHits hits = {first, NO_LANES, NO_LANES, NO_LANES, NO_LANES, NO_LANES, (REAL)(0.0f)};
-  MASK active = rays->active & MASK_OF(first <= last), leaving = rays->leaving, relaxed = NO_LANES;
+  MarchHits hits = {first, NO_LANES, NO_LANES, NO_LANES, NO_LANES, NO_LANES, (REAL)(0.0f), (REAL)(INFINITY)};
+  MASK active = rays->active & MASK_OF(first < last), leaving = rays->leaving, relaxed = NO_LANES;
   REAL t = first;
   REAL previous = (REAL)(0.0f), step = (REAL)(0.0f), slope = (REAL)(-1.0f);
+  // How far on the wrong side, in thresholds, a ray that leaves the surface must be to have met it again: it
+  // starts on a refined surface, but before an estimated one (below).
+  const bool smooth = field->flags & SDF_SMOOTH;
+  const REAL wrong = select((REAL)(smooth ? -1.0f : 0.25f), (REAL)(-2.0f), rays->inside);
 #if SDF_TWO_SIDED
   MASK overshot = NO_LANES;
   REAL inside_at = first;  // the last point that was still inside
@@ -105,17 +110,21 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
     const REAL f = march_estimate(index, p, active, rays->inside, sdf_parameters) * field->safety;
     const REAL threshold = real_clamp(fma(t, spread, footprint), least, greatest);
     hits.steps -= active;
+#if HAS_GLOW
+    hits.nearest = select(hits.nearest, real_min(fmax(f, 0.0f), hits.nearest), active);
+#endif
 
     // The spheres about the last point and this one must touch: else back to where the last one ended.
     const MASK gap = active & relaxed & MASK_OF(f + previous < step);
     hits.taken_back -= gap;
     const MASK forward = active & ~gap;
 
-    const REAL wrong_side = select(0.25f * threshold, -2.0f * threshold, rays->inside);
-    const MASK arrived = forward & select(MASK_OF(f < threshold), MASK_OF(f < wrong_side), leaving);
+    const MASK arrived = forward & select(MASK_OF(f < threshold), MASK_OF(f < wrong * threshold), leaving);
     leaving &= ~(forward & MASK_OF(f >= threshold));
     hits.hit |= arrived;
-    hits.t = select(hits.t, t, arrived);
+    // Back to where the surface is a threshold away, so that rays which start here are clear of it.
+    const REAL back = smooth ? (REAL)(0.0f) : fmin(fmax(threshold - f, 0.0f), step) * inverse_speed;
+    hits.t = select(hits.t, t - select(back, (REAL)(0.0f), rays->inside), arrived);
     hits.threshold = select(hits.threshold, threshold, active);
 #if SDF_TWO_SIDED
     overshot |= arrived & rays->inside & MASK_OF(f < 0.0f);
@@ -150,7 +159,7 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   if (any_lane(overshot))
     hits.t = select(hits.t, bisect_exit(SDF_ARGUMENTS, index, rays, inside_at, hits.t, overshot), overshot);
 #endif
-  if (field->flags & SDF_SMOOTH) {
+  if (smooth) {
     const MASK on_surface = hits.hit & ~hits.cut;
     const REAL refined =
         refine_hit(SDF_ARGUMENTS, index, rays, hits.t, inverse_speed, hits.threshold, on_surface);

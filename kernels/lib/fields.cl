@@ -1,0 +1,184 @@
+// The scene's distance fields among its other things: a batch of world-space rays is marched through each of
+// them, as far as the nearest hit that is known. Instances [instance_count, field_end) place the fields.
+#ifndef SUNDOG_LIB_FIELDS_CL
+#define SUNDOG_LIB_FIELDS_CL
+#include "lib/scene_ray.cl"
+#include "lib/sdf/surface.cl"
+#include "lib/tables.h"
+#include "lib/transform.cl"
+
+#if HAS_SDF
+// LANES rays of a batch, transposed.
+typedef struct RayLanes {
+  REAL3 o, d;  // world
+  REAL t_min, t_best, footprint;
+  MASK from;  // SceneRay.from
+  MASK active;
+  // Of the nearest hit among the fields:
+  MASK winner;       // its instance, or -1
+  MASK inside, cut;  // MarchRays.inside, MarchHits.cut
+  REAL threshold;
+#if HAS_GLOW
+  REAL3 glow;
+#endif
+} RayLanes;
+
+static inline RayLanes load_lanes(const SceneRay* rays, const u32* which, u32 first, u32 count,
+                                  const Hit* hits) {
+  RayLanes lanes;
+  lanes.winner = ALL_LANES;
+  lanes.inside = NO_LANES;
+  lanes.cut = NO_LANES;
+  lanes.threshold = (REAL)(0.0f);
+#if HAS_GLOW
+  lanes.glow = real3((REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f));
+#endif
+  for (u32 i = 0; i < LANES; ++i) {
+    const u32 k = min(first + i, count - 1u);
+    const SceneRay* ray = rays + (which ? which[k] : k);
+    REAL_LANE(lanes.o.x, i) = ray->o.x;
+    REAL_LANE(lanes.o.y, i) = ray->o.y;
+    REAL_LANE(lanes.o.z, i) = ray->o.z;
+    REAL_LANE(lanes.d.x, i) = ray->d.x;
+    REAL_LANE(lanes.d.y, i) = ray->d.y;
+    REAL_LANE(lanes.d.z, i) = ray->d.z;
+    REAL_LANE(lanes.t_min, i) = ray->t_min;
+    REAL_LANE(lanes.t_best, i) = hits[k].t;
+    REAL_LANE(lanes.footprint, i) = ray->footprint;
+    MASK_LANE(lanes.from, i) = (int)ray->from;
+    MASK_LANE(lanes.active, i) = first + i < count ? -1 : 0;
+  }
+  return lanes;
+}
+
+static inline REAL3 object_points(__global const Instance* instance, REAL3 p) {
+  const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
+               r2 = instance->object_from_world[2];
+  return real3(fma(p.x, (REAL)(r0.x), fma(p.y, (REAL)(r0.y), fma(p.z, (REAL)(r0.z), (REAL)(r0.w)))),
+               fma(p.x, (REAL)(r1.x), fma(p.y, (REAL)(r1.y), fma(p.z, (REAL)(r1.z), (REAL)(r1.w)))),
+               fma(p.x, (REAL)(r2.x), fma(p.y, (REAL)(r2.y), fma(p.z, (REAL)(r2.z), (REAL)(r2.w)))));
+}
+
+static inline REAL3 object_vectors(__global const Instance* instance, REAL3 d) {
+  const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
+               r2 = instance->object_from_world[2];
+  return real3(fma(d.x, (REAL)(r0.x), fma(d.y, (REAL)(r0.y), d.z * r0.z)),
+               fma(d.x, (REAL)(r1.x), fma(d.y, (REAL)(r1.y), d.z * r1.z)),
+               fma(d.x, (REAL)(r2.x), fma(d.y, (REAL)(r2.y), d.z * r2.z)));
+}
+
+// Lanes that start in the interval.
+static inline MASK starts_within(__global const SdfField* restrict field, const MarchRays* rays) {
+  const REAL3 p = along3(rays->origin, rays->t_min, rays->direction);
+  return MASK_OF(p.x >= field->lower.x) & MASK_OF(p.x <= field->upper.x) & MASK_OF(p.y >= field->lower.y) &
+         MASK_OF(p.y <= field->upper.y) & MASK_OF(p.z >= field->lower.z) & MASK_OF(p.z <= field->upper.z);
+}
+
+// The rays in the field's own space, and on which side of its surface they start.
+static inline MarchRays march_from(SDF_PARAMETERS, __global const SceneInfo* restrict info,
+                                   __global const Instance* restrict instances, u32 index, bool two_sided,
+                                   const RayLanes* lanes) {
+  __global const Instance* instance = instances + index;
+  MarchRays rays;
+  rays.origin = object_points(instance, lanes->o);
+  rays.direction = object_vectors(instance, lanes->d);
+  rays.t_min = lanes->t_min;
+  rays.t_max = lanes->t_best;
+  rays.footprint = lanes->footprint;
+  rays.spread = (REAL)(pixel_spread(info));
+  rays.active = lanes->active;
+  rays.leaving = MASK_OF((lanes->from | 1) == (int)(index * 2u + 1u));
+  rays.inside = NO_LANES;
+#if SDF_TWO_SIDED
+  if (two_sided) {
+    rays.inside = rays.leaving & MASK_OF((lanes->from & 1) != 0);
+    // A ray that starts elsewhere asks the field itself.
+    const MASK ask = rays.active & ~rays.leaving & starts_within(sdf_fields + instance->root, &rays);
+    if (any_lane(ask)) {
+      const REAL3 start = along3(rays.origin, rays.t_min, rays.direction);
+      rays.inside |= ask & MASK_OF(sdf_signed(instance->root, start, ask, sdf_parameters) < 0.0f);
+    }
+  }
+#endif
+  return rays;
+}
+
+// Marches through one field and keeps what is nearer.
+static inline void march_field(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, RayLanes* lanes, u32* counts) {
+  const u32 flags = materials[instances[index].material].flags;
+  const bool two_sided = (flags & MATERIAL_TRANSMITS) && !(flags & MATERIAL_THIN);
+  const MarchRays rays = march_from(SDF_ARGUMENTS, info, instances, index, two_sided, lanes);
+  const MarchHits hits = march_rays(SDF_ARGUMENTS, instances[index].root, &rays);
+  const MASK nearer = hits.hit & MASK_OF(hits.t < lanes->t_best);
+  lanes->t_best = select(lanes->t_best, hits.t, nearer);
+  lanes->threshold = select(lanes->threshold, hits.threshold, nearer);
+  lanes->winner = select(lanes->winner, (MASK)((int)index), nearer);
+  lanes->inside = select(lanes->inside, rays.inside, nearer);
+  lanes->cut = select(lanes->cut, hits.cut, nearer);
+#if HAS_GLOW
+  __global const SdfField* field = sdf_fields + instances[index].root;
+  if (field->glow.w > 0.0f) {
+    const REAL passed = select(exp(hits.nearest * (-1.0f / field->glow.w)), (REAL)(0.0f), hits.hit);
+    lanes->glow = along3(lanes->glow, passed,
+                         real3((REAL)(field->glow.x), (REAL)(field->glow.y), (REAL)(field->glow.z)));
+  }
+#endif
+  for (u32 i = 0; i < LANES; ++i) {
+    counts[COUNT_MARCH_STEPS] += (u32)MASK_LANE(hits.steps, i);
+    counts[COUNT_MARCH_BACK] += (u32)MASK_LANE(hits.taken_back, i);
+    counts[COUNT_MARCH_LIMIT] += MASK_LANE(hits.limited, i) ? 1u : 0u;
+  }
+}
+
+// Normals and colours of the lanes that met instance `index`, as hits[k] of the batch.
+static inline void shade_lanes(SDF_PARAMETERS, __global const Instance* restrict instances, u32 index,
+                               const RayLanes* lanes, u32 first, Hit* hits) {
+  const MASK mine = MASK_OF(lanes->winner == (int)index);
+  if (!any_lane(mine)) return;
+  const REAL3 o = object_points(instances + index, lanes->o), d = object_vectors(instances + index, lanes->d);
+  const SdfSurface surface = sdf_surface(SDF_ARGUMENTS, instances[index].root, along3(o, lanes->t_best, d),
+                                         lanes->threshold, mine, lanes->inside, lanes->cut);
+  // A normal must not contradict the side that the ray comes from: it is bent as far as the silhouette.
+  const REAL speed = length3(d), towards = dot3(surface.normal, d) / speed;
+  const MASK inside = lanes->inside;
+  const REAL limit = select((REAL)(-1e-3f), (REAL)(1e-3f), inside);
+  const MASK wrong = select(MASK_OF(towards > limit), MASK_OF(towards < limit), inside);
+  const REAL3 bent = along3(surface.normal, select((REAL)(0.0f), (limit - towards) / speed, wrong), d);
+  for (u32 i = 0; i < LANES; ++i) {
+    if (!MASK_LANE(mine, i)) continue;
+    Hit* hit = &hits[first + i];
+    hit->t = REAL_LANE(lanes->t_best, i);
+    hit->instance = index;
+    hit->ng_x = REAL_LANE(bent.x, i);
+    hit->ng_y = REAL_LANE(bent.y, i);
+    hit->ng_z = REAL_LANE(bent.z, i);
+    // A field has no parameters u, v and no parts: their place takes the colour.
+    hit->u = REAL_LANE(surface.color.x, i);
+    hit->v = REAL_LANE(surface.color.y, i);
+    hit->prim = as_uint(REAL_LANE(surface.color.z, i));
+  }
+}
+
+// Takes hits[k], which holds the nearest hit of rays[which[k]] (rays[k] where which is 0) so far, to a
+// field's where that is nearer, k < count. `to_light`: only whether there is one matters, and fields with
+// soft shadows are left to soft_shadows(). A hit's u, v and prim hold its colour. Adds
+// to the rays' glow.
+NEVER_INLINE void march_fields(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* rays, const u32* which,
+                               u32 count, bool to_light, Hit* hits, u32* counts) {
+  for (u32 first = 0; first < count; first += LANES) {
+    RayLanes lanes = load_lanes(rays, which, first, count, hits);
+    for (u32 index = info->instance_count; index < info->field_end; ++index)
+      if (!(to_light && sdf_fields[instances[index].root].shadow_hardness > 0.0f))
+        march_field(TRACE_ARGUMENTS, SHADE_ARGUMENTS, index, &lanes, counts);
+    for (u32 index = info->instance_count; index < info->field_end; ++index)
+      shade_lanes(SDF_ARGUMENTS, instances, index, &lanes, first, hits);
+#if HAS_GLOW
+    for (u32 i = 0; i < LANES && first + i < count && !to_light; ++i)
+      rays[which ? which[first + i] : first + i].glow +=
+          (float3)(REAL_LANE(lanes.glow.x, i), REAL_LANE(lanes.glow.y, i), REAL_LANE(lanes.glow.z, i));
+#endif
+  }
+}
+
+#endif
+#endif
