@@ -35,6 +35,9 @@ std::uint64_t hash_scene(const CompiledScene& scene) {
   mix(scene.materials);
   mix(scene.media);
   mix(scene.lights);
+  mix(scene.fields.source);
+  mix(scene.fields.fields);
+  mix(scene.fields.parameters);
   return state;
 }
 

@@ -9,16 +9,20 @@ __kernel void find_camera_media(TRACE_PARAMETERS, SHADE_PARAMETERS, __global u32
   const float3 d =
       unit((float3)(0.3141f, 0.8660f, 0.3890f));  // off every axis that a scene is likely to be built along
   const CameraRay line = {o, d, 0.0f, INFINITY};
-  SceneRay ray = scene_ray(&line, 0);
+  SceneRay rays[BATCH];  // one ray; Mesa's compiler crashes where a batch's functions get a single struct
+  Hit hits[BATCH];
+  u32 which[BATCH];
+  which[0] = 0;
+  rays[0] = scene_ray(&line, 0);
   u32 counts[COUNTERS];  // marching counts, which nobody asks for here
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
   MediaStack entered = 0, holding = 0;
   for (u32 i = 0; i < 4096u; ++i) {
-    Hit hit;
-    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &ray, 0, 1, false, false, &hit, counts);
+    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, which, 1, false, false, hits, counts);
+    const Hit hit = hits[0];
     if (hit.instance == NO_INSTANCE) break;
     const bool entering = dot(outward_normal(TRACE_ARGUMENTS, &hit), d) < 0.0f;
-    continue_behind(instances, &ray, &hit, entering);
+    continue_behind(instances, &rays[0], &hit, entering);
     __global const Material* material = materials + hit_material(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &hit);
     if (!(material->flags & MATERIAL_TRANSMITS) || (material->flags & MATERIAL_THIN)) continue;
     if (entering) {

@@ -15,8 +15,8 @@
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 
 // For the body of a kernel with private arrays: PoCL keeps the arrays of a kernel apart for each work-item of
-// a group, and those of a function once. Also for what is called from
-// several places, where copies would be compiled for longer than a call takes.
+// a group, and those of a function once. Also for what is called from several places, where copies would be
+// compiled for longer than a call takes.
 #define NEVER_INLINE static __attribute__((noinline))
 
 // Rays a work-item carries together: TILE_W x TILE_H pixels of the image. 16 on CPU-class devices, 1 on

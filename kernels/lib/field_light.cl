@@ -9,9 +9,13 @@
 // everything else, and where the field has no occlusion. k < count.
 NEVER_INLINE void field_openness(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRay* rays, const Hit* hits,
                                  u32 count, float* open) {
-  for (u32 k = 0; k < count; ++k) open[k] = 1.0f;
+  u32 all[BATCH];
+  for (u32 k = 0; k < count; ++k) {
+    all[k] = k;
+    open[k] = 1.0f;
+  }
   for (u32 first = 0; first < count; first += LANES) {
-    const RayLanes lanes = load_lanes(rays, 0, first, count, hits);
+    const RayLanes lanes = load_lanes(rays, all, first, count, hits);
     for (u32 index = info->instance_count; index < info->field_end; ++index) {
       const float reach = sdf_fields[instances[index].root].occlusion_reach;
       if (!(reach > 0.0f)) continue;
@@ -40,9 +44,13 @@ NEVER_INLINE void field_openness(TRACE_PARAMETERS, SHADE_PARAMETERS, const Scene
 NEVER_INLINE void soft_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRay* rays, u32 count,
                                float3* through) {
   Hit ends[BATCH];
-  for (u32 k = 0; k < count; ++k) ends[k].t = rays[k].t_max;
+  u32 all[BATCH];
+  for (u32 k = 0; k < count; ++k) {
+    all[k] = k;
+    ends[k].t = rays[k].t_max;
+  }
   for (u32 first = 0; first < count; first += LANES) {
-    RayLanes lanes = load_lanes(rays, 0, first, count, ends);
+    RayLanes lanes = load_lanes(rays, all, first, count, ends);
     for (u32 index = info->instance_count; index < info->field_end; ++index) {
       __global const SdfField* field = sdf_fields + instances[index].root;
       if (!(field->shadow_hardness > 0.0f)) continue;

@@ -35,7 +35,7 @@ static inline RayLanes load_lanes(const SceneRay* rays, const u32* which, u32 fi
 #endif
   for (u32 i = 0; i < LANES; ++i) {
     const u32 k = min(first + i, count - 1u);
-    const SceneRay* ray = rays + (which ? which[k] : k);
+    const SceneRay* ray = rays + which[k];
     REAL_LANE(lanes.o.x, i) = ray->o.x;
     REAL_LANE(lanes.o.y, i) = ray->o.y;
     REAL_LANE(lanes.o.z, i) = ray->o.z;
@@ -159,7 +159,7 @@ static inline void shade_lanes(SDF_PARAMETERS, __global const Instance* restrict
   }
 }
 
-// Takes hits[k], which holds the nearest hit of rays[which[k]] (rays[k] where which is 0) so far, to a
+// Takes hits[k], which holds the nearest hit of rays[which[k]] so far, to a
 // field's where that is nearer, k < count. `to_light`: only whether there is one matters, and fields with
 // soft shadows are left to soft_shadows(). A hit's u, v and prim hold its colour. Adds
 // to the rays' glow.
@@ -174,7 +174,7 @@ NEVER_INLINE void march_fields(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* ray
       shade_lanes(SDF_ARGUMENTS, instances, index, &lanes, first, hits);
 #if HAS_GLOW
     for (u32 i = 0; i < LANES && first + i < count && !to_light; ++i)
-      rays[which ? which[first + i] : first + i].glow +=
+      rays[which[first + i]].glow +=
           (float3)(REAL_LANE(lanes.glow.x, i), REAL_LANE(lanes.glow.y, i), REAL_LANE(lanes.glow.z, i));
 #endif
   }

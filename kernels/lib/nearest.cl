@@ -11,14 +11,14 @@
 #include "lib/fields.cl"
 #endif
 
-// hits[k] becomes that of rays[which[k]], or of rays[k] where which is 0, k < count; without one, its
+// hits[k] becomes that of rays[which[k]], k < count; without one, its
 // instance is NO_INSTANCE. `to_light`: of a shadow ray.
 static inline void nearest_hits(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* rays, const u32* which,
                                 u32 count, bool coherent, bool to_light, Hit* hits, u32* counts) {
   float3 o[BATCH], d[BATCH];
   float t_min[BATCH], t_max[BATCH];
   for (u32 k = 0; k < count; ++k) {
-    const SceneRay* ray = rays + (which ? which[k] : k);
+    const SceneRay* ray = rays + which[k];
     o[k] = ray->o;
     d[k] = ray->d;
     t_min[k] = ray->t_min;

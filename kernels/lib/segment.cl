@@ -71,11 +71,11 @@ static inline bool crosses_unseen(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* 
 static inline void next_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* rays, u32 count, bool coherent,
                                  Encounter* met, u32* counts) {
   Hit hits[BATCH];
-#if HAS_MEDIA
   u32 waiting[BATCH];
+  for (u32 i = 0; i < count; ++i) waiting[i] = i;
+#if HAS_MEDIA
   float from[BATCH];
   for (u32 i = 0; i < count; ++i) {
-    waiting[i] = i;
     from[i] = 0.0f;
     met[i].absorbed = (float3)(1.0f);
   }
@@ -92,7 +92,7 @@ static inline void next_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* r
     count = left;
   }
 #else
-  nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, 0, count, coherent, false, hits, counts);
+  nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, count, coherent, false, hits, counts);
   for (u32 i = 0; i < count; ++i) {
     met[i].hit = hits[i];
     met[i].before = 0;

@@ -1,0 +1,178 @@
+// Distance fields as objects of a scene: closed forms, and the same pictures as exact solids make.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "base/image_compare.h"
+#include "catch.h"
+#include "devices.h"
+#include "scene/json/parse.h"
+#include "scene/read/scene_reader.h"
+#include "scenes.h"
+#include "sdf_testing.h"
+
+using namespace sundog;
+
+namespace {
+
+SceneDescription scene_of_text(const std::string& text) {
+  const nlohmann::json document = parse_json(text, "test.json");
+  const JsonContext context{"test.json"};
+  return read_scene(JsonValue(document, context));
+}
+
+/// A small scene with a table, a box and three materials around `object`.
+SceneDescription still_life(const std::string& object) {
+  return scene_of_text(R"({"image": {"width": 96, "height": 96,
+      "background": {"bottom": [0.3, 0.35, 0.4], "top": [0.6, 0.75, 0.95]}},
+    "camera": {"position": [0.6, 1.0, 3.4], "target": [0, 0, 0], "fov": 40},
+    "lights": [{"type": "ambient", "intensity": 0.4}, {"type": "point", "position": [3, 5, 2]}],
+    "materials": {"glass": {"type": "dielectric", "ior": 1.5, "specular": 0.3},
+      "mirror": {"color": [0.1, 0.1, 0.1], "reflection": 0.8}, "matte": {"color": [0.8, 0.5, 0.3]},
+      "floor": {"color": {"checker": [[0.1, 0.1, 0.1], [0.7, 0.7, 0.7]]}}},
+    "objects": [{"type": "plane", "point": [0, -1.2, 0], "material": "floor"},
+      {"type": "box", "half": [0.3, 0.3, 0.3], "center": [-1.3, -0.9, 0.2], "material": "matte"}, )" +
+                       object + "]}");
+}
+
+/// A glass ball of radius 1 about the origin with ior 1 that absorbs red, as a field in the given interval,
+/// and a white glow behind it.
+SceneDescription absorbing_ball(const std::string& interval) {
+  return scene_of_text(fmt::format(R"({{"image": {{"width": 1, "height": 1, "background": [1, 1, 1]}},
+    "camera": {{"position": [0, 0, 5], "target": [0, 0, 0], "fov": 0.001}},
+    "media": {{"ink": {{"ior": 1, "absorption": [0.7, 0, 0]}}}},
+    "materials": {{"ink": {{"type": "dielectric", "medium": "ink"}}}},
+    "objects": [{{"type": "formula", "distance": "length(p) - 1", "interval": {}, "material": "ink"}}]}})",
+                                   interval));
+}
+
+bool same_bits(const Image& a, const Image& b) {
+  return a.data.size() == b.data.size() &&
+         std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("a distance field looks like the exact solid") {
+  struct Pair {
+    std::string solid, field;
+  };
+  const Pair pair = GENERATE(
+      Pair{R"("type": "sphere", "radius": 0.9)", R"("type": "formula", "distance": "length(p) - 0.9")"},
+      Pair{R"("type": "torus", "major_radius": 0.8, "minor_radius": 0.3,
+              "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 40}}])",
+           R"("type": "formula", "distance": "length(vec3(length(vec3(p.x, 0, p.z)) - 0.8, p.y, 0)) - 0.3",
+              "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 40}}])"},
+      Pair{R"("type": "box", "half": [0.6, 0.5, 0.7])",  // all of it the interval's cut
+           R"("type": "formula", "distance": "length(p) - 5",
+              "interval": {"min": [-0.6, -0.5, -0.7], "max": [0.6, 0.5, 0.7]})"});
+  const std::string material = GENERATE("matte", "mirror", "glass");
+  const auto with = [&](const std::string& object) {
+    return still_life(fmt::format(R"({{{}, "material": "{}"}})", object, material));
+  };
+  for (const DeviceInfo& device : test_devices()) {
+    // One program has it all: slow compilers get that one alone.
+    if (!is_quick(device) && !(material == "glass" && pair.solid.find("sphere") != std::string::npos))
+      continue;
+    DYNAMIC_SECTION(pair.solid << material << device.label()) {
+      const RenderResult solid = scenes::render_on(device, with(pair.solid));
+      const RenderResult field = scenes::render_on(device, with(pair.field));
+      const ImageDifference difference = compare_images(solid.image, field.image, 0.02);
+      CHECK(field.counts[COUNT_MARCH_STEPS] > 2000);
+      CHECK(field.counts[COUNT_MARCH_LIMIT] < 50);
+      CHECK(field.counts[COUNT_SHADOW_LIMIT] == 0);
+      CHECK(difference.mean < 1e-3);
+      CHECK(difference.over_tolerance < 35);  // of 9216: silhouettes
+    }
+  }
+}
+
+TEST_CASE("light through a field is absorbed over the length inside, as far as the interval reaches") {
+  struct Cut {
+    std::string interval;
+    double length;
+  };
+  const Cut cut = GENERATE(Cut{R"({"min": [-2, -2, -2], "max": [2, 2, 2]})", 2},
+                           Cut{R"({"min": [-2, -2, -0.25], "max": [2, 2, 2]})", 1.25},
+                           Cut{R"({"min": [-2, -2, -0.25], "max": [2, 2, 0.5]})", 0.75});
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label() << cut.length) {
+      const glm::dvec3 seen = scenes::pixel_on(device, absorbing_ball(cut.interval));
+      CHECK(seen.x == Approx(std::exp(-0.7 * cut.length)).epsilon(2e-4));
+      CHECK(seen.y == 1);  // nothing is lost at interfaces between equal indices
+    }
+}
+
+TEST_CASE("a camera inside a field sees out through what is left of its medium") {
+  SceneDescription scene = absorbing_ball(R"({"min": [-2, -2, -2], "max": [2, 2, 2]})");
+  scene.camera.position = {0, 0, 0.5};
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      CHECK(scenes::pixel_on(device, scene).x == Approx(std::exp(-0.7 * 1.5)).epsilon(2e-4));
+    }
+}
+
+TEST_CASE("fields and solids shadow each other") {
+  const auto scene = [](const std::string& above, const std::string& below) {
+    return scene_of_text(R"({"image": {"width": 1, "height": 1},
+      "camera": {"position": [0, 0.5, 5], "target": [0, -0.9999, 0], "fov": 0.001},
+      "lights": [{"type": "directional", "direction": [0, -1, 0]}],
+      "materials": {"m": {"color": [1, 1, 1], "diffuse": 1, "ambient": 0}},
+      "objects": [)" + above +
+                         ", " + below + "]}");
+  };
+  const auto placed = [](const char* what, double y) {
+    return fmt::format(R"({{{}, "material": "m", "transform": [{{"translate": [0, {}, 0]}}]}})", what, y);
+  };
+  const auto field = [&](double y) { return placed(R"("type": "formula", "distance": "length(p) - 1")", y); };
+  const auto ball = [&](double y) { return placed(R"("type": "sphere", "radius": 1)", y); };
+  const std::string floor = R"({"type": "plane", "point": [0, -1, 0], "material": "m"})";
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      CHECK(scenes::pixel_on(device, scene(field(3), floor)).x == 0);
+      CHECK(scenes::pixel_on(device, scene(ball(3), field(-2))).x == 0);
+      CHECK(scenes::pixel_on(device, scene(field(3), field(-2))).x == 0);
+      CHECK(scenes::pixel_on(device, scene(field(-5), floor)).x == Approx(1).epsilon(1e-5));
+      // The top of the ball, seen slantwise: lit by the cosine of its slope there.
+      CHECK(scenes::pixel_on(device, scene(ball(-9), field(-2))).x > 0.99);
+    }
+}
+
+TEST_CASE("a named field placed twice is two of them") {
+  const std::string head =
+      R"({"fields": {"ball": {"field": {"type": "formula", "distance": "length(p) - 0.5"},
+    "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}}},)";
+  const auto scene = [&](const std::string& fields, const std::string& one, const std::string& two) {
+    return scene_of_text(fields + R"("image": {"width": 64, "height": 48},
+      "camera": {"position": [0, 1, 5], "target": [0, 0, 0]},
+      "lights": [{"type": "directional", "direction": [-1, -1, -0.3]}],
+      "materials": {"m": {"color": [1, 1, 1]}}, "objects": [)" +
+                         fmt::format(R"({{{}, "material": "m", "transform": [{{"translate": [-0.8, 0, 0]}}]}},
+        {{{}, "material": "m", "transform": [{{"scale": [1.5, 1, 1]}}, {{"translate": [0.8, 0, 0]}}]}}]}})",
+                                     one, two));
+  };
+  const std::string field = R"("type": "field", "field": "ball")",
+                    solid = R"("type": "sphere", "radius": 0.5)";
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      const Image fields = scenes::render_on(device, scene(head, field, field)).image;
+      const Image solids = scenes::render_on(device, scene("{", solid, solid)).image;
+      CHECK(compare_images(solids, fields, 0.02).over_tolerance < 20);
+    }
+}
+
+TEST_CASE("a scene with fields has the same bits for every work-group and tile size") {
+  const SceneDescription scene = still_life(
+      R"({"type": "fractal", "formula": "julia", "material": "glass", "occlusion": 0.1, "soft_shadow": 8,
+          "glow": {"color": [0.1, 0.2, 0.3]}},
+         {"type": "fractal", "formula": "menger", "material": "mirror", "transform": [{"scale": 0.3},
+          {"translate": [0.9, -0.8, 0.9]}]})");
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      if (!is_quick(device)) continue;  // two minutes of Mesa's compiler
+      const RenderResult reference = scenes::render_on(device, scene);
+      REQUIRE(reference.counts[COUNT_REFRACTION] > 0);
+      for (const std::size_t group : {std::size_t{1}, std::size_t{5}, std::size_t{16}}) {
+        RenderOptions options;
+        options.work_group = {WorkGroup::Kind::fixed, group, 1};
+        options.tile = group == 5 ? 12 : 40;
+        CHECK(same_bits(scenes::render_on(device, scene, options).image, reference.image));
+      }
+    }
+}
