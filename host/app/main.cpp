@@ -1,5 +1,6 @@
 // sundog's command line: the command does its work; what goes wrong becomes one line and an exit status here.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -11,6 +12,7 @@
 #include "app/devices_command.h"
 #include "app/options.h"
 #include "base/error.h"
+#include "render/render.h"
 
 namespace sundog {
 namespace {
@@ -39,11 +41,7 @@ int fail(ExitStatus status, std::string message) {
   return status;
 }
 
-}  // namespace
-}  // namespace sundog
-
-int main(int argc, char** argv) {
-  using namespace sundog;
+int status_of(int argc, char** argv) {
   try {
     return run_command_line(argc, argv);
   } catch (const UsageError& error) {
@@ -61,4 +59,15 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return fail(exit_failure, error.what());
   }
+}
+
+}  // namespace
+}  // namespace sundog
+
+int main(int argc, char** argv) {
+  const int status = sundog::status_of(argc, argv);
+  if (sundog::threads_left_behind() == 0) return status;
+  // A driver that is still at work would find its own globals destroyed by a return.
+  std::fflush(nullptr);
+  ::_exit(status);
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -52,6 +53,25 @@ WorkGroup parse_work_group(const std::string& text) {
     return {fixed, static_cast<std::size_t>(pair->first), static_cast<std::size_t>(pair->second)};
   throw UsageError(
       fmt::format("--work-group {}: wanted a size (64), width x height (8x8), auto or driver", text));
+}
+
+Split parse_split(const std::string& text) {
+  using enum Split::Kind;
+  if (text == "dynamic") return {dynamic, {}};
+  if (text == "static") return {fixed, {}};
+  Split split{fixed, {}};
+  double sum = 0;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::optional<double> share = number(std::string_view(text).substr(at, end - at), 0.0, 1e9);
+    if (!share)
+      throw UsageError(fmt::format("--split {}: wanted dynamic, static, or shares such as 3,1", text));
+    split.shares.push_back(*share);
+    sum += *share;
+    at = end + 1;
+  }
+  if (sum <= 0) throw UsageError(fmt::format("--split {}: one share at least must be more than 0", text));
+  return split;
 }
 
 double parse_tolerance(const std::string& text) {

@@ -14,6 +14,9 @@ int parse_number(const char* option, const std::string& text, int low, int high)
 /// "64", "8x8", "auto" or "driver".
 WorkGroup parse_work_group(const std::string& text);
 
+/// "dynamic", "static", or shares such as "3,1".
+Split parse_split(const std::string& text);
+
 /// A finite number, 0 or more.
 double parse_tolerance(const std::string& text);
 

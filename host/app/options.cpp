@@ -20,7 +20,7 @@ constexpr const char* more_help = "(sundog --help tells more)";
 /// The options of `render` as typed, before they are checked.
 struct TypedRender {
   RenderCommand command;
-  std::string size, samples, max_depth, integrator, work_group = "auto", tile;
+  std::string size, samples, max_depth, integrator, work_group = "auto", split = "dynamic", tile;
 };
 
 /// The options that only shorten a --set come first, so that a --set of the same value wins.
@@ -43,6 +43,7 @@ RenderCommand checked(const TypedRender& typed) {
   RenderCommand command = typed.command;
   command.overrides = collect_overrides(typed);
   command.work_group = parse_work_group(typed.work_group);
+  command.split = parse_split(typed.split);
   if (!typed.tile.empty()) command.tile = parse_number("--tile", typed.tile, 4, 65536);
   if (command.devices.empty()) command.devices = devices_of_environment();
   for (const std::string& name : command.aovs)
@@ -65,7 +66,11 @@ void add_render(CLI::App& root, Command& chosen) {
   value(app, "--integrator", "NAME", typed->integrator, "how light is followed: whitted");
   values(app, "--set", "POINTER=VALUE", command.overrides, "change the scene, as in /camera/fov=30");
   value(app, "--work-group", "SIZE", typed->work_group, "local size: N, WxH, auto or driver");
-  value(app, "--tile", "N", typed->tile, "edge of the tiles in pixels");
+  value(app, "--split", "HOW", typed->split,
+        "share the frame among devices: dynamic (by measured speed), static (fixed parts by estimated speed) "
+        "or "
+        "fixed shares such as 3,1");
+  value(app, "--tile", "N", typed->tile, "edge of the tiles in pixels (default: by measured speed)");
   value(app, "--stats", "FILE", command.stats, "write rays, times and devices to this JSON file");
   values(app, "--aov", "NAME", command.aovs,
          fmt::format("an extra image in the .exr: {}", fmt::join(aov_names(), ", ")));

@@ -16,6 +16,7 @@ struct RenderCommand {
   std::vector<std::string> devices;    // --device SPECs, or those of SUNDOG_DEVICE
   std::vector<std::string> overrides;  // "JSON_POINTER=VALUE", those of --size, --samples... among them
   WorkGroup work_group;
+  Split split;
   int tile = 0;
   std::string stats, resume;  // files; empty: none
   std::vector<std::string> aovs;

@@ -56,6 +56,7 @@ SceneDescription load(const RenderCommand& command) {
 RenderOptions render_options(const RenderCommand& command) {
   RenderOptions options;
   options.work_group = command.work_group;
+  options.split = command.split;
   options.tile = command.tile;
   options.aovs = command.aovs;
   options.resume = command.resume;
@@ -79,10 +80,7 @@ double write(const RenderCommand& command, const RenderResult& result) {
 
 void warn(const RenderResult& result) {
   print_warnings(losses(result.counts));
-  for (const DeviceReport& report : result.devices)
-    for (const std::string& message : report.messages)
-      fmt::print(stderr, "sundog: warning: {}{}\n", message,
-                 report.retired ? " (the device was retired)" : "");
+  for (const DeviceReport& report : result.devices) print_warnings(failures_text(report));
 }
 
 void summarise(const RenderCommand& command, const RenderResult& result, const TimeLedger& times) {
@@ -113,7 +111,8 @@ int render_command(const RenderCommand& command) {
   TimeLedger times;
   const SceneDescription scene = timed(times.load, [&] { return load(command); });
   print_warnings(scene.warnings);
-  const CompiledScene flat = timed(times.compile_scene, [&] { return compile(scene); });
+  const auto flat =
+      timed(times.compile_scene, [&] { return std::make_shared<const CompiledScene>(compile(scene)); });
   const std::vector<DeviceInfo> devices = select_devices(enumerate_devices(), command.devices);
 
   ProgressBar bar(!command.quiet);
@@ -131,7 +130,7 @@ int render_command(const RenderCommand& command) {
   times.total = clock.seconds();
   if (!command.stats.empty()) {
     using nlohmann::json;
-    const json stats = stats_json(command, scene, flat, result, times);
+    const json stats = stats_json(command, scene, *flat, result, times);
     write_file(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   }
   warn(result);

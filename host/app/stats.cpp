@@ -33,11 +33,17 @@ json device_json(const DeviceReport& report) {
           {"driver", report.info.driver},
           {"sub_units", report.info.sub_units},
           {"tiles", report.tiles},
+          {"outrun", report.outrun},
+          {"pixels", report.pixels},
+          {"share", report.share},
           {"failures", report.failures},
+          {"ready", report.ready},
           {"retired", report.retired},
+          {"abandoned", report.abandoned},
           {"busy_seconds", report.busy_seconds},
           {"kernels_cached", report.kernels_cached},
           {"messages", report.messages},
+          {"notes", report.notes},
           {"kernels", kernels}};
 }
 
@@ -92,6 +98,7 @@ json stats_json(const RenderCommand& command, const SceneDescription& scene, con
           {"scene", scene_figures(scene, flat)},
           {"image", image_json(command, scene, result)},
           {"devices", devices},
+          {"efficiency", result.efficiency},
           {"rays", rays_json(result.counts)},
           {"counters", counters_json(result.counts)},
           {"seconds", seconds_json(times)},
@@ -127,6 +134,41 @@ std::vector<std::string> losses(const RayCounts& counts) {
   return sentences;
 }
 
+std::vector<std::string> failures_text(const DeviceReport& report) {
+  std::vector<std::string> sentences;
+  // A driver that fails may fail many times in the same way.
+  for (std::size_t i = 0; i < report.messages.size(); ++i) {
+    const std::string& message = report.messages[i];
+    std::size_t times = 1;
+    for (; i + 1 < report.messages.size() && report.messages[i + 1] == message; ++i) ++times;
+    sentences.push_back(times > 1 ? fmt::format("{} ({} times)", message, times) : message);
+  }
+  if (report.retired && !sentences.empty()) sentences.back() += "; the device was retired";
+  return sentences;
+}
+
+namespace {
+
+std::string device_text(const DeviceReport& report) {
+  std::string text = fmt::format("  {}: {:.1f} % of the pixels, {} tiles in {:.3f} s", report.info.label(),
+                                 100 * report.share, report.tiles, report.busy_seconds);
+  if (report.outrun > 0) text += fmt::format(", {} outrun by others", report.outrun);
+  if (report.ready)
+    text += report.kernels_cached ? ", kernels from the cache" : ", kernels compiled";
+  else if (!report.retired)
+    text += ", not ready before the end";
+  if (report.retired) text += ", retired";
+  text += "\n";
+  for (const std::string& note : report.notes) text += fmt::format("    {}\n", note);
+  for (const auto& [name, kernel] : report.kernels)
+    text +=
+        fmt::format("    {:<20} {:6} launches {:10.1f} ms  work-group {}x{}\n", name, kernel.launches,
+                    kernel.device_ms > 0 ? kernel.device_ms : kernel.host_ms, kernel.local_x, kernel.local_y);
+  return text;
+}
+
+}  // namespace
+
 std::string details_text(const RenderResult& result, const TimeLedger& times) {
   std::string text;
   for (const auto& [step, seconds] : entries(times))
@@ -134,14 +176,9 @@ std::string details_text(const RenderResult& result, const TimeLedger& times) {
   for (const json& group : {rays_json(result.counts), counters_json(result.counts)})
     for (const auto& [kind, count] : group.items())
       text += fmt::format("  {:<22} {:10}\n", kind, count.get<std::uint64_t>());
-  for (const DeviceReport& report : result.devices) {
-    text += fmt::format("  {}: {} tiles in {:.3f} s, kernels {}\n", report.info.label(), report.tiles,
-                        report.busy_seconds, report.kernels_cached ? "from the cache" : "compiled");
-    for (const auto& [name, kernel] : report.kernels)
-      text += fmt::format("    {:<20} {:6} launches {:10.1f} ms  work-group {}x{}\n", name, kernel.launches,
-                          kernel.device_ms > 0 ? kernel.device_ms : kernel.host_ms, kernel.local_x,
-                          kernel.local_y);
-  }
+  for (const DeviceReport& report : result.devices) text += device_text(report);
+  if (result.devices.size() > 1)
+    text += fmt::format("  {:<22} {:10.1f} %\n", "efficiency", 100 * result.efficiency);
   return text;
 }
 

@@ -30,6 +30,9 @@ std::uint64_t ray_count(const RayCounts& counts);
 /// One sentence for each kind of loss that a picture may suffer (full stacks, dropped samples); empty: none.
 std::vector<std::string> losses(const RayCounts& counts);
 
+/// A sentence for each failure of the device that others, or another try, made good.
+std::vector<std::string> failures_text(const DeviceReport& report);
+
 /// Many lines: the times, the rays, and each device's kernels.
 std::string details_text(const RenderResult& result, const TimeLedger& times);
 

@@ -10,16 +10,25 @@ FrameRunner::FrameRunner(const DeviceInfo& device, const CompiledScene& scene, c
     : device_(device),
       options_(options),
       film_(static_cast<int>(scene.info.width), static_cast<int>(scene.info.height), !options.aovs.empty()) {
-  const int edge = options.tile > 0 ? options.tile : default_tile_edge(film_.width, film_.height, 1);
-  tiles_ = cut_tiles(film_.width, film_.height, edge);
-  renderer_ = std::make_unique<TileRenderer>(device_, scene, options_, times_);
+  renderer_ = std::make_unique<TileRenderer>(device_, scene, options_, times_, watch_);
+}
+
+std::vector<Tile> FrameRunner::tiles() const {
+  if (options_.tile > 0) return cut_tiles(film_.width, film_.height, options_.tile);
+  return {{0, 0, film_.width, film_.height}};
 }
 
 double FrameRunner::run() {
   const Stopwatch clock;
   counts_.fill(0);
-  for (const Tile& tile : tiles_) {
-    const TileResult result = renderer_->render(tile);
+  WaitingTiles waiting(tiles());
+  while (waiting.pixels() > 0) {
+    const std::uint64_t wanted = guided_pixels(std::span(&speed_, 1), 0, waiting.pixels());
+    const Tile tile = options_.tile > 0 ? *waiting.take_whole() : *waiting.take(wanted);
+    const Stopwatch busy;
+    const TileResult result = renderer_->render(tile, {});
+    speed_.sample = static_cast<double>(pixel_count(tile));
+    speed_.measured = speed_.sample / busy.seconds();
     film_.put(result.tile, result.sums, result.weights, result.aovs);
     for (std::size_t i = 0; i < COUNTERS; ++i) counts_[i] += result.counts[i];
   }

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "render/film.h"
+#include "render/plan.h"
 #include "render/render.h"
 #include "render/tile_renderer.h"
 
@@ -34,9 +35,12 @@ class FrameRunner {
   const RenderTimes& times() const { return times_; }
 
  private:
+  std::vector<Tile> tiles() const;
+
   Device device_;
   RenderOptions options_;
-  std::vector<Tile> tiles_;
+  LaunchWatch watch_;
+  DeviceSpeed speed_;
   Film film_;
   RayCounts counts_{};
   RenderTimes times_;

@@ -92,6 +92,11 @@ std::string cl_status_name(int status) {
   return fmt::format("OpenCL status {}", status);
 }
 
+bool is_out_of_resources(int status) {
+  return status == CL_MEM_OBJECT_ALLOCATION_FAILURE || status == CL_OUT_OF_RESOURCES ||
+         status == CL_OUT_OF_HOST_MEMORY;
+}
+
 void check_cl(int status, const DeviceInfo& device, const std::string& what) {
   if (status == CL_SUCCESS) return;
   throw DeviceError(fmt::format("{}: {}: {}", device.label(), what, cl_status_name(status)), status);

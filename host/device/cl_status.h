@@ -9,6 +9,9 @@ struct DeviceInfo;
 /// "CL_OUT_OF_RESOURCES"; "OpenCL status -9999" for a code that no header names.
 std::string cl_status_name(int status);
 
+/// CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_RESOURCES or CL_OUT_OF_HOST_MEMORY: less at a time may work.
+bool is_out_of_resources(int status);
+
 /// Throws DeviceError "0:1 platform / device: WHAT: CL_OUT_OF_RESOURCES" unless `status` is CL_SUCCESS.
 void check_cl(int status, const DeviceInfo& device, const std::string& what);
 

@@ -40,14 +40,18 @@ bool Film::is_done(const Tile& tile) const {
   return true;
 }
 
-void Film::put(const Tile& tile, std::span<const float4> tile_sums, std::span<const float> tile_weights,
-               std::span<const float4> tile_aovs) {
+std::uint64_t Film::put(const Tile& tile, std::span<const float4> tile_sums,
+                        std::span<const float> tile_weights, std::span<const float4> tile_aovs) {
   copy_rows(*this, tile, 1, tile_sums, sums);
   copy_rows(*this, tile, 1, tile_weights, weights);
   if (!tile_aovs.empty()) copy_rows(*this, tile, 3, tile_aovs, aovs);
-  for (int y = tile.y; y < tile.y + tile.height; ++y)
-    std::fill_n(done.begin() + static_cast<std::ptrdiff_t>(offset(*this, tile.x, y)), tile.width,
-                std::uint8_t{1});
+  std::uint64_t fresh = 0;
+  for (int y = tile.y; y < tile.y + tile.height; ++y) {
+    const auto row = done.begin() + static_cast<std::ptrdiff_t>(offset(*this, tile.x, y));
+    fresh += static_cast<std::uint64_t>(std::count(row, row + tile.width, std::uint8_t{0}));
+    std::fill_n(row, tile.width, std::uint8_t{1});
+  }
+  return fresh;
 }
 
 Image Film::develop() const {

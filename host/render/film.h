@@ -29,9 +29,9 @@ struct Film {
   Film(int width, int height, bool with_aovs);
   bool is_done(const Tile& tile) const;
   /// Puts a finished tile's pixels, row by row, in their places. Spans as long as the tile (aovs: three
-  /// times, or empty).
-  void put(const Tile& tile, std::span<const float4> tile_sums, std::span<const float> tile_weights,
-           std::span<const float4> tile_aovs);
+  /// times, or empty). Returns how many of them were not done before.
+  std::uint64_t put(const Tile& tile, std::span<const float4> tile_sums, std::span<const float> tile_weights,
+                    std::span<const float4> tile_aovs);
   /// The mean of the samples; alpha is coverage; pixels that are not done are 0.
   Image develop() const;
   /// The named AOV (one of aov_names()); pixels that are not done are 0.

@@ -1,110 +1,19 @@
 #include "render/render.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <exception>
-#include <mutex>
-#include <thread>
 
-#include "base/clock.h"
 #include "base/error.h"
-#include "render/film.h"
+#include "render/device_server.h"
+#include "render/frame.h"
 #include "render/hash.h"
-#include "render/tile_queue.h"
-#include "render/tile_renderer.h"
-#include "render/tiles.h"
 
 namespace sundog {
 namespace {
 
-constexpr std::uint64_t failures_until_retired = 3;
-
-// What the devices' threads share. Everything behind the mutex but the queue, which has its own.
-struct Frame {
-  const CompiledScene& scene;
-  const RenderOptions& options;
-  TileQueue queue;
-  std::mutex mutex;
-  Film film;
-  RenderResult result;
-  std::exception_ptr last_error;
-  std::size_t working;  // devices that are not retired
-  std::uint64_t pixels_done;
-  Stopwatch clock;
-  bool timed = false;  // the first device to be ready has set the frame's build and upload times
-  double readback = 0;
-};
-
-void report_progress(Frame& frame) {
-  if (!frame.options.on_progress) return;
-  const auto total = static_cast<std::uint64_t>(frame.film.done.size());
-  frame.options.on_progress({frame.pixels_done, total, frame.clock.seconds()});
-}
-
-void keep_tile(Frame& frame, const TileResult& tile_result) {
-  const std::lock_guard lock(frame.mutex);
-  frame.film.put(tile_result.tile, tile_result.sums, tile_result.weights, tile_result.aovs);
-  for (std::size_t i = 0; i < COUNTERS; ++i) frame.result.counts[i] += tile_result.counts[i];
-  frame.pixels_done += static_cast<std::uint64_t>(tile_result.tile.width) *
-                       static_cast<std::uint64_t>(tile_result.tile.height);
-  report_progress(frame);
-}
-
-// Takes tiles until there are none, the frame is stopped, or the device has failed too often.
-void work(Frame& frame, TileRenderer& renderer, DeviceReport& report) {
-  while (const std::optional<Tile> tile = frame.queue.take()) {
-    const Stopwatch busy;
-    try {
-      const TileResult tile_result = renderer.render(*tile);
-      report.busy_seconds += busy.seconds();
-      keep_tile(frame, tile_result);
-      if (tile_result.tile != *tile) {  // stopped on the way
-        frame.queue.close();
-        return;
-      }
-      report.tiles += 1;
-      frame.queue.finished();
-    } catch (const DeviceError& error) {
-      frame.queue.give_back(*tile);
-      report.messages.push_back(error.what());
-      if (++report.failures >= failures_until_retired) throw;
-    }
-  }
-}
-
-void serve(Frame& frame, DeviceReport& report) {
-  try {
-    Device device(report.info);
-    RenderTimes times;
-    TileRenderer renderer(device, frame.scene, frame.options, times);
-    report.kernels_cached = times.cached;
-    {
-      const std::lock_guard lock(frame.mutex);
-      if (!frame.timed) frame.result.times = times;
-      frame.timed = true;
-    }
-    work(frame, renderer, report);
-    report.kernels = device.times();
-    const std::lock_guard lock(frame.mutex);
-    frame.readback = std::max(frame.readback, renderer.readback_seconds());
-  } catch (const std::exception& error) {
-    const std::lock_guard lock(frame.mutex);
-    report.retired = true;
-    if (report.messages.empty() || report.messages.back() != error.what())
-      report.messages.push_back(error.what());
-    frame.last_error = std::current_exception();
-    if (--frame.working == 0) frame.queue.close();
-  }
-}
-
-std::vector<Tile> plan_tiles(const RenderOptions& options, const Film& film, std::size_t devices) {
-  const int width = film.width, height = film.height;
-  const int edge = options.tile > 0 ? options.tile : default_tile_edge(width, height, devices);
-  std::vector<Tile> tiles = cut_tiles(width, height, edge);
-  std::erase_if(tiles, [&](const Tile& tile) { return film.is_done(tile); });
-  return tiles;
-}
+using Scene = std::shared_ptr<const CompiledScene>;
 
 void check_aovs(const std::vector<std::string>& names) {
   for (const std::string& name : names)
@@ -113,49 +22,146 @@ void check_aovs(const std::vector<std::string>& names) {
           fmt::format("no AOV is called '{}'; there are {}", name, fmt::join(aov_names(), ", ")));
 }
 
-// Gathers the finished film, or what there is of it, and keeps the checkpoint in step.
-void finish_frame(Frame& frame, std::uint64_t key) {
-  RenderResult& result = frame.result;
-  result.complete =
-      std::all_of(frame.film.done.begin(), frame.film.done.end(), [](auto d) { return d != 0; });
-  result.image = frame.film.develop();
-  for (const std::string& name : frame.options.aovs) result.aovs[name] = frame.film.develop_aov(name);
-  const double total = frame.clock.seconds();
+void check_shares(const Split& split, const std::vector<DeviceInfo>& devices) {
+  if (split.shares.empty() || split.shares.size() == devices.size()) return;
+  std::vector<std::string> labels;
+  for (const DeviceInfo& device : devices) labels.push_back(device.label());
+  throw UsageError(fmt::format("--split {}: {} shares for {} devices ({}): give one share a device",
+                               fmt::join(split.shares, ","), split.shares.size(), devices.size(),
+                               fmt::join(labels, "; ")));
+}
+
+/// The rows that each list of tiles covers: all of them, or a device's part of a fixed split.
+std::vector<RowRange> row_ranges(const Split& split, int height, const std::vector<DeviceInfo>& devices) {
+  if (split.kind == Split::Kind::dynamic) return {{0, height}};
+  std::vector<double> shares = split.shares;
+  if (shares.empty())
+    for (const DeviceInfo& device : devices) shares.push_back(device.estimate);
+  return divide_rows(height, shares);
+}
+
+TilePlan plan_tiles(const RenderOptions& options, const Film& film, const std::vector<DeviceInfo>& devices) {
+  TilePlan plan;
+  plan.whole = options.tile > 0;
+  for (const RowRange& range : row_ranges(options.split, film.height, devices)) {
+    std::vector<Tile> tiles;
+    for (const Tile& open : unfinished_tiles(film, {0, range.first, film.width, range.count})) {
+      if (!plan.whole) {
+        tiles.push_back(open);
+        continue;
+      }
+      for (Tile tile : cut_tiles(open.width, open.height, options.tile)) {
+        tile.x += open.x;
+        tile.y += open.y;
+        tiles.push_back(tile);
+      }
+    }
+    plan.lists.emplace_back(std::move(tiles));
+  }
+  return plan;
+}
+
+/// A film that holds what a checkpoint has of the frame.
+Film begin_film(const CompiledScene& scene, const RenderOptions& options, std::uint64_t key) {
+  Film film(static_cast<int>(scene.info.width), static_cast<int>(scene.info.height), !options.aovs.empty());
+  if (!options.resume.empty() && std::filesystem::exists(options.resume))
+    read_checkpoint(options.resume, film, key);
+  return film;
+}
+
+std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<DeviceInfo>& devices,
+                                   const RenderOptions& options, std::uint64_t key) {
+  Film film = begin_film(*scene, options, key);
+  std::vector<DeviceSpeed> speeds(devices.size());
+  TilePlan plan = plan_tiles(options, film, devices);
+  const auto done = static_cast<std::uint64_t>(
+      std::count_if(film.done.begin(), film.done.end(), [](auto d) { return d != 0; }));
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    speeds[i].estimate = devices[i].estimate;
+    speeds[i].processor = devices[i].type == "cpu" ? 0 : -1;
+  }
+  auto frame = std::make_shared<Frame>(options, std::move(film), std::move(plan), std::move(speeds));
+  for (const DeviceInfo& device : devices) {
+    Frame::Server server;
+    server.server = std::make_shared<DeviceServer>(device, scene, frame->options);
+    server.report.info = device;
+    frame->servers.push_back(std::move(server));
+  }
+  frame->pixels_done = done;
+  return frame;
+}
+
+std::vector<DeviceReport> reports(Frame& frame) {
+  std::vector<DeviceReport> result;
+  const double pixels = static_cast<double>(std::max<std::size_t>(1, frame.film.done.size()));
+  for (std::size_t i = 0; i < frame.servers.size(); ++i) {
+    DeviceReport report = frame.servers[i].report;
+    report.busy_seconds = frame.queue.work(i).busy_seconds;
+    report.share = static_cast<double>(report.pixels) / pixels;
+    result.push_back(std::move(report));
+  }
+  return result;
+}
+
+double frame_efficiency(const Frame& frame) {
+  std::vector<DeviceWork> work;
+  for (std::size_t i = 0; i < frame.servers.size(); ++i) work.push_back(frame.queue.work(i));
+  return efficiency(work);
+}
+
+/// Keeps what an interrupted frame has; a disk that is full must not take the image along.
+void keep_checkpoint(const RenderOptions& options, RenderResult& result) {
+  if (options.resume.empty() || result.complete) return;
+  try {
+    write_checkpoint(options.resume, result.film, result.key);
+  } catch (const IoError& error) {
+    result.checkpoint_error = error.what();
+  }
+}
+
+/// Gathers the finished film, or what there is of it.
+RenderResult finish_frame(Frame& frame, std::uint64_t key) {
+  const std::lock_guard lock(frame.mutex);
+  RenderResult result;
+  result.devices = reports(frame);
+  result.film = std::move(frame.film);
+  result.key = key;
+  result.complete = frame.queue.complete();
+  result.efficiency = frame_efficiency(frame);
+  result.counts = frame.counts;
+  result.image = result.film.develop();
+  for (const std::string& name : frame.options.aovs) result.aovs[name] = result.film.develop_aov(name);
+  result.times = frame.times;
   result.times.readback = frame.readback;
-  result.times.render =
-      std::max(0.0, total - result.times.build_kernels - result.times.upload - frame.readback);
-  if (!frame.options.resume.empty() && !result.complete)
-    write_checkpoint(frame.options.resume, frame.film, key);
+  result.times.render = std::max(
+      0.0, frame.clock.seconds() - result.times.build_kernels - result.times.upload - frame.readback);
+  keep_checkpoint(frame.options, result);
+  return result;
+}
+
+RenderResult render_frame(const Scene& scene, const std::vector<DeviceInfo>& devices,
+                          const RenderOptions& options, bool wait) {
+  check_aovs(options.aovs);
+  if (devices.empty()) throw DeviceError("no device to render on");
+  check_shares(options.split, devices);
+  const std::uint64_t key = options.resume.empty() ? 0 : hash_scene(*scene);
+  const std::shared_ptr<Frame> frame = begin_frame(scene, devices, options, key);
+  run_frame(frame, wait);
+  const bool stopped = options.stop && options.stop->load();
+  if (!frame->queue.complete() && !stopped && frame->last_error) std::rethrow_exception(frame->last_error);
+  return finish_frame(*frame, key);
 }
 
 }  // namespace
 
 RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options) {
-  check_aovs(options.aovs);
-  if (devices.empty()) throw DeviceError("no device to render on");
-  Film film(static_cast<int>(scene.info.width), static_cast<int>(scene.info.height), !options.aovs.empty());
-  const std::uint64_t key = options.resume.empty() ? 0 : hash_scene(scene);
-  if (!options.resume.empty() && std::filesystem::exists(options.resume))
-    read_checkpoint(options.resume, film, key);
-  std::vector<Tile> tiles = plan_tiles(options, film, devices.size());
-  const auto done = static_cast<std::uint64_t>(
-      std::count_if(film.done.begin(), film.done.end(), [](auto d) { return d != 0; }));
-  Frame frame{
-      scene, options, TileQueue(std::move(tiles)), {}, std::move(film), {}, {}, devices.size(), done, {},
-      false, 0};
-  std::vector<DeviceReport> reports(devices.size());
-  std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    reports[i].info = devices[i];
-    threads.emplace_back([&frame, &report = reports[i]] { serve(frame, report); });
-  }
-  for (std::thread& thread : threads) thread.join();
-  frame.result.devices = std::move(reports);
-  const bool stopped = options.stop && options.stop->load();
-  if (frame.queue.left() > 0 && !stopped && frame.last_error) std::rethrow_exception(frame.last_error);
-  finish_frame(frame, key);
-  return std::move(frame.result);
+  return render_frame(Scene(Scene(), &scene), devices, options, true);
+}
+
+RenderResult render(std::shared_ptr<const CompiledScene> scene, const std::vector<DeviceInfo>& devices,
+                    const RenderOptions& options) {
+  return render_frame(scene, devices, options, false);
 }
 
 }  // namespace sundog

@@ -6,12 +6,14 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/image.h"
 #include "compile/compiled_scene.h"
 #include "device/device.h"
+#include "render/film.h"
 
 namespace sundog {
 
@@ -21,6 +23,12 @@ struct WorkGroup {
   std::size_t x = 64, y = 1;
 };
 
+/// How tiles are shared among devices: by measured speed as they come, or in fixed parts, one a device.
+struct Split {
+  enum class Kind { dynamic, fixed } kind = Kind::dynamic;
+  std::vector<double> shares;  // of a fixed split; empty: by the devices' estimates
+};
+
 struct RenderProgress {
   std::uint64_t pixels_done = 0, pixels_total = 0;
   double seconds = 0;
@@ -28,9 +36,11 @@ struct RenderProgress {
 
 struct RenderOptions {
   WorkGroup work_group;
-  int tile = 0;                   // tile edge in pixels, rounded up to a multiple of 4; 0: chosen
+  int tile = 0;  // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
+  Split split;
   std::vector<std::string> aovs;  // of aov_names()
-  std::filesystem::path resume;   // checkpoint: read when it exists, written on interrupt; the caller removes it
+  std::filesystem::path
+      resume;  // checkpoint: read when it exists, written on interrupt; the caller removes it
   std::function<void(const RenderProgress&)> on_progress;  // called by one thread at a time
   const std::atomic<bool>* stop = nullptr;                 // set: finish what runs, return what there is
 };
@@ -41,9 +51,15 @@ using RayCounts = std::array<std::uint64_t, COUNTERS>;
 struct DeviceReport {
   DeviceInfo info;
   std::uint64_t tiles = 0, failures = 0;
-  double busy_seconds = 0;
-  bool retired = false;
-  std::vector<std::string> messages;
+  std::uint64_t pixels = 0;           // in the image from it
+  std::uint64_t outrun = 0;           // tiles that another device finished sooner
+  double busy_seconds = 0;            // on tiles that it finished
+  double share = 0;                   // of the frame's pixels
+  bool ready = false;                 // its kernels were built before the frame's end
+  bool retired = false;               // it failed too often, or hangs
+  bool abandoned = false;             // its driver still had not come back at the end
+  std::vector<std::string> messages;  // its failures
+  std::vector<std::string> notes;     // what it could live with
   std::map<std::string, KernelTimes> kernels;
   bool kernels_cached = false;
 };
@@ -60,16 +76,29 @@ struct RenderResult {
   bool complete = true;  // false: stopped before the end
   RayCounts counts{};
   std::vector<DeviceReport> devices;
+  double efficiency = 1;  // work done over what the devices could have done (plan.h)
   RenderTimes times;
+  Film film;                     // what the image was developed from
+  std::uint64_t key = 0;         // of the scene, for write_checkpoint; 0 without options.resume
+  std::string checkpoint_error;  // why the checkpoint of an interrupted frame could not be written
 };
 
 /// The AOVs `render` can make: depth, normal, position, albedo, object, material.
 const std::vector<std::string>& aov_names();
 
-/// Renders on all `devices` at once. Throws DeviceError when every device failed, BuildError when the kernels
-/// build on none, IoError for an unreadable checkpoint, UsageError for a checkpoint of another scene or
-/// unknown AOVs.
+/// Renders on all `devices` at once and waits for each of them to let go. Throws DeviceError when every
+/// device failed, BuildError when the kernels build on none, IoError for an unreadable checkpoint, UsageError
+/// for a checkpoint of another scene, unknown AOVs, or shares that do not fit the devices.
 RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options = {});
+
+/// The same, but does not wait for a driver that compiles, or is in a launch, when the frame is finished: its
+/// thread is left behind, holding the scene.
+RenderResult render(std::shared_ptr<const CompiledScene> scene, const std::vector<DeviceInfo>& devices,
+                    const RenderOptions& options = {});
+
+/// Threads left behind in drivers. While there are any, a process should end by _exit(): what static
+/// destructors and drivers' exit handlers take down is still in use.
+unsigned threads_left_behind();
 
 }  // namespace sundog

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "device/cl_status.h"
 #include "render/tiles.h"
 
 namespace sundog {
@@ -36,29 +37,34 @@ unsigned divide_up(unsigned a, unsigned b) { return (a + b - 1) / b; }
 }  // namespace
 
 TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options,
-                           RenderTimes& times)
+                           RenderTimes& times, LaunchWatch& watch)
     : device_(device),
       scene_(scene),
       options_(options),
       config_(make_kernel_config(scene, device.info())),
+      watch_(watch),
       next_size_(first_launch_size) {
   check_work_group(device.info(), config_, options.work_group);
   const Stopwatch building;
-  BuildReport report;
+  times.cached = true;
   render_ = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32,
-                         u32, u32, u32, u32>(
-      device.build("entry/render_whitted.cl", config_.defines, &report, config_.generated), "render_whitted");
-  times.cached = report.cached;
-  if (!options.aovs.empty()) {
+                         u32, u32, u32, u32>(build("entry/render_whitted.cl", times), "render_whitted");
+  if (!options.aovs.empty())
     first_surfaces_ = scene_kernel<Buffer<u32>, Buffer<float4>, u32, u32, u32, u32>(
-        device.build("entry/aov.cl", config_.defines, &report, config_.generated), "first_surfaces");
-    times.cached = times.cached && report.cached;
-  }
+        build("entry/aov.cl", times), "first_surfaces");
   times.build_kernels = building.seconds();
   const Stopwatch uploading;
   tables_ = upload_scene(device, scene);
   times.upload = uploading.seconds();
   if (scene.features.camera_inside) find_camera_media();
+}
+
+Program TileRenderer::build(const char* entry, RenderTimes& times) {
+  BuildReport report;
+  Program program = device_.build(entry, config_.defines, &report, config_.generated);
+  times.cached = times.cached && report.cached;
+  if (!report.note.empty()) notes_.push_back("no kernel cache: " + report.note);
+  return program;
 }
 
 void TileRenderer::find_camera_media() {
@@ -87,10 +93,11 @@ LaunchSize TileRenderer::launch_size(std::size_t columns, std::size_t rows) cons
 // Cuts the tile into bands of rows, and long rows of samples into several launches, by what the last launch
 // took. Samples are added one by one in the kernel, so where they are cut does not change a bit. Returns the
 // rows that have all their samples.
-unsigned TileRenderer::launch_samples(const Tile& tile, const std::atomic<bool>* stop) {
+unsigned TileRenderer::launch_samples(const Tile& tile, const StopFlags& flags) {
   const unsigned width = static_cast<unsigned>(tile.width), height = static_cast<unsigned>(tile.height);
   const unsigned samples = scene_.info.samples;
   const unsigned columns = divide_up(width, config_.tile_w);
+  least_size_ = static_cast<std::size_t>(width) * std::min(config_.tile_h, height);
   unsigned row = 0;
   while (row < height) {
     const std::size_t bands = std::min<std::size_t>(next_size_ / (width * config_.tile_h), height);
@@ -98,19 +105,21 @@ unsigned TileRenderer::launch_samples(const Tile& tile, const std::atomic<bool>*
     const unsigned rows = std::min(wanted, height - row), tile_rows = divide_up(rows, config_.tile_h);
     const std::size_t pixels = static_cast<std::size_t>(width) * rows;
     for (unsigned sample = 0; sample < samples;) {
-      if (stop && stop->load()) return row;
+      if (flags.set()) return row;
       const unsigned count =
           static_cast<unsigned>(std::clamp<std::size_t>(next_size_ / pixels, 1, samples - sample));
       const LaunchSize size = launch_size(columns, tile_rows);
+      last_size_ = pixels * count;
       const Stopwatch clock;
+      const WatchedLaunch watched(
+          watch_, launch_limit(pixel_seconds_ * static_cast<double>(last_size_), pixel_seconds_ <= 0));
       run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32, u32,
                        u32, u32, u32>(device_, render_, size, tables_, tables_.camera_media, film_, weights_,
                                       counters_, static_cast<u32>(tile.x), static_cast<u32>(tile.y) + row,
                                       width, rows, static_cast<u32>(size.x), columns * tile_rows, row * width,
                                       sample, count);
       device_.finish();
-      next_size_ = next_launch_size(pixels * count, clock.seconds(), launch_seconds, width * config_.tile_h,
-                                    std::size_t{1} << 30);
+      note_time(last_size_, clock.seconds());
       sample += count;
     }
     row += rows;
@@ -118,11 +127,17 @@ unsigned TileRenderer::launch_samples(const Tile& tile, const std::atomic<bool>*
   return height;
 }
 
+void TileRenderer::note_time(std::size_t size, double seconds) {
+  next_size_ = next_launch_size(size, seconds, launch_seconds, least_size_, most_size_);
+  pixel_seconds_ = seconds / static_cast<double>(size);
+}
+
 void TileRenderer::launch_aovs(const Tile& tile, std::vector<float4>& aovs) {
   const std::size_t pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
   if (aovs_.count < 3 * pixels) aovs_ = device_.make<float4>(3 * pixels);
   aovs.resize(3 * pixels);
   if (pixels == 0) return;
+  const WatchedLaunch watched(watch_, launch_limit(0, true));
   run_scene_kernel<Buffer<u32>, Buffer<float4>, u32, u32, u32, u32>(
       device_, first_surfaces_,
       {divide_up(static_cast<unsigned>(pixels), config_.tile_w * config_.tile_h), 1, 16, 1}, tables_,
@@ -132,7 +147,27 @@ void TileRenderer::launch_aovs(const Tile& tile, std::vector<float4>& aovs) {
   device_.read(aovs_, std::span<float4>(aovs));
 }
 
-TileResult TileRenderer::render(const Tile& tile) {
+// Halves the launches; false when they are as small as they can be.
+bool TileRenderer::shrink(const std::string& why) {
+  if (last_size_ <= least_size_) return false;
+  most_size_ = next_size_ = std::max(last_size_ / 2, least_size_);
+  notes_.push_back(fmt::format("{}: launches of at most {} pixel-samples from here on", why, most_size_));
+  return true;
+}
+
+TileResult TileRenderer::render(const Tile& tile, const StopFlags& flags) {
+  while (true) {
+    last_size_ = 0;
+    try {
+      return try_render(tile, flags);
+    } catch (const DeviceError& error) {
+      if (!is_out_of_resources(error.status) || !shrink(error.what())) throw;
+    }
+  }
+}
+
+// A failed launch may have added some of its samples, so a tile is always begun from nothing.
+TileResult TileRenderer::try_render(const Tile& tile, const StopFlags& flags) {
   const std::size_t pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
   TileResult result;
   result.tile = tile;
@@ -146,7 +181,7 @@ TileResult TileRenderer::render(const Tile& tile) {
   device_.write(film_, std::span<const float4>(result.sums));
   device_.write(weights_, std::span<const float>(result.weights));
   counters_ = device_.upload(std::span<const u32>(counts));
-  result.tile.height = static_cast<int>(launch_samples(tile, options_.stop));
+  result.tile.height = static_cast<int>(launch_samples(tile, flags));
   if (!options_.aovs.empty()) launch_aovs(result.tile, result.aovs);
   const Stopwatch reading;
   device_.read(film_, std::span<float4>(result.sums));

@@ -6,33 +6,34 @@
 #include "render/device_scene.h"
 #include "render/film.h"
 #include "render/kernel_config.h"
+#include "render/launch_watch.h"
 #include "render/render.h"
+#include "render/tile_server.h"
 
 namespace sundog {
 
-/// A tile's pixels and ray counts. `tile` is what was finished: less rows than asked for when it was stopped
-/// on the way.
-struct TileResult {
-  Tile tile;
-  std::vector<float4> sums;
-  std::vector<float> weights;
-  std::vector<float4> aovs;
-  RayCounts counts{};
-};
-
 class TileRenderer {
  public:
-  /// Builds the kernels and uploads the scene; fills `times`. Throws DeviceError, BuildError.
-  TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options, RenderTimes& times);
+  /// Builds the kernels and uploads the scene; fills `times`. Each launch is told to `watch`. Throws
+  /// DeviceError, BuildError.
+  TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options, RenderTimes& times,
+               LaunchWatch& watch);
 
-  /// Renders all samples of a tile in launches of bounded time. Throws DeviceError.
-  TileResult render(const Tile& tile);
+  /// Renders all samples of a tile in launches of bounded time. Where the device runs out of memory or
+  /// resources, once more in launches of half the size, and so on. Throws DeviceError.
+  TileResult render(const Tile& tile, const StopFlags& flags);
 
   double readback_seconds() const { return readback_seconds_; }
+  /// What did not stop it: a cache that could not be used, launches that had to be made smaller.
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   void find_camera_media();
-  unsigned launch_samples(const Tile& tile, const std::atomic<bool>* stop);
+  Program build(const char* entry, RenderTimes& times);
+  TileResult try_render(const Tile& tile, const StopFlags& flags);
+  bool shrink(const std::string& why);
+  unsigned launch_samples(const Tile& tile, const StopFlags& flags);
+  void note_time(std::size_t size, double seconds);
   void launch_aovs(const Tile& tile, std::vector<float4>& aovs);
   LaunchSize launch_size(std::size_t columns, std::size_t rows) const;
 
@@ -49,8 +50,14 @@ class TileRenderer {
   Buffer<float> weights_;
   Buffer<float4> aovs_;
   Buffer<u32> counters_;
-  std::size_t next_size_;  // pixel-samples of the next launch
+  LaunchWatch& watch_;
+  std::size_t next_size_;                         // pixel-samples of the next launch
+  std::size_t last_size_ = 0;                     // of the last one
+  std::size_t least_size_ = 0;                    // of any, in the tile in hand
+  std::size_t most_size_ = std::size_t{1} << 30;  // less where the device ran out of resources
+  double pixel_seconds_ = 0;                      // a pixel-sample's, by the last launch; 0: unknown
   double readback_seconds_ = 0;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace sundog

@@ -156,3 +156,42 @@ TEST_CASE("two devices share a frame without changing it") {
     }
   }
 }
+
+TEST_CASE("the image has the same bits however the frame is split among devices") {
+  const SceneDescription scene = busy_scene();
+  for (const DeviceInfo& device : test_devices()) {
+    if (device.max_sub_devices < 2) continue;
+    DYNAMIC_SECTION(device.label()) {
+      DeviceInfo part = device;
+      part.sub_units = 1;
+      const RenderResult reference = scenes::render_on(device, scene);
+      for (const Split& split :
+           {Split{}, Split{Split::Kind::fixed, {}}, Split{Split::Kind::fixed, {3, 1, 1}},
+            Split{Split::Kind::fixed, {0, 0, 1}}, Split{Split::Kind::fixed, {1e-9, 1, 0}}}) {
+        RenderOptions options;
+        options.split = split;
+        const RenderResult shared = render(compile(scene), {part, part, part}, options);
+        CHECK(shared.complete);
+        CHECK(same_bits(shared.image, reference.image));
+        CHECK(shared.counts == reference.counts);
+        double shares = 0;
+        for (const DeviceReport& report : shared.devices) shares += report.share;
+        CHECK(shares == Approx(1));
+        if (!split.shares.empty() && split.shares[0] == 3)
+          CHECK(shared.devices[0].share == Approx(20 / 29.0));
+      }
+    }
+  }
+}
+
+TEST_CASE("a device that cannot be opened leaves the frame to the others") {
+  const SceneDescription scene = busy_scene();
+  const DeviceInfo device = test_devices().front();
+  DeviceInfo broken = device;
+  broken.problem = "taken out by the test";
+  const RenderResult result = render(compile(scene), {broken, device});
+  CHECK(result.complete);
+  CHECK(result.devices[0].retired);
+  CHECK(result.devices[1].share == 1);
+  CHECK_THROWS_AS(render(compile(scene), {broken, broken}), DeviceError);
+}

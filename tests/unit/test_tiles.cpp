@@ -22,14 +22,66 @@ TEST_CASE("tiles cover every pixel once and begin on multiples of the work-item'
       }
 }
 
-TEST_CASE("the default tile gives each of several devices more than one tile") {
-  for (const std::size_t devices : {1u, 2u, 5u})
-    for (const int size : {16, 256, 640, 4000}) {
-      const int edge = default_tile_edge(size, size, devices);
-      CHECK(edge >= 32);
-      CHECK(edge % 4 == 0);
-      if (size >= 640) CHECK(cut_tiles(size, size, edge).size() >= 4 * devices);
+namespace {
+
+/// How often each pixel of a width x height image lies in the tiles.
+std::vector<int> coverage(int width, int height, const std::vector<Tile>& tiles) {
+  std::vector<int> covered(static_cast<std::size_t>(width * height));
+  for (const Tile& tile : tiles)
+    for (int y = tile.y; y < tile.y + tile.height; ++y)
+      for (int x = tile.x; x < tile.x + tile.width; ++x)
+        covered.at(static_cast<std::size_t>(y * width + x)) += 1;
+  return covered;
+}
+
+}  // namespace
+
+TEST_CASE("tiles of any size asked for cover every pixel once") {
+  for (const int width : {1, 5, 37, 640})
+    for (const int height : {1, 30, 64})
+      for (const std::uint64_t wanted : {1u, 16u, 100u, 5000u, 1'000'000u}) {
+        WaitingTiles waiting({{0, 0, width, height}});
+        std::vector<Tile> tiles;
+        while (const auto tile = waiting.take(wanted)) {
+          CHECK(tile->x % 4 == 0);
+          CHECK(tile->y % 4 == 0);
+          CHECK(pixel_count(*tile) <= 4 * wanted + 64);
+          tiles.push_back(*tile);
+        }
+        CHECK(waiting.pixels() == 0);
+        CHECK(coverage(width, height, tiles) ==
+              std::vector<int>(static_cast<std::size_t>(width * height), 1));
+      }
+}
+
+TEST_CASE("a tile that was given back is the next") {
+  WaitingTiles waiting({{0, 0, 64, 64}});
+  const Tile first = *waiting.take(512);
+  waiting.give_back(first);
+  CHECK(waiting.pixels() == 64 * 64);
+  CHECK(waiting.take(512) == first);
+}
+
+TEST_CASE("what is unfinished is covered once, and blocks that are done are left alone") {
+  Film film(37, 29, false);
+  const auto finish = [&](Tile tile) {
+    const std::vector<float4> sums(pixel_count(tile));
+    const std::vector<float> weights(pixel_count(tile));
+    film.put(tile, sums, weights, {});
+  };
+  CHECK(unfinished_tiles(film, {0, 0, 37, 29}) == std::vector<Tile>{{0, 0, 37, 29}});
+  finish({0, 0, 37, 8});
+  CHECK(unfinished_tiles(film, {0, 0, 37, 29}) == std::vector<Tile>{{0, 8, 37, 21}});
+  finish({8, 12, 13, 9});
+  const std::vector<Tile> tiles = unfinished_tiles(film, {0, 0, 37, 29});
+  const std::vector<int> covered = coverage(37, 29, tiles);
+  for (int y = 0; y < 29; ++y)
+    for (int x = 0; x < 37; ++x) {
+      const auto at = static_cast<std::size_t>(y * 37 + x);
+      const bool in_done_block = y < 8 || (x >= 8 && x < 20 && y >= 12 && y < 20);
+      CHECK(covered[at] == (in_done_block ? 0 : 1));
     }
+  CHECK(unfinished_tiles(film, {0, 0, 37, 8}).empty());
 }
 
 TEST_CASE("a launch follows the measured speed within its limits") {

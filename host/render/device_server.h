@@ -1,0 +1,36 @@
+// A device of this process as a TileServer.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "render/launch_watch.h"
+#include "render/tile_renderer.h"
+#include "render/tile_server.h"
+
+namespace sundog {
+
+class DeviceServer : public TileServer {
+ public:
+  /// `options` must outlive it. Opens nothing yet.
+  DeviceServer(DeviceInfo info, std::shared_ptr<const CompiledScene> scene, const RenderOptions& options);
+
+  const DeviceInfo& info() const override { return info_; }
+  RenderTimes open() override;
+  TileResult render(const Tile& tile, const StopFlags& flags) override;
+  ServerFigures figures() const override;
+  void close() override;
+  double overdue() const override { return watch_.overdue(); }
+  /// For the calling thread, and those that the driver starts from it.
+  void be_nice() override;
+
+ private:
+  DeviceInfo info_;
+  std::shared_ptr<const CompiledScene> scene_;
+  const RenderOptions& options_;
+  LaunchWatch watch_;
+  std::optional<Device> device_;
+  std::optional<TileRenderer> renderer_;
+  ServerFigures closed_;  // of what was opened before
+};
+
+}  // namespace sundog
