@@ -4,6 +4,6 @@ set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 for scene in "$root"/scenes/*.json; do
   name=$(basename "$scene" .json)
-  [ "$name" = scene.schema ] && continue
+  case "$name" in scene.schema | fractal_light_*) continue ;; esac
   "$root/run.sh" render "$scene" -o "$root/docs/pictures/$name.png" "$@"
 done
