@@ -41,19 +41,25 @@ static inline REAL march_estimate(u32 field, REAL3 p, MASK active, MASK inside,
   return sdf_distance(field, p, active, q);
 }
 
+// The same where a few estimates a ray are wanted: one copy that is called, which is compiled sooner.
+__attribute__((noinline)) static REAL called_estimate(u32 field, REAL3 p, MASK active, MASK inside,
+                                                      __global const float* restrict q) {
+  return march_estimate(field, p, active, inside, q);
+}
+
 // From within the threshold of a closed form to its surface: Newton's method along the ray, the slope taken
 // from the last two points, never further from the hit than a few thresholds. A ray that only grazes the
 // surface stays where it comes nearest.
 static inline REAL refine_hit(SDF_PARAMETERS, u32 field, const MarchRays* rays, REAL t, REAL inverse_speed,
                               REAL threshold, MASK hit) {
   const REAL reach = 64.0f * threshold * inverse_speed, low = t - reach, high = t + reach;
-  REAL before = t, f_before = march_estimate(field, along3(rays->origin, t, rays->direction), hit,
-                                             rays->inside, sdf_parameters);
+  REAL before = t, f_before = called_estimate(field, along3(rays->origin, t, rays->direction), hit,
+                                              rays->inside, sdf_parameters);
   REAL best = t, f_best = f_before;
   t = fma(f_before, inverse_speed, t);
   for (int i = 0; i < 5; ++i) {
     const REAL f =
-        march_estimate(field, along3(rays->origin, t, rays->direction), hit, rays->inside, sdf_parameters);
+        called_estimate(field, along3(rays->origin, t, rays->direction), hit, rays->inside, sdf_parameters);
     const MASK nearer = MASK_OF(fabs(f) < fabs(f_best));
     best = select(best, t, nearer);
     f_best = select(f_best, f, nearer);
@@ -72,8 +78,8 @@ static inline REAL bisect_exit(SDF_PARAMETERS, u32 field, const MarchRays* rays,
                                MASK lanes) {
   for (int i = 0; i < 12; ++i) {
     const REAL middle = 0.5f * (before + t);
-    const REAL f = march_estimate(field, along3(rays->origin, middle, rays->direction), lanes, rays->inside,
-                                  sdf_parameters);
+    const REAL f = called_estimate(field, along3(rays->origin, middle, rays->direction), lanes, rays->inside,
+                                   sdf_parameters);
     const MASK out = MASK_OF(f < 0.0f);
     t = select(t, middle, out);
     before = select(middle, before, out);

@@ -38,15 +38,6 @@ static inline REAL trap_value(u32 color_by, SdfSample s, REAL3 p) {
   }
 }
 
-// Seen from inside a surface has a depth to tell; from outside the depth is left out.
-static inline REAL signed_estimate(u32 field, REAL3 p, MASK active, MASK inside,
-                                   __global const float* restrict q) {
-#if SDF_TWO_SIDED
-  if (any_lane(inside & active)) return sdf_signed(field, p, active, q);
-#endif
-  return sdf_distance(field, p, active, q);
-}
-
 // Differences of the estimate at the corners of a tetrahedron (I. Quilez, Normals for an SDF). As wide as the
 // threshold, it leaves out what is finer than the pixel: on fractals the derivative itself is speckled.
 static inline REAL3 difference_normal(SDF_PARAMETERS, u32 index, REAL3 p, REAL width, MASK active,
@@ -55,7 +46,9 @@ static inline REAL3 difference_normal(SDF_PARAMETERS, u32 index, REAL3 p, REAL w
   for (u32 i = 0; i < 4u; ++i) {
     const REAL x = i == 0u || i == 3u ? width : -width, y = i >= 2u ? width : -width;
     const REAL z = i == 1u || i == 3u ? width : -width;
-    const REAL d = signed_estimate(index, real3(p.x + x, p.y + y, p.z + z), active, inside, sdf_parameters);
+    const REAL ahead =
+        called_estimate(index, real3(p.x + x, p.y + y, p.z + z), active, inside, sdf_parameters);
+    const REAL d = select(ahead, -ahead, inside);
     sum = along3(sum, d, real3(x, y, z));
   }
   return sum;
