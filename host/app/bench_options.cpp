@@ -94,8 +94,9 @@ std::vector<int> parse_list(const char* option, const std::string& text, int low
 }
 
 void add_bench(CLI::App& root, Command& chosen) {
-  CLI::App* bench = root.add_subcommand("bench", "Measure: threads, and what else the help of it lists");
+  CLI::App* bench = root.add_subcommand("bench", "Measure, and write tables, JSON, CSV or a page with plots");
   bench->require_subcommand(1);
+  add_bench_workgroup(*bench, chosen);
   add_bench_threads(*bench, chosen);
 }
 

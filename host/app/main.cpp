@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <future>
 #include <new>
 #include <string>
 
@@ -21,7 +22,8 @@ int run(const RenderCommand& command) { return render_command(command); }
 int run(const DevicesOptions& command) { return devices_command(command); }
 int run(const InfoCommand& command) { return info_command(command); }
 int run(const CompareCommand& command) { return compare_command(command); }
-int run(const RunLater& command) { return command.run(); }
+/// In a thread of its own: drivers that work in the caller's thread need more stack than the first one has.
+int run(const RunLater& command) { return std::async(std::launch::async, command.run).get(); }
 int run(const ShowText& command) {
   fmt::print("{}", command.text);
   return exit_done;

@@ -31,9 +31,10 @@ void RayTracer::upload(std::span<const Ray> rays) {
   occluded_ = device_.make<u32>(rays.size());
 }
 
-void RayTracer::run(const RayQuery& query) {
-  const std::size_t local = std::min<std::size_t>(device_.info().device_class == DeviceClass::cpu ? 16 : 64,
-                                                  device_.info().max_work_group);
+void RayTracer::run(const RayQuery& query, const WorkGroup& group) {
+  std::size_t local = std::min<std::size_t>(device_.info().device_class == DeviceClass::cpu ? 16 : 64,
+                                            device_.info().max_work_group);
+  if (group.kind != WorkGroup::Kind::automatic) local = group.kind == WorkGroup::Kind::driver ? 0 : group.x;
   const LaunchSize size{divide_up(rays_.count, batch_), 1, local, 1};
   const auto count = static_cast<u32>(rays_.count);
   const u32 coherent = query.coherent ? 1 : 0;

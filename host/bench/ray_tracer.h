@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/device_scene.h"
+#include "render/render.h"
 
 namespace sundog {
 
@@ -23,8 +24,8 @@ class RayTracer {
   /// The rays that run() traces from now on.
   void upload(std::span<const Ray> rays);
 
-  /// Traces all rays and waits for the end.
-  void run(const RayQuery& query);
+  /// Traces all rays and waits for the end. Work-groups have one dimension here: `group.x`.
+  void run(const RayQuery& query, const WorkGroup& group = {});
 
   /// Results of the last run() with any = false.
   std::vector<Hit> hits();

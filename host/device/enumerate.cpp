@@ -2,6 +2,7 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <fmt/format.h>
+#include <pthread.h>
 
 #include <cctype>
 #include <cstdio>
@@ -147,12 +148,29 @@ void list_platform(DeviceInfo platform, cl_platform_id id, std::vector<DeviceInf
   }
 }
 
+// A CPU driver that chooses the work-group itself may take thousands of work-items, whose private memory all
+// lies on one thread's stack: it is reserved, and taken only where it is used.
+constexpr std::size_t thread_stack = std::size_t{256} << 20;
+
+void enlarge_thread_stacks() {
+  pthread_attr_t attributes;
+  if (pthread_getattr_default_np(&attributes) != 0) return;
+  std::size_t bytes = 0;
+  if (pthread_attr_getstacksize(&attributes, &bytes) == 0 && bytes < thread_stack &&
+      pthread_attr_setstacksize(&attributes, thread_stack) == 0)
+    pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
+}
+
 /// Drivers' settings that must stand before the first OpenCL call; what the user set stays.
 void prepare_drivers() {
-  // PoCL compiles a kernel for each local size and again for grids below 65536, and once more to give its
-  // binary out. One version for all was as fast in every kernel measured, so each kernel is compiled once.
   static std::once_flag once;
-  std::call_once(once, [] { setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0); });
+  std::call_once(once, [] {
+    // PoCL compiles a kernel for each local size and again for grids below 65536, and once more to give its
+    // binary out. One version for all was as fast in every kernel measured, so each kernel is compiled once.
+    setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
+    enlarge_thread_stacks();
+  });
 }
 
 }  // namespace

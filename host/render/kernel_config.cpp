@@ -8,6 +8,10 @@
 namespace sundog {
 namespace {
 
+// A CPU's driver keeps the private memory of a whole group on a thread's stack, 8 MiB by default, and crashes
+// when that is full. What a work-item holds is its ray stack and its batch.
+constexpr std::size_t group_memory = std::size_t{6} << 20, ray_bytes = 80, batch_bytes = 640;
+
 // Children that wait below each node, bottom-up. A node that is visited leaves all its children but one on
 // the stack; a child's own need adds to its waiting siblings. Nodes of one tree may lie in any order, so the
 // walk keeps its own stack.
@@ -39,6 +43,12 @@ unsigned marched_lanes(unsigned batch) {
 }
 
 }  // namespace
+
+std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& device) {
+  if (device.device_class != DeviceClass::cpu) return device.max_work_group;
+  const std::size_t item = config.ray_stack * ray_bytes + config.tile_w * config.tile_h * batch_bytes;
+  return std::min(device.max_work_group, group_memory / item);
+}
 
 unsigned traversal_stack_size(const CompiledScene& scene) {
   if (scene.info.bounded_count == 0) return 1;

@@ -17,6 +17,9 @@ struct KernelConfig {
 /// Pure. Devices with vectors take 4x4 pixels a work-item and eight boxes an instruction, the others a pixel.
 KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device);
 
+/// Most work-items that a group of the render kernels may have; 0: the device does not say.
+std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& device);
+
 /// Most nodes that wait at once in a traversal of the scene: the BVH stack's size.
 unsigned traversal_stack_size(const CompiledScene& scene);
 

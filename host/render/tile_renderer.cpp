@@ -16,15 +16,8 @@ namespace {
 constexpr double launch_seconds = 0.05;
 constexpr std::size_t first_launch_size = 4096;  // pixel-samples, before anything is known of the device
 
-// A CPU's driver keeps the private memory of a whole group on a thread's stack, 8 MiB by default, and crashes
-// when that is full. What a work-item holds is its ray stack and its batch.
-constexpr std::size_t group_memory = std::size_t{6} << 20, ray_bytes = 96, batch_bytes = 640;
-
 void check_work_group(const DeviceInfo& device, const KernelConfig& config, const WorkGroup& group) {
-  std::size_t most = device.max_work_group;
-  if (device.device_class == DeviceClass::cpu)
-    most = std::min(
-        most, group_memory / (config.ray_stack * ray_bytes + config.tile_w * config.tile_h * batch_bytes));
+  const std::size_t most = greatest_work_group(config, device);
   if (group.kind == WorkGroup::Kind::fixed && most > 0 && group.x * group.y > most)
     throw UsageError(
         fmt::format("{}: a work-group of {} is more than the {} that it can have in this scene; ask for "

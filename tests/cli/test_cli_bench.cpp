@@ -1,5 +1,6 @@
 // `sundog bench`: tiny runs; what the reports hold, never how long anything took.
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "base/file.h"
 #include "catch.h"
@@ -56,4 +57,26 @@ TEST_CASE("bench threads goes on to further sizes after sub-devices were closed"
        "1,2", "--repeat", "1", "--no-plain", "--device", "pthread", "--set", "/render/samples=1"});
   CAPTURE(result.out, result.err);
   CHECK(result.status == 0);
+}
+
+TEST_CASE(
+    "bench workgroup times each kernel with every size that the device takes, and the driver's choice") {
+  const CliFolder folder;
+  const CommandResult result =
+      run_sundog({"bench", "workgroup", folder.scene, "--device", "pthread", "--rays", "16", "--repeat", "1",
+                  "--json", folder.file("w.json"), "--html", folder.file("w.html"), "--quiet"});
+  CAPTURE(result.err);
+  REQUIRE(result.status == 0);
+  CHECK(result.out.empty());
+  const json report = json::parse(sundog::read_file(folder.file("w.json")));
+  std::set<std::string> kernels, sizes;
+  for (const json& row : report.at("measurements")) {
+    CHECK(row.at("problem").is_null());
+    CHECK(row.at("time_ms").at("median") > 0);
+    kernels.insert(row.at("kernel"));
+    sizes.insert(row.at("work-group"));
+  }
+  CHECK(kernels == std::set<std::string>{"render_whitted", "trace_rays", "occluded_rays"});
+  for (const char* size : {"default", "driver", "1", "64", "61", "8x8"}) CHECK(sizes.count(size) == 1);
+  CHECK_THAT(sundog::read_file(folder.file("w.html")), ContainsSubstring("class=\"cell"));
 }

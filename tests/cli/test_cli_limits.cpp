@@ -37,3 +37,17 @@ TEST_CASE("a work-group that would overflow a thread's stack is refused") {
     CHECK(result.err.find("work-group") != std::string::npos);
   }
 }
+
+TEST_CASE("the driver may choose a work-group of any size without overflowing a thread's stack") {
+  const CliFolder folder;
+  for (const std::string device : {"pthread", "basic"}) {
+    CommandOptions options;
+    options.environment["POCL_DEVICES"] = device;
+    const CommandResult result =
+        run_sundog({"render", folder.scene, "-o", folder.file("a.pfm"), "--device", device, "--size",
+                    "256x256", "--tile", "256", "--max-depth", "20", "--work-group", "driver"},
+                   options);
+    CAPTURE(device, result.err);
+    CHECK(result.status == 0);
+  }
+}

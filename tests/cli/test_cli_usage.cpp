@@ -20,6 +20,7 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
       {{"frobnicate"}, "found 'frobnicate'"},
       {{"bench"}, "subcommand is required"},
       {{"bench", "threads"}, "SCENE is required"},
+      {{"bench", "workgroup", scene, "--kernel", "magic"}, "--kernel magic: wanted one of render_whitted"},
       {{"bench", "threads", scene, "--counts", "0"}, "--counts 0: wanted a whole number from 1"},
       {{"bench", "threads", scene, "--sizes", "8,,9"}, "--sizes : wanted"},
       {{"bench", "threads", scene, "--repeat", "0"}, "--repeat"},

@@ -1,0 +1,135 @@
+// `sundog bench workgroup`: each kernel and device with every sensible local size.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "app/bench_options.h"
+#include "app/option_helpers.h"
+#include "base/clock.h"
+#include "base/error.h"
+#include "bench/frame_runner.h"
+#include "bench/machine.h"
+#include "bench/ray_sets.h"
+#include "bench/ray_tracer.h"
+#include "bench/work_groups.h"
+#include "render/hash.h"
+#include "render/kernel_config.h"
+
+namespace sundog {
+namespace {
+
+constexpr std::array kernel_names{"render_whitted", "trace_rays", "occluded_rays"};
+
+struct WorkgroupOptions : BenchOptions {
+  std::vector<std::string> kernels;
+  unsigned rays = 512;
+};
+
+template <class T>
+std::uint64_t hash_of(const std::vector<T>& values) {
+  return hash_bytes(values.data(), values.size() * sizeof(T));
+}
+
+/// Whole frames, as `sundog render` would make them.
+TimedKernel time_frames(const DeviceInfo& device, const CompiledScene& scene) {
+  TimedKernel kernel;
+  kernel.two_dimensions = true;
+  kernel.limit = greatest_work_group(make_kernel_config(scene, device), device);
+  const auto frames = std::make_shared<FrameRunner>(device, scene);
+  kernel.build_seconds = frames->times().build_kernels;
+  kernel.cached = frames->times().cached;
+  kernel.run = [frames](const WorkGroup& group) {
+    frames->use(group);
+    return frames->run();
+  };
+  kernel.result = [frames] { return hash_of(frames->image().data); };
+  return kernel;
+}
+
+/// The camera's rays through the tracer alone.
+TimedKernel time_rays(const DeviceInfo& info, const CompiledScene& scene, bool any, unsigned size) {
+  struct Setup {
+    Device device;
+    RayTracer tracer;
+    Setup(const DeviceInfo& info_, const CompiledScene& scene_) : device(info_), tracer(device, scene_) {}
+  };
+  TimedKernel kernel;
+  kernel.limit = greatest_work_group(make_kernel_config(scene, info), info);
+  const Stopwatch clock;
+  const auto setup = std::make_shared<Setup>(info, scene);
+  kernel.build_seconds = clock.seconds();
+  setup->tracer.upload(primary_rays(scene_viewpoint(scene), size).rays);
+  kernel.run = [setup, any](const WorkGroup& group) {
+    const Stopwatch running;
+    setup->tracer.run({any, true}, group);
+    return running.seconds();
+  };
+  kernel.result = [setup, any] {
+    return any ? hash_of(setup->tracer.occluded()) : hash_of(setup->tracer.hits());
+  };
+  return kernel;
+}
+
+TimedKernel prepare(const std::string& name, const DeviceInfo& device, const CompiledScene& scene,
+                    unsigned rays) {
+  TimedKernel kernel = name == "render_whitted" ? time_frames(device, scene)
+                                                : time_rays(device, scene, name == "occluded_rays", rays);
+  kernel.name = name;
+  kernel.device = fmt::format("{}:{}{}", device.platform, device.device,
+                              device.sub_units ? fmt::format("/{}", device.sub_units) : "");
+  return kernel;
+}
+
+int bench_workgroup(const WorkgroupOptions& options) {
+  Report report = new_report("workgroup", "Times by work-group size", options);
+  const std::vector<DeviceInfo> devices = bench_devices(options);
+  for (const DeviceInfo& device : devices) report.facts.emplace_back("device", device_fact(device));
+  for (const std::string& file : options.scenes) {
+    const CompiledScene scene = bench_scene(file, options);
+    for (const DeviceInfo& device : devices)
+      for (const std::string& name : options.kernels) {
+        show_step(options, fmt::format("{}, {} on {}", scene_name(file), name, device.label()));
+        TimedKernel kernel = prepare(name, device, scene, options.rays);
+        kernel.scene = scene_name(file);
+        add_work_group_tables(report, kernel, measure_work_groups(kernel, options.repeat), options.repeat);
+        report.notes.push_back(fmt::format(
+            "{}, {} on {}: program {} in {} ms, before any run.", kernel.scene, name, kernel.device,
+            kernel.cached ? "loaded from the cache" : "built", number_text(1e3 * kernel.build_seconds)));
+      }
+  }
+  report.notes.push_back(
+      fmt::format("Median of {} runs, after one to warm up, all sizes in shuffled turn. render_whitted is a whole "
+                  "frame with its transfers, "
+                  "the others are {}x{} camera rays through the tracer alone. Results were compared to the "
+                  "bit before a time "
+                  "counted. \"Compiled in\" is what the first run took longer than the median: drivers that "
+                  "compile for each size "
+                  "show it.",
+                  options.repeat, options.rays, options.rays));
+  return publish(report, options);
+}
+
+}  // namespace
+
+void add_bench_workgroup(CLI::App& bench, Command& chosen) {
+  const auto options = std::make_shared<WorkgroupOptions>();
+  CLI::App* app = bench.add_subcommand("workgroup", "Times of each kernel by work-group size");
+  add_bench_options(app, *options);
+  values(app, "--kernel", "NAME", options->kernels,
+         fmt::format("one of {} (default: all)", fmt::join(kernel_names, ", ")));
+  app->add_option("--rays", options->rays, "camera rays a side for the tracer's kernels (default 512)")
+      ->type_name("N")
+      ->check(CLI::Range(16, 16384));
+  app->callback([options, &chosen] {
+    for (const std::string& name : options->kernels)
+      if (std::ranges::count(kernel_names, name) == 0)
+        throw UsageError(fmt::format("--kernel {}: wanted one of {}", name, fmt::join(kernel_names, ", ")));
+    if (options->kernels.empty()) options->kernels.assign(kernel_names.begin(), kernel_names.end());
+    chosen = RunLater{[options] { return bench_workgroup(*options); }};
+  });
+}
+
+}  // namespace sundog
