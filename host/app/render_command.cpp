@@ -1,17 +1,20 @@
 // `sundog render`: scene file -> description -> flat tables -> image -> file.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "app/save_image.h"
 #include "app/stats.h"
 #include "app/warnings.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/image_io.h"
+#include "render/hash.h"
 #include "scene/json/override.h"
 #include "scene/load.h"
 
@@ -28,10 +31,6 @@ auto timed(double& seconds, const Step& step) {
 }
 
 /// What would otherwise be found out after the render.
-bool drops_alpha(const std::filesystem::path& path) {
-  return path.extension() != ".exr" && path.extension() != ".EXR";
-}
-
 void check_outputs(const RenderCommand& command) {
   check_image_path(command.out, !command.aovs.empty());
   if (command.full_floats && drops_alpha(command.out))
@@ -60,22 +59,17 @@ RenderOptions render_options(const RenderCommand& command) {
   options.tile = command.tile;
   options.aovs = command.aovs;
   options.resume = command.resume;
+  options.keep_failed = true;
   return options;
 }
 
-/// Coverage is kept where programs expect it; a PNG with it would show the background as holes.
-Image without_alpha(const Image& image) {
-  Image opaque(image.width, image.height, 3);
-  for (std::size_t i = 0; i < opaque.data.size(); ++i) opaque.data[i] = image.data[i / 3 * 4 + i % 3];
-  return opaque;
-}
-
-double write(const RenderCommand& command, const RenderResult& result) {
-  const Stopwatch clock;
-  const Image& image = result.image;
-  write_image(drops_alpha(command.out) ? without_alpha(image) : image, command.out, result.aovs,
-              command.full_floats ? ExrColor::full : ExrColor::half);
-  return clock.seconds();
+/// Writes the image, whole or in part, and takes the checkpoint of a whole one away: not before it is safe.
+void save(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result) {
+  Picture picture{result.image, result.aovs, result.film, result.key, command.resume, command.full_floats};
+  if (picture.key == 0) picture.key = hash_scene(scene);
+  save_image(picture, command.out);
+  if (!result.checkpoint_error.empty()) throw IoError(result.checkpoint_error);
+  if (result.complete && !command.resume.empty()) std::filesystem::remove(command.resume);
 }
 
 void warn(const RenderResult& result) {
@@ -93,12 +87,22 @@ void summarise(const RenderCommand& command, const RenderResult& result, const T
   if (command.verbose) fmt::print("{}", details_text(result, times));
 }
 
-int report_interrupt(const RenderCommand& command, const RenderProgress& progress) {
-  const double percent = progress.pixels_total == 0 ? 0
-                                                    : 100 * static_cast<double>(progress.pixels_done) /
-                                                          static_cast<double>(progress.pixels_total);
-  fmt::print(stderr, "sundog: interrupted: {:.3g} % of the pixels are in {}{}\n", percent, command.out,
-             command.resume.empty() ? "" : "; the same command goes on from there");
+std::string part_text(const RenderCommand& command, const RenderResult& result) {
+  const auto& done = result.film.done;
+  const double pixels = static_cast<double>(std::max<std::size_t>(1, done.size()));
+  return fmt::format("{:.3g} % of the pixels are in {}{}",
+                     100 * static_cast<double>(std::ranges::count(done, 1)) / pixels, command.out,
+                     command.resume.empty() ? "" : "; the same command goes on from there");
+}
+
+/// The exit status of a frame, after what there is of it has been saved.
+int conclude(const RenderCommand& command, const RenderResult& result) {
+  if (result.complete) return exit_done;
+  if (result.failure) {
+    fmt::print(stderr, "sundog: every device failed: {}\n", part_text(command, result));
+    std::rethrow_exception(result.failure);
+  }
+  fmt::print(stderr, "sundog: interrupted: {}\n", part_text(command, result));
   return exit_interrupted;
 }
 
@@ -116,17 +120,16 @@ int render_command(const RenderCommand& command) {
   const std::vector<DeviceInfo> devices = select_devices(enumerate_devices(), command.devices);
 
   ProgressBar bar(!command.quiet);
-  RenderProgress progress;
   RenderOptions options = render_options(command);
   options.stop = &stop.flag();
-  options.on_progress = [&](const RenderProgress& now) { bar.update(progress = now); };
+  options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
   const RenderResult result = render(flat, devices, options);
   bar.erase();
 
   times.render = result.times;
-  times.write = write(command, result);
-  if (result.complete && !command.resume.empty())
-    std::filesystem::remove(command.resume);  // not before the image is safe
+  const Stopwatch writing;
+  save(command, *flat, result);
+  times.write = writing.seconds();
   times.total = clock.seconds();
   if (!command.stats.empty()) {
     using nlohmann::json;
@@ -135,7 +138,7 @@ int render_command(const RenderCommand& command) {
   }
   warn(result);
   summarise(command, result, times);
-  return result.complete ? exit_done : report_interrupt(command, progress);
+  return conclude(command, result);
 }
 
 }  // namespace sundog

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array shape_names = {"mesh", "sphere", "plane", "box",     "cylinder",
+constexpr std::array shape_names = {"mesh", "sphere", "plane", "box",      "cylinder",
                                     "cone", "disk",   "torus", "roundbox", "field"};
 static_assert(shape_names.size() == std::variant_size_v<Shape>);
 constexpr std::array light_names = {"ambient", "directional", "point", "spot"};
@@ -49,9 +49,9 @@ std::size_t bytes_of(const std::vector<T>& table) {
 json table_bytes(const CompiledScene& flat) {
   const std::size_t bvh = bytes_of(flat.nodes) + bytes_of(flat.blocks);
   const std::size_t shading = bytes_of(flat.triangles) + bytes_of(flat.vertices);
-  const std::size_t rest =
-      bytes_of(flat.instances) + bytes_of(flat.materials) + bytes_of(flat.media) + bytes_of(flat.lights) +
-      bytes_of(flat.fields.fields) + bytes_of(flat.fields.parameters);
+  const std::size_t rest = bytes_of(flat.instances) + bytes_of(flat.materials) + bytes_of(flat.media) +
+                           bytes_of(flat.lights) + bytes_of(flat.fields.fields) +
+                           bytes_of(flat.fields.parameters);
   return {{"bvh", bvh}, {"shading", shading}, {"tables", rest}, {"total", bvh + shading + rest}};
 }
 

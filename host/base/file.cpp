@@ -13,6 +13,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/faults.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -46,6 +47,7 @@ void write_file(const fs::path& path, std::string_view bytes) {
     fs::remove(temporary, ignored);
     throw IoError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(code)));
   };
+  if (fault("write", path.filename().string())) fail(ENOSPC);
   errno = 0;
   std::ofstream out(temporary, std::ios::binary);
   if (!out) fail(errno);

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <mutex>
+#include <thread>
 
 #include "base/error.h"
+#include "base/faults.h"
 #include "device/cl_status.h"
 #include "device/kernel_source.h"
 #include "device/program.h"
@@ -111,11 +113,27 @@ void Device::check_argument(cl_int status, const std::string& name, cl_uint inde
   if (status != CL_SUCCESS) check_cl(status, info_, fmt::format("argument {} of kernel {}", index, name));
 }
 
+namespace {
+
+std::string place(const DeviceInfo& info) { return fmt::format("{}:{}", info.platform, info.device); }
+
+/// The faults that a test may ask for (base/faults.h).
+void inject_launch_faults(const DeviceInfo& info, const std::string& name, std::size_t items) {
+  while (fault("hang", place(info), items)) std::this_thread::sleep_for(std::chrono::hours(1));
+  if (fault("crash", place(info), items)) std::abort();
+  if (const auto status = fault("launch", place(info), items))
+    check_cl(*status, info, fmt::format("launch of {}", name));
+}
+
+}  // namespace
+
 cl::Buffer Device::allocate(std::size_t bytes, const void* data) {
   constexpr std::size_t unused = 16;  // OpenCL has no empty buffers
   if (bytes > info_.max_allocation)
     check_cl(CL_MEM_OBJECT_ALLOCATION_FAILURE, info_,
              fmt::format("a buffer of {} bytes where {} is the limit", bytes, info_.max_allocation));
+  if (const auto injected = fault("alloc", place(info_), bytes))
+    check_cl(*injected, info_, fmt::format("a buffer of {} bytes", bytes));
   cl_int status = CL_SUCCESS;
   const bool copy = bytes > 0 && data;
   cl::Buffer buffer(context_, CL_MEM_READ_WRITE | (copy ? CL_MEM_COPY_HOST_PTR : 0u),
@@ -146,6 +164,7 @@ cl::Event Device::enqueue(cl::Kernel& kernel, const std::string& name, ProgramRe
   const cl::NDRange local = driver_chooses ? cl::NullRange
                             : flat         ? cl::NDRange(size.local_x)
                                            : cl::NDRange(size.local_x, size.local_y);
+  inject_launch_faults(info_, name, size.x * size.y);
   if (pending_.empty()) batch_start_ = Clock::now();
   const cl_int status = queue_.enqueueNDRangeKernel(kernel, cl::NullRange, global, local, nullptr, &event);
   if (status != CL_SUCCESS)

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/faults.h"
 #include "base/file.h"
 #include "device/cl_status.h"
 #include "device/program_cache.h"
@@ -114,6 +115,8 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
                                              const DeviceInfo& info, const std::string& entry,
                                              const std::string& source, BuildReport& report) {
   dump_source(entry, source);
+  if (fault("build", fmt::format("{}:{}", info.platform, info.device)))
+    throw BuildError(fmt::format("{} did not build on {}: a fault was asked for", entry, info.label()), "");
   auto record = std::make_shared<ProgramRecord>();
   record->device = info;
   record->entry = entry;

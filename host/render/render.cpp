@@ -148,8 +148,11 @@ RenderResult render_frame(const Scene& scene, const std::vector<DeviceInfo>& dev
   const std::shared_ptr<Frame> frame = begin_frame(scene, devices, options, key);
   run_frame(frame, wait);
   const bool stopped = options.stop && options.stop->load();
-  if (!frame->queue.complete() && !stopped && frame->last_error) std::rethrow_exception(frame->last_error);
-  return finish_frame(*frame, key);
+  RenderResult result = finish_frame(*frame, key);
+  if (!result.complete && !stopped) result.failure = frame->last_error;
+  if (result.failure && !(options.keep_failed && frame->pixels_done > 0))
+    std::rethrow_exception(result.failure);
+  return result;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -43,6 +44,7 @@ struct RenderOptions {
       resume;  // checkpoint: read when it exists, written on interrupt; the caller removes it
   std::function<void(const RenderProgress&)> on_progress;  // called by one thread at a time
   const std::atomic<bool>* stop = nullptr;                 // set: finish what runs, return what there is
+  bool keep_failed = false;  // when every device failed, return what there is, and the failure, not throw it
 };
 
 /// Sums over the frame, in the order of the COUNT_* constants.
@@ -80,6 +82,7 @@ struct RenderResult {
   RenderTimes times;
   Film film;                     // what the image was developed from
   std::uint64_t key = 0;         // of the scene, for write_checkpoint; 0 without options.resume
+  std::exception_ptr failure;    // every device failed: what the last one threw (options.keep_failed)
   std::string checkpoint_error;  // why the checkpoint of an interrupted frame could not be written
 };
 

@@ -1,0 +1,63 @@
+#include "app/save_image.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "base/error.h"
+
+namespace sundog {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Coverage is kept where programs expect it; a PNG with it would show the background as holes.
+Image without_alpha(const Image& image) {
+  Image opaque(image.width, image.height, 3);
+  for (std::size_t i = 0; i < opaque.data.size(); ++i) opaque.data[i] = image.data[i / 3 * 4 + i % 3];
+  return opaque;
+}
+
+void write(const Picture& picture, const fs::path& path) {
+  write_image(drops_alpha(path) ? without_alpha(picture.image) : picture.image, path, picture.aovs,
+              picture.full_floats ? ExrColor::full : ExrColor::half);
+}
+
+bool keep_checkpoint(const Picture& picture) {
+  if (picture.checkpoint.empty()) return false;
+  try {
+    write_checkpoint(picture.checkpoint, picture.film, picture.key);
+    return true;
+  } catch (const IoError&) {
+    return false;
+  }
+}
+
+/// Where the frame went instead, as the end of an error message.
+std::string rescue(const Picture& picture, const fs::path& path) {
+  if (keep_checkpoint(picture))
+    return fmt::format("; all of it is in {}: make room and give the same command again",
+                       picture.checkpoint.string());
+  std::error_code none;
+  const fs::path elsewhere =
+      fs::temp_directory_path(none) / fmt::format("sundog-{}-{}", ::getpid(), path.filename().string());
+  try {
+    write(picture, elsewhere);
+    return fmt::format("; the image is in {}", elsewhere.string());
+  } catch (const IoError&) {
+    return "; nor is there room for it elsewhere, and it is lost";
+  }
+}
+
+}  // namespace
+
+bool drops_alpha(const fs::path& path) { return path.extension() != ".exr" && path.extension() != ".EXR"; }
+
+void save_image(const Picture& picture, const fs::path& path) {
+  try {
+    write(picture, path);
+  } catch (const IoError& error) {
+    throw IoError(error.what() + rescue(picture, path));
+  }
+}
+
+}  // namespace sundog

@@ -1,0 +1,28 @@
+// The end of a render: the image on disk, or, when the disk fails, kept where it can be.
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "base/image_io.h"
+#include "render/film.h"
+
+namespace sundog {
+
+/// What is to be saved: a developed frame and what it was developed from.
+struct Picture {
+  const Image& image;  // linear RGBA
+  const AovImages& aovs;
+  const Film& film;
+  std::uint64_t key = 0;             // of the scene, for a checkpoint
+  std::filesystem::path checkpoint;  // may be used in need; empty: none was asked for
+  bool full_floats = false;
+};
+
+/// True where a program would show an alpha channel of coverage as holes.
+bool drops_alpha(const std::filesystem::path& path);
+
+/// Writes `path`. When that fails the frame is kept as a checkpoint, or as an image in the folder for
+/// temporary files: IoError says what happened and where it is.
+void save_image(const Picture& picture, const std::filesystem::path& path);
+
+}  // namespace sundog

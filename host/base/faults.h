@@ -1,0 +1,21 @@
+// Faults on demand, to test what is done about them. Without the variable SUNDOG_FAULTS there are none.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+namespace sundog {
+
+/// SUNDOG_FAULTS holds faults separated by commas, each KIND[=VALUE][>SIZE]@WHERE[#N]: it strikes where KIND
+/// happens at WHERE with more than SIZE, at the Nth such occasion or at each. The kinds, and what asks for
+/// them:
+///     build@P:D           the kernels do not build on the device
+///     alloc=STATUS@P:D    a buffer of more than SIZE bytes gives the OpenCL status
+///     launch=STATUS@P:D   a launch of more than SIZE work-items gives the OpenCL status
+///     hang@P:D            a launch never comes back
+///     crash@P:D           a launch ends the process
+///     write@NAME          a file of that name cannot be written, as on a full disk
+/// Returns VALUE (0 without one) where a fault strikes now. Throws UsageError for a variable that is none.
+std::optional<int> fault(std::string_view kind, std::string_view where, std::size_t size = 0);
+
+}  // namespace sundog
