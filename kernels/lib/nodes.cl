@@ -14,11 +14,13 @@ typedef struct SlabRay {
 } SlabRay;
 
 // A component too small to divide by stands for a slope that never crosses a slab within a float's range.
-static inline float safe_reciprocal(float d) { return 1.0f / (fabs(d) < 1e-18f ? copysign(1e-18f, d) : d); }
+static inline float3 safe_reciprocal(float3 d) {
+  return 1.0f / select(d, copysign((float3)(1e-18f), d), fabs(d) < 1e-18f);
+}
 
 static inline SlabRay make_slab_ray(float3 o, float3 d) {
   SlabRay ray;
-  const float3 rcp = (float3)(safe_reciprocal(d.x), safe_reciprocal(d.y), safe_reciprocal(d.z));
+  const float3 rcp = safe_reciprocal(d);
   ray.rcp_near = rcp * 0.9999997f;
   ray.rcp_far = rcp * 1.0000003f;
   const float3 near = o * ray.rcp_near, far = o * ray.rcp_far;

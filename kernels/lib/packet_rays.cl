@@ -95,10 +95,10 @@ NEVER_INLINE bool aim_packet(PacketRays* rays) {
   rays->axis[2] = xs ? 0u : ys ? 1u : 2u;
   rays->axis[0] = xs ? 1u : ys ? 2u : 0u;
   rays->axis[1] = xs ? 2u : ys ? 0u : 1u;
-  const float16 along = rays->d[rays->axis[2]];
-  rays->sz = -1.0f / along;
-  rays->sx = rays->d[rays->axis[0]] / along;
-  rays->sy = rays->d[rays->axis[1]] / along;
+  const float16 along = 1.0f / rays->d[rays->axis[2]];
+  rays->sx = rays->d[rays->axis[0]] * along;
+  rays->sy = rays->d[rays->axis[1]] * along;
+  rays->sz = -along;
   return true;
 }
 

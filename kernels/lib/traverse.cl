@@ -14,7 +14,8 @@ static inline bool finite3(float3 v) { return isfinite(v.x) && isfinite(v.y) && 
 
 // A ray with a component that is not finite, or with no direction, hits nothing.
 static inline bool traceable(float3 o, float3 d, float t_min, float t_max) {
-  return finite3(o) && finite3(d) && t_max > t_min && (d.x != 0.0f || d.y != 0.0f || d.z != 0.0f);
+  const float3 zero = o * 0.0f + d * 0.0f;  // NaN where one is not finite
+  return zero.x + zero.y + zero.z == 0.0f && t_max > t_min && (d.x != 0.0f || d.y != 0.0f || d.z != 0.0f);
 }
 
 static inline Hit no_hit(float t_max) {

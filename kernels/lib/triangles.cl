@@ -30,9 +30,10 @@ static inline ShearRay make_shear_ray(float3 o, float3 d) {
   ray.ox = oo.x;
   ray.oy = oo.y;
   ray.oz = oo.z;
-  ray.sz = -1.0f / dd.z;
-  ray.sx = dd.x / dd.z;
-  ray.sy = dd.y / dd.z;
+  const float along = 1.0f / dd.z;
+  ray.sx = dd.x * along;
+  ray.sy = dd.y * along;
+  ray.sz = -along;
   return ray;
 }
 
