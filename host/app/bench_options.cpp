@@ -98,6 +98,7 @@ void add_bench(CLI::App& root, Command& chosen) {
   bench->require_subcommand(1);
   add_bench_workgroup(*bench, chosen);
   add_bench_threads(*bench, chosen);
+  add_bench_rays(*bench, chosen);
 }
 
 }  // namespace sundog

@@ -80,3 +80,24 @@ TEST_CASE(
   for (const char* size : {"default", "driver", "1", "64", "61", "8x8"}) CHECK(sizes.count(size) == 1);
   CHECK_THAT(sundog::read_file(folder.file("w.html")), ContainsSubstring("class=\"cell"));
 }
+
+TEST_CASE("bench rays times every kind of ray and checks the hits") {
+  const CliFolder folder;
+  const CommandResult result =
+      run_sundog({"bench", "rays", SUNDOG_SOURCE_DIR "/scenes/spheres.json", "--device", "pthread", "--size",
+                  "32", "--repeat", "2", "--json", folder.file("r.json")});
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  const json report = json::parse(sundog::read_file(folder.file("r.json")));
+  CHECK_THAT(report.at("facts").at("spheres").get<std::string>(), ContainsSubstring("SAH cost"));
+  std::vector<std::string> kinds;
+  for (const json& row : report.at("measurements")) {
+    CAPTURE(row.dump());
+    kinds.push_back(row.at("kind"));
+    CHECK(row.at("rate_Mrays/s").at("median") > 0);
+    CHECK(row.at("hits") > 0);
+    CHECK(row.at("checked") > 0);
+    CHECK(row.at("differ") == 0);
+  }
+  CHECK(kinds == std::vector<std::string>{"primary", "shadow", "bounce", "shuffled", "reflection", "glass"});
+}
