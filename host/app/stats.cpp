@@ -57,6 +57,7 @@ json counters_json(const RayCounts& counts) {
           {"stray_exit", counts[COUNT_STRAY_EXIT]},
           {"shadow_limit", counts[COUNT_SHADOW_LIMIT]},
           {"march_limit", counts[COUNT_MARCH_LIMIT]},
+          {"march_budget", counts[COUNT_MARCH_BUDGET]},
           {"march_taken_back", counts[COUNT_MARCH_BACK]}};
 }
 
@@ -118,6 +119,9 @@ std::vector<std::string> losses(const RayCounts& counts) {
       {COUNT_RAY_STACK_OVERFLOW, "rays were dropped because the ray stack was full: lower max_depth"},
       {COUNT_MEDIA_STACK_OVERFLOW, "rays entered more solids inside each other than the media stack holds"},
       {COUNT_SHADOW_LIMIT, "shadow rays were given up after too many transmissive surfaces"},
+      {COUNT_MARCH_BUDGET,
+       "marches through a field were not made because the pixels had cost too much: lower its iterations, "
+       "step_limit or max_depth"},
       {COUNT_NON_FINITE, "samples were dropped because they were not finite"},
       {COUNT_STRAY_EXIT,
        "rays left a solid that they had not entered: a mesh with an interior may not be closed, or surfaces "

@@ -208,6 +208,12 @@ class FieldsEmitter {
     return out;
   }
 
+  static int iterations_of(const SdfNode& node) {
+    int sum = node.kind == SdfNode::Kind::formula ? node.formula.iterations : 0;
+    for (const SdfNode& child : node.children) sum += iterations_of(child);
+    return node.kind == SdfNode::Kind::repeat ? 8 * sum : sum;  // a repeated field asks up to eight cells
+  }
+
   static bool is_smooth(const SdfNode& node) {
     if (node.kind == SdfNode::Kind::formula)
       return std::all_of(node.formula.steps.begin(), node.formula.steps.end(),
@@ -225,6 +231,7 @@ class FieldsEmitter {
     const bool smooth = is_smooth(d.root);
     r.detail = f(d.detail.value_or(smooth ? 0.05 : 0.5));
     r.normal_width = 0.5f;
+    r.iterations = static_cast<u32>(std::max(1, iterations_of(d.root)));
     r.step_limit = static_cast<u32>(d.step_limit);
     r.flags = (smooth ? SDF_SMOOTH : 0u) | (d.sphere ? SDF_CUT_SPHERE : 0u);
     r.color_by = d.coloring.palette.empty() ? SDF_COLOR_NONE : static_cast<u32>(d.coloring.by);

@@ -14,7 +14,8 @@ namespace {
 
 // A launch is short enough for a watchdog and for Ctrl-C, and long against its overhead of some microseconds.
 constexpr double launch_seconds = 0.05;
-constexpr std::size_t first_launch_size = 4096;  // pixel-samples, before anything is known of the device
+// Pixel-samples before anything is known of the device; a field's may take a thousand times as long.
+constexpr std::size_t first_launch_size = 4096, first_launch_size_of_fields = 512;
 
 void check_work_group(const DeviceInfo& device, const KernelConfig& config, const WorkGroup& group) {
   const std::size_t most = greatest_work_group(config, device);
@@ -36,7 +37,7 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
       options_(options),
       config_(make_kernel_config(scene, device.info())),
       watch_(watch),
-      next_size_(first_launch_size) {
+      next_size_(scene.fields.fields.empty() ? first_launch_size : first_launch_size_of_fields) {
   check_work_group(device.info(), config_, options.work_group);
   const Stopwatch building;
   times.cached = true;
@@ -79,43 +80,47 @@ LaunchSize TileRenderer::launch_size(std::size_t columns, std::size_t rows) cons
   }
   // With many pixels a work-item, small groups leave no unit idle at a launch's end; one ray a lane wants a
   // full group.
-  const std::size_t wanted = device_.info().device_class == DeviceClass::cpu ? 16 : 64;
+  const std::size_t units = std::max(1u, device_.info().compute_units);
+  const std::size_t wanted = device_.info().device_class == DeviceClass::cpu
+                                 ? std::clamp<std::size_t>(items / (4 * units), 1, 16)
+                                 : 64;
   return {items, 1, std::min(wanted, std::max<std::size_t>(1, device_.info().max_work_group)), 1};
 }
 
-// Cuts the tile into bands of rows, and long rows of samples into several launches, by what the last launch
-// took. Samples are added one by one in the kernel, so where they are cut does not change a bit. Returns the
-// rows that have all their samples.
+// Cuts the tile into runs of work-items, and long rows of samples into several launches, by what the last
+// launch took. Samples are added one by one in the kernel, so where they are cut does not change a bit.
+// Returns the rows that have all their samples.
 unsigned TileRenderer::launch_samples(const Tile& tile, const StopFlags& flags) {
   const unsigned width = static_cast<unsigned>(tile.width), height = static_cast<unsigned>(tile.height);
-  const unsigned samples = scene_.info.samples;
-  const unsigned columns = divide_up(width, config_.tile_w);
-  least_size_ = static_cast<std::size_t>(width) * std::min(config_.tile_h, height);
-  unsigned row = 0;
-  while (row < height) {
-    const std::size_t bands = std::min<std::size_t>(next_size_ / (width * config_.tile_h), height);
-    const unsigned wanted = static_cast<unsigned>(std::max<std::size_t>(bands, 1)) * config_.tile_h;
-    const unsigned rows = std::min(wanted, height - row), tile_rows = divide_up(rows, config_.tile_h);
-    const std::size_t pixels = static_cast<std::size_t>(width) * rows;
+  const unsigned samples = scene_.info.samples, item_pixels = config_.tile_w * config_.tile_h;
+  const unsigned columns = divide_up(width, config_.tile_w), rows = divide_up(height, config_.tile_h);
+  const bool grid = options_.work_group.kind == WorkGroup::Kind::fixed && options_.work_group.y > 1;
+  // A grid of groups takes whole rows of items; else each unit should have one.
+  const unsigned step = grid ? columns : std::clamp(device_.info().compute_units, 1u, columns * rows);
+  least_size_ = static_cast<std::size_t>(step) * item_pixels;
+  for (unsigned item = 0; item < columns * rows;) {
+    const std::size_t wanted = next_size_ / least_size_ * step;
+    const unsigned items =
+        static_cast<unsigned>(std::clamp<std::size_t>(wanted, step, columns * rows - item));
+    const std::size_t pixels = static_cast<std::size_t>(items) * item_pixels;
     for (unsigned sample = 0; sample < samples;) {
-      if (flags.set()) return row;
+      if (flags.set()) return item / columns * config_.tile_h;
       const unsigned count =
           static_cast<unsigned>(std::clamp<std::size_t>(next_size_ / pixels, 1, samples - sample));
-      const LaunchSize size = launch_size(columns, tile_rows);
+      const LaunchSize size = grid ? launch_size(columns, items / columns) : launch_size(items, 1);
       last_size_ = pixels * count;
       const Stopwatch clock;
       const WatchedLaunch watched(
           watch_, launch_limit(pixel_seconds_ * static_cast<double>(last_size_), pixel_seconds_ <= 0));
       run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32, u32,
                        u32, u32, u32>(device_, render_, size, tables_, tables_.camera_media, film_, weights_,
-                                      counters_, static_cast<u32>(tile.x), static_cast<u32>(tile.y) + row,
-                                      width, rows, static_cast<u32>(size.x), columns * tile_rows, row * width,
-                                      sample, count);
+                                      counters_, static_cast<u32>(tile.x), static_cast<u32>(tile.y), width,
+                                      height, static_cast<u32>(size.x), item, item + items, sample, count);
       device_.finish();
       note_time(last_size_, clock.seconds());
       sample += count;
     }
-    row += rows;
+    item += items;
   }
   return height;
 }

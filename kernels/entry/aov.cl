@@ -11,6 +11,9 @@ __kernel void first_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const 
   if (first >= pixel_count) return;
   u32 counts[COUNTERS];
   for (u32 k = 0; k < COUNTERS; ++k) counts[k] = 0;
+#if HAS_SDF
+  counts[COUNT_MARCH_LEFT] = MARCH_WORK;
+#endif
   const MediaStack stack = (MediaStack)camera_media[1] << 32 | camera_media[0];
   const u32 count = min((u32)BATCH, pixel_count - first);
   SceneRay rays[BATCH];

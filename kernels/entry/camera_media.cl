@@ -16,6 +16,9 @@ __kernel void find_camera_media(TRACE_PARAMETERS, SHADE_PARAMETERS, __global u32
   rays[0] = scene_ray(&line, 0);
   u32 counts[COUNTERS];  // marching counts, which nobody asks for here
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
+#if HAS_SDF
+  counts[COUNT_MARCH_LEFT] = MARCH_WORK;
+#endif
   MediaStack entered = 0, holding = 0;
   for (u32 i = 0; i < 4096u; ++i) {
     nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, which, 1, false, false, hits, counts);

@@ -38,6 +38,7 @@ __kernel void field_picture(__global const SdfField* restrict sdf_fields,
   rays.footprint = (REAL)(0.0f);
   rays.spread = (REAL)(scale);
   rays.active = ALL_LANES;
+  rays.step_limit = sdf_fields[0].step_limit;
   rays.inside = NO_LANES;
   rays.leaving = NO_LANES;
   const MarchHits hits = march_rays(SDF_ARGUMENTS, 0, &rays);
@@ -49,8 +50,9 @@ __kernel void field_picture(__global const SdfField* restrict sdf_fields,
     const REAL cosine = fmax(dot3(s.normal, wi), 0.0f);
     const REAL3 above = along3(p, 2.0f * hits.threshold, s.normal);
     const REAL open = sdf_openness(SDF_ARGUMENTS, 0, above, s.normal, 0.2f, hits.hit);
+    u32 steps_left = sdf_fields[0].step_limit;
     const REAL lit = sdf_soft_shadow(SDF_ARGUMENTS, 0, above, wi, 2.0f * hits.threshold, (REAL)(4.0f), 16.0f,
-                                     hits.hit & MASK_OF(cosine > 0.0f));
+                                     &steps_left, hits.hit & MASK_OF(cosine > 0.0f));
     shade = select(shade, fma(0.8f * cosine, lit, 0.2f * open), hits.hit);
   }
   u32 totals[4] = {0, 0, 0, 0};

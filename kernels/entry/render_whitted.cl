@@ -18,17 +18,17 @@ static inline u32 lane_pixel(u32 item, u32 lane, u32 x0, u32 y0, u32 width, u32 
   return local_x < width && local_y < height ? local_y * width + local_x : NO_PIXEL;
 }
 
-// Reads the scene; adds samples [first_sample, first_sample + sample_count) of each pixel of the rectangle
-// (x0, y0, width, height) to film (rgb and coverage) and their number to weights (a sample that is not finite
-// counts for nothing); adds to counters.
+// Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of work-items
+// [first_item, last_item) of the rectangle (x0, y0, width, height) to film (rgb and coverage) and their
+// number to weights (a sample that is not finite counts for nothing); adds to counters.
 __kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const u32* restrict camera_media,
                              __global float4* restrict film, __global float* restrict weights,
                              __global u32* restrict counters, u32 x0, u32 y0, u32 width, u32 height,
-                             u32 row_items, u32 item_count, u32 film_first, u32 first_sample,
+                             u32 row_items, u32 first_item, u32 last_item, u32 first_sample,
                              u32 sample_count) {
-  // In two dimensions the launch is the grid of tiles itself, in one it is that grid row by row.
-  const u32 item = get_global_id(1) * row_items + get_global_id(0);
-  if (get_global_id(0) >= row_items || item >= item_count) return;
+  // Items count through the rectangle row by row; a launch in two dimensions takes whole rows of them.
+  const u32 item = first_item + get_global_id(1) * row_items + get_global_id(0);
+  if (get_global_id(0) >= row_items || item >= last_item) return;
   u32 counts[COUNTERS];
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
   const MediaStack start = (MediaStack)camera_media[1] << 32 | camera_media[0];
@@ -36,6 +36,9 @@ __kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const 
   for (u32 sample = first_sample; sample < first_sample + sample_count; ++sample) {
     float4 radiance[BATCH];
     stack.count = 0;
+#if HAS_SDF
+    counts[COUNT_MARCH_LEFT] = MARCH_WORK;
+#endif
     for (u32 lane = 0; lane < BATCH; ++lane) {
       u32 x, y;
       radiance[lane] = (float4)(0.0f);
@@ -58,9 +61,10 @@ __kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const 
         counts[COUNT_NON_FINITE] += 1u;
         continue;
       }
-      film[film_first + pixel] += radiance[lane];
-      weights[film_first + pixel] += 1.0f;
+      film[pixel] += radiance[lane];
+      weights[pixel] += 1.0f;
     }
   }
+  counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);
 }

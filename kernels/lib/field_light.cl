@@ -42,7 +42,7 @@ NEVER_INLINE void field_openness(TRACE_PARAMETERS, SHADE_PARAMETERS, const Scene
 
 // Multiplies through[k] by what the fields with soft shadows let pass along rays[k], k < count.
 NEVER_INLINE void soft_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRay* rays, u32 count,
-                               float3* through) {
+                               float3* through, u32* counts) {
   Hit ends[BATCH];
   u32 all[BATCH];
   for (u32 k = 0; k < count; ++k) {
@@ -59,9 +59,12 @@ NEVER_INLINE void soft_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRa
       const REAL threshold =
           clamp(ray.footprint * speed * field->detail, (REAL)(field->lower.w), (REAL)(field->upper.w));
       const REAL start = select(ray.t_min * speed, 4.0f * threshold, ray.leaving);  // off its own surface
+      const u32 before = steps_left(field, counts);
+      u32 left = before;
       const REAL open = sdf_soft_shadow(SDF_ARGUMENTS, instances[index].root, ray.origin,
                                         scale3(ray.direction, 1.0f / speed), start, ray.t_max * speed,
-                                        field->shadow_hardness, ray.active);
+                                        field->shadow_hardness, &left, ray.active);
+      pay_for_steps(field, before - left, counts);
       for (u32 i = 0; i < LANES && first + i < count; ++i) through[first + i] *= REAL_LANE(open, i);
     }
   }

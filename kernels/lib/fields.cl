@@ -103,11 +103,30 @@ static inline MarchRays march_from(SDF_PARAMETERS, __global const SceneInfo* res
   return rays;
 }
 
+// What a work-item's marches of one sample may cost, in iterations of formulas: so much that no picture that
+// anyone waits for comes near it, and so little that no launch runs for long, however hard the fractal. What
+// finds nothing left is counted and reported.
+#define MARCH_WORK 2000000u
+
+// Steps through a field that are left to the sample.
+static inline u32 steps_left(__global const SdfField* restrict field, const u32* counts) {
+  return counts[COUNT_MARCH_LEFT] / field->iterations;
+}
+static inline void pay_for_steps(__global const SdfField* restrict field, u32 steps, u32* counts) {
+  counts[COUNT_MARCH_LEFT] -= min(steps * field->iterations, counts[COUNT_MARCH_LEFT]);
+}
+
 // Marches through one field and keeps what is nearer.
 static inline void march_field(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, RayLanes* lanes, u32* counts) {
+  __global const SdfField* restrict field = sdf_fields + instances[index].root;
   const u32 flags = materials[instances[index].material].flags;
   const bool two_sided = (flags & MATERIAL_TRANSMITS) && !(flags & MATERIAL_THIN);
-  const MarchRays rays = march_from(SDF_ARGUMENTS, info, instances, index, two_sided, lanes);
+  MarchRays rays = march_from(SDF_ARGUMENTS, info, instances, index, two_sided, lanes);
+  rays.step_limit = min(field->step_limit, steps_left(field, counts));
+  if (rays.step_limit == 0u) {
+    counts[COUNT_MARCH_BUDGET] += 1u;
+    return;
+  }
   const MarchHits hits = march_rays(SDF_ARGUMENTS, instances[index].root, &rays);
   const MASK nearer = hits.hit & MASK_OF(hits.t < lanes->t_best);
   lanes->t_best = select(lanes->t_best, hits.t, nearer);
@@ -116,18 +135,20 @@ static inline void march_field(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, Ra
   lanes->inside = select(lanes->inside, rays.inside, nearer);
   lanes->cut = select(lanes->cut, hits.cut, nearer);
 #if HAS_GLOW
-  __global const SdfField* field = sdf_fields + instances[index].root;
   if (field->glow.w > 0.0f) {
     const REAL passed = select(exp(hits.nearest * (-1.0f / field->glow.w)), (REAL)(0.0f), hits.hit);
     lanes->glow = along3(lanes->glow, passed,
                          real3((REAL)(field->glow.x), (REAL)(field->glow.y), (REAL)(field->glow.z)));
   }
 #endif
+  u32 most = 0;
   for (u32 i = 0; i < LANES; ++i) {
+    most = max(most, (u32)MASK_LANE(hits.steps, i));
     counts[COUNT_MARCH_STEPS] += (u32)MASK_LANE(hits.steps, i);
     counts[COUNT_MARCH_BACK] += (u32)MASK_LANE(hits.taken_back, i);
     counts[COUNT_MARCH_LIMIT] += MASK_LANE(hits.limited, i) ? 1u : 0u;
   }
+  pay_for_steps(field, most, counts);
 }
 
 // Normals and colours of the lanes that met instance `index`, as hits[k] of the batch.

@@ -57,7 +57,7 @@ static inline void visibilities(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* ra
                                 float3* through, u32* counts) {
   for (u32 i = 0; i < count; ++i) through[i] = (float3)(1.0f);
 #if HAS_SDF
-  soft_shadows(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, count, through);
+  soft_shadows(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, count, through, counts);
 #endif
 #if HAS_SHADOW_FILTERS
   Hit hits[BATCH];

@@ -102,7 +102,9 @@ SUNDOG_SHARED_SIZE(SceneInfo, 240)
 #define COUNT_SHADOW_LIMIT 12       // shadow rays given up after too many filters
 #define COUNT_MARCH_LIMIT 13        // marches that their step limit ended
 #define COUNT_MARCH_BACK 14         // relaxed steps that were taken back
-#define COUNTERS 16
+#define COUNT_MARCH_BUDGET 15       // marches not made because the sample's budget was used up
+#define COUNT_MARCH_LEFT 16         // no count: what the marches of a sample may still cost (lib/fields.cl)
+#define COUNTERS 17
 
 SUNDOG_SHARED_END
 #endif

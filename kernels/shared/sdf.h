@@ -16,7 +16,7 @@ SUNDOG_SHARED_BEGIN
 #define SDF_COLOR_ITERATIONS 4u  // iterations until escape, continuous
 #define SDF_COLOR_RADIUS 5u      // the point's own distance from the field's origin
 
-// 112 bytes; lengths are in the field's own space. The threshold at which a ray has arrived is the pixel's
+// 128 bytes; lengths are in the field's own space. The threshold at which a ray has arrived is the pixel's
 // footprint, kept within [lower.w, upper.w].
 typedef struct SdfField {
   float4 lower;   // interval in which the field is built: it cuts the surface; w = least threshold
@@ -34,9 +34,11 @@ typedef struct SdfField {
   float normal_width;  // of the differences that give a fractal's normal, in thresholds
   float occlusion_reach;  // how far off the surface its own crevices take ambient light; 0: they do not
   float shadow_hardness;  // a soft shadow ends 1 / hardness of its length beside the field; 0: sharp
+  u32 iterations;         // that one estimate may take at most
+  u32 pad0, pad1, pad2;
   float4 glow;            // light that a passing ray gathers; w = distance at which it has fallen to 1 / e
 } SdfField;
-SUNDOG_SHARED_SIZE(SdfField, 112)
+SUNDOG_SHARED_SIZE(SdfField, 128)
 
 SUNDOG_SHARED_END
 #endif

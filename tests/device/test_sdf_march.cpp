@@ -30,6 +30,7 @@ __kernel void march(__global const SdfField* fields, __global const float* q, __
   r.footprint = (REAL)(footprint);
   r.spread = (REAL)(spread);
   r.active = ALL_LANES;
+  r.step_limit = fields[field].step_limit;
   r.inside = (mode & 1u) ? ALL_LANES : NO_LANES;
   r.leaving = (mode & 2u) ? ALL_LANES : NO_LANES;
   MarchHits h = march_rays(fields, q, field, &r);

@@ -20,15 +20,17 @@ static inline REAL sdf_openness(SDF_PARAMETERS, u32 index, REAL3 p, REAL3 normal
 }
 
 // The part of a light that reaches p along the unit direction wi, within t_max: 0 behind the surface, between
-// 0 and 1 where the way to the light passes it within 1 / hardness of the distance.
+// 0 and 1 where the way to the light passes it within 1 / hardness of the distance. Takes its steps from
+// *steps_left; without any, what has been seen so far counts.
 static inline REAL sdf_soft_shadow(SDF_PARAMETERS, u32 index, REAL3 p, REAL3 wi, REAL t_min, REAL t_max,
-                                   float hardness, MASK active) {
+                                   float hardness, u32* steps_left, MASK active) {
   __global const SdfField* restrict field = sdf_fields + index;
   REAL enter = t_min, leave = t_max;
   clip_to_interval(field, p, wi, &enter, &leave);
   active &= MASK_OF(enter <= leave);
   REAL t = enter, open = (REAL)(1.0f);
-  for (u32 i = 0; i < field->step_limit && any_lane(active); ++i) {
+  for (u32 i = 0; i<field->step_limit&& * steps_left> 0u && any_lane(active); ++i) {
+    *steps_left -= 1u;
     const REAL d = sdf_distance(index, along3(p, t, wi), active, sdf_parameters) * field->safety;
     open = select(open, real_min(open, hardness * d * rough_inverse(t)), active);
     t += real_max(d, 0.02f * t);  // a penumbra is not looked at more closely than this

@@ -12,6 +12,7 @@ typedef struct MarchRays {
   REAL3 origin, direction;
   REAL t_min, t_max;
   REAL footprint, spread;
+  u32 step_limit;
   MASK active;
   MASK inside;   // the ray travels inside the solid and looks for the way out
   MASK leaving;  // it starts on the surface: a hit counts only after it has got clear of it
@@ -111,7 +112,7 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   const REAL spread = rays->spread * speed * field->detail,
              footprint = rays->footprint * speed * field->detail;
   const REAL least = (REAL)(field->lower.w), greatest = (REAL)(field->upper.w);
-  for (u32 i = 0; i < field->step_limit && any_lane(active); ++i) {
+  for (u32 i = 0; i < rays->step_limit && any_lane(active); ++i) {
     const REAL3 p = along3(rays->origin, t, rays->direction);
     const REAL f = march_estimate(index, p, active, rays->inside, sdf_parameters) * field->safety;
     const REAL threshold = real_clamp(fma(t, spread, footprint), least, greatest);
