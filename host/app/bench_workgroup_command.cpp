@@ -100,15 +100,15 @@ int bench_workgroup(const WorkgroupOptions& options) {
             kernel.cached ? "loaded from the cache" : "built", number_text(1e3 * kernel.build_seconds)));
       }
   }
-  report.notes.push_back(
-      fmt::format("Median of {} runs, after one to warm up, all sizes in shuffled turn. render_whitted is a whole "
-                  "frame with its transfers, "
-                  "the others are {}x{} camera rays through the tracer alone. Results were compared to the "
-                  "bit before a time "
-                  "counted. \"Compiled in\" is what the first run took longer than the median: drivers that "
-                  "compile for each size "
-                  "show it.",
-                  options.repeat, options.rays, options.rays));
+  report.notes.push_back(fmt::format(
+      "Median of {} runs, after one to warm up, all sizes in shuffled turn. render_whitted is a whole "
+      "frame with its transfers, "
+      "the others are {}x{} camera rays through the tracer alone. Results were compared to the "
+      "bit before a time "
+      "counted. \"Compiled in\" is what the first run took longer than the median: drivers that "
+      "compile for each size "
+      "show it.",
+      options.repeat, options.rays, options.rays));
   return publish(report, options);
 }
 

@@ -18,6 +18,8 @@ enum ExitStatus {
 
 int render_command(const RenderCommand& command);
 int info_command(const InfoCommand& command);
+/// `argv` as main() has it.
+int worker_command(int argc, const char* const* argv);
 int compare_command(const CompareCommand& command);
 
 }  // namespace sundog

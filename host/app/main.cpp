@@ -30,6 +30,7 @@ int run(const ShowText& command) {
 }
 
 int run_command_line(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "worker") return worker_command(argc, argv);
   const Command command = parse_command_line(argc, argv);
   const int status = std::visit([](const auto& chosen) { return run(chosen); }, command);
   if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw IoError("the standard output cannot be written");

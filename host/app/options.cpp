@@ -59,6 +59,8 @@ void add_render(CLI::App& root, Command& chosen) {
   value(app, "SCENE", "FILE", command.scene, scene_help)->required();
   value(app, "-o,--out", "FILE", command.out, "image file: .png, .exr, .hdr or .pfm")->required();
   values(app, "--device", "SPEC", command.devices, device_help);
+  app->add_flag("--isolate", command.isolate,
+                "a worker process for each device: a driver that crashes or hangs takes nothing else along");
   value(app, "--size", "WxH", typed->size, "width and height in pixels");
   value(app, "--samples", "N", typed->samples, "samples a pixel");
   value(app, "--max-depth", "N", typed->max_depth,

@@ -20,6 +20,7 @@ struct RenderCommand {
   int tile = 0;
   std::string stats, resume;  // files; empty: none
   std::vector<std::string> aovs;
+  bool isolate = false;      // each device in a process of its own
   bool full_floats = false;  // an EXR's colours as 32-bit floats
   bool quiet = false, verbose = false;
 };

@@ -7,6 +7,7 @@
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "app/remote_devices.h"
 #include "app/save_image.h"
 #include "app/stats.h"
 #include "app/warnings.h"
@@ -117,13 +118,15 @@ int render_command(const RenderCommand& command) {
   print_warnings(scene.warnings);
   const auto flat =
       timed(times.compile_scene, [&] { return std::make_shared<const CompiledScene>(compile(scene)); });
-  const std::vector<DeviceInfo> devices = select_devices(enumerate_devices(), command.devices);
+  const std::vector<DeviceInfo> devices =
+      select_devices(command.isolate ? enumerate_in_worker() : enumerate_devices(), command.devices);
 
   ProgressBar bar(!command.quiet);
   RenderOptions options = render_options(command);
   options.stop = &stop.flag();
   options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
-  const RenderResult result = render(flat, devices, options);
+  const RenderResult result = command.isolate ? render(flat, isolated(command, devices, *flat), options)
+                                              : render(flat, devices, options);
   bar.erase();
 
   times.render = result.times;

@@ -22,25 +22,25 @@ void check_aovs(const std::vector<std::string>& names) {
           fmt::format("no AOV is called '{}'; there are {}", name, fmt::join(aov_names(), ", ")));
 }
 
-void check_shares(const Split& split, const std::vector<DeviceInfo>& devices) {
+void check_shares(const Split& split, const std::vector<ServerPlan>& devices) {
   if (split.shares.empty() || split.shares.size() == devices.size()) return;
   std::vector<std::string> labels;
-  for (const DeviceInfo& device : devices) labels.push_back(device.label());
+  for (const ServerPlan& device : devices) labels.push_back(device.info.label());
   throw UsageError(fmt::format("--split {}: {} shares for {} devices ({}): give one share a device",
                                fmt::join(split.shares, ","), split.shares.size(), devices.size(),
                                fmt::join(labels, "; ")));
 }
 
 /// The rows that each list of tiles covers: all of them, or a device's part of a fixed split.
-std::vector<RowRange> row_ranges(const Split& split, int height, const std::vector<DeviceInfo>& devices) {
+std::vector<RowRange> row_ranges(const Split& split, int height, const std::vector<ServerPlan>& devices) {
   if (split.kind == Split::Kind::dynamic) return {{0, height}};
   std::vector<double> shares = split.shares;
   if (shares.empty())
-    for (const DeviceInfo& device : devices) shares.push_back(device.estimate);
+    for (const ServerPlan& device : devices) shares.push_back(device.info.estimate);
   return divide_rows(height, shares);
 }
 
-TilePlan plan_tiles(const RenderOptions& options, const Film& film, const std::vector<DeviceInfo>& devices) {
+TilePlan plan_tiles(const RenderOptions& options, const Film& film, const std::vector<ServerPlan>& devices) {
   TilePlan plan;
   plan.whole = options.tile > 0;
   for (const RowRange& range : row_ranges(options.split, film.height, devices)) {
@@ -69,7 +69,7 @@ Film begin_film(const CompiledScene& scene, const RenderOptions& options, std::u
   return film;
 }
 
-std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<DeviceInfo>& devices,
+std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerPlan>& devices,
                                    const RenderOptions& options, std::uint64_t key) {
   Film film = begin_film(*scene, options, key);
   std::vector<DeviceSpeed> speeds(devices.size());
@@ -77,14 +77,14 @@ std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<DeviceI
   const auto done = static_cast<std::uint64_t>(
       std::count_if(film.done.begin(), film.done.end(), [](auto d) { return d != 0; }));
   for (std::size_t i = 0; i < devices.size(); ++i) {
-    speeds[i].estimate = devices[i].estimate;
-    speeds[i].processor = devices[i].type == "cpu" ? 0 : -1;
+    speeds[i].estimate = devices[i].info.estimate;
+    speeds[i].processor = devices[i].processor;
   }
   auto frame = std::make_shared<Frame>(options, std::move(film), std::move(plan), std::move(speeds));
-  for (const DeviceInfo& device : devices) {
+  for (const ServerPlan& device : devices) {
     Frame::Server server;
-    server.server = std::make_shared<DeviceServer>(device, scene, frame->options);
-    server.report.info = device;
+    server.server = device.make(frame->options);
+    server.report.info = device.info;
     frame->servers.push_back(std::move(server));
   }
   frame->pixels_done = done;
@@ -139,7 +139,7 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   return result;
 }
 
-RenderResult render_frame(const Scene& scene, const std::vector<DeviceInfo>& devices,
+RenderResult render_frame(const Scene& scene, const std::vector<ServerPlan>& devices,
                           const RenderOptions& options, bool wait) {
   check_aovs(options.aovs);
   if (devices.empty()) throw DeviceError("no device to render on");
@@ -155,16 +155,32 @@ RenderResult render_frame(const Scene& scene, const std::vector<DeviceInfo>& dev
   return result;
 }
 
+/// Devices of this process.
+std::vector<ServerPlan> plan_servers(const Scene& scene, const std::vector<DeviceInfo>& devices) {
+  std::vector<ServerPlan> plans;
+  for (const DeviceInfo& device : devices)
+    plans.push_back({device, device.type == "cpu" ? 0 : -1, [scene, device](const RenderOptions& options) {
+                       return std::make_shared<DeviceServer>(device, scene, options);
+                     }});
+  return plans;
+}
+
 }  // namespace
 
 RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options) {
-  return render_frame(Scene(Scene(), &scene), devices, options, true);
+  const Scene borrowed(Scene(), &scene);
+  return render_frame(borrowed, plan_servers(borrowed, devices), options, true);
 }
 
 RenderResult render(std::shared_ptr<const CompiledScene> scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options) {
-  return render_frame(scene, devices, options, false);
+  return render_frame(scene, plan_servers(scene, devices), options, false);
+}
+
+RenderResult render(std::shared_ptr<const CompiledScene> scene, const std::vector<ServerPlan>& servers,
+                    const RenderOptions& options) {
+  return render_frame(scene, servers, options, false);
 }
 
 }  // namespace sundog

@@ -86,6 +86,15 @@ struct RenderResult {
   std::string checkpoint_error;  // why the checkpoint of an interrupted frame could not be written
 };
 
+class TileServer;
+
+/// What makes tiles, and what is known of it before it is opened.
+struct ServerPlan {
+  DeviceInfo info;
+  int processor = -1;  // devices with the same number run on the same cores (plan.h)
+  std::function<std::shared_ptr<TileServer>(const RenderOptions&)> make;
+};
+
 /// The AOVs `render` can make: depth, normal, position, albedo, object, material.
 const std::vector<std::string>& aov_names();
 
@@ -98,6 +107,10 @@ RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& d
 /// The same, but does not wait for a driver that compiles, or is in a launch, when the frame is finished: its
 /// thread is left behind, holding the scene.
 RenderResult render(std::shared_ptr<const CompiledScene> scene, const std::vector<DeviceInfo>& devices,
+                    const RenderOptions& options = {});
+
+/// The same on devices that may be other processes'.
+RenderResult render(std::shared_ptr<const CompiledScene> scene, const std::vector<ServerPlan>& servers,
                     const RenderOptions& options = {});
 
 /// Threads left behind in drivers. While there are any, a process should end by _exit(): what static

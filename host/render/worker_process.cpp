@@ -1,0 +1,108 @@
+#include "render/worker_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+namespace sundog {
+namespace {
+
+constexpr int worker_descriptor = 3;
+
+class WorkerChannel : public Channel {
+ public:
+  WorkerChannel(int socket, pid_t process, std::string name)
+      : socket_(std::make_unique<SocketChannel>(socket)), process_(process), name_(std::move(name)) {}
+  ~WorkerChannel() override {
+    socket_.reset();  // which tells it to end
+    wait_for_end(2);
+    if (process_ > 0) ::kill(process_, SIGKILL);
+    wait_for_end(2);
+  }
+  void send(const Message& message) override {
+    try {
+      socket_->send(message);
+    } catch (const ChannelClosed&) {
+      throw_end();
+    }
+  }
+  std::optional<Message> receive(double seconds) override {
+    try {
+      return socket_->receive(seconds);
+    } catch (const ChannelClosed&) {
+      throw_end();
+    }
+  }
+
+ private:
+  void wait_for_end(double seconds) {
+    for (double waited = 0; process_ > 0 && waited <= seconds; waited += 0.01) {
+      if (::waitpid(process_, &status_, WNOHANG) == process_)
+        process_ = 0;
+      else
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+  [[noreturn]] void throw_end() {
+    wait_for_end(1);
+    std::string how = "closed its channel";
+    if (process_ == 0 && WIFSIGNALED(status_))
+      how = fmt::format("was killed by signal {} ({})", WTERMSIG(status_), ::strsignal(WTERMSIG(status_)));
+    else if (process_ == 0)
+      how = fmt::format("ended with status {}", WEXITSTATUS(status_));
+    throw ChannelClosed(fmt::format("{}: its worker process {}", name_, how));
+  }
+
+  std::unique_ptr<SocketChannel> socket_;
+  pid_t process_;  // 0: ended, and waited for
+  int status_ = 0;
+  std::string name_;
+};
+
+pid_t spawn(int socket, const std::string& name) {
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_adddup2(&actions, socket, worker_descriptor);
+  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  std::string program = "sundog", command = "worker", descriptor = std::to_string(worker_descriptor),
+              label = name;
+  const std::array<char*, 5> arguments = {program.data(), command.data(), descriptor.data(), label.data(),
+                                          nullptr};
+  pid_t process = 0;
+  const int failed = ::posix_spawn(&process, "/proc/self/exe", &actions, nullptr, arguments.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0)
+    throw DeviceError(
+        fmt::format("{}: its worker process cannot be started: {}", name, std::strerror(failed)));
+  return process;
+}
+
+}  // namespace
+
+std::unique_ptr<Channel> start_worker(const std::string& name) {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw DeviceError(fmt::format("{}: no socket for its worker process: {}", name, std::strerror(errno)));
+  try {
+    const pid_t process = spawn(ends[1], name);
+    ::close(ends[1]);
+    return std::make_unique<WorkerChannel>(ends[0], process, name);
+  } catch (const DeviceError&) {
+    ::close(ends[0]);
+    ::close(ends[1]);
+    throw;
+  }
+}
+
+}  // namespace sundog

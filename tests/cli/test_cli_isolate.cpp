@@ -1,0 +1,133 @@
+// --isolate: each device in a process of its own, which may crash, hang or be killed.
+#include <base/file.h>
+
+#include <nlohmann/json.hpp>
+
+#include "catch.h"
+#include "cli_scene.h"
+
+using namespace sundog;
+using nlohmann::json;
+
+namespace {
+
+struct IsolatedFolder : CliFolder {
+  std::string plain;
+  CommandOptions options;
+
+  IsolatedFolder() {
+    options.environment["POCL_DEVICES"] = "basic pthread";
+    options.environment["SUNDOG_LAUNCH_LIMIT"] = "3.0";
+    REQUIRE(run_sundog(arguments({"--device", "0:1"}), options).status == 0);
+    plain = read_file(*this / "a.pfm");
+  }
+  std::vector<std::string> arguments(const std::vector<std::string>& more) const {
+    std::vector<std::string> all = {"render",  scene,       "-o", file("a.pfm"), "--size",
+                                    "160x120", "--samples", "4",  "--stats",     file("s.json")};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  CommandResult render(const std::string& faults, std::vector<std::string> more) {
+    options.environment["SUNDOG_FAULTS"] = faults;
+    more.push_back("--isolate");
+    std::filesystem::remove(*this / "a.pfm");
+    return run_sundog(arguments(more), options);
+  }
+  json stats() const { return json::parse(read_file(*this / "s.json")); }
+};
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("devices in processes of their own render the same bits, with AOVs and fixed shares") {
+  IsolatedFolder folder;
+  const CommandResult result = folder.render("", {"--device", "0:0", "--device", "0:1", "--split", "1,1"});
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+  CHECK(result.err.empty());
+  CHECK(read_file(folder / "a.pfm") == folder.plain);
+  for (const json& device : folder.stats()["devices"]) {
+    CHECK(device["share"] == 0.5);
+    CHECK(device["kernels"]["render_whitted"]["launches"] > 0);
+  }
+  const auto exr = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"render", folder.scene, "-o",     folder.file(name), "--aov",
+                                          "depth",  "--aov",      "normal", "--device",        "0:1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    REQUIRE(run_sundog(arguments, folder.options).status == 0);
+    return read_file(folder / name);
+  };
+  CHECK(exr("a.exr", {}) == exr("b.exr", {"--isolate"}));
+}
+
+TEST_CASE("a driver that crashes or hangs takes its worker along, not the frame") {
+  IsolatedFolder folder;
+  struct Case {
+    const char *faults, *says;
+  };
+  for (const Case& c : {Case{"crash@0:0#2", "was killed by signal 6"}, Case{"hang@0:0#2", "the driver hangs"},
+                        Case{"crash@0:0", "; the device was retired"}, Case{"build@0:0", "did not build"}}) {
+    CAPTURE(c.faults);
+    const CommandResult result =
+        folder.render(c.faults, {"--device", "0:0", "--device", "0:1", "--split", "1,1"});
+    CAPTURE(result.err);
+    CHECK(result.status == 0);
+    CHECK(contains(result.err, c.says));
+    CHECK(read_file(folder / "a.pfm") == folder.plain);
+  }
+  CHECK(folder.render("build@0:0", {"--device", "0:0"}).status == 5);
+  const CommandResult result = folder.render("crash@0:0", {"--device", "0:0"});
+  CHECK(result.status == 4);
+  CHECK(contains(result.err, "its worker process was killed by signal 6"));
+}
+
+TEST_CASE("a worker killed in the middle of a frame costs time, not the frame") {
+  IsolatedFolder folder;
+  // The only device, so that the frame needs it: killed twice while it renders.
+  const std::string script = R"(
+    "$0" "$@" & frame=$!
+    for kill in 1 2; do
+      while ! worker=$(pgrep -P $frame -f 'worker 3 0:1') && kill -0 $frame; do sleep 0.05; done
+      sleep 0.7
+      kill -9 $worker
+      while pgrep -P $frame -f 'worker 3 0:1' | grep -qx "$worker"; do sleep 0.05; done
+    done
+    wait $frame)";
+  std::vector<std::string> arguments = {"bash", "-c", script, SUNDOG_BINARY};
+  const std::vector<std::string> render =
+      folder.arguments({"--isolate", "--device", "0:1", "--set", "/render/samples=600", "--tile", "8"});
+  arguments.insert(arguments.end(), render.begin(), render.end());
+  const CommandResult result = run_command(arguments, folder.options);
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+  CHECK(contains(result.err, "was killed by signal 9"));
+  CHECK(folder.stats()["image"]["complete"] == true);
+  const std::string killed = read_file(folder / "a.pfm");
+  REQUIRE(run_sundog(folder.arguments({"--device", "0:1", "--set", "/render/samples=600"}), folder.options)
+              .status == 0);
+  CHECK(read_file(folder / "a.pfm") == killed);
+}
+
+TEST_CASE("an interrupt reaches the workers") {
+  IsolatedFolder folder;
+  folder.options.terminal = true;
+  folder.options.environment["TERM"] = "xterm";
+  folder.options.signal_at = "Mpixel/s";
+  const CommandResult result = run_sundog(
+      folder.arguments({"--isolate", "--device", "0:1", "--set", "/render/samples=20000", "--tile", "8"}),
+      folder.options);
+  CAPTURE(result.err);
+  CHECK(result.status == 130);
+  CHECK(result.seconds_after_signal < 2);
+  CHECK(contains(result.err, "interrupted: "));
+}
+
+TEST_CASE("worker is no command for people") {
+  const CommandResult result = run_sundog({"worker"});
+  CHECK(result.status == 2);
+  CHECK(contains(result.err, "--isolate"));
+  CHECK_FALSE(contains(run_sundog({"--help"}).out, "worker  "));
+}
