@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "scene/animate.h"
 #include "scene/json/override.h"
 #include "scene/json/parse.h"
 #include "scene/model.h"
@@ -42,9 +43,11 @@ json make_scene(const fs::path& file, const Model& model, const std::vector<std:
 }
 
 SceneDescription read_with_overrides(json document, const fs::path& file,
-                                     const std::vector<std::string>& overrides, std::optional<Model> model) {
+                                     const std::vector<std::string>& overrides, std::optional<double> frame,
+                                     std::optional<Model> model) {
   apply_overrides(document, file, overrides);
   const JsonContext context{file};
+  if (frame) apply_animation(document, *frame, context);
   try {
     return read_scene(JsonValue(document, context), std::move(model));
   } catch (const SceneError& error) {
@@ -60,19 +63,20 @@ SceneDescription read_with_overrides(json document, const fs::path& file,
 
 }  // namespace
 
-SceneDescription load_scene(const fs::path& path, const std::vector<std::string>& overrides) {
+SceneDescription load_scene(const fs::path& path, const std::vector<std::string>& overrides,
+                            std::optional<double> frame) {
   require_readable(path, path, "");
   if (is_model_file(path)) {
     Model model = load_model(path);
     json document = make_scene(path, model, overrides);
-    return read_with_overrides(std::move(document), path, overrides, std::move(model));
+    return read_with_overrides(std::move(document), path, overrides, frame, std::move(model));
   }
   if (path.extension() != ".json")
     throw SceneError(
         path.string(), "",
         "wanted a scene (.json) or a model (.gltf, .glb, .obj, .ply, .stl, .nff, each also .gz), found "
         "another extension");
-  return read_with_overrides(read_json_file(path), path, overrides, std::nullopt);
+  return read_with_overrides(read_json_file(path), path, overrides, frame, std::nullopt);
 }
 
 }  // namespace sundog

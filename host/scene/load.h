@@ -1,6 +1,7 @@
 // The one door into the scene layer: a file of any supported format becomes a SceneDescription.
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,9 +12,10 @@ namespace sundog {
 /// Loads sundog's .json, or .gltf .glb .obj .ply .stl .nff (each also .gz) as a scene by itself: a camera
 /// that frames the bounds, lights and a grey material are made up where the file has none. `overrides` are
 /// "JSON_POINTER=VALUE" settings, applied in turn before the scene is checked (for a model file they apply to
-/// the scene that is made of it). Throws SceneError{file, place, what}, and UsageError for an override that
-/// is not of that form.
-SceneDescription load_scene(const std::filesystem::path& path,
-                            const std::vector<std::string>& overrides = {});
+/// the scene that is made of it). `frame`: the scene's animation sets its values to those of that frame;
+/// without it the scene stands as it is written. Throws SceneError{file, place, what}, and UsageError for an
+/// override that is not of that form.
+SceneDescription load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
+                            std::optional<double> frame = std::nullopt);
 
 }  // namespace sundog

@@ -37,6 +37,8 @@ const std::string everything = R"({
     "t": {"file": "tetra.ply", "crease_angle": 30},
     "i": {"generate": {"type": "ice_block", "subdivision": 4, "cavity": {}}},
     "l": {"generate": {"type": "ice_block", "subdivision": 4, "part": "liquid", "level": 0, "cavity": {}}}},
+  "animate": [{"type": "smooth", "value": "/camera/fov", "keys": [{"frame": 0, "value": 30}, {"frame": 9, "value": 40}]},
+    {"type": "rotate", "value": "/lights/1/direction", "last": 60}],
   "fields": {"f": {"field": {"type": "union", "fields": [
       {"type": "intersection", "fields": [{"type": "fractal", "formula": "mandelbulb"}, {"type": "formula", "distance": "length(p) - 1"}]},
       {"type": "difference", "fields": [{"type": "moved", "rotate": {"axis": [0, 1, 0], "degrees": 3}, "field": {"type": "fractal", "formula": "menger"}},

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "scene/animate.h"
 #include "scene/bounds.h"
 #include "scene/formula/read.h"
 #include "scene/json/parse.h"
@@ -35,6 +36,7 @@ class SceneReader {
     object.text("$schema", " ");
     if (const auto image = object.find("image")) scene_.image = read_image(*image);
     if (const auto render = object.find("render")) scene_.render = read_render(*render);
+    if (const auto animate = object.find("animate")) read_tracks(*animate);  // load.cpp has applied them
     bool placed = false;
     if (const auto camera = object.find("camera")) scene_.camera = read_camera(*camera, placed);
     if (const auto lights = object.find("lights"))
