@@ -20,7 +20,7 @@ constexpr const char* more_help = "(sundog --help tells more)";
 /// The options of `render` as typed, before they are checked.
 struct TypedRender {
   RenderCommand command;
-  std::string size, samples, max_depth, integrator, work_group = "auto", split = "dynamic", tile;
+  std::string size, samples, max_depth, integrator, work_group = "auto", split = "dynamic", tile, frames;
 };
 
 /// The options that only shorten a --set come first, so that a --set of the same value wins.
@@ -44,6 +44,7 @@ RenderCommand checked(const TypedRender& typed) {
   command.overrides = collect_overrides(typed);
   command.work_group = parse_work_group(typed.work_group);
   command.split = parse_split(typed.split);
+  if (!typed.frames.empty()) command.frames = parse_frames(typed.frames);
   if (!typed.tile.empty()) command.tile = parse_number("--tile", typed.tile, 4, 65536);
   if (command.devices.empty()) command.devices = devices_of_environment();
   for (const std::string& name : command.aovs)
@@ -73,6 +74,9 @@ void add_render(CLI::App& root, Command& chosen) {
         "or "
         "fixed shares such as 3,1");
   value(app, "--tile", "N", typed->tile, "edge of the tiles in pixels (default: by measured speed)");
+  value(
+      app, "--frames", "A..B", typed->frames,
+      "render these frames of the scene's animation to numbered files (out_0001.png, or where OUT has ####)");
   value(app, "--stats", "FILE", command.stats, "write rays, times and devices to this JSON file");
   values(app, "--aov", "NAME", command.aovs,
          fmt::format("an extra image in the .exr: {}", fmt::join(aov_names(), ", ")));

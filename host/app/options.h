@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/devices_command.h"
+#include "app/frames.h"
 #include "render/render.h"
 
 namespace sundog {
@@ -18,6 +19,8 @@ struct RenderCommand {
   WorkGroup work_group;
   Split split;
   int tile = 0;
+  std::optional<FrameRange> frames;  // of an animation; the files are numbered
+  std::optional<double> frame;       // the one of them that is rendered now
   std::string stats, resume;  // files; empty: none
   std::vector<std::string> aovs;
   bool isolate = false;      // each device in a process of its own

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "app/commands.h"
+#include "app/frames.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/remote_devices.h"
@@ -44,7 +46,7 @@ void check_outputs(const RenderCommand& command) {
 /// An error at a place that an option changed is the command line's.
 SceneDescription load(const RenderCommand& command) {
   try {
-    return load_scene(command.scene, command.overrides);
+    return load_scene(command.scene, command.overrides, command.frame);
   } catch (const SceneError& error) {
     if (error.file == command.scene)
       for (const std::string& setting : command.overrides)
@@ -107,41 +109,97 @@ int conclude(const RenderCommand& command, const RenderResult& result) {
   return exit_interrupted;
 }
 
-}  // namespace
-
-int render_command(const RenderCommand& command) {
-  const Stopwatch clock;
-  check_outputs(command);
+/// What the frames of one run share: the devices stay open, with their kernels.
+struct Setup {
   const StopOnSignal stop;
-  TimeLedger times;
-  const SceneDescription scene = timed(times.load, [&] { return load(command); });
-  print_warnings(scene.warnings);
-  const auto flat =
-      timed(times.compile_scene, [&] { return std::make_shared<const CompiledScene>(compile(scene)); });
-  const std::vector<DeviceInfo> devices =
-      select_devices(command.isolate ? enumerate_in_worker() : enumerate_devices(), command.devices);
+  std::vector<DeviceInfo> devices;
+  std::shared_ptr<DevicePool> pool;
+};
 
+/// A scene as it is read, flattened and recognised.
+struct LoadedScene {
+  SceneDescription description;
+  std::shared_ptr<const CompiledScene> flat;
+};
+
+LoadedScene load_and_compile(const RenderCommand& command, TimeLedger& times) {
+  LoadedScene scene;
+  scene.description = timed(times.load, [&] { return load(command); });
+  scene.flat = timed(times.compile_scene,
+                     [&] { return std::make_shared<const CompiledScene>(compile(scene.description)); });
+  return scene;
+}
+
+int render_one(const RenderCommand& command, const LoadedScene& scene, const Setup& setup,
+               const Stopwatch& clock, TimeLedger& times) {
   ProgressBar bar(!command.quiet);
   RenderOptions options = render_options(command);
-  options.stop = &stop.flag();
+  options.pool = setup.pool;
+  options.stop = &setup.stop.flag();
   options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
-  const RenderResult result = command.isolate ? render(flat, isolated(command, devices, *flat), options)
-                                              : render(flat, devices, options);
+  const RenderResult result = command.isolate
+                                  ? render(scene.flat, isolated(command, setup.devices, *scene.flat), options)
+                                  : render(scene.flat, setup.devices, options);
   bar.erase();
 
   times.render = result.times;
   const Stopwatch writing;
-  save(command, *flat, result);
+  save(command, *scene.flat, result);
   times.write = writing.seconds();
   times.total = clock.seconds();
   if (!command.stats.empty()) {
     using nlohmann::json;
-    const json stats = stats_json(command, scene, *flat, result, times);
+    const json stats = stats_json(command, scene.description, *scene.flat, result, times);
     write_file(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   }
   warn(result);
   summarise(command, result, times);
   return conclude(command, result);
+}
+
+/// The command of one frame: its files are numbered.
+RenderCommand frame_command(const RenderCommand& command, int frame) {
+  RenderCommand one = command;
+  one.frame = frame;
+  one.out = frame_file(command.out, frame);
+  if (!command.stats.empty()) one.stats = frame_file(command.stats, frame);
+  return one;
+}
+
+int render_frames(const RenderCommand& command, const Setup& setup) {
+  FrameLog log(command.resume.empty() ? "" : command.resume + ".frames");
+  for (int frame = command.frames->first; frame <= command.frames->last; ++frame) {
+    const Stopwatch clock;
+    TimeLedger times;
+    const RenderCommand one = frame_command(command, frame);
+    const LoadedScene scene = load_and_compile(one, times);
+    if (frame == command.frames->first) print_warnings(scene.description.warnings);
+    const std::uint64_t hash = hash_scene(*scene.flat);
+    if (log.done(frame, hash, one.out)) continue;
+    if (const int status = render_one(one, scene, setup, clock, times)) return status;
+    log.add(frame, hash);
+  }
+  log.remove();
+  return exit_done;
+}
+
+}  // namespace
+
+int render_command(const RenderCommand& command) {
+  const Stopwatch clock;
+  check_outputs(command.frames ? frame_command(command, command.frames->first) : command);
+  TimeLedger times;
+  Setup setup;
+  std::optional<LoadedScene> scene;
+  if (!command.frames) {
+    scene = load_and_compile(command, times);
+    print_warnings(scene->description.warnings);
+  }
+  setup.devices =
+      select_devices(command.isolate ? enumerate_in_worker() : enumerate_devices(), command.devices);
+  if (scene) return render_one(command, *scene, setup, clock, times);
+  setup.pool = std::make_shared<DevicePool>();
+  return render_frames(command, setup);
 }
 
 }  // namespace sundog

@@ -94,6 +94,12 @@ Program Device::build(const std::string& entry, const KernelDefines& defines, Bu
   BuildReport& result = report ? *report : own;
   result = {};
   const std::string source = expand_kernel(entry, defines, generated);
+  const auto built = std::ranges::find_if(
+      programs_, [&](const auto& program) { return program->entry == entry && program->source == source; });
+  if (built != programs_.end()) {
+    result.cached = true;
+    return Program(*built);
+  }
   programs_.push_back(build_program(context_, device_, info_, entry, source, result));
   result.seconds = milliseconds(Clock::now() - start) * 1e-3;
   return Program(programs_.back());

@@ -108,7 +108,7 @@ class Device {
   const DeviceInfo& info() const { return info_; }
 
   /// Builds `entry` ("entry/whitted.cl", embedded or generated) with `defines`, from the binary cache when it
-  /// holds it. `generated` are further files (path -> text, such as "generated/sdf.cl") that the kernels may
+  /// holds it; what it has built before it gives again. `generated` are further files (path -> text, such as "generated/sdf.cl") that the kernels may
   /// include. Throws BuildError with the compiler's log.
   Program build(const std::string& entry, const KernelDefines& defines, BuildReport* report = nullptr,
                 const GeneratedFiles& generated = {});
@@ -143,6 +143,7 @@ class Device {
   /// Waits for all launches so far and adds their times to `times()`.
   void finish();
   const std::map<std::string, KernelTimes>& times() const { return times_; }
+  void forget_times() { times_.clear(); }
 
   /// Stores in the binary cache what has been compiled since the last call (some drivers compile at the first
   /// launch of each local size). The destructor does it too. Never throws.

@@ -120,6 +120,7 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
   auto record = std::make_shared<ProgramRecord>();
   record->device = info;
   record->entry = entry;
+  record->source = source;
   record->key = program_key(info, source);
   record->cache_file = program_cache_file(record->key);
   if (const auto cached = load_program(record->cache_file, record->key)) {

@@ -13,6 +13,7 @@ struct ProgramRecord {
   cl::Program program;
   DeviceInfo device;
   std::string entry;                 // the kernel file, for messages
+  std::string source;                // expanded
   std::string key;                   // all that the binary depends on
   std::filesystem::path cache_file;  // empty: there is no cache to store it in
   bool stored = false;               // the cache holds this program, with the machine code of stored_variants

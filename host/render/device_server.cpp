@@ -29,15 +29,19 @@ DeviceServer::DeviceServer(DeviceInfo info, std::shared_ptr<const CompiledScene>
 RenderTimes DeviceServer::open() {
   close();
   RenderTimes times;
-  device_.emplace(info_);
+  device_ = options_.pool ? options_.pool->take(info_) : std::make_unique<Device>(info_);
   renderer_.emplace(*device_, *scene_, options_, times, watch_);
+  works_ = true;
   return times;
 }
 
 void DeviceServer::be_nice() { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 19); }
 
 TileResult DeviceServer::render(const Tile& tile, const StopFlags& flags) {
-  return renderer_->render(tile, flags);
+  works_ = false;
+  TileResult result = renderer_->render(tile, flags);
+  works_ = true;
+  return result;
 }
 
 ServerFigures DeviceServer::figures() const {
@@ -49,7 +53,9 @@ ServerFigures DeviceServer::figures() const {
 void DeviceServer::close() {
   closed_ = figures();
   renderer_.reset();
+  if (device_ && works_ && options_.pool) options_.pool->give_back(std::move(device_));
   device_.reset();
+  works_ = false;
 }
 
 }  // namespace sundog

@@ -28,8 +28,9 @@ class DeviceServer : public TileServer {
   std::shared_ptr<const CompiledScene> scene_;
   const RenderOptions& options_;
   LaunchWatch watch_;
-  std::optional<Device> device_;
+  std::unique_ptr<Device> device_;
   std::optional<TileRenderer> renderer_;
+  bool works_ = false;  // nothing has failed since it was opened: fit for the pool
   ServerFigures closed_;  // of what was opened before
 };
 

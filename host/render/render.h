@@ -14,6 +14,7 @@
 #include "base/image.h"
 #include "compile/compiled_scene.h"
 #include "device/device.h"
+#include "device/device_pool.h"
 #include "render/film.h"
 
 namespace sundog {
@@ -36,6 +37,7 @@ struct RenderProgress {
 };
 
 struct RenderOptions {
+  std::shared_ptr<DevicePool> pool;  // where devices wait between frames; none: opened for this one
   WorkGroup work_group;
   int tile = 0;  // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
   Split split;
