@@ -99,6 +99,7 @@ void add_bench(CLI::App& root, Command& chosen) {
   add_bench_workgroup(*bench, chosen);
   add_bench_threads(*bench, chosen);
   add_bench_rays(*bench, chosen);
+  add_bench_devices(*bench, chosen);
 }
 
 }  // namespace sundog

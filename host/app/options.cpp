@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/bench_options.h"
+#include "app/check_command.h"
 #include "app/formulas_command.h"
 #include "app/option_helpers.h"
 #include "app/option_values.h"
@@ -149,6 +150,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_formulas(root, chosen);
   add_info(root, chosen);
   add_compare(root, chosen);
+  add_check(root, chosen);
   add_bench(root, chosen);
   check_command_name(root, argc, argv);
   try {

@@ -101,3 +101,28 @@ TEST_CASE("bench rays times every kind of ray and checks the hits") {
   }
   CHECK(kinds == std::vector<std::string>{"primary", "shadow", "bounce", "shuffled", "reflection", "glass"});
 }
+
+TEST_CASE("bench devices ranks devices and combinations, with shares that add up") {
+  const CliFolder folder;
+  CommandOptions options;
+  options.environment["POCL_DEVICES"] = "basic pthread";
+  const CommandResult result = run_sundog({"bench", "devices", folder.scene, "--device", "basic", "--device",
+                                           "pthread", "--repeat", "1", "--json", folder.file("d.json")},
+                                          options);
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  const json rows = json::parse(sundog::read_file(folder.file("d.json"))).at("measurements");
+  REQUIRE(rows.size() == 3);
+  double last = 0;
+  for (const json& row : rows) {
+    CHECK(row.at("problem").is_null());
+    CHECK(row.at("differing_pixels") == 0);
+    CHECK(row.at("time_ms").at("median") >= last);  // fastest first
+    last = row.at("time_ms").at("median");
+    double sum = 0;
+    std::string shares = row.at("shares");
+    for (std::size_t at = shares.find(':'); at != std::string::npos; at = shares.find(':', at + 1))
+      sum += std::stod(shares.substr(shares.find(' ', at) + 1));
+    CHECK(std::abs(sum - 100) <= 1);
+  }
+}

@@ -4,6 +4,7 @@
 //   "Fake mute"      two devices: one that does not know its name, and one that has no compiler
 //   "Fake old"       a device that speaks OpenCL C 1.1, and one that is big-endian
 //   "Fake empty"     no device
+//   "Fake crashing"  a device that looks usable, and crashes in the first call that uses it
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <CL/cl_icd.h>
@@ -23,6 +24,7 @@ struct _cl_device_id {
   const char* name;  // null: asking for it fails
   const char* c_version;
   cl_bool compiler, little_endian;
+  cl_ulong type = CL_DEVICE_TYPE_GPU;
 };
 
 namespace {
@@ -32,11 +34,13 @@ _cl_device_id nameless{&dispatch, nullptr, "OpenCL C 1.2", CL_TRUE, CL_TRUE};
 _cl_device_id no_compiler{&dispatch, "uncompiling", "OpenCL C 1.2", CL_FALSE, CL_TRUE};
 _cl_device_id old{&dispatch, "old", "OpenCL C 1.1", CL_TRUE, CL_TRUE};
 _cl_device_id big_endian{&dispatch, "backwards", "OpenCL C 1.2", CL_TRUE, CL_FALSE};
+_cl_device_id crashing{&dispatch, "crashing", "OpenCL C 1.2", CL_TRUE, CL_TRUE, CL_DEVICE_TYPE_CPU};
 _cl_platform_id platforms[] = {
     {&dispatch, "Fake failing", CL_OUT_OF_HOST_MEMORY, {nullptr, nullptr}},
     {&dispatch, "Fake mute", CL_SUCCESS, {&nameless, &no_compiler}},
     {&dispatch, "Fake old", CL_SUCCESS, {&old, &big_endian}},
     {&dispatch, "Fake empty", CL_DEVICE_NOT_FOUND, {nullptr, nullptr}},
+    {&dispatch, "Fake crashing", CL_SUCCESS, {&crashing, nullptr}},
 };
 
 cl_int answer(const void* value, size_t bytes, size_t room, void* to, size_t* needed) {
@@ -67,14 +71,15 @@ cl_int CL_API_CALL platform_info(cl_platform_id platform, cl_platform_info what,
 cl_int CL_API_CALL get_devices(cl_platform_id platform, cl_device_type, cl_uint room, cl_device_id* list,
                                cl_uint* count) {
   if (platform->list_status != CL_SUCCESS) return platform->list_status;
-  if (count) *count = 2;
-  for (cl_uint i = 0; list && i < std::min(room, 2u); ++i) list[i] = platform->devices[i];
+  const cl_uint devices = platform->devices[1] ? 2 : 1;
+  if (count) *count = devices;
+  for (cl_uint i = 0; list && i < std::min(room, devices); ++i) list[i] = platform->devices[i];
   return CL_SUCCESS;
 }
 
 cl_int CL_API_CALL device_info(cl_device_id device, cl_device_info what, size_t room, void* to,
                                size_t* needed) {
-  const cl_ulong type = CL_DEVICE_TYPE_GPU, bytes = 1 << 20;
+  const cl_ulong bytes = 1 << 20;
   const cl_uint one = 1;
   const size_t group = 64;
   const cl_bool yes = CL_TRUE;
@@ -89,7 +94,7 @@ cl_int CL_API_CALL device_info(cl_device_id device, cl_device_info what, size_t 
     case CL_DEVICE_EXTENSIONS:
       return answer_text("fake", room, to, needed);
     case CL_DEVICE_TYPE:
-      return answer(&type, sizeof type, room, to, needed);
+      return answer(&device->type, sizeof device->type, room, to, needed);
     case CL_DEVICE_GLOBAL_MEM_SIZE:
     case CL_DEVICE_MAX_MEM_ALLOC_SIZE:
       return answer(&bytes, sizeof bytes, room, to, needed);

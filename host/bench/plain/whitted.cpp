@@ -246,8 +246,8 @@ Path camera_path(const SceneInfo& info, float x, float y, const MediaStack& medi
 }  // namespace plain
 
 std::string plain_refusal(const CompiledScene& scene) {
-  for (const Instance& instance : scene.instances)
-    if (instance.shape > SHAPE_ROUNDBOX) return "the plain C++ program knows no distance fields";
+  if (scene.features.shapes[SHAPE_SDF]) return "the plain C++ program knows no distance fields";
+  if (scene.features.fog || scene.features.glow) return "the plain C++ program knows no fog and no glow";
   return {};
 }
 

@@ -1,0 +1,48 @@
+// `sundog bench devices`: which device, or which devices together, draw a scene fastest.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/bench_options.h"
+#include "app/option_helpers.h"
+#include "bench/device_ranking.h"
+#include "bench/machine.h"
+
+namespace sundog {
+namespace {
+
+int bench_devices_command(const BenchOptions& asked) {
+  Report report = new_report("devices", "Devices and their combinations", asked);
+  BenchOptions options = asked;
+  if (options.devices.empty()) options.devices = devices_of_environment();
+  if (options.devices.empty()) options.devices = {"all"};
+  const std::vector<DeviceInfo> devices = bench_devices(options);
+  for (const DeviceInfo& device : devices) report.facts.emplace_back("device", device_fact(device));
+  for (const std::string& file : options.scenes) {
+    const auto on_step = [&](const std::string& step) { show_step(options, scene_name(file) + ", " + step); };
+    add_device_tables(report, scene_name(file),
+                      measure_devices(bench_scene(file, options), devices, options.repeat, on_step),
+                      options.repeat);
+  }
+  report.notes.push_back(fmt::format(
+      "Median of {} frames, after one to warm up, in turn; without building kernels. Shares are of the "
+      "picture's "
+      "pixels. A pixel differs when it is more than 0.02 (linear colour) off the first device's; more than "
+      "one in 200 "
+      "is a problem. Efficiency is the work done over what the devices could have done in the time.",
+      options.repeat));
+  return publish(report, options);
+}
+
+}  // namespace
+
+void add_bench_devices(CLI::App& bench, Command& chosen) {
+  const auto options = std::make_shared<BenchOptions>();
+  CLI::App* app =
+      bench.add_subcommand("devices", "Rank devices and their combinations, with the share of each");
+  add_bench_options(app, *options);
+  app->callback(
+      [options, &chosen] { chosen = RunLater{[options] { return bench_devices_command(*options); }}; });
+}
+
+}  // namespace sundog

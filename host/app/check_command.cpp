@@ -1,0 +1,190 @@
+// See check_command.h. This process makes no OpenCL call: every driver and every device is looked at by a
+// child of its own, so that one that crashes or hangs is a line of the report.
+#include "app/check_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/check_report.h"
+#include "app/child_process.h"
+#include "app/commands.h"
+#include "app/option_helpers.h"
+#include "base/file.h"
+#include "bench/machine.h"
+#include "bench/self_check.h"
+
+namespace sundog {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+struct CheckOptions {
+  std::vector<std::string> devices;
+  std::string worker;  // "P:D": this is the child that looks at one device
+  int timeout = 600;
+  bool json = false;
+};
+
+constexpr const char* status_names[] = {"ok", "differs", "failed"};
+
+json check_json(const SelfCheck& check) {
+  return {{"status", status_names[static_cast<int>(check.status)]},
+          {"kernels", check.kernels},
+          {"build_seconds", check.build_seconds},
+          {"render_seconds", check.render_seconds},
+          {"pixels", check.pixels},
+          {"differing", check.differing},
+          {"greatest_difference", check.greatest},
+          {"problem", check.problem.empty() ? json(nullptr) : json(check.problem)},
+          {"log", check.log.empty() ? json(nullptr) : json(check.log)}};
+}
+
+/// A line at once: what follows may end the process.
+void say(const std::string& line) {
+  fmt::print("{}\n", line);
+  std::fflush(stdout);
+}
+
+int work(const std::string& spec) {
+  const DeviceInfo device = select_devices(enumerate_devices(), {spec}).front();
+  const SelfCheck check = check_device(device, [](const std::string& stage) { say("stage " + stage); });
+  say("result " + check_json(check).dump(-1, ' ', false, json::error_handler_t::replace));
+  return exit_done;
+}
+
+std::string end_text(const ChildResult& child, double seconds) {
+  if (child.timed_out) return fmt::format("did not come back within {:.0f} s", seconds);
+  if (child.signal) return fmt::format("crashed (signal {}, {})", child.signal, strsignal(child.signal));
+  return fmt::format("ended with status {}", child.status);
+}
+
+/// The platforms and devices of a list as `sundog devices --json` gives it; `problem` when there is none.
+json list_devices(const std::vector<std::string>& variables, double seconds, std::string& problem) {
+  std::string text;
+  const ChildResult child = run_self({"devices", "--json"}, variables, seconds,
+                                     [&](const std::string& line) { text += line + "\n"; });
+  const json list = json::parse(text, nullptr, false);
+  if (child.status == 0 && list.is_object()) return list.at("devices");
+  problem = end_text(child, seconds);
+  return json::array();
+}
+
+fs::path vendors_folder() {
+  const char* own = std::getenv("OCL_ICD_VENDORS");
+  return own && *own ? own : "/etc/OpenCL/vendors";
+}
+
+/// Each .icd file alone.
+json check_drivers(const fs::path& folder, double seconds) {
+  json drivers = json::array();
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none))
+    if (entry.path().extension() == ".icd") files.push_back(entry.path());
+  std::ranges::sort(files);
+  for (const fs::path& file : files) {
+    std::string problem, library = read_file(file);
+    library = library.substr(0, library.find('\n'));
+    const json rows = list_devices({"OCL_ICD_VENDORS=" + file.string()}, seconds, problem);
+    const auto devices = std::ranges::count_if(rows, [](const json& row) { return row.contains("index"); });
+    if (problem.empty() && rows.empty()) problem = "cannot be loaded, or has no platform";
+    drivers.push_back({{"file", file.filename().string()},
+                       {"library", library},
+                       {"devices", devices},
+                       {"problem", problem.empty() ? json(nullptr) : json(problem)},
+                       {"advice", problem.empty() ? json(nullptr) : json(advice(problem))}});
+  }
+  return drivers;
+}
+
+json check_one(const std::string& index, double seconds) {
+  json result;
+  std::string stage = "starting";
+  const ChildResult child = run_self({"check", "--worker", index}, {}, seconds, [&](const std::string& line) {
+    if (line.starts_with("stage ")) stage = line.substr(6);
+    if (line.starts_with("result ")) result = json::parse(line.substr(7), nullptr, false);
+  });
+  if (result.is_object()) return result;
+  SelfCheck failed;
+  failed.problem = fmt::format("{} while {}", end_text(child, seconds), stage);
+  return check_json(failed);
+}
+
+bool is_wanted(const json& row, const CheckOptions& options) {
+  return options.devices.empty() || std::ranges::count(options.devices, row.value("index", "")) > 0;
+}
+
+json check_devices(const json& rows, const CheckOptions& options) {
+  json devices = json::array();
+  for (const json& row : rows) {
+    if (!is_wanted(row, options)) continue;
+    json device = {{"platform", row.at("platform_name")}};
+    for (const char* key : {"index", "name", "driver", "version"})
+      if (row.contains(key)) device[key] = row.at(key);
+    if (row.at("usable") == true) {
+      if (!options.json && isatty(STDERR_FILENO))
+        fmt::print(stderr, "\r\x1b[Kchecking {}", row.at("name").get<std::string>());
+      device.update(check_one(row.at("index"), options.timeout));
+    } else {
+      device.update({{"status", "not usable"}, {"problem", row.at("problem")}});
+    }
+    const json& problem = device.at("problem");
+    device["advice"] = problem.is_string() ? json(advice(problem)) : json(nullptr);
+    devices.push_back(std::move(device));
+  }
+  if (!options.json && isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K");
+  return devices;
+}
+
+int exit_status(const json& devices) {
+  const auto has = [&](const char* status) {
+    return std::ranges::any_of(devices, [&](const json& device) { return device.at("status") == status; });
+  };
+  if (has("differs")) return exit_difference;
+  return has("failed") || !has("ok") ? exit_device : exit_done;
+}
+
+int check(const CheckOptions& options) {
+  const fs::path folder = vendors_folder();
+  std::string problem;
+  const json rows = list_devices({}, options.timeout, problem);
+  json report = {{"schema", 1},
+                 {"sundog", SUNDOG_VERSION},
+                 {"compiler", compiler_text()},
+                 {"vendors", folder.string()},
+                 {"drivers", check_drivers(folder, options.timeout)},
+                 {"caches", cache_figures()},
+                 {"devices", check_devices(rows, options)},
+                 {"problem", problem.empty() ? json(nullptr) : json("listing the devices " + problem)}};
+  const std::string text =
+      options.json ? report.dump(2, ' ', false, json::error_handler_t::replace) + "\n" : check_text(report);
+  fmt::print("{}", text);
+  return exit_status(report.at("devices"));
+}
+
+}  // namespace
+
+void add_check(CLI::App& root, Command& chosen) {
+  const auto options = std::make_shared<CheckOptions>();
+  CLI::App* app =
+      root.add_subcommand("check", "Check drivers, caches and devices; exit status 6 when a picture differs");
+  values(app, "--device", "P:D", options->devices, "only these devices, by their indices");
+  app->add_option("--timeout", options->timeout, "seconds that one device may take (default 600)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 86400));
+  app->add_flag("--json", options->json, "as JSON");
+  app->add_option("--worker", options->worker)->group("");
+  app->callback([options, &chosen] {
+    chosen =
+        RunLater{[options] { return options->worker.empty() ? check(*options) : work(options->worker); }};
+  });
+}
+
+}  // namespace sundog

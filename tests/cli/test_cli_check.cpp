@@ -1,0 +1,87 @@
+// `sundog check`: sound devices pass, wrong pictures and crashing drivers are found and never end it.
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "catch.h"
+#include "cli_scene.h"
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The report with these drivers alone, and the exit status.
+json check(const std::vector<std::string>& libraries, int& status, const std::string& kernels = "") {
+  const TemporaryFolder vendors;
+  for (std::size_t i = 0; i < libraries.size(); ++i)
+    vendors.write("driver" + std::to_string(i) + ".icd", libraries[i] + "\n");
+  CommandOptions options;
+  options.environment["OCL_ICD_VENDORS"] = vendors.path().string() + "/";
+  options.environment["SUNDOG_KERNEL_DIR"] = kernels;
+  const CommandResult result = run_sundog({"check", "--json"}, options);
+  CAPTURE(result.out, result.err);
+  status = result.status;
+  const json report = json::parse(result.out, nullptr, false);
+  REQUIRE(report.is_object());
+  CHECK(report.at("schema") == 1);
+  return report;
+}
+
+json row_of(const json& report, const std::string& part) {
+  for (const json& row : report.at("devices"))
+    if (row.at("platform").get<std::string>().find(part) != std::string::npos) return row;
+  return {};
+}
+
+constexpr const char* pocl = "libpocl.so.2";
+
+}  // namespace
+
+TEST_CASE("check passes a sound device, and a driver that crashes is a line beside it") {
+  int status = -1;
+  const json report = check({pocl, SUNDOG_FAKE_DRIVER, "/nowhere/libmissing.so"}, status);
+  INFO(report.dump(2));
+  CHECK(status == 4);
+  const json sound = row_of(report, "Portable");
+  CHECK(sound.at("status") == "ok");
+  CHECK(sound.at("kernels") >= 4);
+  CHECK(sound.at("pixels") == 64 * 48);
+  CHECK(sound.at("problem").is_null());
+  const json crashed = row_of(report, "Fake crashing");
+  CHECK(crashed.at("status") == "failed");
+  CHECK_THAT(crashed.at("problem").get<std::string>(), ContainsSubstring("crashed (signal "));
+  CHECK_THAT(crashed.at("problem").get<std::string>(), ContainsSubstring("while opening the device"));
+  CHECK_THAT(crashed.at("advice").get<std::string>(), ContainsSubstring("leave it out"));
+  CHECK(row_of(report, "Fake empty").at("status") == "not usable");
+  REQUIRE(report.at("drivers").size() == 3);
+  CHECK(report.at("drivers")[0].at("devices") == 1);
+  CHECK_THAT(report.at("drivers")[2].at("problem").get<std::string>(), ContainsSubstring("cannot be loaded"));
+}
+
+TEST_CASE("check finds a device whose picture is wrong, and one whose kernels do not build") {
+  const TemporaryFolder folder;
+  fs::copy(SUNDOG_SOURCE_DIR "/kernels", folder.path(),
+           fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  const std::string optics = sundog::read_file(folder / "lib/optics.cl");
+  int status = -1;
+  SECTION("wrong") {
+    std::string bent = optics;
+    const std::size_t at = bent.find("cos_i / eta - cos_t");
+    REQUIRE(at != std::string::npos);
+    bent.replace(at, 19, "cos_i / eta - 0.9f * cos_t");
+    folder.write("lib/optics.cl", bent);
+    const json row = row_of(check({pocl}, status, folder.path().string()), "Portable");
+    CHECK(status == 6);
+    CHECK(row.at("status") == "differs");
+    CHECK(row.at("differing") > 20);
+  }
+  SECTION("broken") {
+    folder.write("lib/optics.cl", optics + "\nthis is no kernel\n");
+    const json row = row_of(check({pocl}, status, folder.path().string()), "Portable");
+    CHECK(status == 4);
+    CHECK(row.at("status") == "failed");
+    CHECK_THAT(row.at("problem").get<std::string>(), ContainsSubstring("did not build"));
+    CHECK(row.at("log").is_string());
+  }
+}
