@@ -50,7 +50,8 @@ class Renderer {
       z = V{factor * c8, factor * (8 * z.x * z.y * c2 * c4), a8} + p;
       r2 = dot(z, z);
     }
-    return r2 < bailout ? 0 : 0.25f * std::log(r2) * std::sqrt(r2) / dr;
+    const float level = i == p_.iterations ? std::log(bailout) : 0;
+    return std::max(0.25f * (std::log(std::max(r2, 1e-30f)) - level) * std::sqrt(r2) / dr, -1e-3f);
   }
 
   bool interval(V o, V d, float& enter, float& leave) const {
@@ -79,7 +80,10 @@ class Renderer {
         relaxed = false;
         continue;
       }
-      if (f < threshold) return true;
+      if (f < threshold) {
+        t -= std::min(std::max(threshold - f, 0.0f), step);  // back to where the surface is a threshold away
+        return true;
+      }
       const float remaining = last - t;
       if (f >= remaining) return false;
       if (step > 0) slope = 0.5f * (slope + std::clamp((f - previous) / step, -1.0f, 0.5f));

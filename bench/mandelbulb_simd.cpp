@@ -62,13 +62,15 @@ class Renderer {
     const float bailout = p_.bailout * p_.bailout;
     V z = p;
     F r2, dr;
-    M alive;
+    M alive, entered;
     LANES_DO {
       r2.v[l] = z.x.v[l] * z.x.v[l] + z.y.v[l] * z.y.v[l] + z.z.v[l] * z.z.v[l];
       dr.v[l] = 1;
       alive.v[l] = active.v[l] & (r2.v[l] < bailout ? -1 : 0);
+      entered.v[l] = alive.v[l];
     }
-    for (int i = 0; i < p_.iterations && any(alive); ++i) {
+    int i = 0;
+    for (; i < p_.iterations && any(alive); ++i) {
       LANES_DO {
         const float x = z.x.v[l], y = z.y.v[l], w = z.z.v[l], q = r2.v[l];
         const float r4 = q * q, r8 = r4 * r4;
@@ -85,12 +87,14 @@ class Renderer {
         z.z.v[l] = on ? a8 + p.z.v[l] : w;
         const float square = z.x.v[l] * z.x.v[l] + z.y.v[l] * z.y.v[l] + z.z.v[l] * z.z.v[l];
         r2.v[l] = square;
+        entered.v[l] = alive.v[l];
         alive.v[l] &= square < bailout ? -1 : 0;
       }
     }
+    const float level = i == p_.iterations ? std::log(bailout) : 0;
     LANES_DO {
-      const float outer = 0.25f * std::log(std::max(r2.v[l], 1.0f)) * std::sqrt(r2.v[l]) / dr.v[l];
-      out.v[l] = alive.v[l] ? 0 : outer;
+      const float rise = std::log(std::max(r2.v[l], 1e-30f)) - (entered.v[l] ? level : 0);
+      out.v[l] = std::max(0.25f * rise * std::sqrt(r2.v[l]) / dr.v[l], -1e-3f);
     }
   }
 
@@ -150,7 +154,8 @@ class Renderer {
         active.v[l] = on & ~(arrived | through);
         const float stride = std::min(std::max(2 * f.v[l] / (1 - s), proven), remaining);
         relaxed.v[l] = forward & (stride > proven ? -1 : 0);
-        t.v[l] += gap ? previous.v[l] - step.v[l] : active.v[l] ? stride : 0.0f;
+        const float back = std::min(std::max(limit - f.v[l], 0.0f), step.v[l]);
+        t.v[l] += gap ? previous.v[l] - step.v[l] : arrived ? -back : active.v[l] ? stride : 0.0f;
         step.v[l] = gap ? previous.v[l] : stride;
         previous.v[l] = gap ? previous.v[l] : f.v[l];
       }

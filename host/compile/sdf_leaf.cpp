@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "compile/sdf_emit.h"
 #include "scene/formula/lower.h"
@@ -14,7 +15,7 @@ namespace in = formula_input;
 
 // The table of a leaf: these, then the parameters of its steps in order.
 constexpr int iterations_slot = 0, bailout_slot = 1, inside_slot = 2, safety_slot = 3, inside_safety_slot = 4,
-              first_parameter_slot = 5;
+              level_slot = 5, first_parameter_slot = 6;
 
 enum class Variant { distance, two_sided, sample };
 
@@ -235,7 +236,7 @@ class LeafEmitter {
     return fmt::format(
         "    REAL r2 = (REAL)(0.0f), escaped_r2 = r2;\n    MASK alive = active;\n{}"
         "    const u32 iterations = (u32)q[{}];\n    for (u32 i = 0; i < iterations; ++i) {{\n    {}"
-        "    if (!any_lane(alive)) break;\n{}    }}\n    {}",
+        "    if (!any_lane(alive)) break;\n{}    }}\n    const MASK late = alive;\n    {}",
         code.before, iterations_slot, look, code.inside, look);
   }
 
@@ -250,26 +251,33 @@ class LeafEmitter {
     if (variant_ == Variant::sample)
       out += "    REAL point = (REAL)(1e30f), plane = point, axis = point, count = (REAL)(0.0f);\n";
     out += code.before;
-    out +=
-        fmt::format("    const u32 iterations = (u32)q[{}];\n    for (u32 i = 0; i < iterations; ++i) {{\n",
-                    iterations_slot);
+    if (escapes()) out += "    MASK entered = alive;  // the last iteration\n";
+    out += fmt::format(
+        "    const u32 iterations = (u32)q[{}];\n    u32 i = 0;\n    for (; i < iterations; ++i) {{\n",
+        iterations_slot);
     if (bails_out()) out += "    if (!any_lane(alive)) break;\n";
     out += code.inside + "    r2 = " + square() + ";\n";
     if (variant_ == Variant::sample) out += traps();
     if (variant_ == Variant::two_sided && escapes()) out += inner_distance();
+    if (escapes()) out += "    entered = alive;\n";
     if (bails_out()) out += fmt::format("    alive &= MASK_OF(r2 < q[{}]);\n", bailout_slot);
-    return out + "    }\n";
+    out += "    }\n";
+    return escapes() ? out + "    const MASK late = i == iterations ? entered : NO_LANES;\n" : out;
   }
 
-  /// Distance of an escaped orbit; what stays is inside, at distance 0 or as deep as `inner`.
+  /// Distance of an orbit that escaped or was ended; one that stays is inside, as deep as `inner`.
   std::string escape_distance() const {
     const char* form = last_->estimate == EscapeEstimate::logarithmic ? "logarithmic" : "linear";
     const char* square = latched() ? "escaped_r2" : "r2";
-    const std::string out = fmt::format("    const REAL outer = {}_distance({}, dr);\n", form, square);
-    const std::string inside = variant_ == Variant::two_sided
-                                   ? fmt::format("-real_max(inner, (REAL)(0.0f)) * q[{}]", inside_safety_slot)
-                                   : "(REAL)(0.0f)";
-    return out + "    const REAL found = select(outer, " + inside + ", alive);\n";
+    std::string out = fmt::format(
+        "    const REAL level = select((REAL)(0.0f), (REAL)(q[{}]), late);\n    const REAL outer = "
+        "{}_distance({}, dr, "
+        "level);\n",
+        level_slot, form, square);
+    if (variant_ != Variant::two_sided) return out + "    const REAL found = outer;\n";
+    return out + fmt::format(
+                     "    const REAL found = select(outer, -real_max(inner, (REAL)(0.0f)) * q[{}], alive);\n",
+                     inside_safety_slot);
   }
 
   std::string folded_distance(std::string* gradient) {
@@ -336,8 +344,12 @@ LeafCode leaf_code(const FormulaField& field) {
   for (const Variant variant : {Variant::distance, Variant::two_sided, Variant::sample})
     code.functions += LeafEmitter(field, variant).function();
   const double inside = std::min(field.bailout, field.steps.back().definition.inside_radius);
+  const FormulaDefinition& last = field.steps.back().definition;
+  const double level = last.estimate == EscapeEstimate::logarithmic
+                           ? 2 * std::log(std::max(field.bailout, 1e-3))
+                           : field.bailout;
   for (const double value : {double(field.iterations), field.bailout * field.bailout, inside, field.safety,
-                             field.steps.back().definition.inside_safety})
+                             last.inside_safety, level})
     code.parameters.push_back(static_cast<float>(value));
   for (const FormulaStep& step : field.steps)
     for (const double value : step.values) code.parameters.push_back(static_cast<float>(value));

@@ -180,17 +180,27 @@ static inline void shade_lanes(SDF_PARAMETERS, __global const Instance* restrict
   }
 }
 
-// Takes hits[k], which holds the nearest hit of rays[which[k]] so far, to a
-// field's where that is nearer, k < count. `to_light`: only whether there is one matters, and fields with
-// soft shadows are left to soft_shadows(). A hit's u, v and prim hold its colour. Adds
-// to the rays' glow.
+// What of a hit is wanted: all; all, on the way to a light, so that fields with soft shadows are left to
+// soft_shadows(); only its instance, on such a way.
+#define MARCH_TO_SEE 0u
+#define MARCH_TO_LIGHT 1u
+#define MARCH_TO_BLOCK 2u
+
+// Takes hits[k], which holds the nearest hit of rays[which[k]] so far, to a field's where that is nearer,
+// k < count. A hit's u, v and prim hold its colour. Adds to the rays' glow.
 NEVER_INLINE void march_fields(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* rays, const u32* which,
-                               u32 count, bool to_light, Hit* hits, u32* counts) {
+                               u32 count, u32 purpose, Hit* hits, u32* counts) {
+  const bool to_light = purpose != MARCH_TO_SEE;
   for (u32 first = 0; first < count; first += LANES) {
     RayLanes lanes = load_lanes(rays, which, first, count, hits);
     for (u32 index = info->instance_count; index < info->field_end; ++index)
       if (!(to_light && sdf_fields[instances[index].root].shadow_hardness > 0.0f))
         march_field(TRACE_ARGUMENTS, SHADE_ARGUMENTS, index, &lanes, counts);
+    if (purpose == MARCH_TO_BLOCK) {
+      for (u32 i = 0; i < LANES && first + i < count; ++i)
+        if (MASK_LANE(lanes.winner, i) >= 0) hits[first + i].instance = (u32)MASK_LANE(lanes.winner, i);
+      continue;
+    }
     for (u32 index = info->instance_count; index < info->field_end; ++index)
       shade_lanes(SDF_ARGUMENTS, instances, index, &lanes, first, hits);
 #if HAS_GLOW

@@ -26,7 +26,8 @@ static inline void nearest_hits(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* ra
   }
   trace_batch(TRACE_ARGUMENTS, o, d, t_min, t_max, count, coherent, hits);
 #if HAS_SDF
-  march_fields(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, which, count, to_light, hits, counts);
+  march_fields(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, which, count, to_light ? MARCH_TO_LIGHT : MARCH_TO_SEE,
+               hits, counts);
 #endif
 }
 
@@ -50,7 +51,7 @@ static inline void any_hits(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* rays, 
       open[open_count] = k;
       hits[open_count++] = no_hit(t_max[k]);
     }
-  march_fields(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, open, open_count, true, hits, counts);
+  march_fields(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, open, open_count, MARCH_TO_BLOCK, hits, counts);
   for (u32 k = 0; k < open_count; ++k) occluded[open[k]] = hits[k].instance != NO_INSTANCE;
 #endif
 }

@@ -114,3 +114,33 @@ TEST_CASE("the exact hollow ice looks as POV-Ray shows it", "[povray]") {
   check_scene("hollow_ice_exact", {"/materials/ice/shadow=opaque", "/materials/liquid/shadow=opaque",
                                    "/materials/cavity/shadow=opaque", "/materials/bubble/shadow=opaque"});
 }
+
+TEST_CASE("a quaternion Julia set is POV-Ray's julia_fractal: the same outlines and shades") {
+  if (povray_missing()) return;
+  const std::filesystem::path file = std::filesystem::path(SUNDOG_SOURCE_DIR) / "bench/scenes/julia.json";
+  const SceneDescription scene = load_scene(
+      file,
+      {"/image/width=240", "/image/height=240", "/objects/0/detail=0.1", "/objects/0/least_threshold=1e-6"});
+  const Pictures pictures{
+      "julia", clamped(render(compile(scene), select_devices(enumerate_devices(), {})).image),
+      povray::run(povray::from_scene(scene, povray::Absorption::media), 240, 240, 2, folder, "julia").image};
+  const ImageDifference d = report(pictures);
+  const glm::dvec3 sky = scene.image.background_top;
+  int outlines = 0, bodies = 0;
+  double shades = 0;
+  for (int y = 0; y < 240; y++)
+    for (int x = 0; x < 240; x++) {
+      const auto is_sky = [&](const Image& image) { return std::abs(image.pixel(x, y)[0] - sky.x) < 1e-3; };
+      outlines += is_sky(pictures.ours) != is_sky(pictures.theirs);
+      if (is_sky(pictures.ours) || is_sky(pictures.theirs)) continue;
+      bodies++;
+      for (int c = 0; c < 3; c++)
+        shades += std::abs(pictures.ours.pixel(x, y)[c] - pictures.theirs.pixel(x, y)[c]) / 3;
+    }
+  std::printf("julia: %d of %d pixels on the other side of an outline; shades differ by %.4f in the mean\n",
+              outlines, 240 * 240, shades / bodies);
+  CHECK(d.pixels == 240 * 240);
+  CHECK(bodies > 20000);
+  CHECK(outlines < 240 * 240 / 50);
+  CHECK(shades / bodies < 0.03);
+}

@@ -185,10 +185,10 @@ std::vector<const Object*> overlapping(const SceneDescription& scene, const Obje
 // solid into the one that overrules it meets that one's surface first, and then the cut, which must not be
 // seen a second time.
 std::string open_region(const SceneDescription& scene, const Object& object) {
-  const std::string own = open_shape(object.shape) + matrix(object.world_from_object) + ' ';
+  const std::string own = open_shape(scene, object.shape) + matrix(object.world_from_object) + ' ';
   std::string cuts;
   for (const Object* other : overlapping(scene, object, Rank::higher)) {
-    cuts += open_shape(other->shape);
+    cuts += open_shape(scene, other->shape);
     if (!is_hole(scene, *other))
       cuts +=
           fmt::format("{} interior_{} scale {} ", texture(material_of(scene, object)), unseen, text(shrink));
@@ -212,11 +212,11 @@ std::string write_object(const SceneDescription& scene, const Object& object, Ab
   const MaterialDescription& m = material_of(scene, object);
   if (is_hole(scene, object)) return "";
   if (!is_dielectric(m))  // a pattern moves with its object
-    return open_shape(object.shape) + texture(m) + ' ' + matrix(object.world_from_object) + " }\n";
+    return open_shape(scene, object.shape) + texture(m) + ' ' + matrix(object.world_from_object) + " }\n";
   std::string out = open_region(scene, object) + texture(m) + inner_texture(scene, object) + ' ' +
                     interior(medium_of(scene, m), absorption) + " hollow";
   if (!m.shadow_opaque) return out + " }\n";
-  return out + " no_shadow }\n" + open_shape(object.shape) + matrix(object.world_from_object) +
+  return out + " no_shadow }\n" + open_shape(scene, object.shape) + matrix(object.world_from_object) +
          " pigment { color rgb 0 } no_image no_reflection }\n";
 }
 

@@ -2,13 +2,15 @@
 #include "shapes.h"
 
 #include <limits>
-#include <stdexcept>
 
+#include "povray_from_scene.h"
 #include "text.h"
 
 namespace sundog::povray {
 
 namespace {
+
+constexpr int julia_precision = 60;  // of the 20 that POV-Ray starts from: with fewer its surface shows steps
 
 // Three boxes, twelve cylinders along the edges and eight balls at the corners.
 std::string open_round_box(const RoundBoxShape& s) {
@@ -33,10 +35,25 @@ std::string open_round_box(const RoundBoxShape& s) {
   return out;
 }
 
+/// Of all distance fields POV-Ray knows one alike: the quaternion Julia set of a square or a cube.
+std::string open_field(const SdfDescription& field) {
+  const bool is_leaf = field.root.kind == SdfNode::Kind::formula && field.root.formula.steps.size() == 1;
+  const FormulaStep* step = is_leaf ? &field.root.formula.steps[0] : nullptr;
+  if (!step || step->definition.name != "julia" || field.sphere)
+    throw Unsupported("POV-Ray has no counterpart of this distance field");
+  const std::vector<double>& v = step->values;  // power, seed, slice
+  if (v.at(0) != 2 && v.at(0) != 3) throw Unsupported("POV-Ray has squares and cubes alone");
+  return fmt::format(
+      "julia_fractal {{ <{},{},{},{}> quaternion {} max_iteration {} precision {} slice <0,0,0,1>, {} ",
+      text(v[1]), text(v[2]), text(v[3]), text(v[4]), v[0] == 2 ? "sqr" : "cube",
+      field.root.formula.iterations, julia_precision, text(v.at(5)));
+}
+
 struct OpenShape {
+  const SceneDescription& scene;
   std::string operator()(const MeshShape& s) const { return "object { " + mesh_name(s.mesh) + " "; }
-  std::string operator()(const FieldShape&) const {
-    throw std::invalid_argument("POV-Ray has no counterpart of a distance field");
+  std::string operator()(const FieldShape& s) const {
+    return open_field(scene.fields.at(static_cast<std::size_t>(s.field)));
   }
   std::string operator()(const SphereShape& s) const {
     return fmt::format("sphere {{ 0, {} ", text(s.radius));
@@ -63,10 +80,8 @@ struct OpenShape {
 };
 
 struct HalfSize {
-  dvec3 operator()(const MeshShape&) const { return dvec3(0); }  // has bounds of its own
-  dvec3 operator()(const FieldShape&) const {
-    throw std::invalid_argument("POV-Ray has no counterpart of a distance field");
-  }
+  dvec3 operator()(const MeshShape&) const { return dvec3(0); }   // has bounds of its own
+  dvec3 operator()(const FieldShape&) const { return dvec3(2); }  // where a Julia set lies
   dvec3 operator()(const SphereShape& s) const { return dvec3(s.radius); }
   dvec3 operator()(const PlaneShape&) const { return dvec3(std::numeric_limits<double>::infinity()); }
   dvec3 operator()(const BoxShape& s) const { return s.half; }
@@ -105,7 +120,9 @@ std::string declare_mesh(const SceneDescription& scene, int index) {
   return out + " }\ninside_vector <0.31,0.85,0.42> }\n";
 }
 
-std::string open_shape(const Shape& shape) { return std::visit(OpenShape{}, shape); }
+std::string open_shape(const SceneDescription& scene, const Shape& shape) {
+  return std::visit(OpenShape{scene}, shape);
+}
 
 bool Bounds::overlaps(const Bounds& other) const {
   for (int axis = 0; axis < 3; axis++)

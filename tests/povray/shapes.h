@@ -13,7 +13,7 @@ std::string mesh_name(int mesh);
 std::string declare_mesh(const SceneDescription& scene, int mesh);
 
 /// The shape's statement, without the closing brace, so that modifiers can follow.
-std::string open_shape(const Shape& shape);
+std::string open_shape(const SceneDescription& scene, const Shape& shape);
 
 /// World bounds of an object; a plane's are the whole space.
 struct Bounds {

@@ -98,7 +98,10 @@ FieldValue FormulaEvaluator::at(const glm::dvec3& p) const {
   }
   if (!escaped) return {0, true, orbit.iteration};
   const double r = std::sqrt(orbit.square());
-  const double reach = d.estimate == EscapeEstimate::logarithmic ? 0.5 * std::max(std::log(r), 0.0) * r : r;
+  const double level = orbit.iteration == field_.iterations ? field_.bailout : 0;  // as in lib/sdf/sample.h
+  const double reach = d.estimate == EscapeEstimate::logarithmic
+                           ? 0.5 * std::max(std::log(level > 0 ? r / level : r), 0.0) * r
+                           : r - level;
   return {reach / growth, false, orbit.iteration};
 }
 

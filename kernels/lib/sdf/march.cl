@@ -105,6 +105,7 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   // starts on a refined surface, but before an estimated one (below).
   const bool smooth = field->flags & SDF_SMOOTH;
   const REAL wrong = select((REAL)(smooth ? -1.0f : 0.25f), (REAL)(-2.0f), rays->inside);
+  const REAL pull = select(smooth ? (REAL)(0.0f) : -inverse_speed, (REAL)(0.0f), rays->inside);
 #if SDF_TWO_SIDED
   MASK overshot = NO_LANES;
   REAL inside_at = first;  // the last point that was still inside
@@ -118,7 +119,7 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
     const REAL threshold = real_clamp(fma(t, spread, footprint), least, greatest);
     hits.steps -= active;
 #if HAS_GLOW
-    hits.nearest = select(hits.nearest, real_min(fmax(f, 0.0f), hits.nearest), active);
+    hits.nearest = select(hits.nearest, real_min(real_max(f, (REAL)(0.0f)), hits.nearest), active);
 #endif
 
     // The spheres about the last point and this one must touch: else back to where the last one ended.
@@ -130,8 +131,8 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
     leaving &= ~(forward & MASK_OF(f >= threshold));
     hits.hit |= arrived;
     // Back to where the surface is a threshold away, so that rays which start here are clear of it.
-    const REAL back = smooth ? (REAL)(0.0f) : fmin(fmax(threshold - f, 0.0f), step) * inverse_speed;
-    hits.t = select(hits.t, t - select(back, (REAL)(0.0f), rays->inside), arrived);
+    const REAL back = real_clamp(threshold - f, (REAL)(0.0f), step);
+    hits.t = select(hits.t, fma(back, pull, t), arrived);
     hits.threshold = select(hits.threshold, threshold, active);
 #if SDF_TWO_SIDED
     overshot |= arrived & rays->inside & MASK_OF(f < 0.0f);

@@ -22,14 +22,20 @@ static inline REAL square_length4(REAL x, REAL y, REAL z, REAL w) {
   return fma(x, x, fma(y, y, fma(z, z, w * w)));
 }
 
-// Distance to a set from the square of an escaped orbit's length and its derivative: half the logarithm's
-// form where the map is a power, else the plain quotient.
-static inline REAL logarithmic_distance(REAL square, REAL derivative) {
-  const REAL r2 = real_max(real_min(square, (REAL)(1e36f)), (REAL)(1.0f));
-  return 0.25f * real_log(r2) * (r2 * rough_rsqrt(r2)) * rough_inverse(real_max(derivative, (REAL)(1e-30f)));
+// Distance to a set from the square of an orbit's last length and its derivative: half the logarithm's form
+// where the map is a power, else the plain quotient. An orbit that the limit of the iterations ends lies near
+// the surface |z| = bailout of the last iteration, or inside: `level`, the logarithm of the bailout's square
+// or the bailout, makes it the distance to that one, a little below zero inside. For all others it is 0.
+static inline REAL logarithmic_distance(REAL square, REAL derivative, REAL level) {
+  const REAL r2 = real_max(real_min(square, (REAL)(1e36f)), (REAL)(1e-30f));
+  const REAL d = 0.25f * (real_log(r2) - level) * (r2 * rough_rsqrt(r2)) *
+                 rough_inverse(real_max(derivative, (REAL)(1e-30f)));
+  return fmax(d, -1e-3f);
 }
-static inline REAL linear_distance(REAL square, REAL derivative) {
-  return real_sqrt(real_min(square, (REAL)(1e36f))) * rough_inverse(real_max(derivative, (REAL)(1e-30f)));
+static inline REAL linear_distance(REAL square, REAL derivative, REAL level) {
+  const REAL d = (real_sqrt(real_min(square, (REAL)(1e36f))) - level) *
+                 rough_inverse(real_max(derivative, (REAL)(1e-30f)));
+  return fmax(d, -1e-3f);
 }
 
 static inline SdfSample no_sample(void) {
