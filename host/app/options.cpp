@@ -84,6 +84,8 @@ void add_render(CLI::App& root, Command& chosen) {
   app->add_flag("--float", command.full_floats, "keep an .exr's colours as 32-bit floats (default: half)");
   value(app, "--resume", "FILE", command.resume,
         "checkpoint: written when interrupted, continued from when it is there");
+  app->add_flag("--allow-native-code", command.native_code,
+                "take OpenCL C that the scene carries (\"native\"); only for files that you trust");
   app->add_flag("-q,--quiet", command.quiet, "no progress bar and no summary");
   app->add_flag("-v,--verbose", command.verbose, "tell more: times, rays, kernels");
   app->callback([typed, &chosen] { chosen = checked(*typed); });

@@ -25,6 +25,7 @@ struct RenderCommand {
   std::vector<std::string> aovs;
   bool isolate = false;      // each device in a process of its own
   bool full_floats = false;  // an EXR's colours as 32-bit floats
+  bool native_code = false;  // the scene may carry OpenCL C
   bool quiet = false, verbose = false;
 };
 

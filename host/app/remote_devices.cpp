@@ -34,6 +34,7 @@ json remote_settings(const RenderCommand& command, const DeviceInfo& device) {
   return {{"scene", command.scene},
           {"overrides", command.overrides},
           {"frame", command.frame ? json(*command.frame) : json()},
+          {"native_code", command.native_code},
           {"aovs", command.aovs},
           {"work_group", command.work_group},
           {"device", device},
@@ -49,10 +50,10 @@ OpenedServer open_server(const json& settings) {
   frame->options.work_group = settings.at("work_group").get<WorkGroup>();
   frame->options.aovs = settings.at("aovs").get<std::vector<std::string>>();
   const auto overrides = settings.at("overrides").get<std::vector<std::string>>();
-  std::optional<double> number;
-  if (settings.at("frame").is_number()) number = settings["frame"].get<double>();
+  LoadOptions options{std::nullopt, settings.at("native_code").get<bool>()};
+  if (settings.at("frame").is_number()) options.frame = settings["frame"].get<double>();
   frame->scene = std::make_shared<const CompiledScene>(
-      compile(load_scene(settings.at("scene").get<std::string>(), overrides, number)));
+      compile(load_scene(settings.at("scene").get<std::string>(), overrides, options)));
   OpenedServer opened;
   opened.scene = hash_scene(*frame->scene);
   opened.kept = frame;

@@ -46,7 +46,7 @@ void check_outputs(const RenderCommand& command) {
 /// An error at a place that an option changed is the command line's.
 SceneDescription load(const RenderCommand& command) {
   try {
-    return load_scene(command.scene, command.overrides, command.frame);
+    return load_scene(command.scene, command.overrides, {command.frame, command.native_code});
   } catch (const SceneError& error) {
     if (error.file == command.scene)
       for (const std::string& setting : command.overrides)

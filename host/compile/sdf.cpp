@@ -53,6 +53,10 @@ class FieldsEmitter {
       case SdfNode::Kind::transform:
         places_.push_back(place_transform(node));
         break;
+      case SdfNode::Kind::native:
+        places_.push_back(0);
+        leaves_ += native_code(node.code, native_count_++);
+        break;
       case SdfNode::Kind::repeat:
         places_.push_back(
             table({node.period.x, node.period.y, node.period.z, node.count.x, node.count.y, node.count.z}));
@@ -65,13 +69,24 @@ class FieldsEmitter {
         places_.push_back(table({node.smooth}));
         break;
     }
-    const std::size_t wanted = node.kind == SdfNode::Kind::formula ? 0 : is_joint(node) ? 2 : 1;
+    const bool is_leaf = node.kind == SdfNode::Kind::formula || node.kind == SdfNode::Kind::native;
+    const std::size_t wanted = is_leaf ? 0 : is_joint(node) ? 2 : 1;
     if (node.children.size() < wanted || (wanted < 2 && node.children.size() != wanted))
       throw FormulaError(
           0, 0,
           fmt::format("a field's operation takes {} fields, found {}",
                       wanted == 2 ? "two or more" : std::to_string(wanted), node.children.size()));
     for (const SdfNode& child : node.children) place(child, depth + 1);
+  }
+  /// The gradient is left to differences. Build logs name the code's own lines.
+  static std::string native_code(const std::string& code, std::size_t index) {
+    return fmt::format(
+        "static inline REAL native{0}(REAL3 p) {{\n#line 1 \"native code {0} of the scene\"\n{1}\n}}\n#line "
+        "1 "
+        "\"after native code {0}\"\n"
+        "static inline SdfSample native{0}_sample(REAL3 p) {{\n  SdfSample s = no_sample();\n  s.distance = "
+        "native{0}(p);\n  return s;\n}}\n\n",
+        index, code);
   }
   static bool is_joint(const SdfNode& node) {
     return node.kind == SdfNode::Kind::unite || node.kind == SdfNode::Kind::intersect ||
@@ -106,12 +121,14 @@ class FieldsEmitter {
 
   void add_field(const SdfDescription& field) {
     places_.clear();
+    const std::size_t first_native = native_count_;
     leaf_of_place_.clear();
     place(field.root);
     const std::size_t index = out_.fields.size();
     for (int kind = 0; kind < 3; ++kind) {
       kind_ = kind;
       next_place_ = next_leaf_ = next_name_ = 0;
+      next_native_ = first_native;
       body_.clear();
       const std::string value = visit(field.root, "p", kind == 1);
       fields_ += fmt::format(
@@ -138,6 +155,8 @@ class FieldsEmitter {
         const char* suffix = kind_ == 0 && two_sided ? "signed" : kinds[kind_].suffix;
         return define(fmt::format("{}_{}({}, active, {})", leaf_of_place_[next_leaf_++], suffix, p, q));
       }
+      case SdfNode::Kind::native:
+        return define(fmt::format("native{}{}({})", next_native_++, kind_ == 2 ? "_sample" : "", p));
       case SdfNode::Kind::transform:
         return visit_transform(node, p, q, two_sided);
       case SdfNode::Kind::repeat:
@@ -209,12 +228,15 @@ class FieldsEmitter {
   }
 
   static int iterations_of(const SdfNode& node) {
-    int sum = node.kind == SdfNode::Kind::formula ? node.formula.iterations : 0;
+    int sum = node.kind == SdfNode::Kind::formula  ? node.formula.iterations
+              : node.kind == SdfNode::Kind::native ? 100  // nobody knows
+                                                   : 0;
     for (const SdfNode& child : node.children) sum += iterations_of(child);
     return node.kind == SdfNode::Kind::repeat ? 8 * sum : sum;  // a repeated field asks up to eight cells
   }
 
   static bool is_smooth(const SdfNode& node) {
+    if (node.kind == SdfNode::Kind::native) return false;
     if (node.kind == SdfNode::Kind::formula)
       return std::all_of(node.formula.steps.begin(), node.formula.steps.end(),
                          [](const FormulaStep& step) { return step.definition.smooth; });
@@ -252,7 +274,7 @@ class FieldsEmitter {
   std::string leaves_, fields_, body_;
   std::vector<std::size_t> places_;
   std::vector<std::string> leaf_of_place_;
-  std::size_t next_place_ = 0, next_leaf_ = 0, next_name_ = 0;
+  std::size_t next_place_ = 0, next_leaf_ = 0, next_name_ = 0, next_native_ = 0, native_count_ = 0;
   int leaf_count_ = 0, kind_ = 0;
 };
 

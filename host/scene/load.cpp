@@ -43,11 +43,11 @@ json make_scene(const fs::path& file, const Model& model, const std::vector<std:
 }
 
 SceneDescription read_with_overrides(json document, const fs::path& file,
-                                     const std::vector<std::string>& overrides, std::optional<double> frame,
+                                     const std::vector<std::string>& overrides, const LoadOptions& options,
                                      std::optional<Model> model) {
   apply_overrides(document, file, overrides);
-  const JsonContext context{file};
-  if (frame) apply_animation(document, *frame, context);
+  const JsonContext context{file, nullptr, options.native_code};
+  if (options.frame) apply_animation(document, *options.frame, context);
   try {
     return read_scene(JsonValue(document, context), std::move(model));
   } catch (const SceneError& error) {
@@ -64,19 +64,19 @@ SceneDescription read_with_overrides(json document, const fs::path& file,
 }  // namespace
 
 SceneDescription load_scene(const fs::path& path, const std::vector<std::string>& overrides,
-                            std::optional<double> frame) {
+                            const LoadOptions& options) {
   require_readable(path, path, "");
   if (is_model_file(path)) {
     Model model = load_model(path);
     json document = make_scene(path, model, overrides);
-    return read_with_overrides(std::move(document), path, overrides, frame, std::move(model));
+    return read_with_overrides(std::move(document), path, overrides, options, std::move(model));
   }
   if (path.extension() != ".json")
     throw SceneError(
         path.string(), "",
         "wanted a scene (.json) or a model (.gltf, .glb, .obj, .ply, .stl, .nff, each also .gz), found "
         "another extension");
-  return read_with_overrides(read_json_file(path), path, overrides, frame, std::nullopt);
+  return read_with_overrides(read_json_file(path), path, overrides, options, std::nullopt);
 }
 
 }  // namespace sundog

@@ -9,13 +9,17 @@
 
 namespace sundog {
 
+struct LoadOptions {
+  std::optional<double> frame;  // of the scene's animation; without it the scene stands as it is written
+  bool native_code = false;     // OpenCL C in the scene is taken: only for scenes that the user trusts
+};
+
 /// Loads sundog's .json, or .gltf .glb .obj .ply .stl .nff (each also .gz) as a scene by itself: a camera
 /// that frames the bounds, lights and a grey material are made up where the file has none. `overrides` are
 /// "JSON_POINTER=VALUE" settings, applied in turn before the scene is checked (for a model file they apply to
-/// the scene that is made of it). `frame`: the scene's animation sets its values to those of that frame;
-/// without it the scene stands as it is written. Throws SceneError{file, place, what}, and UsageError for an
+/// the scene that is made of it). Throws SceneError{file, place, what}, and UsageError for an
 /// override that is not of that form.
 SceneDescription load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
-                            std::optional<double> frame = std::nullopt);
+                            const LoadOptions& options = {});
 
 }  // namespace sundog

@@ -1,4 +1,6 @@
 // Bad command lines: exit status 2, one line on stderr that says what was wanted, nothing on stdout, no file.
+#include <fmt/format.h>
+
 #include "catch.h"
 #include "cli_scene.h"
 
@@ -112,4 +114,28 @@ TEST_CASE("the help of a command tells its options, and only of commands that ex
   const std::string all = run_sundog({"--help"}).out;
   for (const char* command : {"render", "devices", "info", "compare"})
     CHECK(all.find(command) != std::string::npos);
+}
+
+TEST_CASE("OpenCL C in a scene is refused unless it is allowed, and its errors name its lines") {
+  const CliFolder folder;
+  const auto scene = [&](const char* code) {
+    return folder
+        .write("native.json",
+               fmt::format(R"({{"image": {{"width": 8, "height": 8}}, "camera": {{"position": [0, 0, 4],
+          "target": [0, 0, 0], "fov": 20}}, "lights": [{{"type": "ambient"}}], "materials": {{"m": {{"ambient": 1}}}},
+          "objects": [{{"type": "native", "code": ["{}"], "material": "m",
+          "interval": {{"min": [-2, -2, -2], "max": [2, 2, 2]}}}}]}})",
+                           code))
+        .string();
+  };
+  const std::string good = scene("return length3(p) - 1.0f;"), out = folder.file("a.png");
+  const CommandResult refused = run_sundog({"render", good, "-o", out});
+  CHECK(refused.status == 3);
+  CHECK(is_one_error_line(refused.err));
+  CHECK(refused.err.find("--allow-native-code") != std::string::npos);
+  CHECK(run_sundog({"render", good, "-o", out, "--allow-native-code"}).status == 0);
+  const CommandResult wrong =
+      run_sundog({"render", scene("return radius;"), "-o", out, "--allow-native-code"});
+  CHECK(wrong.status == 5);
+  CHECK(wrong.err.find("native code 0 of the scene") != std::string::npos);
 }

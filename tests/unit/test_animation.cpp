@@ -16,7 +16,7 @@ SceneDescription frame_of(const std::string& tracks, double frame) {
                fmt::format(R"({{"camera": {{"position": [0, 0, 4], "target": [0, 0, 0], "fov": 20}},
     "lights": [{{"type": "directional", "direction": [0, -1, 0]}}], "objects": [], "animate": [{}]}})",
                            tracks));
-  return load_scene(folder.path() / "scene.json", {}, frame);
+  return load_scene(folder.path() / "scene.json", {}, {.frame = frame});
 }
 
 SceneError frame_error(const std::string& tracks) {

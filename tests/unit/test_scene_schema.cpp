@@ -57,7 +57,8 @@ const std::string everything = R"({
     {"type": "moved", "field": {"type": "fractal", "formula": "menger"}, "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}},
     {"type": "repeat", "period": [3, 0, 0], "field": {"type": "fractal", "formula": "menger"}, "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}},
     {"type": "thicken", "amount": 0.1, "field": {"type": "fractal", "formula": "menger"}, "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}},
-    {"type": "shell", "amount": 0.1, "field": {"type": "fractal", "formula": "menger"}, "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}}, {"type": "plane"}, {"type": "box"}, {"type": "cylinder"}, {"type": "cone"},
+    {"type": "native", "code": "return p.x;", "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}},
+    {"type": "shell", "amount": 0.1, "field": {"type": "native", "code": "return p.x;"}, "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}}, {"type": "plane"}, {"type": "box"}, {"type": "cylinder"}, {"type": "cone"},
     {"type": "disk"}, {"type": "torus"}, {"type": "round_box"}, {"type": "mesh", "mesh": "t"},
     {"type": "box", "min": [0, 0, 0], "max": [1, 1, 1]}, {"type": "cone", "from": [0, 0, 0], "to": [1, 1, 1]},
     {"type": "cylinder", "from": [0, 0, 0], "to": [1, 1, 1]},
@@ -75,7 +76,7 @@ json everything_document() {
 SceneDescription read(const json& document, decltype(JsonContext::asked) asked = nullptr) {
   const TemporaryFolder folder;
   folder.write("tetra.ply", tetrahedron_ply);
-  const JsonContext context{folder.path() / "scene.json", asked};
+  const JsonContext context{folder.path() / "scene.json", asked, true};
   return read_scene(JsonValue(document, context));
 }
 
@@ -87,7 +88,7 @@ void list_places(const json& value, const std::string& pointer, std::vector<std:
 }
 
 bool takes(const json& document, const fs::path& folder) {
-  const JsonContext context{folder / "scene.json"};
+  const JsonContext context{folder / "scene.json", nullptr, true};
   try {
     const SceneDescription scene = read_scene(JsonValue(document, context));
     for (const Object& object : scene.objects)
@@ -175,7 +176,7 @@ TEST_CASE("the schema's defaults are the reader's") {
   CHECK(filled.at("/materials/m/specular/exponent"_json_pointer) == 32);
   CHECK(filled.at("/meshes/i/generate/chips"_json_pointer) == 12);
   CHECK(filled.at("/objects/0/radius"_json_pointer) == 1);
-  CHECK(filled.at("/objects/15/capped"_json_pointer) == true);
+  CHECK(filled.at("/objects/16/capped"_json_pointer) == true);
   const std::string plain = all_values(read(document)), explicitly = all_values(read(filled));
   CHECK(plain == explicitly);
 }

@@ -15,8 +15,9 @@
 namespace sundog {
 namespace {
 
-constexpr std::array<std::string_view, 10> types{"fractal",    "formula", "hybrid", "union",   "intersection",
-                                                 "difference", "moved",   "repeat", "thicken", "shell"};
+constexpr std::array<std::string_view, 11> types{"fractal",      "formula",    "hybrid", "union",
+                                                 "intersection", "difference", "moved",  "repeat",
+                                                 "thicken",      "shell",      "native"};
 constexpr int deepest = SdfNode::max_depth;
 
 /// The error of a formula, at its key where it has one.
@@ -249,6 +250,19 @@ SdfNode read_moved(JsonObject& object) {
   return node;
 }
 
+SdfNode read_native(JsonObject& object) {
+  if (!object.value().context().native_code)
+    object.value().fail(
+        "this field is OpenCL C, which the driver would run as it stands; if you trust the file, allow it "
+        "with "
+        "--allow-native-code");
+  SdfNode node;
+  node.kind = SdfNode::Kind::native;
+  node.code = read_text(object, "code");
+  if (node.code.empty()) object.at("code", "the body of a function of REAL3 p that returns REAL");
+  return node;
+}
+
 SdfNode read_node(JsonObject& object, std::string_view type, std::array<double, 6>* bounds, int depth) {
   SdfNode node;
   if (type == "fractal" || type == "formula" || type == "hybrid") {
@@ -259,6 +273,7 @@ SdfNode read_node(JsonObject& object, std::string_view type, std::array<double, 
   }
   if (type == "union" || type == "intersection" || type == "difference")
     return read_joint(object, type, depth);
+  if (type == "native") return read_native(object);
   if (type == "moved") {
     node = read_moved(object);
   } else if (type == "repeat") {

@@ -37,7 +37,8 @@ struct SdfNode {
     repeat,   // one child in cells of `period` (0: not repeated along that axis), `count` cells to each side
               // (0: without end)
     thicken,  // one child's surface moved outwards by `amount`
-    shell     // one child's surface as a wall of thickness `amount`
+    shell,    // one child's surface as a wall of thickness `amount`
+    native    // OpenCL C of the user's own: no children
   } kind = Kind::formula;
   FormulaField formula;
   double smooth = 0;
@@ -46,6 +47,7 @@ struct SdfNode {
   double scale = 1;
   glm::dvec3 period{0}, count{0};
   double amount = 0;
+  std::string code;  // native: body of a function of REAL3 p that returns a distance, as REAL
   std::vector<SdfNode> children;
 
   static constexpr int max_depth = 16, max_formulas = 64;

@@ -32,6 +32,7 @@ inline constexpr Range color_range{.low = 0, .high = 1e6};
 struct JsonContext {
   std::filesystem::path file;
   std::map<std::string, std::set<std::string>, std::less<>>* asked = nullptr;
+  bool native_code = false;  // a scene may carry OpenCL C
 };
 
 /// Keys or choices; pass a static array of them.
