@@ -3,6 +3,7 @@
 #include <random>
 
 #include "catch.h"
+#include "scene/formula/evaluate.h"
 #include "scene/formula/list.h"
 #include "scene/formula/lower.h"
 
@@ -243,6 +244,26 @@ TEST_CASE("the running derivative bounds how far the map can take two points apa
       const double bound = evaluate(f.map.graph, std::vector<NodeId>{f.map.derivative}, a)[0];
       INFO(map);
       CHECK(std::sqrt(moved) <= bound * h * length(step) * (1 + 1e-5) + 1e-15);
+    }
+  }
+}
+
+TEST_CASE("the estimate falls to nothing at the surface on which the iterations' limit ends orbits") {
+  for (const char* name : {"julia", "mandelbulb"}) {
+    FormulaDefinition d = *find_formula(name);
+    const FormulaEvaluator field({{{d, default_values(d), 1}}, 4, 4, 1});
+    const glm::dvec3 way = glm::normalize(glm::dvec3(0.6, 0.4, 0.7));
+    double inside = 0, outside = 2;
+    while (outside - inside > 1e-12) {
+      const double middle = 0.5 * (inside + outside);
+      (field.at(way * middle).inside ? inside : outside) = middle;
+    }
+    INFO(name);
+    CHECK(inside > 0.1);
+    for (const double apart : {1e-6, 1e-4, 1e-3}) {
+      const double found = field.at(way * (outside + apart)).distance;
+      CHECK(found > 0.05 * apart);
+      CHECK(found < 1.01 * apart);
     }
   }
 }
