@@ -19,9 +19,9 @@ RayTracer::RayTracer(Device& device, const CompiledScene& scene, const KernelDef
   batch_ = static_cast<unsigned>(std::stoul(config.defines.at("TILE_W")) *
                                  std::stoul(config.defines.at("TILE_H")));
   const Program program = device.build("entry/trace_rays.cl", config.defines);
-  trace_rays_ = program.kernel<Buffer<SceneInfo>, Buffer<Bvh8Node>, Buffer<TriangleBlock>, Buffer<Instance>,
+  trace_rays_ = program.kernel<Buffer<SceneInfo>, Buffer<u32>, Buffer<TriangleBlock>, Buffer<Instance>,
                                Buffer<Ray>, Buffer<Hit>, u32, u32>("trace_rays");
-  occluded_rays_ = program.kernel<Buffer<SceneInfo>, Buffer<Bvh8Node>, Buffer<TriangleBlock>,
+  occluded_rays_ = program.kernel<Buffer<SceneInfo>, Buffer<u32>, Buffer<TriangleBlock>,
                                   Buffer<Instance>, Buffer<Ray>, Buffer<u32>, u32, u32>("occluded_rays");
 }
 

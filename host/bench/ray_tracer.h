@@ -37,7 +37,7 @@ class RayTracer {
 
  private:
   template <class Result>
-  using RayKernel = Kernel<Buffer<SceneInfo>, Buffer<Bvh8Node>, Buffer<TriangleBlock>, Buffer<Instance>,
+  using RayKernel = Kernel<Buffer<SceneInfo>, Buffer<u32>, Buffer<TriangleBlock>, Buffer<Instance>,
                            Buffer<Ray>, Buffer<Result>, u32, u32>;
 
   Device& device_;

@@ -72,6 +72,7 @@ void set_figures(CompiledScene& out) {
 CompiledScene compile(const SceneDescription& scene) {
   const auto start = std::chrono::steady_clock::now();
   CompiledScene out;
+  out.tracer = scene.render.tracer;
   check_objects(scene);
   set_camera(scene, out.info);
   add_lights(scene, out);

@@ -46,6 +46,7 @@ struct CompiledScene {
   std::vector<Medium> media;
   std::vector<Light> lights;
   CompiledFields fields;
+  Tracer tracer = Tracer::automatic;  // of which kind the device shall trace
   SceneFeatures features;
   BvhFigures figures;
 };

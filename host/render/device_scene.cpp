@@ -5,6 +5,8 @@
 #include <array>
 
 #include "base/error.h"
+#include "render/compact_nodes.h"
+#include "render/kernel_config.h"
 
 namespace sundog {
 namespace {
@@ -14,6 +16,11 @@ constexpr std::size_t camera_media_words = 2;
 template <class T>
 std::size_t table_bytes(const std::vector<T>& table) {
   return table.size() * sizeof(T);
+}
+
+template <class T>
+Buffer<u32> as_words(const Buffer<T>& table) {
+  return {table.memory, table.count * sizeof(T) / sizeof(u32)};
 }
 
 }  // namespace
@@ -40,7 +47,8 @@ DeviceScene upload_scene(Device& device, const CompiledScene& scene) {
                                   scene_bytes(scene) >> 20, info.global_memory >> 20));
   DeviceScene result;
   result.info = device.upload(std::span<const SceneInfo>(&scene.info, 1));
-  result.nodes = table("BVH nodes", scene.nodes);
+  result.nodes = traces_compact(scene, info) ? as_words(table("BVH nodes", compact_nodes(scene.nodes)))
+                                             : as_words(table("BVH nodes", scene.nodes));
   result.blocks = table("triangle blocks", scene.blocks);
   result.instances = table("instances", scene.instances);
   result.triangles = table("triangles", scene.triangles);

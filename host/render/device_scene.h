@@ -8,7 +8,7 @@ namespace sundog {
 
 struct DeviceScene {
   Buffer<SceneInfo> info;
-  Buffer<Bvh8Node> nodes;
+  Buffer<u32> nodes;  // Bvh8Nodes, or CompactNodes when the device runs a lane a ray
   Buffer<TriangleBlock> blocks;
   Buffer<Instance> instances;
   Buffer<TriangleShading> triangles;
@@ -29,13 +29,13 @@ DeviceScene upload_scene(Device& device, const CompiledScene& scene);
 
 /// A kernel that reads the scene: its table parameters, then Args.
 template <class... Args>
-using SceneKernel = Kernel<Buffer<SceneInfo>, Buffer<Bvh8Node>, Buffer<TriangleBlock>, Buffer<Instance>,
+using SceneKernel = Kernel<Buffer<SceneInfo>, Buffer<u32>, Buffer<TriangleBlock>, Buffer<Instance>,
                            Buffer<TriangleShading>, Buffer<Vertex>, Buffer<Material>, Buffer<Medium>,
                            Buffer<Light>, Buffer<SdfField>, Buffer<float>, Args...>;
 
 template <class... Args>
 SceneKernel<Args...> scene_kernel(const Program& program, const std::string& name) {
-  return program.kernel<Buffer<SceneInfo>, Buffer<Bvh8Node>, Buffer<TriangleBlock>, Buffer<Instance>,
+  return program.kernel<Buffer<SceneInfo>, Buffer<u32>, Buffer<TriangleBlock>, Buffer<Instance>,
                         Buffer<TriangleShading>, Buffer<Vertex>, Buffer<Material>, Buffer<Medium>,
                         Buffer<Light>, Buffer<SdfField>, Buffer<float>, Args...>(name);
 }

@@ -64,9 +64,14 @@ unsigned traversal_stack_size(const CompiledScene& scene) {
   return std::max(1u, meshes + (leaf_root ? 0 : tree_stack_size(scene.nodes, scene.info.tlas_root)));
 }
 
+bool traces_compact(const CompiledScene& scene, const DeviceInfo& device) {
+  if (scene.tracer != Tracer::automatic) return scene.tracer == Tracer::compact;
+  return device.device_class != DeviceClass::cpu || device.native_vector_width <= 1;
+}
+
 KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device) {
   KernelConfig config;
-  const bool vectors = device.device_class == DeviceClass::cpu && device.native_vector_width > 1;
+  const bool vectors = !traces_compact(scene, device);
   if (!vectors) config.tile_w = config.tile_h = 1;
   const unsigned batch = config.tile_w * config.tile_h;
   KernelDefines& defines = config.defines;

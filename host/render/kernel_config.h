@@ -14,6 +14,9 @@ struct KernelConfig {
   GeneratedFiles generated;  // the scene's formulas as kernel code
 };
 
+/// Whether the device runs one ray a lane over compact nodes: by its class, unless the scene says which.
+bool traces_compact(const CompiledScene& scene, const DeviceInfo& device);
+
 /// Pure. Devices with vectors take 4x4 pixels a work-item and eight boxes an instruction, the others a pixel.
 KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device);
 

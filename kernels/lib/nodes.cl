@@ -6,9 +6,29 @@
 #include "lib/masks.cl"
 #include "shared/bvh.h"
 
+#if WIDE_VECTORS
+typedef Bvh8Node BvhNode;
+static inline u32 child_word(__global const BvhNode* node, u32 slot) { return node->child[slot]; }
+#else
+typedef CompactNode BvhNode;
+static inline u32 child_word(__global const BvhNode* node, u32 slot) {
+  const u32 child = node->child[slot >> 1] >> (slot & 1u) * 16u & 0xFFFFu;
+  if (!(child & COMPACT_LEAF)) return node->first_inner + child;
+  const u32 count = child >> COMPACT_COUNT_SHIFT & BVH_LEAF_COUNT_MASK;
+  return BVH_LEAF | count << BVH_LEAF_SHIFT | (node->first_leaf + (child & COMPACT_LEAF_DISTANCE));
+}
+#endif
+
+static inline __global const BvhNode* node_at(__global const u32* nodes, u32 index) {
+  return (__global const BvhNode*)nodes + index;
+}
+
 // A ray prepared for slab tests: a plane at b is crossed at fma(b, rcp, shift). near_* and far_* are float
-// offsets into Bvh8Node, by the direction's signs.
+// offsets into Bvh8Node and byte offsets into CompactNode's boxes, by the direction's signs.
 typedef struct SlabRay {
+#if !WIDE_VECTORS
+  float3 o;
+#endif
   float3 rcp_near, rcp_far, shift_near, shift_far;
   u32 near_x, near_y, near_z, far_x, far_y, far_z;
 } SlabRay;
@@ -20,6 +40,9 @@ static inline float3 safe_reciprocal(float3 d) {
 
 static inline SlabRay make_slab_ray(float3 o, float3 d) {
   SlabRay ray;
+#if !WIDE_VECTORS
+  ray.o = o;
+#endif
   const float3 rcp = safe_reciprocal(d);
   ray.rcp_near = rcp * 0.9999997f;
   ray.rcp_far = rcp * 1.0000003f;
@@ -42,7 +65,7 @@ static inline SlabRay make_slab_ray(float3 o, float3 d) {
 
 #if WIDE_VECTORS
 // The children crossed in [t_min, t_max]; writes their keys.
-ALWAYS_INLINE u32 cross_children(__global const Bvh8Node* node, const SlabRay* ray, float t_min, float t_max,
+ALWAYS_INLINE u32 cross_children(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,
                                  u32* keys) {
   __global const float* bounds = node->lower_x;
   const int8 near_x =
@@ -63,24 +86,39 @@ ALWAYS_INLINE u32 cross_children(__global const Bvh8Node* node, const SlabRay* r
   return lane_mask(near <= far) & node->valid;
 }
 #else
-ALWAYS_INLINE u32 cross_children(__global const Bvh8Node* node, const SlabRay* ray, float t_min, float t_max,
+static inline float3 grid_step(u32 scale) {
+  return (float3)(as_float((scale & 0xFFu) << 23), as_float((scale >> 8 & 0xFFu) << 23),
+                  as_float((scale >> 16 & 0xFFu) << 23));
+}
+
+// Distance to the plane of slot `slot` whose bytes begin at `plane`.
+static inline int grid_distance(__global const BvhNode* node, u32 plane, u32 slot, float step, float from) {
+  const u32 at = plane + slot;
+  return as_int(fma((float)(node->quantized[at >> 2] >> (at & 3u) * 8u & 0xFFu), step, from));
+}
+
+ALWAYS_INLINE u32 cross_children(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,
                                  u32* keys) {
-  __global const float* bounds = node->lower_x;
+  const float3 away = (float3)(node->origin[0], node->origin[1], node->origin[2]) - ray->o;
+  const float3 step = grid_step(node->scale), step_near = step * ray->rcp_near,
+               step_far = step * ray->rcp_far;
+  float3 near_from = away * ray->rcp_near, far_from = away * ray->rcp_far;
+  near_from -= fabs(near_from) * 3.6e-7f;
+  far_from += fabs(far_from) * 3.6e-7f;
+  const u32 count = node->scale >> 24;
   u32 crossed = 0;
 #pragma unroll 1
-  for (u32 i = 0; i < 8u; ++i) {
-    const int near =
-        max(max(as_int(fma(bounds[ray->near_x + i], ray->rcp_near.x, ray->shift_near.x)),
-                as_int(fma(bounds[ray->near_y + i], ray->rcp_near.y, ray->shift_near.y))),
-            max(as_int(fma(bounds[ray->near_z + i], ray->rcp_near.z, ray->shift_near.z)), as_int(t_min)));
-    const int far =
-        min(min(as_int(fma(bounds[ray->far_x + i], ray->rcp_far.x, ray->shift_far.x)),
-                as_int(fma(bounds[ray->far_y + i], ray->rcp_far.y, ray->shift_far.y))),
-            min(as_int(fma(bounds[ray->far_z + i], ray->rcp_far.z, ray->shift_far.z)), as_int(t_max)));
+  for (u32 i = 0; i < count; ++i) {
+    const int near = max(max(grid_distance(node, ray->near_x, i, step_near.x, near_from.x),
+                             grid_distance(node, ray->near_y, i, step_near.y, near_from.y)),
+                         max(grid_distance(node, ray->near_z, i, step_near.z, near_from.z), as_int(t_min)));
+    const int far = min(min(grid_distance(node, ray->far_x, i, step_far.x, far_from.x),
+                            grid_distance(node, ray->far_y, i, step_far.y, far_from.y)),
+                        min(grid_distance(node, ray->far_z, i, step_far.z, far_from.z), as_int(t_max)));
     if (near <= far) crossed |= 1u << i;
     keys[i] = ((u32)near & ~KEY_SLOT) | i;
   }
-  return crossed & node->valid;
+  return crossed;
 }
 #endif
 
@@ -92,11 +130,11 @@ static inline void order_pair(u32* a, u32* b) {
 
 // Pushes the crossed children (at least one), farthest first, and returns the nearest one's word. A key packs
 // the entry distance and the slot.
-ALWAYS_INLINE u32 push_children(__global const Bvh8Node* node, u32 crossed, const u32* keys, u32* stack,
+ALWAYS_INLINE u32 push_children(__global const BvhNode* node, u32 crossed, const u32* keys, u32* stack,
                                 float* stack_t, u32* top) {
   u32 first = lowest_bit(crossed);
   crossed &= crossed - 1u;
-  if (!crossed) return node->child[first];
+  if (!crossed) return child_word(node, first);
   u32 a = keys[first], b = keys[lowest_bit(crossed)];
   crossed &= crossed - 1u;
   order_pair(&a, &b);
@@ -108,7 +146,7 @@ ALWAYS_INLINE u32 push_children(__global const Bvh8Node* node, u32 crossed, cons
     order_pair(&a, &b);
     // Four and more are rare: insertion into what already waits.
     const u32 base = at;
-    stack[at] = node->child[c & KEY_SLOT];
+    stack[at] = child_word(node, c & KEY_SLOT);
     stack_t[at] = as_float(c & ~KEY_SLOT);
     ++at;
     while (crossed) {
@@ -123,26 +161,26 @@ ALWAYS_INLINE u32 push_children(__global const Bvh8Node* node, u32 crossed, cons
         stack_t[to] = stack_t[to - 1u];
         --to;
       }
-      stack[to] = node->child[next & KEY_SLOT];
+      stack[to] = child_word(node, next & KEY_SLOT);
       stack_t[to] = t;
       ++at;
     }
   }
-  stack[at] = node->child[b & KEY_SLOT];
+  stack[at] = child_word(node, b & KEY_SLOT);
   stack_t[at] = as_float(b & ~KEY_SLOT);
   *top = at + 1u;
-  return node->child[a & KEY_SLOT];
+  return child_word(node, a & KEY_SLOT);
 }
 
 // Pushes all crossed children (at least one) but the last and returns that one's word: where any hit will do,
 // an order is not worth its price.
-ALWAYS_INLINE u32 push_children_unsorted(__global const Bvh8Node* node, u32 crossed, u32* stack, u32* top) {
+ALWAYS_INLINE u32 push_children_unsorted(__global const BvhNode* node, u32 crossed, u32* stack, u32* top) {
   u32 at = *top;
-  u32 word = node->child[lowest_bit(crossed)];
+  u32 word = child_word(node, lowest_bit(crossed));
   crossed &= crossed - 1u;
   while (crossed) {
     stack[at++] = word;
-    word = node->child[lowest_bit(crossed)];
+    word = child_word(node, lowest_bit(crossed));
     crossed &= crossed - 1u;
   }
   *top = at;

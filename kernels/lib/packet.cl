@@ -5,13 +5,14 @@
 #ifndef SUNDOG_LIB_PACKET_CL
 #define SUNDOG_LIB_PACKET_CL
 #include "lib/config.h"
+#if PACKETS
 #include "lib/packet_rays.cl"
 #include "lib/single.cl"
 #include "lib/tables.h"
 
 // This many rays or fewer in a node are faster alone.
 #ifndef PACKET_LEAST
-#define PACKET_LEAST 5
+#define PACKET_LEAST 3
 #endif
 
 // Children that wait, each as the bits of its entry distance above its box, node * 8 + slot; nearest last.
@@ -21,9 +22,9 @@ typedef struct PacketWalk {
 } PacketWalk;
 
 // Puts the children that the interval crosses onto the stack.
-NEVER_INLINE void open_node(__global const Bvh8Node* restrict nodes, u32 index, const PacketRays* rays,
+NEVER_INLINE void open_node(__global const u32* restrict nodes, u32 index, const PacketRays* rays,
                             const PacketHits* hits, PacketWalk* walk) {
-  __global const Bvh8Node* node = nodes + index;
+  __global const BvhNode* node = node_at(nodes, index);
   __global const float* bounds = node->lower_x;
   int8 near = (int8)(as_int(hits->t_least)), far = (int8)(as_int(hits->t_most));
   for (u32 axis = 0; axis < 3u; ++axis) {
@@ -71,12 +72,12 @@ ALWAYS_INLINE u32 rays_in_child(__global const Bvh8Node* node, u32 slot, const P
 
 // Goes on to the next place where something is to be done: a leaf, or a node that few rays cross. Writes its
 // word and the rays that cross it; returns false at the end.
-NEVER_INLINE bool next_place(__global const Bvh8Node* restrict nodes, const PacketRays* rays,
+NEVER_INLINE bool next_place(__global const u32* restrict nodes, const PacketRays* rays,
                              const PacketHits* hits, PacketWalk* walk, u32* word, u32* active) {
   while (walk->top) {
     const ulong next = walk->waiting[--walk->top];
     if (as_float((u32)(next >> 32)) > hits->t_most) continue;
-    __global const Bvh8Node* node = nodes + ((u32)next >> 3);
+    __global const BvhNode* node = node_at(nodes, (u32)next >> 3);
     const u32 slot = (u32)next & 7u, crossing = rays_in_child(node, slot, rays, hits);
     if (!crossing) continue;
     *word = node->child[slot];
@@ -258,5 +259,7 @@ NEVER_INLINE void packet_in_scene(TRACE_PARAMETERS, const PacketRays* rays, Pack
   }
 #endif
 }
+
+#endif
 
 #endif

@@ -26,10 +26,10 @@ static inline void trace_mesh(TRACE_PARAMETERS, u32 root, const SlabRay* slab_ra
       if (any && hit.instance == instance) break;
     } else {
       u32 keys[8];
-      const u32 crossed = cross_children(nodes + word, &slabs, t_min, hit.t, keys);
+      const u32 crossed = cross_children(node_at(nodes, word), &slabs, t_min, hit.t, keys);
       if (crossed) {
-        word = any ? push_children_unsorted(nodes + word, crossed, stack, &top)
-                   : push_children(nodes + word, crossed, keys, stack, stack_t, &top);
+        word = any ? push_children_unsorted(node_at(nodes, word), crossed, stack, &top)
+                   : push_children(node_at(nodes, word), crossed, keys, stack, stack_t, &top);
         continue;
       }
     }
@@ -101,9 +101,9 @@ static inline void trace_bounded(TRACE_PARAMETERS, u32 word, float3 o, float3 d,
       }
     } else {
       u32 keys[8];
-      const u32 crossed = cross_children(nodes + word, &slabs, t_min, hit->t, keys);
+      const u32 crossed = cross_children(node_at(nodes, word), &slabs, t_min, hit->t, keys);
       if (crossed) {
-        word = push_children(nodes + word, crossed, keys, stack, stack_t, &top);
+        word = push_children(node_at(nodes, word), crossed, keys, stack, stack_t, &top);
         continue;
       }
     }

@@ -1,6 +1,6 @@
 // The scene's tables as kernel parameters. OpenCL C 1.2 has no portable struct of pointers, so the lists are
 // macros: TRACE_* is what finding a hit needs, SHADE_* what shading it needs besides. A buffer has one name
-// everywhere.
+// everywhere. `nodes` are BvhNodes (nodes.cl).
 #ifndef SUNDOG_LIB_TABLES_H
 #define SUNDOG_LIB_TABLES_H
 #include "shared/bvh.h"
@@ -8,7 +8,7 @@
 #include "shared/sdf.h"
 
 #define TRACE_PARAMETERS                                                            \
-  __global const SceneInfo *restrict info, __global const Bvh8Node *restrict nodes, \
+  __global const SceneInfo *restrict info, __global const u32 *restrict nodes, \
       __global const TriangleBlock *restrict blocks, __global const Instance *restrict instances
 #define TRACE_ARGUMENTS info, nodes, blocks, instances
 

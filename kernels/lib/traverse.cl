@@ -4,9 +4,7 @@
 #ifndef SUNDOG_LIB_TRAVERSE_CL
 #define SUNDOG_LIB_TRAVERSE_CL
 #include "lib/config.h"
-#if PACKETS
 #include "lib/packet.cl"
-#endif
 #include "lib/single.cl"
 #include "lib/tables.h"
 

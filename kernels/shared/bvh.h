@@ -26,6 +26,25 @@ typedef struct Bvh8Node {
 } Bvh8Node;
 SUNDOG_SHARED_SIZE(Bvh8Node, 256)
 
+// 96 bytes: the same node for devices that run a lane a ray, after Ylitie, Karras and Laine 2017 ("Efficient
+// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"): boxes on a grid of 256 steps an axis, never
+// smaller than those of the Bvh8Node. Nodes keep their indices.
+typedef struct CompactNode {
+  float origin[3];      // of the grid
+  u32 scale;            // byte i: the biased exponent of the grid's step on axis i; byte 3: the number of children
+  u32 first_inner;      // least node among the children
+  u32 first_leaf;       // least block (or instance) of the leaves
+  u32 child[4];         // 16 bits a slot: COMPACT_LEAF | (count - 1) << COMPACT_COUNT_SHIFT | distance from the first
+  u32 quantized[12];    // a byte a slot: lower x, y, z, upper x, y, z
+  u32 pad[2];
+} CompactNode;
+SUNDOG_SHARED_SIZE(CompactNode, 96)
+
+#define COMPACT_LEAF 0x8000u
+#define COMPACT_COUNT_SHIFT 11u
+#define COMPACT_LEAF_DISTANCE 0x7FFu
+#define COMPACT_INNER_DISTANCE 0x7FFFu
+
 // 320 bytes: eight triangles by their corners, object space. Neighbours hold the same bits of a shared corner, which
 // is what makes the hit test watertight. `prim` indexes TriangleShading; an unused lane holds zeros and NO_PRIM
 // (a triangle without area: never hit).

@@ -6,9 +6,11 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "base/image_compare.h"
 #include "bench/ray_tracer.h"
 #include "catch.h"
 #include "devices.h"
+#include "scene/load.h"
 #include "scenes.h"
 #include "test_meshes.h"
 
@@ -115,9 +117,50 @@ void compare_together_and_alone(const SceneDescription& scene) {
     }
 }
 
+void compare_wide_and_compact(SceneDescription scene) {
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      if (info.native_vector_width <= 1) continue;  // runs the compact tracer anyway
+      Device device(info);
+      const std::vector<Ray> rays = bundles(50'003);
+      scene.render.tracer = Tracer::wide;
+      RayTracer wide(device, compile(scene));
+      scene.render.tracer = Tracer::compact;
+      RayTracer compact(device, compile(scene));
+      const std::vector<Hit> expected = wide.trace(rays), found = compact.trace(rays);
+      const std::vector<u32> occluded = compact.occlusion(rays);
+      std::size_t differ = 0, any_differs = 0;
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        differ += std::memcmp(&expected[i], &found[i], sizeof(Hit)) != 0;
+        any_differs += (expected[i].instance != NO_INSTANCE) != (occluded[i] != 0);
+      }
+      CHECK(differ == 0);
+      CHECK(any_differs == 0);
+    }
+}
+
 }  // namespace
 
 TEST_CASE("rays together find what each finds alone: one mesh") { compare_together_and_alone(lone_mesh()); }
 TEST_CASE("rays together find what each finds alone: instances, solids and a plane") {
   compare_together_and_alone(mixed_scene());
+}
+
+TEST_CASE("the compact tracer finds what the wide one finds: one mesh") {
+  compare_wide_and_compact(lone_mesh());
+}
+TEST_CASE("the compact tracer finds what the wide one finds: instances, solids and a plane") {
+  compare_wide_and_compact(mixed_scene());
+}
+
+TEST_CASE("both tracers draw the same picture") {
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      if (info.native_vector_width <= 1) continue;
+      SceneDescription scene =
+          load_scene(SUNDOG_SOURCE_DIR "/scenes/nested_glass.json",
+                     {"/image/width=64", "/image/height=48", "/render/samples=1", "/render/tracer=\"wide\""});
+      const Image wide = scenes::render_on(info, scene).image;
+      scene.render.tracer = Tracer::compact;
+      const ImageDifference difference = compare_images(wide, scenes::render_on(info, scene).image, 1e-3);
+      CHECK(difference.mean < 1e-5);
+    }
 }
