@@ -11,6 +11,7 @@
 #include "app/formulas_command.h"
 #include "app/option_helpers.h"
 #include "app/option_values.h"
+#include "app/tune_command.h"
 #include "base/error.h"
 
 namespace sundog {
@@ -153,6 +154,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_info(root, chosen);
   add_compare(root, chosen);
   add_check(root, chosen);
+  add_tune(root, chosen);
   add_bench(root, chosen);
   check_command_name(root, argc, argv);
   try {

@@ -54,6 +54,9 @@ OpenedServer open_server(const json& settings) {
   if (settings.at("frame").is_number()) options.frame = settings["frame"].get<double>();
   frame->scene = std::make_shared<const CompiledScene>(
       compile(load_scene(settings.at("scene").get<std::string>(), overrides, options)));
+  frame->options.tuning = [flat = frame->scene](const DeviceInfo& device) {
+    return saved_tuning(device, *flat);
+  };
   OpenedServer opened;
   opened.scene = hash_scene(*frame->scene);
   opened.kept = frame;

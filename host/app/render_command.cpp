@@ -136,6 +136,7 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
   RenderOptions options = render_options(command);
   options.pool = setup.pool;
   options.stop = &setup.stop.flag();
+  options.tuning = [flat = scene.flat](const DeviceInfo& device) { return saved_tuning(device, *flat); };
   options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
   const RenderResult result = command.isolate
                                   ? render(scene.flat, isolated(command, setup.devices, *scene.flat), options)

@@ -116,12 +116,6 @@ std::vector<WorkGroup> work_group_candidates(std::size_t limit, bool two_dimensi
   return groups;
 }
 
-std::string work_group_text(const WorkGroup& group) {
-  if (group.kind == automatic) return "default";
-  if (group.kind == driver) return "driver";
-  return group.y > 1 ? fmt::format("{}x{}", group.x, group.y) : fmt::format("{}", group.x);
-}
-
 std::vector<WorkGroupTime> measure_work_groups(const TimedKernel& kernel, int repeat) {
   std::vector<WorkGroupTime> times;
   std::uint64_t expected = 0;

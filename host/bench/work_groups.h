@@ -14,9 +14,6 @@ namespace sundog {
 /// two. Pure.
 std::vector<WorkGroup> work_group_candidates(std::size_t limit, bool two_dimensions);
 
-/// "64", "8x4", "default", "driver".
-std::string work_group_text(const WorkGroup& group);
-
 /// A kernel that can be run with any size and tells by a hash what came out.
 struct TimedKernel {
   std::string scene, device, name;

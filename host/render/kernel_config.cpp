@@ -69,16 +69,21 @@ bool traces_compact(const CompiledScene& scene, const DeviceInfo& device) {
   return device.device_class != DeviceClass::cpu || device.native_vector_width <= 1;
 }
 
-KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device) {
+KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
   KernelConfig config;
   const bool vectors = !traces_compact(scene, device);
   if (!vectors) config.tile_w = config.tile_h = 1;
+  if (tuning.tile_w > 0) {
+    config.tile_w = tuning.tile_w;
+    config.tile_h = tuning.tile_h;
+  }
   const unsigned batch = config.tile_w * config.tile_h;
   KernelDefines& defines = config.defines;
   const auto define = [&](const char* name, unsigned value) { defines[name] = std::to_string(value); };
   define("TILE_W", config.tile_w);
   define("TILE_H", config.tile_h);
   define("WIDE_VECTORS", vectors);
+  if (tuning.packet_least > 0) define("PACKET_LEAST", tuning.packet_least);
   // Depth first, `batch` rays at a time, at most that many wait on each level, and one batch of children
   // more. Beyond 32 levels the kernel counts what does not fit, and the frame reports it.
   config.ray_stack =

@@ -2,6 +2,7 @@
 #pragma once
 #include "compile/compiled_scene.h"
 #include "device/device.h"
+#include "render/tuning.h"
 
 namespace sundog {
 
@@ -18,7 +19,8 @@ struct KernelConfig {
 bool traces_compact(const CompiledScene& scene, const DeviceInfo& device);
 
 /// Pure. Devices with vectors take 4x4 pixels a work-item and eight boxes an instruction, the others a pixel.
-KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device);
+KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device,
+                                const Tuning& tuning = {});
 
 /// Most work-items that a group of the render kernels may have; 0: the device does not say.
 std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& device);

@@ -16,14 +16,9 @@
 #include "device/device.h"
 #include "device/device_pool.h"
 #include "render/film.h"
+#include "render/tuning.h"
 
 namespace sundog {
-
-/// Local size of the render kernels: the default one, the driver's own choice, or the user's.
-struct WorkGroup {
-  enum class Kind { automatic, driver, fixed } kind = Kind::automatic;
-  std::size_t x = 64, y = 1;
-};
 
 /// How tiles are shared among devices: by measured speed as they come, or in fixed parts, one a device.
 struct Split {
@@ -39,6 +34,7 @@ struct RenderProgress {
 struct RenderOptions {
   std::shared_ptr<DevicePool> pool;  // where devices wait between frames; none: opened for this one
   WorkGroup work_group;
+  std::function<Tuning(const DeviceInfo&)> tuning;  // of each device; empty: the defaults
   int tile = 0;  // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
   Split split;
   std::vector<std::string> aovs;  // of aov_names()

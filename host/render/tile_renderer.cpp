@@ -35,10 +35,14 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
     : device_(device),
       scene_(scene),
       options_(options),
-      config_(make_kernel_config(scene, device.info())),
+      tuning_(options.tuning ? options.tuning(device.info()) : Tuning{}),
+      config_(make_kernel_config(scene, device.info(), tuning_)),
       watch_(watch),
       next_size_(scene.fields.fields.empty() ? first_launch_size : first_launch_size_of_fields) {
   check_work_group(device.info(), config_, options.work_group);
+  // What was fastest for a scene of less depth may be too large for this one.
+  const std::size_t most = greatest_work_group(config_, device.info());
+  if (most > 0 && tuning_.work_group.x * tuning_.work_group.y > most) tuning_.work_group = {};
   const Stopwatch building;
   times.cached = true;
   render_ = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32,
@@ -69,9 +73,14 @@ void TileRenderer::find_camera_media() {
   device_.finish();
 }
 
+// The user's, else the tuned one, else the default.
+const WorkGroup& TileRenderer::work_group() const {
+  return options_.work_group.kind == WorkGroup::Kind::automatic ? tuning_.work_group : options_.work_group;
+}
+
 // columns x rows work-items: as a grid where the user asked for a group of two dimensions, else in one row.
 LaunchSize TileRenderer::launch_size(std::size_t columns, std::size_t rows) const {
-  const WorkGroup& group = options_.work_group;
+  const WorkGroup& group = work_group();
   const std::size_t items = columns * rows;
   if (group.kind == WorkGroup::Kind::driver) return {items, 1, 0, 0};
   if (group.kind == WorkGroup::Kind::fixed) {
@@ -94,7 +103,7 @@ unsigned TileRenderer::launch_samples(const Tile& tile, const StopFlags& flags) 
   const unsigned width = static_cast<unsigned>(tile.width), height = static_cast<unsigned>(tile.height);
   const unsigned samples = scene_.info.samples, item_pixels = config_.tile_w * config_.tile_h;
   const unsigned columns = divide_up(width, config_.tile_w), rows = divide_up(height, config_.tile_h);
-  const bool grid = options_.work_group.kind == WorkGroup::Kind::fixed && options_.work_group.y > 1;
+  const bool grid = work_group().kind == WorkGroup::Kind::fixed && work_group().y > 1;
   // A grid of groups takes whole rows of items; else each unit should have one.
   const unsigned step = grid ? columns : std::clamp(device_.info().compute_units, 1u, columns * rows);
   least_size_ = static_cast<std::size_t>(step) * item_pixels;
@@ -126,7 +135,8 @@ unsigned TileRenderer::launch_samples(const Tile& tile, const StopFlags& flags) 
 }
 
 void TileRenderer::note_time(std::size_t size, double seconds) {
-  next_size_ = next_launch_size(size, seconds, launch_seconds, least_size_, most_size_);
+  const double target = tuning_.launch_ms > 0 ? tuning_.launch_ms * 1e-3 : launch_seconds;
+  next_size_ = next_launch_size(size, seconds, target, least_size_, most_size_);
   pixel_seconds_ = seconds / static_cast<double>(size);
 }
 

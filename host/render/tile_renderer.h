@@ -36,10 +36,12 @@ class TileRenderer {
   void note_time(std::size_t size, double seconds);
   void launch_aovs(const Tile& tile, std::vector<float4>& aovs);
   LaunchSize launch_size(std::size_t columns, std::size_t rows) const;
+  const WorkGroup& work_group() const;
 
   Device& device_;
   const CompiledScene& scene_;
   const RenderOptions& options_;
+  Tuning tuning_;
   KernelConfig config_;
   DeviceScene tables_;
   SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32, u32, u32, u32,

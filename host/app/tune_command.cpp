@@ -1,0 +1,189 @@
+// See tune_command.h.
+#include "app/tune_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "app/bench_options.h"
+#include "app/commands.h"
+#include "app/option_helpers.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "bench/report.h"
+#include "bench/self_check.h"
+#include "bench/tuner.h"
+#include "render/tuning.h"
+
+namespace sundog {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+struct TuneOptions {
+  BenchOptions bench;  // scenes, devices, overrides
+  double budget = 60;
+  bool show = false, forget = false;
+  std::string export_to, import_from;
+};
+
+struct NamedScene {
+  std::string name;
+  CompiledScene scene;
+};
+
+/// Those of the command line, or two that are built in: solids alone, and with a mesh among them.
+std::vector<NamedScene> scenes_to_tune(const TuneOptions& options) {
+  std::vector<NamedScene> scenes;
+  for (const std::string& file : options.bench.scenes)
+    scenes.push_back({scene_name(file), bench_scene(file, options.bench)});
+  if (!scenes.empty()) return scenes;
+  SceneDescription built_in = self_check_scene();
+  built_in.image.width = 320;
+  built_in.image.height = 240;
+  scenes.push_back({"built-in meshes", compile(built_in)});
+  std::erase_if(built_in.objects,
+                [](const Object& object) { return std::holds_alternative<MeshShape>(object.shape); });
+  built_in.meshes.clear();
+  scenes.push_back({"built-in solids", compile(built_in)});
+  return scenes;
+}
+
+void print_outcome(const DeviceInfo& device, const TuneOutcome& outcome) {
+  const TuningEntry& entry = outcome.entry;
+  const bool faster = entry.tuned_ms < entry.default_ms;
+  fmt::print("{}, {} ({}): {}\n", device.label(), entry.scene_class, entry.scene, tuning_text(entry.tuning));
+  fmt::print("  {} ms with the defaults, {} ms tuned: {}; {} tried, {} rejected\n",
+             number_text(entry.default_ms), number_text(entry.tuned_ms),
+             faster ? fmt::format("{:.1f} % gained", 100 * (1 - entry.tuned_ms / entry.default_ms))
+                    : "nothing gained",
+             outcome.tried, outcome.rejected);
+}
+
+int tune(const TuneOptions& options) {
+  const std::vector<NamedScene> scenes = scenes_to_tune(options);
+  for (const DeviceInfo& device : bench_devices(options.bench))
+    for (const NamedScene& named : scenes) {
+      const auto on_step = [&](const std::string& step) {
+        show_step(options.bench, fmt::format("{}, {}: {}", device.label(), named.name, step));
+      };
+      const TuneOutcome outcome = tune_device(device, named.scene, named.name,
+                                              options.budget / static_cast<double>(scenes.size()), on_step);
+      on_step("");
+      if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K");
+      keep_tuning(device, outcome.entry);
+      print_outcome(device, outcome);
+    }
+  return exit_done;
+}
+
+std::vector<fs::path> kept_files() {
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(tuning_folder(), none))
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+std::vector<TuningFile> kept() {
+  std::vector<TuningFile> all;
+  for (const fs::path& file : kept_files()) {
+    try {
+      all.push_back(tuning_from_json(json::parse(read_file(file), nullptr, false), file.string()));
+    } catch (const UsageError& error) {
+      fmt::print(stderr, "sundog: warning: {}\n", error.what());
+    }
+  }
+  return all;
+}
+
+int show() {
+  const std::vector<TuningFile> files = kept();
+  if (files.empty()) fmt::print("Nothing is kept in {}.\n", tuning_folder().string());
+  const std::string kernels = kernels_hash();
+  for (const TuningFile& file : files) {
+    fmt::print("{} / {}, driver {}{}\n", file.platform, file.device, file.driver,
+               file.kernels == kernels ? "" : ": of other kernels, not used");
+    for (const TuningEntry& entry : file.entries)
+      fmt::print("  {:<14} {}: {} ms, {} ms with the defaults ({})\n", entry.scene_class,
+                 tuning_text(entry.tuning), number_text(entry.tuned_ms), number_text(entry.default_ms),
+                 entry.scene);
+  }
+  return exit_done;
+}
+
+int forget(const TuneOptions& options) {
+  std::vector<fs::path> files = kept_files();
+  if (!options.bench.devices.empty()) {
+    files.clear();
+    for (const DeviceInfo& device : bench_devices(options.bench)) files.push_back(tuning_path(device));
+  }
+  std::size_t removed = 0;
+  for (const fs::path& file : files) removed += fs::remove(file);
+  fmt::print("{} file{} removed from {}\n", removed, removed == 1 ? "" : "s", tuning_folder().string());
+  return exit_done;
+}
+
+int export_all(const std::string& path) {
+  json list = json::array();
+  for (const TuningFile& file : kept()) list.push_back(to_json(file));
+  write_file(path, list.dump(2) + "\n");
+  return exit_done;
+}
+
+/// Only what is for a device of this machine, with the same driver, is of use: the others are told.
+int import_all(const std::string& path) {
+  const json list = json::parse(read_file(path), nullptr, false);
+  if (!list.is_array()) throw UsageError(path + ": wanted what `sundog tune --export` writes, a list");
+  std::vector<TuningFile> files;
+  for (const json& value : list) files.push_back(tuning_from_json(value, path));
+  const std::string kernels = kernels_hash();
+  const std::vector<DeviceInfo> devices = enumerate_devices();
+  for (const TuningFile& file : files) {
+    const auto here = std::ranges::find_if(devices, [&](const DeviceInfo& device) {
+      return device.platform_name == file.platform && device.name == file.device &&
+             device.driver == file.driver;
+    });
+    const std::string why = file.kernels != kernels ? "it is of other kernels"
+                            : here == devices.end() ? "there is no such device here"
+                                                    : "";
+    if (why.empty())
+      for (const TuningEntry& entry : file.entries) keep_tuning(*here, entry);
+    fmt::print("{} / {}: {}\n", file.platform, file.device, why.empty() ? "imported" : "left out: " + why);
+  }
+  return exit_done;
+}
+
+int run_tune(const TuneOptions& options) {
+  if (!options.import_from.empty()) import_all(options.import_from);
+  if (!options.export_to.empty()) return export_all(options.export_to);
+  if (options.forget) return forget(options);
+  if (options.show) return show();
+  return options.import_from.empty() ? tune(options) : exit_done;
+}
+
+}  // namespace
+
+void add_tune(CLI::App& root, Command& chosen) {
+  const auto options = std::make_shared<TuneOptions>();
+  CLI::App* app = root.add_subcommand("tune", "Find and keep what is fastest on a device; `render` uses it");
+  value(app, "SCENE", "FILE", options->bench.scenes,
+        std::string(scene_help) + " (default: two that are built in)");
+  values(app, "--device", "SPEC", options->bench.devices, device_help);
+  values(app, "--set", "POINTER=VALUE", options->bench.overrides, "change the scenes, as in /camera/fov=30");
+  app->add_option("--budget", options->budget, "seconds for a device (default 60)")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, 1e6));
+  app->add_flag("--show", options->show, "print what is kept");
+  app->add_flag("--forget", options->forget, "remove what is kept, of the --device or of all");
+  value(app, "--export", "FILE", options->export_to, "write what is kept to this file");
+  value(app, "--import", "FILE", options->import_from,
+        "keep what --export wrote elsewhere, for devices that are here");
+  app->callback([options, &chosen] { chosen = RunLater{[options] { return run_tune(*options); }}; });
+}
+
+}  // namespace sundog

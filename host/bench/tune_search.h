@@ -1,0 +1,33 @@
+// The search for the fastest point of a grid whose axes are ordered: coarse to fine, one axis at a time,
+// within a time budget. Knows no device, so it is tested on made-up timings.
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace sundog {
+
+/// An index for each axis.
+using TunePoint = std::vector<std::size_t>;
+
+struct TuneProblem {
+  std::vector<std::size_t> axes;  // how many values each has
+  TunePoint start;                // the default
+  /// Seconds of a point; nothing: it is refused, or its result is wrong.
+  std::function<std::optional<double>(const TunePoint&)> measure;
+  /// Seconds of two points, measured again in turn: the default, and what won.
+  std::function<std::pair<double, double>(const TunePoint& usual, const TunePoint& best)> measure_again;
+  std::function<bool()> out_of_time;
+};
+
+struct TuneResult {
+  TunePoint best;  // the default, when nothing is faster in the end
+  double default_seconds = 0, best_seconds = 0;
+  std::size_t tried = 0, rejected = 0;
+};
+
+/// A point must be 2 % faster than the best so far to take its place. Each point is measured once.
+TuneResult search_tuning(const TuneProblem& problem);
+
+}  // namespace sundog

@@ -1,0 +1,20 @@
+// Tunes a device on a scene: measures frames, rejects what changes a bit of the image.
+#pragma once
+#include <functional>
+#include <string>
+
+#include "render/tuning.h"
+
+namespace sundog {
+
+struct TuneOutcome {
+  TuningEntry entry;  // the defaults, with equal times, where nothing was faster
+  std::size_t tried = 0, rejected = 0;
+};
+
+/// Searches for about `budget` seconds. Throws DeviceError, BuildError when the defaults do not work.
+/// `on_step` hears what is tried.
+TuneOutcome tune_device(const DeviceInfo& device, const CompiledScene& scene, const std::string& scene_name,
+                        double budget, const std::function<void(const std::string&)>& on_step);
+
+}  // namespace sundog

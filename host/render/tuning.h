@@ -1,0 +1,69 @@
+// What was found to be fastest on a device: one JSON file a device and driver in the cache folder, of no
+// account when the kernels have changed since.
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compile/compiled_scene.h"
+#include "device/devices.h"
+#include "render/work_group.h"
+
+namespace sundog {
+
+/// What a render can be tuned by; none of it changes a bit of the image. Zeros and `automatic` are the
+/// defaults.
+struct Tuning {
+  WorkGroup work_group;
+  unsigned tile_w = 0, tile_h = 0;  // pixels a work-item
+  unsigned packet_least = 0;        // rays below which a packet is traced ray by ray
+  double launch_ms = 0;             // the length of a launch: how many rays are in flight
+};
+
+/// "64", "8x4", "default", "driver".
+std::string work_group_text(const WorkGroup& group);
+
+/// "group 8x2, 16x1 pixels a work-item, ..."; "the defaults".
+std::string tuning_text(const Tuning& tuning);
+
+/// A Tuning with what was measured: on which scene, and the frame's milliseconds with the defaults and with
+/// it.
+struct TuningEntry {
+  std::string scene_class, scene;
+  Tuning tuning;
+  double default_ms = 0, tuned_ms = 0;
+};
+
+struct TuningFile {
+  std::string platform, device, driver, kernels;  // kernels: hash of their sources
+  std::vector<TuningEntry> entries;               // one a class
+};
+
+/// What scenes have in common that are tuned alike: "meshes", "solids", "fields", with "+rays" where there
+/// are reflections or refractions.
+std::string scene_class(const CompiledScene& scene);
+
+/// The hash of all kernel sources as they are now.
+std::string kernels_hash();
+
+/// The folder of the files; empty where there is no cache folder.
+std::filesystem::path tuning_folder();
+std::filesystem::path tuning_path(const DeviceInfo& device);
+
+nlohmann::json to_json(const TuningFile& file);
+
+/// Throws UsageError that says what is wrong with it.
+TuningFile tuning_from_json(const nlohmann::json& json, const std::string& where);
+
+/// The device's file; nothing when there is none, it is damaged, or it is of other kernels.
+std::optional<TuningFile> load_tuning(const DeviceInfo& device);
+
+/// Puts the entry into the device's file, in place of one of its class. Throws IoError.
+void keep_tuning(const DeviceInfo& device, const TuningEntry& entry);
+
+/// What is kept for the device and the scene's class; the defaults where nothing is.
+Tuning saved_tuning(const DeviceInfo& device, const CompiledScene& scene);
+
+}  // namespace sundog

@@ -1,0 +1,13 @@
+// Local size of the render kernels.
+#pragma once
+#include <cstddef>
+
+namespace sundog {
+
+/// The default one, the driver's own choice, or the user's.
+struct WorkGroup {
+  enum class Kind { automatic, driver, fixed } kind = Kind::automatic;
+  std::size_t x = 64, y = 1;
+};
+
+}  // namespace sundog

@@ -1,0 +1,73 @@
+// `sundog tune`: what is found is kept, shown, used, taken along and forgotten.
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "catch.h"
+#include "cli_scene.h"
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct TuneFolder : CliFolder {
+  CommandResult run(std::vector<std::string> arguments) const {
+    CommandOptions options;
+    options.environment["XDG_CACHE_HOME"] = (*this / "cache").string();
+    arguments.insert(arguments.begin(), "tune");
+    return run_sundog(arguments, options);
+  }
+  CommandResult render(const std::string& name) const {
+    CommandOptions options;
+    options.environment["XDG_CACHE_HOME"] = (*this / "cache").string();
+    return run_sundog({"render", scene, "-o", file(name), "--device", "pthread", "--stats", file("s.json")},
+                      options);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("what tune finds is kept in one file a device, and a render with it gives the same bits") {
+  const TuneFolder folder;
+  REQUIRE(folder.render("before.pfm").status == 0);
+  const CommandResult tuned = folder.run({folder.scene, "--device", "pthread", "--budget", "0.5"});
+  CAPTURE(tuned.out, tuned.err);
+  REQUIRE(tuned.status == 0);
+  CHECK_THAT(tuned.out, ContainsSubstring("solids+rays (scene)") && ContainsSubstring("tried"));
+  REQUIRE(folder.run({"--export", folder.file("kept.json")}).status == 0);
+  json kept = json::parse(sundog::read_file(folder.file("kept.json")));
+  REQUIRE(kept.size() == 1);
+  json& entry = kept[0].at("entries")[0];
+  CHECK(entry.at("tuned_ms") <= entry.at("default_ms"));  // the default is among the candidates
+
+  entry["work_group"] = "2x2";
+  entry["launch_ms"] = 10;
+  folder.write("kept.json", kept.dump());
+  CHECK_THAT(folder.run({"--forget"}).out, ContainsSubstring("1 file removed"));
+  CHECK_THAT(folder.run({"--show"}).out, ContainsSubstring("Nothing is kept"));
+  CHECK_THAT(folder.run({"--import", folder.file("kept.json")}).out, ContainsSubstring("imported"));
+  CHECK_THAT(folder.run({"--show"}).out, ContainsSubstring("work-group 2x2"));
+  REQUIRE(folder.render("after.pfm").status == 0);
+  const json stats = json::parse(sundog::read_file(folder.file("s.json")));
+  CHECK(stats["devices"][0]["kernels"]["render_whitted"]["work_group"] == json({2, 2}));
+  CHECK(sundog::read_file(folder.file("before.pfm")) == sundog::read_file(folder.file("after.pfm")));
+
+  kept[0]["kernels"] = "of other sources";
+  folder.write("kept.json", kept.dump());
+  CHECK_THAT(folder.run({"--import", folder.file("kept.json")}).out,
+             ContainsSubstring("left out: it is of other kernels"));
+}
+
+TEST_CASE("tuning results that are none are refused, and a damaged file is as none") {
+  const TuneFolder folder;
+  for (const char* text : {"", "{}", "[{}]", "[{\"schema\": 2}]", "[1]"}) {
+    folder.write("bad.json", text);
+    const CommandResult result = folder.run({"--import", folder.file("bad.json")});
+    CAPTURE(text, result.err);
+    CHECK(result.status == 2);
+    CHECK(is_one_error_line(result.err));
+  }
+  CHECK(folder.run({"--import", folder.file("missing.json")}).status == 1);
+  CHECK(folder.run({folder.scene, "--device", "nowhere"}).status == 4);
+}
