@@ -79,7 +79,9 @@ std::string tuning_text(const Tuning& tuning) {
 
 std::string scene_class(const CompiledScene& scene) {
   const auto& shapes = scene.features.shapes;
-  const std::string kind = shapes[SHAPE_SDF] ? "fields" : shapes[SHAPE_MESH] ? "meshes" : "solids";
+  std::string kind = shapes[SHAPE_SDF] ? "fields" : shapes[SHAPE_MESH] ? "meshes" : "solids";
+  if (scene.tracer == Tracer::wide) kind += "+wide";
+  if (scene.tracer == Tracer::compact) kind += "+compact";
   return scene.features.secondary_rays ? kind + "+rays" : kind;
 }
 
