@@ -21,6 +21,7 @@ namespace {
 int run(const RenderCommand& command) { return render_command(command); }
 int run(const DevicesOptions& command) { return devices_command(command); }
 int run(const InfoCommand& command) { return info_command(command); }
+int run(const MergeCommand& command) { return merge_command(command); }
 int run(const CompareCommand& command) { return compare_command(command); }
 /// In a thread of its own: drivers that work in the caller's thread need more stack than the first one has.
 int run(const RunLater& command) { return std::async(std::launch::async, command.run).get(); }

@@ -55,6 +55,17 @@ WorkGroup parse_work_group(const std::string& text) {
       fmt::format("--work-group {}: wanted a size (64), width x height (8x8), auto or driver", text));
 }
 
+PartOfFrame parse_part(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  const std::string_view all = text;
+  if (slash != std::string::npos) {
+    const std::optional<int> count = number(all.substr(slash + 1), 1, greatest_size);
+    const std::optional<int> index = number(all.substr(0, slash), 1, count.value_or(0));
+    if (index) return {*index, *count};
+  }
+  throw UsageError(fmt::format("--tiles {}: wanted i/N, part i from 1 to N, such as 2/8", text));
+}
+
 Split parse_split(const std::string& text) {
   using enum Split::Kind;
   if (text == "dynamic") return {dynamic, {}};

@@ -14,6 +14,9 @@ int parse_number(const char* option, const std::string& text, int low, int high)
 /// "64", "8x8", "auto" or "driver".
 WorkGroup parse_work_group(const std::string& text);
 
+/// "i/N", i from 1 to N.
+PartOfFrame parse_part(const std::string& text);
+
 /// "dynamic", "static", or shares such as "3,1".
 Split parse_split(const std::string& text);
 

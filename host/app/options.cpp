@@ -22,7 +22,8 @@ constexpr const char* more_help = "(sundog --help tells more)";
 /// The options of `render` as typed, before they are checked.
 struct TypedRender {
   RenderCommand command;
-  std::string size, samples, max_depth, integrator, work_group = "auto", split = "dynamic", tile, frames;
+  std::string size, samples, max_depth, integrator, work_group = "auto", split = "dynamic", part, tile,
+                                                    frames;
 };
 
 /// The options that only shorten a --set come first, so that a --set of the same value wins.
@@ -47,6 +48,7 @@ RenderCommand checked(const TypedRender& typed) {
   command.work_group = parse_work_group(typed.work_group);
   command.split = parse_split(typed.split);
   if (!typed.frames.empty()) command.frames = parse_frames(typed.frames);
+  if (!typed.part.empty()) command.part = parse_part(typed.part);
   if (!typed.tile.empty()) command.tile = parse_number("--tile", typed.tile, 4, 65536);
   if (command.devices.empty()) command.devices = devices_of_environment();
   for (const std::string& name : command.aovs)
@@ -62,6 +64,8 @@ void add_render(CLI::App& root, Command& chosen) {
   value(app, "SCENE", "FILE", command.scene, scene_help)->required();
   value(app, "-o,--out", "FILE", command.out, "image file: .png, .exr, .hdr or .pfm")->required();
   values(app, "--device", "SPEC", command.devices, device_help);
+  value(app, "--tiles", "I/N", typed->part,
+        "render part I of N only, into a .part file that `sundog merge` takes");
   app->add_flag("--isolate", command.isolate,
                 "a worker process for each device: a driver that crashes or hangs takes nothing else along");
   value(app, "--size", "WxH", typed->size, "width and height in pixels");
@@ -123,6 +127,17 @@ void add_compare(CLI::App& root, Command& chosen) {
   });
 }
 
+void add_merge(CLI::App& root, Command& chosen) {
+  const auto command = std::make_shared<MergeCommand>();
+  CLI::App* app = root.add_subcommand("merge", "Join the parts that render --tiles has written");
+  app->add_option("PART", command->parts, "files that render --tiles has written")
+      ->required()
+      ->type_name("FILE");
+  value(app, "-o,--out", "FILE", command->out, "image file: .png, .exr, .hdr or .pfm")->required();
+  app->add_flag("--float", command->full_floats, "keep an .exr's colours as 32-bit floats (default: half)");
+  app->callback([command, &chosen] { chosen = *command; });
+}
+
 /// The library's own message about an unknown command only asks for one.
 void check_command_name(const CLI::App& root, int argc, const char* const* argv) {
   std::vector<std::string> names;
@@ -155,6 +170,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_compare(root, chosen);
   add_check(root, chosen);
   add_tune(root, chosen);
+  add_merge(root, chosen);
   add_bench(root, chosen);
   check_command_name(root, argc, argv);
   try {

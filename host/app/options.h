@@ -18,6 +18,7 @@ struct RenderCommand {
   std::vector<std::string> overrides;  // "JSON_POINTER=VALUE", those of --size, --samples... among them
   WorkGroup work_group;
   Split split;
+  std::optional<PartOfFrame> part;  // OUT is a part of the frame, not an image
   int tile = 0;
   std::optional<FrameRange> frames;  // of an animation; the files are numbered
   std::optional<double> frame;       // the one of them that is rendered now
@@ -40,6 +41,12 @@ struct CompareCommand {
   bool json = false;
 };
 
+struct MergeCommand {
+  std::vector<std::string> parts;
+  std::string out;
+  bool full_floats = false;
+};
+
 /// --help or --version: a text for stdout.
 struct ShowText {
   std::string text;
@@ -50,7 +57,8 @@ struct RunLater {
   std::function<int()> run;  // returns the exit status
 };
 
-using Command = std::variant<RenderCommand, DevicesOptions, InfoCommand, CompareCommand, RunLater, ShowText>;
+using Command = std::variant<RenderCommand, DevicesOptions, InfoCommand, CompareCommand, MergeCommand,
+                             RunLater, ShowText>;
 
 /// Throws UsageError. Reads the environment variable SUNDOG_DEVICE (SPECs separated by commas).
 Command parse_command_line(int argc, const char* const* argv);

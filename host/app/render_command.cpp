@@ -35,8 +35,11 @@ auto timed(double& seconds, const Step& step) {
 
 /// What would otherwise be found out after the render.
 void check_outputs(const RenderCommand& command) {
-  check_image_path(command.out, !command.aovs.empty());
-  if (command.full_floats && drops_alpha(command.out))
+  if (command.part && !command.out.ends_with(".part"))
+    throw UsageError(
+        fmt::format("{}: with --tiles, OUT is a part of the frame and ends in .part", command.out));
+  if (!command.part) check_image_path(command.out, !command.aovs.empty());
+  if (command.full_floats && !command.part && drops_alpha(command.out))
     throw UsageError(fmt::format("{}: --float is for .exr files", command.out));
   check_writable(command.out);
   for (const std::string& file : {command.stats, command.resume})
@@ -59,6 +62,7 @@ RenderOptions render_options(const RenderCommand& command) {
   RenderOptions options;
   options.work_group = command.work_group;
   options.split = command.split;
+  if (command.part) options.part = *command.part;
   options.tile = command.tile;
   options.aovs = command.aovs;
   options.resume = command.resume;
@@ -70,7 +74,10 @@ RenderOptions render_options(const RenderCommand& command) {
 void save(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result) {
   Picture picture{result.image, result.aovs, result.film, result.key, command.resume, command.full_floats};
   if (picture.key == 0) picture.key = hash_scene(scene);
-  save_image(picture, command.out);
+  if (!command.part)
+    save_image(picture, command.out);
+  else if (result.complete)
+    write_part(command.out, {*command.part, picture.key, command.scene, command.aovs, result.film});
   if (!result.checkpoint_error.empty()) throw IoError(result.checkpoint_error);
   if (result.complete && !command.resume.empty()) std::filesystem::remove(command.resume);
 }
@@ -92,6 +99,9 @@ void summarise(const RenderCommand& command, const RenderResult& result, const T
 
 std::string part_text(const RenderCommand& command, const RenderResult& result) {
   const auto& done = result.film.done;
+  if (command.part)
+    return fmt::format("{} is not written{}", command.out,
+                       command.resume.empty() ? "" : "; the same command goes on from its checkpoint");
   const double pixels = static_cast<double>(std::max<std::size_t>(1, done.size()));
   return fmt::format("{:.3g} % of the pixels are in {}{}",
                      100 * static_cast<double>(std::ranges::count(done, 1)) / pixels, command.out,

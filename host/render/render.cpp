@@ -40,12 +40,24 @@ std::vector<RowRange> row_ranges(const Split& split, int height, const std::vect
   return divide_rows(height, shares);
 }
 
+/// What is unfinished of a part of the frame within `range`.
+std::vector<Tile> unfinished_rows(const Film& film, const RowRange& range, const PartOfFrame& part) {
+  std::vector<Tile> tiles;
+  for (const RowRange& rows : part_rows(film.height, part)) {
+    const int first = std::max(rows.first, range.first);
+    const int end = std::min(rows.first + rows.count, range.first + range.count);
+    for (const Tile& tile : unfinished_tiles(film, {0, first, film.width, std::max(0, end - first)}))
+      tiles.push_back(tile);
+  }
+  return tiles;
+}
+
 TilePlan plan_tiles(const RenderOptions& options, const Film& film, const std::vector<ServerPlan>& devices) {
   TilePlan plan;
   plan.whole = options.tile > 0;
   for (const RowRange& range : row_ranges(options.split, film.height, devices)) {
     std::vector<Tile> tiles;
-    for (const Tile& open : unfinished_tiles(film, {0, range.first, film.width, range.count})) {
+    for (const Tile& open : unfinished_rows(film, range, options.part)) {
       if (!plan.whole) {
         tiles.push_back(open);
         continue;

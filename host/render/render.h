@@ -16,6 +16,7 @@
 #include "device/device.h"
 #include "device/device_pool.h"
 #include "render/film.h"
+#include "render/part.h"
 #include "render/tuning.h"
 
 namespace sundog {
@@ -37,6 +38,7 @@ struct RenderOptions {
   std::function<Tuning(const DeviceInfo&)> tuning;  // of each device; empty: the defaults
   int tile = 0;  // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
   Split split;
+  PartOfFrame part;               // what to render of the frame
   std::vector<std::string> aovs;  // of aov_names()
   std::filesystem::path
       resume;  // checkpoint: read when it exists, written on interrupt; the caller removes it
