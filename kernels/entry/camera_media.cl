@@ -1,10 +1,9 @@
 // One stage: which media the camera is inside of, found by following a line from it to the outside.
 #include "lib/segment.cl"
 
-// One work-item. Writes the camera's MediaStack to camera_media, low word first: a solid that the line leaves
-// without having entered it holds the camera, and the nearest such exit was entered last.
-__kernel void find_camera_media(TRACE_PARAMETERS, SHADE_PARAMETERS, __global u32* restrict camera_media) {
-  if (get_global_id(0) != 0) return;
+// The work of the kernel below.
+NEVER_INLINE void follow_line_outside(TRACE_PARAMETERS, SHADE_PARAMETERS,
+                                      __global u32* restrict camera_media) {
   const float3 o = info->camera_position.xyz;
   const float3 d =
       unit((float3)(0.3141f, 0.8660f, 0.3890f));  // off every axis that a scene is likely to be built along
@@ -39,4 +38,10 @@ __kernel void find_camera_media(TRACE_PARAMETERS, SHADE_PARAMETERS, __global u32
   }
   camera_media[0] = (u32)holding;
   camera_media[1] = (u32)(holding >> 32);
+}
+
+// One work-item. Writes the camera's MediaStack to camera_media, low word first: a solid that the line leaves
+// without having entered it holds the camera, and the nearest such exit was entered last.
+__kernel void find_camera_media(TRACE_PARAMETERS, SHADE_PARAMETERS, __global u32* restrict camera_media) {
+  if (get_global_id(0) == 0) follow_line_outside(TRACE_ARGUMENTS, SHADE_ARGUMENTS, camera_media);
 }

@@ -12,15 +12,11 @@
 #endif
 #define ROWS (LANES / COLUMNS)
 
-// camera: origin (w: tangent of half the angle of view), right, up, forward. light: unit direction towards
-// it. Writes a shade a pixel; width and height are multiples of 4. counts: steps, hits, ended by the step
-// limit, taken back.
-__kernel void field_picture(__global const SdfField* restrict sdf_fields,
-                            __global const float* restrict sdf_parameters, __global float* restrict shades,
-                            __global u32* restrict counts, float4 origin, float4 right, float4 up,
-                            float4 forward, float4 light, u32 width, u32 height) {
-  const u32 item = get_global_id(0), across = width / COLUMNS;
-  if (item >= width * height / LANES) return;
+// Work-item `item` of the kernel below.
+NEVER_INLINE void picture_item(SDF_PARAMETERS, __global float* restrict shades, __global u32* restrict counts,
+                               float4 origin, float4 right, float4 up, float4 forward, float4 light,
+                               u32 width, u32 height, u32 item) {
+  const u32 across = width / COLUMNS;
   const u32 x0 = item % across * COLUMNS, y0 = item / across * ROWS;
   REAL x = (REAL)(0.0f), y = (REAL)(0.0f);
   for (u32 i = 0; i < LANES; ++i) {
@@ -65,4 +61,16 @@ __kernel void field_picture(__global const SdfField* restrict sdf_fields,
   }
   for (u32 i = 0; i < 4u; ++i)
     if (totals[i]) atomic_add(counts + i, totals[i]);
+}
+
+// camera: origin (w: tangent of half the angle of view), right, up, forward. light: unit direction towards
+// it. Writes a shade a pixel; width and height are multiples of 4. counts: steps, hits, ended by the step
+// limit, taken back.
+__kernel void field_picture(__global const SdfField* restrict sdf_fields,
+                            __global const float* restrict sdf_parameters, __global float* restrict shades,
+                            __global u32* restrict counts, float4 origin, float4 right, float4 up,
+                            float4 forward, float4 light, u32 width, u32 height) {
+  const u32 item = get_global_id(0);
+  if (item < width * height / LANES)
+    picture_item(SDF_ARGUMENTS, shades, counts, origin, right, up, forward, light, width, height, item);
 }

@@ -18,17 +18,11 @@ static inline u32 lane_pixel(u32 item, u32 lane, u32 x0, u32 y0, u32 width, u32 
   return local_x < width && local_y < height ? local_y * width + local_x : NO_PIXEL;
 }
 
-// Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of work-items
-// [first_item, last_item) of the rectangle (x0, y0, width, height) to film (rgb and coverage) and their
-// number to weights (a sample that is not finite counts for nothing); adds to counters.
-__kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const u32* restrict camera_media,
-                             __global float4* restrict film, __global float* restrict weights,
-                             __global u32* restrict counters, u32 x0, u32 y0, u32 width, u32 height,
-                             u32 row_items, u32 first_item, u32 last_item, u32 first_sample,
-                             u32 sample_count) {
-  // Items count through the rectangle row by row; a launch in two dimensions takes whole rows of them.
-  const u32 item = first_item + get_global_id(1) * row_items + get_global_id(0);
-  if (get_global_id(0) >= row_items || item >= last_item) return;
+// One work-item of the kernel below.
+NEVER_INLINE void render_item(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const u32* restrict camera_media,
+                              __global float4* restrict film, __global float* restrict weights,
+                              __global u32* restrict counters, u32 item, u32 x0, u32 y0, u32 width,
+                              u32 height, u32 first_sample, u32 sample_count) {
   u32 counts[COUNTERS];
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
   const MediaStack start = (MediaStack)camera_media[1] << 32 | camera_media[0];
@@ -67,4 +61,19 @@ __kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const 
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);
+}
+
+// Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of work-items
+// [first_item, last_item) of the rectangle (x0, y0, width, height) to film (rgb and coverage) and their
+// number to weights (a sample that is not finite counts for nothing); adds to counters.
+__kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const u32* restrict camera_media,
+                             __global float4* restrict film, __global float* restrict weights,
+                             __global u32* restrict counters, u32 x0, u32 y0, u32 width, u32 height,
+                             u32 row_items, u32 first_item, u32 last_item, u32 first_sample,
+                             u32 sample_count) {
+  // Items count through the rectangle row by row; a launch in two dimensions takes whole rows of them.
+  const u32 item = first_item + get_global_id(1) * row_items + get_global_id(0);
+  if (get_global_id(0) >= row_items || item >= last_item) return;
+  render_item(TRACE_ARGUMENTS, SHADE_ARGUMENTS, camera_media, film, weights, counters, item, x0, y0, width,
+              height, first_sample, sample_count);
 }

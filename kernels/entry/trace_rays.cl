@@ -2,9 +2,9 @@
 // in a row. `coherent` says that they run close together.
 #include "lib/traverse.cl"
 
-// The BATCH rays of a work-item from `first` on, in the form that the tracer takes.
+// The BATCH rays of work-item `item`, in the form that the tracer takes.
 #define LOAD_BATCH                                      \
-  const u32 first = get_global_id(0) * BATCH;           \
+  const u32 first = item * BATCH;                       \
   if (first >= ray_count) return;                       \
   const u32 count = min((u32)BATCH, ray_count - first); \
   float3 o[BATCH], d[BATCH];                            \

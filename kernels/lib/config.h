@@ -14,9 +14,10 @@
 // For the inner loops: a call there would save and restore every vector register.
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 
-// For the body of a kernel with private arrays: PoCL keeps the arrays of a kernel apart for each work-item of
-// a group, and those of a function once. Also for what is called from several places, where copies would be
-// compiled for longer than a call takes.
+// For the body of a kernel: PoCL compiles what stands in a kernel three times (the kernel, and two loops over
+// its work-groups), a function once; and it keeps the private arrays of a kernel apart for each work-item of a
+// group, those of a function once. Such a function takes no index from get_global_id(), or PoCL inlines it.
+// Also for what is called from several places, where copies would be compiled for longer than a call takes.
 #define NEVER_INLINE static __attribute__((noinline))
 
 // Rays a work-item carries together: TILE_W x TILE_H pixels of the image. 16 on CPU-class devices, 1 on
