@@ -166,6 +166,25 @@ int priority_of(const SceneDescription& scene, const Object& object) {
   return medium_of(scene, material_of(scene, object)).priority;
 }
 
+// Whether the bounds lie in a box-shaped hole of higher priority than the object's: there it is not.
+bool lies_in_hole(const SceneDescription& scene, const Object& object, const Bounds& bounds) {
+  for (const Object& hole : scene.objects) {
+    const auto* box = std::get_if<BoxShape>(&hole.shape);
+    if (!box || !is_hole(scene, hole) || priority_of(scene, hole) <= priority_of(scene, object)) continue;
+    const dmat4 to_box = glm::inverse(hole.world_from_object);
+    bool inside = true;
+    for (int corner = 0; corner < 8 && inside; corner++) {
+      const dvec3 at{corner & 1 ? bounds.lower.x : bounds.upper.x,
+                     corner & 2 ? bounds.lower.y : bounds.upper.y,
+                     corner & 4 ? bounds.lower.z : bounds.upper.z};
+      const dvec3 beyond = glm::abs(dvec3(to_box * glm::dvec4(at, 1))) - box->half;
+      inside = beyond.x < 0 && beyond.y < 0 && beyond.z < 0;
+    }
+    if (inside) return true;
+  }
+  return false;
+}
+
 // The exact transmitting solids that reach into this one, of higher or of lower priority than its own.
 enum class Rank { higher, lower };
 std::vector<const Object*> overlapping(const SceneDescription& scene, const Object& object, Rank rank) {
@@ -176,7 +195,11 @@ std::vector<const Object*> overlapping(const SceneDescription& scene, const Obje
     if (!is_dielectric(material_of(scene, other)) || std::holds_alternative<MeshShape>(other.shape)) continue;
     const int difference = priority_of(scene, other) - priority_of(scene, object);
     if (rank == Rank::higher ? difference <= 0 : difference >= 0) continue;
-    if (bounds.overlaps(world_bounds(scene, other))) found.push_back(&other);
+    const Bounds others = world_bounds(scene, other);
+    if (!bounds.overlaps(others)) continue;
+    if (rank == Rank::higher ? lies_in_hole(scene, object, others) : lies_in_hole(scene, other, bounds))
+      continue;
+    found.push_back(&other);
   }
   return found;
 }

@@ -1,0 +1,41 @@
+// What the programs that measure against a peer share: scenes made around a model, the clocks, the form of
+// their figures.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/clock.h"
+#include "bench/samples.h"
+#include "scene/description.h"
+
+namespace sundog {
+
+/// One model's meshes where they lie, without lights.
+SceneDescription scene_of_model(const std::string& model, bool spatial_splits);
+
+/// bench/scenes/glass_model.json around a model of one mesh, whose holes are closed and which is scaled to
+/// two units and stands a little in the floor. The vertices themselves are moved, so that nobody needs a
+/// transform. `overrides` as for load_scene().
+SceneDescription glass_scene(const std::string& model, std::vector<std::string> overrides);
+
+/// Seconds by the wall clock, and by the processor's of all threads together.
+struct Elapsed {
+  double wall = 0, processor = 0;
+
+  /// Of one of `threads` threads: on a machine that others use too the processor's clock says more.
+  double of_thread(unsigned threads, bool by_wall) const { return by_wall ? wall : processor / threads; }
+};
+
+template <class Work>
+Elapsed elapsed(const Work& work) {
+  const double start = processor_seconds();
+  const Stopwatch clock;
+  work();
+  return {clock.seconds(), processor_seconds() - start};
+}
+
+/// {"median", "min", "max"}.
+nlohmann::json to_json(const Spread& spread);
+
+}  // namespace sundog
