@@ -13,6 +13,7 @@ namespace sundog {
 ///     alloc=STATUS@P:D    a buffer of more than SIZE bytes gives the OpenCL status
 ///     launch=STATUS@P:D   a launch of more than SIZE work-items gives the OpenCL status
 ///     hang@P:D            a launch never comes back
+///     cut@P:D             the loops of launches of more than SIZE samples are ended early, without an error
 ///     crash@P:D           a launch ends the process
 ///     write@NAME          a file of that name cannot be written, as on a full disk
 /// Returns VALUE (0 without one) where a fault strikes now. Throws UsageError for a variable that is none.

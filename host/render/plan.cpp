@@ -16,6 +16,8 @@ constexpr double growth = 4;              // of a tile over those that its speed
 constexpr std::uint64_t cell = 16;        // pixels: a tile of 4x4 is the smallest there is
 constexpr std::uint64_t probe = 4096;     // pixels of a first tile
 constexpr std::uint64_t tiny_probe = 64;  // of a device that is expected to be a burden
+// A device that takes so many times longer than expected, and so many seconds, is stuck.
+constexpr double stuck_factor = 4, stuck_seconds = 1;
 // A repeated tile must be likely to win: speeds differ over the image.
 constexpr double clear_win = 0.8;
 
@@ -25,6 +27,12 @@ double total_speed(std::span<const DeviceSpeed> devices) {
   for (const DeviceSpeed& device : devices)
     if (device.working) total += device.measured;
   return total;
+}
+
+/// Seconds that a device can be expected to need for so many pixels; 0 when there is nothing to go by.
+double expected_seconds(std::span<const DeviceSpeed> devices, std::size_t device, std::uint64_t pixels) {
+  const double speed = expected_speed(devices, device);
+  return speed > 0 ? static_cast<double>(pixels) / speed : 0;
 }
 
 bool is_fastest(std::span<const DeviceSpeed> devices, std::size_t device) {
@@ -85,11 +93,16 @@ std::uint64_t guided_pixels(std::span<const DeviceSpeed> devices, std::size_t de
   return std::min(left, std::max(cell, static_cast<std::uint64_t>(pixels)));
 }
 
+bool is_stuck(std::span<const DeviceSpeed> devices, const HeldTile& tile, const HeldTile::Holder& holder) {
+  const double expected = expected_seconds(devices, holder.device, tile.pixels);
+  return holder.seconds > stuck_seconds && holder.seconds > stuck_factor * expected;
+}
+
 double seconds_left(std::span<const DeviceSpeed> devices, const HeldTile& tile) {
   double least = std::numeric_limits<double>::infinity();
   for (const HeldTile::Holder& holder : tile.holders) {
-    const double speed = expected_speed(devices, holder.device);
-    const double expected = speed > 0 ? static_cast<double>(tile.pixels) / speed : 0;
+    if (is_stuck(devices, tile, holder)) continue;
+    const double expected = expected_seconds(devices, holder.device, tile.pixels);
     least = std::min(least, std::abs(expected - holder.seconds));
   }
   return least;

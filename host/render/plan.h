@@ -40,8 +40,13 @@ struct HeldTile {
   std::vector<Holder> holders;
 };
 
+/// Whether a holder takes so much longer than its speed lets expect (four times, and a second) that nobody
+/// should wait for it: its driver may hang.
+bool is_stuck(std::span<const DeviceSpeed> devices, const HeldTile& tile, const HeldTile::Holder& holder);
+
 /// Seconds until the first of its holders is likely to finish the tile. One that is overdue is taken to need
-/// as long again as it is overdue; without anything to go by, as long again as it has taken.
+/// as long again as it is overdue; without anything to go by, as long again as it has taken; one that is
+/// stuck, for ever.
 double seconds_left(std::span<const DeviceSpeed> devices, const HeldTile& tile);
 
 /// The tile (an index) that an idle `device` should make too, because the frame ends sooner that way: of

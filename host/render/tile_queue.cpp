@@ -8,9 +8,6 @@ namespace {
 // How often an idle device looks whether another's tile has become worth repeating.
 constexpr std::chrono::milliseconds look_again{10};
 
-// A device that takes so many times longer than expected, and so many seconds, is not counted on.
-constexpr double stuck_factor = 4, stuck_seconds = 1;
-
 }  // namespace
 
 TileQueue::TileQueue(TilePlan plan, std::vector<DeviceSpeed> devices)
@@ -31,16 +28,21 @@ WaitingTiles& TileQueue::list_of(std::size_t device) {
   return plan_.lists.size() == 1 ? plan_.lists.front() : plan_.lists[device];
 }
 
+HeldTile TileQueue::as_held(const Held& held) {
+  HeldTile tile{pixel_count(held.tile), {}};
+  for (const auto& [holder, clock] : held.holders) tile.holders.push_back({holder, clock.seconds()});
+  return tile;
+}
+
 /// Marks the devices whose tile takes much longer than it should, so that the others do not wait for them.
 void TileQueue::find_stuck() {
   for (std::size_t i = 0; i < speeds_.size(); ++i)
     if (devices_[i]->ready && !devices_[i]->retired) speeds_[i].working = true;
-  for (const auto& [id, held] : held_)
-    for (const auto& [device, clock] : held.holders) {
-      const double speed = expected_speed(speeds_, device), seconds = clock.seconds();
-      const double expected = speed > 0 ? static_cast<double>(pixel_count(held.tile)) / speed : 0;
-      if (seconds > stuck_seconds && seconds > stuck_factor * expected) speeds_[device].working = false;
-    }
+  for (const auto& [id, held] : held_) {
+    const HeldTile tile = as_held(held);
+    for (const HeldTile::Holder& holder : tile.holders)
+      if (is_stuck(speeds_, tile, holder)) speeds_[holder.device].working = false;
+  }
 }
 
 std::optional<TileJob> TileQueue::take_waiting(std::size_t device) {
@@ -64,9 +66,7 @@ std::optional<TileJob> TileQueue::take_repeated(std::size_t device) {
   std::vector<std::uint64_t> ids;
   for (const auto& [id, held] : held_) {
     if (pixel_count(held.tile) > devices_[device]->most_pixels) continue;
-    HeldTile tile{pixel_count(held.tile), {}};
-    for (const auto& [holder, clock] : held.holders) tile.holders.push_back({holder, clock.seconds()});
-    tiles.push_back(tile);
+    tiles.push_back(as_held(held));
     ids.push_back(id);
   }
   const std::optional<std::size_t> chosen = tile_to_repeat(speeds_, device, tiles);

@@ -76,6 +76,7 @@ class TileQueue {
   };
 
   bool over() const { return closed_ || unfinished_ == 0; }
+  static HeldTile as_held(const Held& held);
   void find_stuck();
   WaitingTiles& list_of(std::size_t device);
   std::optional<TileJob> take_waiting(std::size_t device);

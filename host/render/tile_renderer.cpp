@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/faults.h"
 #include "device/cl_status.h"
 #include "render/tiles.h"
 
@@ -28,6 +29,11 @@ void check_work_group(const DeviceInfo& device, const KernelConfig& config, cons
 
 unsigned divide_up(unsigned a, unsigned b) { return (a + b - 1) / b; }
 
+/// The driver ended a kernel's loops before their end: smaller launches may be within its limit.
+struct LoopsCutShort : DeviceError {
+  using DeviceError::DeviceError;
+};
+
 }  // namespace
 
 TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options,
@@ -48,7 +54,7 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
   render_ = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32,
                          u32, u32, u32, u32>(build("entry/render_whitted.cl", times), "render_whitted");
   if (!options.aovs.empty())
-    first_surfaces_ = scene_kernel<Buffer<u32>, Buffer<float4>, u32, u32, u32, u32>(
+    first_surfaces_ = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32>(
         build("entry/aov.cl", times), "first_surfaces");
   times.build_kernels = building.seconds();
   const Stopwatch uploading;
@@ -87,12 +93,15 @@ LaunchSize TileRenderer::launch_size(std::size_t columns, std::size_t rows) cons
     if (group.y > 1) return {columns, rows, group.x, group.y};
     return {items, 1, group.x, 1};
   }
+  if (alone_) return {items, 1, 1, 1};
   // With many pixels a work-item, small groups leave no unit idle at a launch's end; one ray a lane wants a
-  // full group.
+  // full group, if only to fill the driver's vectors.
   const std::size_t units = std::max(1u, device_.info().compute_units);
-  const std::size_t wanted = device_.info().device_class == DeviceClass::cpu
-                                 ? std::clamp<std::size_t>(items / (4 * units), 1, 16)
-                                 : 64;
+  const bool lanes = config_.tile_w * config_.tile_h == 1;
+  const std::size_t wanted =
+      device_.info().device_class == DeviceClass::cpu
+          ? std::clamp<std::size_t>(items / (4 * units), lanes ? 8 : 1, lanes ? 64 : 16)
+          : 64;
   return {items, 1, std::min(wanted, std::max<std::size_t>(1, device_.info().max_work_group)), 1};
 }
 
@@ -114,8 +123,9 @@ unsigned TileRenderer::launch_samples(const Tile& tile, const StopFlags& flags) 
     const std::size_t pixels = static_cast<std::size_t>(items) * item_pixels;
     for (unsigned sample = 0; sample < samples;) {
       if (flags.set()) return item / columns * config_.tile_h;
-      const unsigned count =
-          static_cast<unsigned>(std::clamp<std::size_t>(next_size_ / pixels, 1, samples - sample));
+      const unsigned left = std::min(samples - sample, most_samples_);
+      const unsigned count = static_cast<unsigned>(std::clamp<std::size_t>(next_size_ / pixels, 1, left));
+      last_samples_ = std::max(last_samples_, count);
       const LaunchSize size = grid ? launch_size(columns, items / columns) : launch_size(items, 1);
       last_size_ = pixels * count;
       const Stopwatch clock;
@@ -146,10 +156,10 @@ void TileRenderer::launch_aovs(const Tile& tile, std::vector<float4>& aovs) {
   aovs.resize(3 * pixels);
   if (pixels == 0) return;
   const WatchedLaunch watched(watch_, launch_limit(0, true));
-  run_scene_kernel<Buffer<u32>, Buffer<float4>, u32, u32, u32, u32>(
+  run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32>(
       device_, first_surfaces_,
       {divide_up(static_cast<unsigned>(pixels), config_.tile_w * config_.tile_h), 1, 16, 1}, tables_,
-      tables_.camera_media, aovs_, static_cast<u32>(tile.x), static_cast<u32>(tile.y),
+      tables_.camera_media, aovs_, counters_, static_cast<u32>(tile.x), static_cast<u32>(tile.y),
       static_cast<u32>(tile.width), static_cast<u32>(pixels));
   device_.finish();
   device_.read(aovs_, std::span<float4>(aovs));
@@ -163,11 +173,51 @@ bool TileRenderer::shrink(const std::string& why) {
   return true;
 }
 
+// Halves the samples of a launch, and at last gives each work-item a group of its own, whose loops no other
+// shares; false when there is nothing less.
+bool TileRenderer::ask_less(const std::string& why) {
+  if (last_samples_ > 1) {
+    most_samples_ = last_samples_ / 2;
+    notes_.push_back(
+        fmt::format("{}; launches of at most {} samples a pixel from here on", why, most_samples_));
+    return true;
+  }
+  if (alone_ || options_.work_group.kind != WorkGroup::Kind::automatic) return false;
+  alone_ = true;
+  tuning_.work_group = {};
+  notes_.push_back(why + "; work-groups of one from here on");
+  return true;
+}
+
+// Whether every sample was traced to its end: a driver may end a kernel's loops early without an error.
+void TileRenderer::check_finished(const Tile& asked, const TileResult& made) {
+  const auto primary = static_cast<u32>(made.counts[COUNT_PRIMARY]);  // the device's sums are modulo 2^32
+  const auto finished = static_cast<u32>(made.counts[COUNT_FINISHED]);
+  const auto wanted = static_cast<u32>(pixel_count(made.tile) * scene_.info.samples);
+  const auto aovs = options_.aovs.empty() ? 0u : static_cast<u32>(pixel_count(made.tile));
+  const bool cut =
+      fault("cut", fmt::format("{}:{}", device_.info().platform, device_.info().device), last_samples_)
+          .has_value();
+  // A tile that was stopped may have samples of rows that are not finished.
+  if (!cut && finished == 2 * (primary + aovs) && (primary == wanted || made.tile != asked)) return;
+  throw LoopsCutShort(
+      fmt::format("{}: the driver ends the kernel's loops too early ({} of {} samples were traced to "
+                  "their end)",
+                  device_.info().label(), finished / 2, std::max(wanted, primary)));
+}
+
 TileResult TileRenderer::render(const Tile& tile, const StopFlags& flags) {
   while (true) {
     last_size_ = 0;
+    last_samples_ = 0;
     try {
-      return try_render(tile, flags);
+      TileResult made = try_render(tile, flags);
+      check_finished(tile, made);
+      return made;
+    } catch (const LoopsCutShort& error) {
+      if (ask_less(error.what())) continue;
+      throw DeviceError(std::string(error.what()) +
+                        "; a single sample of a pixel is too much for it: choose another device");
     } catch (const DeviceError& error) {
       if (!is_out_of_resources(error.status) || !shrink(error.what())) throw;
     }

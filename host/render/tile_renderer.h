@@ -20,7 +20,8 @@ class TileRenderer {
                LaunchWatch& watch);
 
   /// Renders all samples of a tile in launches of bounded time. Where the device runs out of memory or
-  /// resources, once more in launches of half the size, and so on. Throws DeviceError.
+  /// resources, once more in launches of half the size, and so on; where its driver ended the kernel's loops
+  /// early, in launches of half the samples, at last in work-groups of one. Throws DeviceError.
   TileResult render(const Tile& tile, const StopFlags& flags);
 
   double readback_seconds() const { return readback_seconds_; }
@@ -32,6 +33,8 @@ class TileRenderer {
   Program build(const char* entry, RenderTimes& times);
   TileResult try_render(const Tile& tile, const StopFlags& flags);
   bool shrink(const std::string& why);
+  bool ask_less(const std::string& why);
+  void check_finished(const Tile& asked, const TileResult& made);
   unsigned launch_samples(const Tile& tile, const StopFlags& flags);
   void note_time(std::size_t size, double seconds);
   void launch_aovs(const Tile& tile, std::vector<float4>& aovs);
@@ -47,7 +50,7 @@ class TileRenderer {
   SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32, u32, u32, u32,
               u32>
       render_;
-  SceneKernel<Buffer<u32>, Buffer<float4>, u32, u32, u32, u32> first_surfaces_;
+  SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32> first_surfaces_;
   Buffer<float4> film_;
   Buffer<float> weights_;
   Buffer<float4> aovs_;
@@ -57,6 +60,9 @@ class TileRenderer {
   std::size_t last_size_ = 0;                     // of the last one
   std::size_t least_size_ = 0;                    // of any, in the tile in hand
   std::size_t most_size_ = std::size_t{1} << 30;  // less where the device ran out of resources
+  unsigned most_samples_ = ~0u;                   // of a launch; less where the driver ended loops early
+  unsigned last_samples_ = 0;                     // the most of any launch, in the tile in hand
+  bool alone_ = false;                            // work-groups of one
   double pixel_seconds_ = 0;                      // a pixel-sample's, by the last launch; 0: unknown
   double readback_seconds_ = 0;
   std::vector<std::string> notes_;

@@ -61,6 +61,7 @@ NEVER_INLINE void render_item(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);
+  add_finished(counters, counts[COUNT_PRIMARY], sample_count);
 }
 
 // Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of work-items

@@ -1,4 +1,4 @@
-// Adds a work-item's ray counts to the launch's: integer atomics, so the order does not matter.
+// A work-item's ray counts added to the launch's: integer atomics, so the order does not matter.
 #ifndef SUNDOG_LIB_COUNTERS_CL
 #define SUNDOG_LIB_COUNTERS_CL
 #include "shared/scene.h"
@@ -6,6 +6,14 @@
 static inline void add_counts(__global u32* restrict counters, const u32* counts) {
   for (u32 i = 0; i < COUNTERS; ++i)
     if (counts[i]) atomic_add(counters + i, counts[i]);
+}
+
+// A work-item's last act: adds what it has finished, in two rounds. A driver may end all loops of a work-item
+// once they have run too often, without a word (Mesa's llvmpipe after 65,535 rounds altogether), and then
+// this one ends after a single round. `step`, 1 or more, is any number that the compiler cannot know, so that
+// it keeps the loop.
+static inline void add_finished(__global u32* restrict counters, u32 amount, u32 step) {
+  for (u32 i = 0; i <= step; i += step) atomic_add(counters + COUNT_FINISHED, amount);
 }
 
 #endif

@@ -104,7 +104,8 @@ SUNDOG_SHARED_SIZE(SceneInfo, 240)
 #define COUNT_MARCH_BACK 14         // relaxed steps that were taken back
 #define COUNT_MARCH_BUDGET 15       // marches not made because the sample's budget was used up
 #define COUNT_MARCH_LEFT 16         // no count: what the marches of a sample may still cost (lib/fields.cl)
-#define COUNTERS 17
+#define COUNT_FINISHED 17           // twice the camera rays of work-items whose loops ran to their end (lib/counters.cl)
+#define COUNTERS 18
 
 SUNDOG_SHARED_END
 #endif

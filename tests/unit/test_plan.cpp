@@ -27,6 +27,7 @@ struct Simulated {
   double estimate = 0;     // what it seems to be
   double ready = 0;        // seconds until its kernels are built
   double first_delay = 0;  // seconds more for its first tile
+  int hangs_in = 0;        // the tile that it never comes back from, from 1; 0: none
 };
 
 struct Outcome {
@@ -65,9 +66,19 @@ class Simulation {
 
   void advance(std::size_t i) {
     if (now_ < devices_[i].ready) return;
-    speeds_[i].working = true;
+    find_stuck();
     if (jobs_[i].id != 0 && jobs_[i].done <= now_) finish(i);
     if (jobs_[i].id == 0) begin(i);
+  }
+
+  HeldTile held(std::size_t i) const { return {pixel_count(jobs_[i].tile), {{i, now_ - jobs_[i].begun}}}; }
+
+  void find_stuck() {
+    for (std::size_t i = 0; i < devices_.size(); ++i) {
+      const HeldTile tile = held(i);
+      const bool stuck = jobs_[i].id != 0 && is_stuck(speeds_, tile, tile.holders.front());
+      speeds_[i].working = now_ >= devices_[i].ready && !stuck;
+    }
   }
 
   void finish(std::size_t i) {
@@ -92,7 +103,7 @@ class Simulation {
     std::vector<std::size_t> first;
     for (std::size_t k = 0; k < jobs_.size(); ++k)
       if (jobs_[k].id != 0) {
-        tiles.push_back({pixel_count(jobs_[k].tile), {{k, now_ - jobs_[k].begun}}});
+        tiles.push_back(held(k));
         first.push_back(k);
       }
     if (const auto chosen = tile_to_repeat(speeds_, i, tiles))
@@ -101,7 +112,8 @@ class Simulation {
 
   void start(std::size_t i, int id, const Tile& tile) {
     const Simulated& device = devices_[i];
-    const double seconds = device.speed > 0 ? static_cast<double>(pixel_count(tile)) / device.speed : 1e9;
+    const bool hangs = device.speed <= 0 || device.hangs_in == made_[i] + 1;
+    const double seconds = hangs ? 1e9 : static_cast<double>(pixel_count(tile)) / device.speed;
     jobs_[i] = {id, tile, now_, now_ + seconds + (made_[i] == 0 ? device.first_delay : 0)};
   }
 
@@ -157,6 +169,30 @@ TEST_CASE("a device that never comes back holds up neither one other device nor 
   const Simulated fast{200'000, 1}, dead{0, 1};
   CHECK(seconds_of({dead, fast}) < 1.05 * seconds_of({fast}));
   CHECK(seconds_of({fast, dead, fast}) < 1.08 * seconds_of({fast, fast}));
+}
+
+TEST_CASE("a device that hangs leaves the frame to one that rested, however much slower that is") {
+  for (const double times : {4.0, 20.0, 100.0, 1000.0})
+    for (const int tile : {1, 2, 5}) {
+      CAPTURE(times, tile);
+      Simulated fast{200'000, times};
+      const Simulated slow{200'000 / times, 1};
+      fast.hangs_in = tile;
+      // The slow one alone, and what passes until the other is given up.
+      const double alone = seconds_of({slow}, 160, 120);
+      CHECK(seconds_of({fast, slow}, 160, 120) < 1.05 * alone + 3);
+      CHECK(seconds_of({slow, fast}, 160, 120) < 1.05 * alone + 3);
+    }
+}
+
+TEST_CASE("a tile whose holder is stuck is made by an idle device even if that takes it longer") {
+  const std::vector devices{measured(100'000), measured(10)};
+  const HeldTile late{10'000, {{0, 0.3}}}, stuck{10'000, {{0, 1.1}}};
+  CHECK_FALSE(is_stuck(devices, late, late.holders[0]));
+  CHECK(is_stuck(devices, stuck, stuck.holders[0]));
+  CHECK_FALSE(tile_to_repeat(devices, 1, std::vector{late}).has_value());
+  CHECK(tile_to_repeat(devices, 1, std::vector{stuck}) == std::size_t{0});
+  CHECK_FALSE(tile_to_repeat(devices, 0, std::vector{stuck}).has_value());
 }
 
 TEST_CASE("a frame is finished whatever its size, with more devices than there are tiles") {
