@@ -39,6 +39,9 @@
 // Whether a batch of rays that run close together can go through the BVH as one.
 #define PACKETS (WIDE_VECTORS && BATCH == 16)
 
+// Whether rays that go by themselves are walked a few in turn. It pays in meshes.
+#define WALKS_IN_TURN (WIDE_VECTORS && HAS_MESH)
+
 // Pending rays of a work-item: enough for a full binary tree of max_depth levels walked BATCH rays at a time.
 #ifndef RAY_STACK
 #define RAY_STACK (BATCH * 9)

@@ -64,9 +64,10 @@ static inline SlabRay make_slab_ray(float3 o, float3 d) {
 #define KEY_SLOT 7u
 
 #if WIDE_VECTORS
-// The children crossed in [t_min, t_max]; writes their keys.
-ALWAYS_INLINE u32 cross_children(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,
-                                 u32* keys) {
+// Distances to the near and the far side of the eight children's boxes, cut to [t_min, t_max], as the floats'
+// bits: a child is crossed where near <= far.
+ALWAYS_INLINE void slab_distances(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,
+                                  int8* near, int8* far) {
   __global const float* bounds = node->lower_x;
   const int8 near_x =
       as_int8(fma(vload8(0, bounds + ray->near_x), (float8)(ray->rcp_near.x), (float8)(ray->shift_near.x)));
@@ -80,8 +81,56 @@ ALWAYS_INLINE u32 cross_children(__global const BvhNode* node, const SlabRay* ra
       as_int8(fma(vload8(0, bounds + ray->far_y), (float8)(ray->rcp_far.y), (float8)(ray->shift_far.y)));
   const int8 far_z =
       as_int8(fma(vload8(0, bounds + ray->far_z), (float8)(ray->rcp_far.z), (float8)(ray->shift_far.z)));
-  const int8 near = max(max(near_x, near_y), max(near_z, (int8)(as_int(t_min))));
-  const int8 far = min(min(far_x, far_y), min(far_z, (int8)(as_int(t_max))));
+  *near = max(max(near_x, near_y), max(near_z, (int8)(as_int(t_min))));
+  *far = min(min(far_x, far_y), min(far_z, (int8)(as_int(t_max))));
+}
+
+// The lanes of v in descending order: Batcher's bitonic network (1968). No branch depends on the data.
+ALWAYS_INLINE uint8 sort_descending(uint8 v) {
+  uint8 w = v.s10325476;
+  v = select(min(v, w), max(v, w), (int8)(-1, 0, 0, -1, -1, 0, 0, -1));
+  w = v.s23016745;
+  v = select(min(v, w), max(v, w), (int8)(-1, -1, 0, 0, 0, 0, -1, -1));
+  w = v.s10325476;
+  v = select(min(v, w), max(v, w), (int8)(-1, 0, -1, 0, 0, -1, 0, -1));
+  w = v.s45670123;
+  v = select(min(v, w), max(v, w), (int8)(-1, -1, -1, -1, 0, 0, 0, 0));
+  w = v.s23016745;
+  v = select(min(v, w), max(v, w), (int8)(-1, -1, 0, 0, -1, -1, 0, 0));
+  w = v.s10325476;
+  return select(min(v, w), max(v, w), (int8)(-1, 0, -1, 0, -1, 0, -1, 0));
+}
+
+// Lane i of the result is v's lane order[i] & 7.
+ALWAYS_INLINE uint8 permute(uint8 v, uint8 order) {
+#if defined(__AVX2__) && !defined(SUNDOG_PORTABLE)
+  return as_uint8(__builtin_ia32_permvarsi256(as_int8(v), as_int8(order)));
+#else
+  return shuffle(v, order);
+#endif
+}
+
+// Writes the children crossed in [t_min, t_max] and their entry distances, farthest first, and returns their
+// number. Overwrites eight places of the stack however many there are: without a branch, since how many
+// children a ray crosses cannot be foretold.
+ALWAYS_INLINE u32 push_crossed(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,
+                               u32* stack, float* stack_t) {
+  int8 near, far;
+  slab_distances(node, ray, t_min, t_max, &near, &far);
+  const uint8 words = vload8(0, node->child);
+  const int8 crossed = (near <= far) & (words != BVH_EMPTY);
+  const uint8 keys = ((as_uint8(near) & ~KEY_SLOT) | (uint8)(0, 1, 2, 3, 4, 5, 6, 7)) & as_uint8(crossed);
+  const uint8 order = sort_descending(keys);
+  vstore8(permute(words, order), 0, stack);
+  vstore8(as_float8(order & ~KEY_SLOT), 0, stack_t);
+  return popcount(lane_mask(crossed));
+}
+
+// The children crossed in [t_min, t_max]; writes their keys.
+ALWAYS_INLINE u32 cross_children(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,
+                                 u32* keys) {
+  int8 near, far;
+  slab_distances(node, ray, t_min, t_max, &near, &far);
   vstore8((as_uint8(near) & ~KEY_SLOT) | (uint8)(0, 1, 2, 3, 4, 5, 6, 7), 0, keys);
   return lane_mask(near <= far) & node->valid;
 }

@@ -1,6 +1,6 @@
 // Sixteen rays that run close together go through the two-level BVH as one: a node's eight children are
 // tested at once against the interval that the rays span, and a child that survives against each ray. Where
-// few rays are left, they go on alone. A ray's own tests are those of single.cl to the bit, and so are the
+// few rays are left, they go on alone. A ray's own tests are those of walk.cl to the bit, and so are the
 // hits.
 #ifndef SUNDOG_LIB_PACKET_CL
 #define SUNDOG_LIB_PACKET_CL
@@ -9,6 +9,7 @@
 #include "lib/packet_rays.cl"
 #include "lib/single.cl"
 #include "lib/tables.h"
+#include "lib/walk.cl"
 
 // This many rays or fewer in a node are faster alone.
 #ifndef PACKET_LEAST
@@ -125,26 +126,31 @@ ALWAYS_INLINE bool packet_triangle(__global const TriangleBlock* blocks, u32 pla
   return true;
 }
 
-// The rays of `active` one by one from `word` on. Returns whether any hits something.
-NEVER_INLINE bool mesh_alone(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active, u32 word,
+// The rays of `active` by themselves, from `word` of the scene BVH or of `instance`'s mesh BVH on. Returns
+// whether any hits something nearer.
+NEVER_INLINE bool walk_lanes(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active, u32 word,
                              u32 instance, bool any) {
-  u32 stack[BVH_STACK];
-  float stack_t[BVH_STACK];
-  bool any_hit = false;
-  while (active) {
+  float3 o[PACKET], d[PACKET];
+  float t_min[PACKET];
+  Hit found[PACKET];
+  u32 which[PACKET], count = 0;
+  for (; active; active &= active - 1u) {
     const u32 i = lowest_bit(active);
-    active &= active - 1u;
-    const SlabRay slabs = packet_slab_ray(rays, i);
-    const ShearRay shear = packet_shear_ray(rays, i);
-    Hit hit = packet_hit(hits, i);
-    const float t = hit.t;
-    trace_mesh(TRACE_ARGUMENTS, word, &slabs, &shear, get_lane(&hits->t_min, i), instance, any, stack,
-               stack_t, &hit);
-    if (hit.t == t && hit.instance != instance) continue;
-    set_packet_hit(hits, i, &hit, any);
-    any_hit = true;
+    o[i] = packet_origin(rays, i);
+    d[i] = packet_direction(rays, i);
+    t_min[i] = get_lane(&hits->t_min, i);
+    found[i] = packet_hit(hits, i);
+    which[count++] = i;
   }
-  return any_hit;
+  const WalkRays walkers = {o, d, t_min, found};
+  walk_rays(TRACE_ARGUMENTS, &walkers, which, count, word, instance, any);
+  bool nearer = false;
+  for (u32 k = 0; k < count; ++k) {
+    const u32 i = which[k];
+    nearer |= found[i].t < get_lane(&hits->t, i);
+    set_packet_hit(hits, i, &found[i], any);
+  }
+  return nearer;
 }
 
 NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 root,
@@ -156,7 +162,7 @@ NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, Packe
   while (next_place(nodes, rays, hits, &walk, &word, &active)) {
     bool hit = false;
     if (popcount(active) <= PACKET_LEAST) {
-      hit = mesh_alone(TRACE_ARGUMENTS, rays, hits, active, word, instance, any);
+      hit = walk_lanes(TRACE_ARGUMENTS, rays, hits, active, word, instance, any);
     } else {
       const u32 first = word & BVH_FIRST_MASK,
                 last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
@@ -169,17 +175,21 @@ NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, Packe
 }
 #endif
 
-// The rays of `active` one by one against an instance.
+// The rays of `active` by themselves against an instance; world space.
 NEVER_INLINE void instance_alone(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,
                                  u32 index, bool any) {
-  u32 stack[BVH_STACK];
-  float stack_t[BVH_STACK];
-  while (active) {
+  __global const Instance* instance = instances + index;
+#if HAS_MESH
+  if (instance->shape == SHAPE_MESH) {
+    walk_lanes(TRACE_ARGUMENTS, rays, hits, active, BVH_LEAF | index, NO_INSTANCE, any);
+    return;
+  }
+#endif
+  for (; active; active &= active - 1u) {
     const u32 i = lowest_bit(active);
-    active &= active - 1u;
     Hit hit = packet_hit(hits, i);
-    trace_instance(TRACE_ARGUMENTS, index, packet_origin(rays, i), packet_direction(rays, i),
-                   get_lane(&hits->t_min, i), any, stack, stack_t, &hit);
+    trace_solid(instances, index, object_point(instance, packet_origin(rays, i)),
+                object_vector(instance, packet_direction(rays, i)), get_lane(&hits->t_min, i), &hit);
     set_packet_hit(hits, i, &hit, any);
   }
 }
@@ -209,17 +219,20 @@ NEVER_INLINE void packet_in_instance(TRACE_PARAMETERS, const PacketRays* rays, P
   instance_alone(TRACE_ARGUMENTS, rays, hits, active, index, any);
 }
 
-// The rays of `active` one by one from `word` of the scene BVH on.
-NEVER_INLINE void bounded_alone(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,
-                                u32 word, bool any) {
-  while (active) {
+// The rays of `active` by themselves, from `word` of the scene BVH on.
+static inline void bounded_alone(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,
+                                 u32 word, bool any) {
+#if HAS_MESH
+  walk_lanes(TRACE_ARGUMENTS, rays, hits, active, word, NO_INSTANCE, any);
+#else
+  for (; active; active &= active - 1u) {
     const u32 i = lowest_bit(active);
-    active &= active - 1u;
     Hit hit = packet_hit(hits, i);
     trace_bounded(TRACE_ARGUMENTS, word, packet_origin(rays, i), packet_direction(rays, i),
                   get_lane(&hits->t_min, i), any, &hit);
     set_packet_hit(hits, i, &hit, any);
   }
+#endif
 }
 
 NEVER_INLINE void packet_in_leaf(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,

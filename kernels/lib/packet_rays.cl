@@ -162,30 +162,4 @@ static inline void set_packet_hit(PacketHits* hits, u32 i, const Hit* hit, bool 
   set_lane(hits->ng + 2, i, hit->ng_z);
 }
 
-// Ray i as the walk of one ray takes it.
-static inline SlabRay packet_slab_ray(const PacketRays* rays, u32 i) {
-  SlabRay ray;
-  ray.rcp_near =
-      (float3)(get_lane(rays->rcp_near, i), get_lane(rays->rcp_near + 1, i), get_lane(rays->rcp_near + 2, i));
-  ray.rcp_far =
-      (float3)(get_lane(rays->rcp_far, i), get_lane(rays->rcp_far + 1, i), get_lane(rays->rcp_far + 2, i));
-  ray.shift_near = (float3)(get_lane(rays->shift_near, i), get_lane(rays->shift_near + 1, i),
-                            get_lane(rays->shift_near + 2, i));
-  ray.shift_far = (float3)(get_lane(rays->shift_far, i), get_lane(rays->shift_far + 1, i),
-                           get_lane(rays->shift_far + 2, i));
-  ray.near_x = rays->near[0], ray.near_y = rays->near[1], ray.near_z = rays->near[2];
-  ray.far_x = rays->far[0], ray.far_y = rays->far[1], ray.far_z = rays->far[2];
-  return ray;
-}
-
-static inline ShearRay packet_shear_ray(const PacketRays* rays, u32 i) {
-  ShearRay ray;
-  ray.x = rays->axis[0] * 8u, ray.y = rays->axis[1] * 8u, ray.z = rays->axis[2] * 8u;
-  ray.ox = get_lane(rays->o + rays->axis[0], i);
-  ray.oy = get_lane(rays->o + rays->axis[1], i);
-  ray.oz = get_lane(rays->o + rays->axis[2], i);
-  ray.sx = get_lane(&rays->sx, i), ray.sy = get_lane(&rays->sy, i), ray.sz = get_lane(&rays->sz, i);
-  return ray;
-}
-
 #endif

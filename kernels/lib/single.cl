@@ -1,9 +1,10 @@
-// One ray through the two-level BVH, eight children or eight triangles an instruction.
+// One ray through the two-level BVH, where it does not pay to walk several in turn (walk.cl).
 #ifndef SUNDOG_LIB_SINGLE_CL
 #define SUNDOG_LIB_SINGLE_CL
 #include "lib/config.h"
+#if !WALKS_IN_TURN
 #include "lib/nodes.cl"
-#include "lib/solids.cl"
+#include "lib/solid_instance.cl"
 #include "lib/tables.h"
 #include "lib/transform.cl"
 #include "lib/triangles.cl"
@@ -47,22 +48,6 @@ static inline void trace_mesh(TRACE_PARAMETERS, u32 root, const SlabRay* slab_ra
   *found = hit;
 }
 #endif
-
-static inline void trace_solid(__global const Instance* restrict instances, u32 index, float3 o, float3 d,
-                               float t_min, Hit* hit) {
-  __global const Instance* instance = instances + index;
-  SolidHit solid;
-  if (!closest_in_solid(instance->shape, instance->parameters, o, d, t_min, hit->t, &solid)) return;
-  if (solid.t == hit->t && hit->instance <= index) return;
-  hit->t = solid.t;
-  hit->u = 0.0f;
-  hit->v = 0.0f;
-  hit->prim = solid.part;
-  hit->instance = index;
-  hit->ng_x = solid.ng.x;
-  hit->ng_y = solid.ng.y;
-  hit->ng_z = solid.ng.z;
-}
 
 // One instance in (t_min, hit->t]; world-space ray.
 static inline void trace_instance(TRACE_PARAMETERS, u32 index, float3 o, float3 d, float t_min, bool any,
@@ -114,5 +99,17 @@ static inline void trace_bounded(TRACE_PARAMETERS, u32 word, float3 o, float3 d,
     word = stack[top];
   }
 }
+
+// All bounded instances.
+static inline void trace_instances(TRACE_PARAMETERS, float3 o, float3 d, float t_min, bool any, Hit* hit) {
+  if (info->bounded_count == 1u) {
+    u32 stack[BVH_STACK];
+    float stack_t[BVH_STACK];
+    trace_instance(TRACE_ARGUMENTS, 0u, o, d, t_min, any, stack, stack_t, hit);
+  } else if (info->bounded_count > 0u)
+    trace_bounded(TRACE_ARGUMENTS, info->tlas_root, o, d, t_min, any, hit);
+}
+
+#endif
 
 #endif

@@ -7,6 +7,7 @@
 #include "lib/packet.cl"
 #include "lib/single.cl"
 #include "lib/tables.h"
+#include "lib/walk.cl"
 
 static inline bool finite3(float3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
 
@@ -21,19 +22,12 @@ static inline Hit no_hit(float t_max) {
   return hit;
 }
 
-static inline void trace_scene(TRACE_PARAMETERS, float3 o, float3 d, float t_min, bool any, Hit* hit) {
-  if (info->bounded_count == 1u) {
-    u32 stack[BVH_STACK];
-    float stack_t[BVH_STACK];
-    trace_instance(TRACE_ARGUMENTS, 0u, o, d, t_min, any, stack, stack_t, hit);
-  } else if (info->bounded_count > 0u)
-    trace_bounded(TRACE_ARGUMENTS, info->tlas_root, o, d, t_min, any, hit);
 #if HAS_PLANE
-  if (any && hit->instance != NO_INSTANCE) return;
+static inline void trace_planes(TRACE_PARAMETERS, float3 o, float3 d, float t_min, Hit* hit) {
   for (u32 i = info->bounded_count; i < info->instance_count; ++i)
     trace_solid(instances, i, object_point(instances + i, o), object_vector(instances + i, d), t_min, hit);
-#endif
 }
+#endif
 
 static inline void finish_hit(TRACE_PARAMETERS, Hit* hit) {
 #if HAS_MESH
@@ -42,21 +36,35 @@ static inline void finish_hit(TRACE_PARAMETERS, Hit* hit) {
 #endif
 }
 
-// The nearest hit in (t_min, t_max]; without one, hit.instance is NO_INSTANCE.
-static inline Hit trace_closest(TRACE_PARAMETERS, float3 o, float3 d, float t_min, float t_max) {
-  Hit hit = no_hit(t_max);
-  if (!traceable(o, d, t_min, t_max)) return hit;
-  trace_scene(TRACE_ARGUMENTS, o, d, t_min, false, &hit);
-  finish_hit(TRACE_ARGUMENTS, &hit);
-  return hit;
-}
-
-// Whether anything is hit in (t_min, t_max].
-static inline bool trace_any(TRACE_PARAMETERS, float3 o, float3 d, float t_min, float t_max) {
-  Hit hit = no_hit(t_max);
-  if (!traceable(o, d, t_min, t_max)) return false;
-  trace_scene(TRACE_ARGUMENTS, o, d, t_min, true, &hit);
-  return hit.instance != NO_INSTANCE;
+// The nearest hits of `count` rays, or with `any` whichever come first; each ray by itself. A triangle's prim
+// is its place.
+NEVER_INLINE void trace_alone(TRACE_PARAMETERS, const float3* o, const float3* d, const float* t_min,
+                              const float* t_max, u32 count, bool any, Hit* found) {
+  u32 which[BATCH], live = 0;
+  for (u32 i = 0; i < count; ++i) {
+    found[i] = no_hit(t_max[i]);
+    if (traceable(o[i], d[i], t_min[i], t_max[i])) which[live++] = i;
+  }
+#if WALKS_IN_TURN
+  const WalkRays rays = {o, d, t_min, found};
+  if (info->bounded_count == 1u && instances->shape == SHAPE_MESH && (instances->flags & INSTANCE_IDENTITY))
+    walk_rays(TRACE_ARGUMENTS, &rays, which, live, instances->root, 0u, any);
+  else if (info->bounded_count > 0u)
+    walk_rays(TRACE_ARGUMENTS, &rays, which, live, info->bounded_count == 1u ? BVH_LEAF : info->tlas_root,
+              NO_INSTANCE, any);
+#else
+  for (u32 k = 0; k < live; ++k) {
+    const u32 i = which[k];
+    trace_instances(TRACE_ARGUMENTS, o[i], d[i], t_min[i], any, &found[i]);
+  }
+#endif
+#if HAS_PLANE
+  for (u32 k = 0; k < live; ++k) {
+    const u32 i = which[k];
+    if (!any || found[i].instance == NO_INSTANCE)
+      trace_planes(TRACE_ARGUMENTS, o[i], d[i], t_min[i], &found[i]);
+  }
+#endif
 }
 
 #if PACKETS
@@ -103,7 +111,8 @@ static inline void trace_batch(TRACE_PARAMETERS, const float3* o, const float3* 
     return;
   }
 #endif
-  for (u32 i = 0; i < count; ++i) found[i] = trace_closest(TRACE_ARGUMENTS, o[i], d[i], t_min[i], t_max[i]);
+  trace_alone(TRACE_ARGUMENTS, o, d, t_min, t_max, count, false, found);
+  for (u32 i = 0; i < count; ++i) finish_hit(TRACE_ARGUMENTS, &found[i]);
 }
 
 // The same for whether anything is hit: occluded[i] becomes 1 or 0.
@@ -118,8 +127,9 @@ static inline void occluded_batch(TRACE_PARAMETERS, const float3* o, const float
     return;
   }
 #endif
-  for (u32 i = 0; i < count; ++i)
-    occluded[i] = trace_any(TRACE_ARGUMENTS, o[i], d[i], t_min[i], t_max[i]) ? 1u : 0u;
+  Hit found[BATCH];
+  trace_alone(TRACE_ARGUMENTS, o, d, t_min, t_max, count, true, found);
+  for (u32 i = 0; i < count; ++i) occluded[i] = found[i].instance != NO_INSTANCE ? 1u : 0u;
 }
 
 #endif

@@ -93,16 +93,15 @@ ALWAYS_INLINE BlockTest test_block(__global const TriangleBlock* block, const Sh
                e2 = edge_function(x1, y1, x0, y0);
   BlockTest test;
   const int8 inside = (least8(least8(e0, e1), e2) >= 0.0f) | (greatest8(greatest8(e0, e1), e2) <= 0.0f);
-  test.lanes = lane_mask(inside);
-  if (!test.lanes) return test;
-  // Without area everything below is NaN, which fails the comparisons. Weights first: no overflow of a
-  // product of three lengths.
+  // Whether the rest is needed cannot be foretold: a branch here costs more than the rest. Without area
+  // everything below is NaN, which fails the comparisons. Weights first: no overflow of a product of three
+  // lengths.
   const float8 scale = 1.0f / (e0 + e1 + e2);
   const float8 w0 = e0 * scale;
   test.u = e1 * scale;
   test.v = e2 * scale;
   test.t = fma(w0, z0, fma(test.u, z1, test.v * z2)) * ray->sz;
-  test.lanes &= lane_mask((test.t > t_min) & (test.t <= t_max));
+  test.lanes = lane_mask(inside & (test.t > t_min) & (test.t <= t_max));
   return test;
 }
 
