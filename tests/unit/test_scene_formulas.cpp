@@ -1,0 +1,84 @@
+// Formulas that are hostile, or simply wrong, in a scene file: each is refused before anything is built, with
+// its object and key, and inside the text with line and column.
+#include <nlohmann/json.hpp>
+
+#include "catch.h"
+#include "scene_text.h"
+
+using namespace sundog;
+
+namespace {
+
+std::string repeated(std::string_view part, int times) {
+  std::string text;
+  for (int i = 0; i < times; ++i) text += part;
+  return text;
+}
+
+/// A scene of one formula with these members besides its type, material and interval.
+std::string scene_of_formula(const nlohmann::json& members) {
+  nlohmann::json object{
+      {"type", "formula"}, {"material", "m"}, {"interval", {{"min", {-1, -1, -1}}, {"max", {1, 1, 1}}}}};
+  object.update(members);
+  return scene_of(object.dump());
+}
+
+void check_refused(const nlohmann::json& members, const std::string& place, const std::string& words) {
+  INFO(members.dump().substr(0, 200));
+  const SceneError error = error_of(scene_of_formula(members));
+  CHECK(error.place == "/objects/0" + place);
+  CHECK(error.reason.find(words) != std::string::npos);
+  CHECK(error.reason.find('\n') == std::string::npos);
+  CHECK(error.reason.size() < 300);
+}
+
+void check_map_refused(const nlohmann::json& map, const std::string& words) {
+  check_refused({{"map", map}}, "/map", words);
+}
+
+}  // namespace
+
+TEST_CASE("a formula in a scene is accepted as one string or as lines") {
+  CHECK(load_scene_text(scene_of_formula({{"map", "z = z ^ 8 + c"}})).fields.size() == 1);
+  CHECK(load_scene_text(scene_of_formula({{"map", {"t = 8", "z = z ^ 8 + c"}}})).fields.size() == 1);
+}
+
+TEST_CASE("an error in a scene's formula names the line of the array and the column in it") {
+  check_map_refused({"t = 1", "z = (z +", "  y)"}, "line 3, column 3: unknown name 'y'");
+  check_map_refused("z = z + c.w", "line 1, column 10: ");
+}
+
+TEST_CASE("a scene's formula cannot run without bounds") {
+  check_refused({{"map", "z = z ^ 8 + c"}, {"iterations", 1000000000}}, "/iterations", "from 1 to 1000");
+  check_refused({{"map", "z = z ^ 8 + c"}, {"iterations", -1}}, "/iterations", "from 1 to 1000");
+  check_refused({{"map", "z = z ^ 8 + c"}, {"bailout", 0}}, "/bailout", "found 0");
+  check_refused({{"map", "z = z ^ 8 + c"}, {"bailout", 1e39}}, "/bailout", "1e+39");
+  check_refused({{"map", "z = z ^ 8 + c"}, {"interval", {{"min", {-1e30, -1, -1}}, {"max", {1, 1, 1}}}}},
+                "/interval/min/0", "-1e+30");
+  check_map_refused(repeated("z = z + c\n", 300), "200 statements");
+}
+
+TEST_CASE("a scene's formula that yields no number, or one value everywhere, is refused") {
+  check_map_refused("z = z / 0", "line 1, column 7: division by zero");
+  check_map_refused("z = z / (length(z) - length(z))", "division by zero");
+  check_map_refused("z = z + sqrt(-1)", "not defined at -1");
+  check_refused({{"map", "z = c * 0"}}, "", "escape from none");
+  check_refused({{"map", "z = z * (sqrt(z.x - 100) / sqrt(z.x - 100)) + c"}}, "", "escape from none");
+}
+
+TEST_CASE("a scene's formula carries no code, whatever it is called") {
+  check_map_refused({"#include \"secret.h\"", "z = z"}, "line 1, column 1: ");
+  check_map_refused({"kernel = 1", "z = z"}, "line 1, column 1: 'kernel' is a reserved word");
+  check_map_refused("z = z; } __kernel void x() {", "line 1, column 8: ");
+  check_map_refused(std::string("z = z\0+ c", 9), "line 1, column 6: unexpected character");
+  for (const char* name : {"__global", "float4", "get_global_id", "z", "a b", ""})
+    check_refused({{"map", "z = z + c"}, {"parameters", {{name, 1}}}}, "/parameters/" + std::string(name),
+                  "");
+}
+
+TEST_CASE("a scene's formula too deep or too long is refused") {
+  check_map_refused("z = " + repeated("(", 1000) + "z" + repeated(")", 1000), "nested deeper than 64");
+  check_map_refused("z = z" + repeated(" + c", 5000), "8192 characters");
+  check_map_refused(nlohmann::json(std::vector<std::string>(5000, "z = z + c")), "8192 characters");
+  check_map_refused("z = z + " + repeated("a", 100), "32 characters");
+}
