@@ -4,42 +4,21 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
-#include "base/file.h"
-#include "bench/samples.h"
+#include "bench_scenes.h"
+#include "compile/compiled_scene.h"
 #include "embree_peer.h"
-#include "scene/model.h"
+#include "peer_program.h"
 
 using namespace sundog;
 
 namespace {
 
-struct Options {
-  std::vector<std::string> models;
+struct Options : PeerOptions {
   std::vector<unsigned> threads{1, 2};
-  std::string json;
-  unsigned repeats = 9;
-  bool spatial_splits = false, wall = false;
 };
-
-SceneDescription scene_of_model(const std::string& path, const Options& options) {
-  Model model = load_model(path);
-  SceneDescription scene;
-  scene.file = path;
-  scene.media.resize(1);
-  scene.render.spatial_splits = options.spatial_splits;
-  scene.materials = std::move(model.materials);
-  scene.meshes = std::move(model.meshes);
-  scene.objects = std::move(model.objects);
-  return scene;
-}
 
 /// One thread is timed by the processor's clock, unless told otherwise: other programs disturb it less.
 bool by_wall(const Options& options, unsigned threads) { return options.wall || threads > 1; }
-
-nlohmann::json to_json(const Spread& s) { return {{"median", s.median}, {"min", s.min}, {"max", s.max}}; }
 
 nlohmann::json compare_builds(const SceneDescription& scene, unsigned threads, const Options& options) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);  // Embree's too
@@ -73,31 +52,23 @@ nlohmann::json compare_builds(const SceneDescription& scene, unsigned threads, c
           {"bytes", figures.bytes}};
 }
 
+nlohmann::json compare_model(const Options& options, const std::string& path) {
+  const SceneDescription scene = scene_of_model(path, options.spatial_splits);
+  fmt::print("{}\n  {:>7}{:>11}{:>11}{:>8}{:>23}{:>9}{:>9}{:>7}\n", path, "threads", "sundog ms", "Embree ms",
+             "ratio", "SAH cost", "nodes", "blocks", "fill");
+  nlohmann::json rows = nlohmann::json::array();
+  for (const unsigned threads : options.threads) rows.push_back(compare_builds(scene, threads, options));
+  return {{"model", path}, {"builds", rows}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"The BVH's build, sundog's and Embree's, in turn"};
-  app.add_option("models", options.models, ".obj, .ply, .stl, .gltf")->required();
+  CLI::App app{
+      "The BVH's build, sundog's (with --spatial against Embree's high quality) and Embree's, in turn"};
+  add_peer_options(app, options);
   app.add_option("--threads", options.threads, "numbers of threads to try");
-  app.add_option("--repeats", options.repeats, "pairs of measurements");
-  app.add_option("--json", options.json, "file for the figures");
-  app.add_flag("--spatial", options.spatial_splits, "spatial splits, against Embree's high quality");
-  app.add_flag("--wall", options.wall, "wall clock for one thread too");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    nlohmann::json results = nlohmann::json::array();
-    for (const std::string& path : options.models) {
-      const SceneDescription scene = scene_of_model(path, options);
-      fmt::print("{}\n  {:>7}{:>11}{:>11}{:>8}{:>23}{:>9}{:>9}{:>7}\n", path, "threads", "sundog ms",
-                 "Embree ms", "ratio", "SAH cost", "nodes", "blocks", "fill");
-      nlohmann::json rows = nlohmann::json::array();
-      for (const unsigned threads : options.threads) rows.push_back(compare_builds(scene, threads, options));
-      results.push_back({{"model", path}, {"builds", rows}});
-    }
-    if (!options.json.empty()) write_file(options.json, results.dump(2) + "\n");
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "embree_build: {}\n", error.what());
-    return 1;
-  }
+  return run_peer_program(app, argc, argv, options,
+                          [&](const std::string& model) { return compare_model(options, model); });
 }

@@ -4,56 +4,26 @@
 // Hits are compared before a time counts.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "base/clock.h"
-#include "base/error.h"
-#include "base/file.h"
 #include "bench/ray_sets.h"
 #include "bench/ray_tracer.h"
-#include "bench/samples.h"
+#include "bench_scenes.h"
 #include "embree_peer.h"
-#include "scene/model.h"
+#include "peer_program.h"
 
 using namespace sundog;
 
 namespace {
 
-struct Options {
-  std::vector<std::string> models, kinds, defines;
+struct Options : PeerOptions {
+  std::vector<std::string> kinds, defines;
   std::vector<float> from{0.25f, 0.2f, 1.0f};
-  std::string device = "cpu", json;
-  unsigned size = 1024, threads = 1, repeats = 7;
-  bool wall = false, packets = false, spatial_splits = false;
+  std::string device = "cpu";
+  unsigned size = 1024, threads = 1;
+  bool packets = false;
   EmbreeOptions embree;
 };
-
-/// One model's meshes where they lie.
-SceneDescription scene_of_model(const std::string& path, const Options& options) {
-  Model model = load_model(path);
-  SceneDescription scene;
-  scene.file = path;
-  scene.media.resize(1);
-  scene.render.spatial_splits = options.spatial_splits;
-  scene.materials = std::move(model.materials);
-  scene.meshes = std::move(model.meshes);
-  scene.objects = std::move(model.objects);
-  return scene;
-}
-
-struct Sample {
-  double wall = 0, processor = 0;
-};
-
-template <class Work>
-Sample timed(const Work& work) {
-  const double start = processor_seconds();
-  const Stopwatch clock;
-  work();
-  return {clock.seconds(), processor_seconds() - start};
-}
 
 /// Rays for which the two disagree: one hits and the other does not, or the distances differ.
 std::size_t count_mismatches(const std::vector<Hit>& ours, const std::vector<EmbreeHit>& theirs) {
@@ -107,9 +77,6 @@ class Comparison {
   }
 
  private:
-  static nlohmann::json to_json(const Spread& s) {
-    return {{"median", s.median}, {"min", s.min}, {"max", s.max}};
-  }
   void ours() { tracer_.run({set_->any, set_->coherent}); }
   void theirs(EmbreeWidth width) {
     if (set_->any)
@@ -126,8 +93,7 @@ class Comparison {
   }
   template <class Work>
   double rate(const Work& work) const {
-    const Sample sample = timed(work);
-    const double seconds = options_.wall ? sample.wall : sample.processor / options_.threads;
+    const double seconds = elapsed(work).of_thread(options_.threads, options_.wall);
     return static_cast<double>(set_->rays.size()) / seconds * 1e-6;
   }
 
@@ -150,7 +116,7 @@ KernelDefines kernel_defines(const std::vector<std::string>& texts) {
 }
 
 nlohmann::json compare_model(const Options& options, const std::string& path) {
-  const SceneDescription description = scene_of_model(path, options);
+  const SceneDescription description = scene_of_model(path, options.spatial_splits);
   const CompiledScene scene = compile(description);
   DeviceInfo info = select_devices(enumerate_devices(), {options.device}).at(0);
   info.sub_units = options.threads < info.compute_units ? options.threads : 0;
@@ -189,27 +155,16 @@ nlohmann::json compare_model(const Options& options, const std::string& path) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app{"The same rays through sundog's tracer and through Embree, in turn"};
-  app.add_option("models", options.models, ".obj, .ply, .stl, .gltf")->required();
+  add_peer_options(app, options);
   app.add_option("--from", options.from, "direction from the model to the camera")->expected(3);
   app.add_option("--size", options.size, "pixels along each side of the image");
   app.add_option("--threads", options.threads, "compute units and Embree threads");
-  app.add_option("--repeats", options.repeats, "pairs of measurements");
   app.add_option("--device", options.device, "SPEC of the device");
   app.add_option("--kinds", options.kinds, "kinds of rays; all without it");
   app.add_option("--define", options.defines, "NAME=VALUE for the kernels");
-  app.add_option("--json", options.json, "file for the figures");
-  app.add_flag("--wall", options.wall, "wall clock; without it processor time over threads");
   app.add_flag("--packets", options.packets, "also Embree's 16-wide packets");
   app.add_flag("--robust", options.embree.robust, "Embree's watertight mode");
-  app.add_flag("--spatial", options.spatial_splits, "sundog's BVH with spatial splits");
   app.add_flag("--high", options.embree.high_quality, "Embree's high build quality");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    nlohmann::json results = nlohmann::json::array();
-    for (const std::string& model : options.models) results.push_back(compare_model(options, model));
-    if (!options.json.empty()) write_file(options.json, results.dump(2) + "\n");
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "embree_rays: {}\n", error.what());
-    return 1;
-  }
+  return run_peer_program(app, argc, argv, options,
+                          [&](const std::string& model) { return compare_model(options, model); });
 }

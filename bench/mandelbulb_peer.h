@@ -1,6 +1,6 @@
-// The benchmark's picture of a Mandelbulb of power 8 by hand-written C++: the algorithm of kernels/lib/sdf (the
-// same estimate, relaxed marching, gradient from four estimates, openness and soft shadow), once for one pixel
-// at a time, once for 16 with omp simd.
+// The benchmark's picture of a Mandelbulb of power 8 by hand-written C++: the algorithm of kernels/lib/sdf
+// (the same estimate, relaxed marching, gradient from four estimates, openness and soft shadow), once for one
+// pixel at a time, once for 16 with omp simd.
 #pragma once
 #include <cstddef>
 #include <vector>

@@ -22,15 +22,6 @@ struct Walk {
   bool done() const { return any && found; }
 };
 
-vec3 object_vector(const Instance& instance, const vec3& d) {
-  vec3 result;
-  for (int row = 0; row < 3; ++row) {
-    const float4& m = instance.object_from_world[row];
-    result[row] = m.x * d.x + m.y * d.y + m.z * d.z;
-  }
-  return result;
-}
-
 /// Distance at which the ray enters a child's box; infinite: it does not in [t_min, t_max].
 float enter_box(const Bvh8Node& node, u32 slot, const Ray& ray, const vec3& reciprocal) {
   const vec3 lower(node.lower_x[slot], node.lower_y[slot], node.lower_z[slot]),
@@ -130,9 +121,22 @@ void cross_scene(Walk& walk) {
 
 }  // namespace
 
+bool PlainFinder::closest(const Ray& ray, Hit& hit) const { return closest_hit(scene_, ray, hit); }
+
+bool PlainFinder::any(const Ray& ray) const { return any_hit(scene_, ray); }
+
 glm::vec3 object_point(const Instance& instance, const vec3& p) {
   const float4* m = instance.object_from_world;
   return object_vector(instance, p) + vec3(m[0].w, m[1].w, m[2].w);
+}
+
+glm::vec3 object_vector(const Instance& instance, const vec3& d) {
+  vec3 result;
+  for (int row = 0; row < 3; ++row) {
+    const float4& m = instance.object_from_world[row];
+    result[row] = m.x * d.x + m.y * d.y + m.z * d.z;
+  }
+  return result;
 }
 
 glm::vec3 world_normal(const Instance& instance, const vec3& n) {

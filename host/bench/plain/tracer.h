@@ -11,6 +11,27 @@ struct Hit {
   glm::vec3 ng{0};  // object space, outward, not normalised
 };
 
+/// What finds hits for the integrator.
+class HitFinder {
+ public:
+  virtual ~HitFinder() = default;
+  /// The nearest hit in (t_min, t_max]; false: none.
+  virtual bool closest(const Ray& ray, Hit& hit) const = 0;
+  /// Whether there is any.
+  virtual bool any(const Ray& ray) const = 0;
+};
+
+/// By the functions below.
+class PlainFinder : public HitFinder {
+ public:
+  explicit PlainFinder(const CompiledScene& scene) : scene_(scene) {}
+  bool closest(const Ray& ray, Hit& hit) const override;
+  bool any(const Ray& ray) const override;
+
+ private:
+  const CompiledScene& scene_;
+};
+
 /// The nearest hit in (t_min, t_max]; false: none.
 bool closest_hit(const CompiledScene& scene, const Ray& ray, Hit& hit);
 
@@ -18,6 +39,8 @@ bool closest_hit(const CompiledScene& scene, const Ray& ray, Hit& hit);
 bool any_hit(const CompiledScene& scene, const Ray& ray);
 
 glm::vec3 object_point(const Instance& instance, const glm::vec3& p);
+
+glm::vec3 object_vector(const Instance& instance, const glm::vec3& d);
 
 /// To world space, not normalised.
 glm::vec3 world_normal(const Instance& instance, const glm::vec3& n);

@@ -1,0 +1,34 @@
+// See peer_program.h.
+#include "peer_program.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "base/file.h"
+
+namespace sundog {
+
+void add_peer_options(CLI::App& app, PeerOptions& options) {
+  app.add_option("models", options.models, ".obj, .ply, .stl, .gltf, also .gz")->required();
+  app.add_option("--repeats", options.repeats, "pairs of measurements")->check(CLI::PositiveNumber);
+  app.add_option("--json", options.json, "file for the figures");
+  app.add_flag("--wall", options.wall, "wall clock, not processor time over threads");
+  app.add_flag("--spatial", options.spatial_splits, "sundog's BVH with spatial splits");
+}
+
+int run_peer_program(CLI::App& app, int argc, char** argv, const PeerOptions& options,
+                     const std::function<nlohmann::json(const std::string& model)>& measure) {
+  CLI11_PARSE(app, argc, argv);
+  try {
+    nlohmann::json results = nlohmann::json::array();
+    for (const std::string& model : options.models) results.push_back(measure(model));
+    if (!options.json.empty()) write_file(options.json, results.dump(2) + "\n");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: {}\n", std::filesystem::path(argv[0]).filename().string(), error.what());
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace sundog

@@ -1,0 +1,28 @@
+// The common frame of the programs that measure in turn with Embree: MODEL... and the same options on the
+// command line, a result for each model, all of them as JSON.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace sundog {
+
+struct PeerOptions {
+  std::vector<std::string> models;
+  std::string json;
+  unsigned repeats = 7;  // pairs of measurements
+  bool wall = false;     // the wall clock where else the processor's is taken
+  bool spatial_splits = false;
+};
+
+/// MODEL... --repeats --json --wall --spatial.
+void add_peer_options(CLI::App& app, PeerOptions& options);
+
+/// Parses, runs `measure` for each model and writes what it returned; main()'s result. Errors are one line on
+/// stderr.
+int run_peer_program(CLI::App& app, int argc, char** argv, const PeerOptions& options,
+                     const std::function<nlohmann::json(const std::string& model)>& measure);
+
+}  // namespace sundog
