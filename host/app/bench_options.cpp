@@ -12,6 +12,7 @@
 #include "app/commands.h"
 #include "app/option_helpers.h"
 #include "app/option_values.h"
+#include "app/pick_devices.h"
 #include "app/warnings.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -77,8 +78,8 @@ CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
 }
 
 std::vector<DeviceInfo> bench_devices(const BenchOptions& options) {
-  return select_devices(enumerate_devices(),
-                        options.devices.empty() ? devices_of_environment() : options.devices);
+  return pick_devices(enumerate_devices(),
+                      options.devices.empty() ? devices_of_environment() : options.devices);
 }
 
 std::vector<int> parse_list(const char* option, const std::string& text, int low, int high) {

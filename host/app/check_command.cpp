@@ -15,6 +15,7 @@
 #include "app/child_process.h"
 #include "app/commands.h"
 #include "app/option_helpers.h"
+#include "app/pick_devices.h"
 #include "base/file.h"
 #include "bench/machine.h"
 #include "bench/self_check.h"
@@ -27,7 +28,7 @@ namespace fs = std::filesystem;
 
 struct CheckOptions {
   std::vector<std::string> devices;
-  std::string worker;  // "P:D": this is the child that looks at one device
+  std::string worker;  // "P:D" or "P:D/N": this is the child that looks at one device
   int timeout = 600;
   bool json = false;
 };
@@ -117,21 +118,52 @@ json check_one(const std::string& index, double seconds) {
   return check_json(failed);
 }
 
-bool is_wanted(const json& row, const CheckOptions& options) {
-  return options.devices.empty() || std::ranges::count(options.devices, row.value("index", "")) > 0;
+/// What a SPEC may ask of a row.
+DeviceInfo as_device(const json& row) {
+  DeviceInfo device;
+  device.platform = row.at("platform");
+  device.platform_name = row.at("platform_name");
+  device.problem = row.at("usable") == true ? "" : row.at("problem").get<std::string>();
+  if (!row.contains("index")) return device;
+  device.device = row.at("device");
+  device.name = row.at("name");
+  device.type = row.at("type");
+  device.compute_units = row.at("compute_units");
+  device.max_sub_devices = row.at("max_sub_devices");
+  device.estimate = row.at("estimate");
+  return device;
+}
+
+/// The rows that are asked for, all without --device; of a sub-device "sub_units" too.
+json wanted_rows(const json& rows, const std::vector<std::string>& specs) {
+  if (specs.empty()) return rows;
+  std::vector<DeviceInfo> all;
+  for (const json& row : rows) all.push_back(as_device(row));
+  json wanted = json::array();
+  for (const DeviceInfo& device : pick_devices(all, specs))
+    for (json row : rows)
+      if (row.value("index", "") == fmt::format("{}:{}", device.platform, device.device)) {
+        if (device.sub_units > 0) row["sub_units"] = device.sub_units;
+        wanted.push_back(std::move(row));
+      }
+  return wanted;
+}
+
+std::string spec_of(const json& row) {
+  const std::string index = row.at("index");
+  return row.contains("sub_units") ? fmt::format("{}/{}", index, row.at("sub_units").get<unsigned>()) : index;
 }
 
 json check_devices(const json& rows, const CheckOptions& options) {
   json devices = json::array();
   for (const json& row : rows) {
-    if (!is_wanted(row, options)) continue;
     json device = {{"platform", row.at("platform_name")}};
-    for (const char* key : {"index", "name", "driver", "version"})
+    for (const char* key : {"index", "sub_units", "name", "driver", "version"})
       if (row.contains(key)) device[key] = row.at(key);
     if (row.at("usable") == true) {
       if (!options.json && isatty(STDERR_FILENO))
         fmt::print(stderr, "\r\x1b[Kchecking {}", row.at("name").get<std::string>());
-      device.update(check_one(row.at("index"), options.timeout));
+      device.update(check_one(spec_of(row), options.timeout));
     } else {
       device.update({{"status", "not usable"}, {"problem", row.at("problem")}});
     }
@@ -155,13 +187,14 @@ int check(const CheckOptions& options) {
   const fs::path folder = vendors_folder();
   std::string problem;
   const json rows = list_devices({}, options.timeout, problem);
+  const json wanted = wanted_rows(rows, options.devices);
   json report = {{"schema", 1},
                  {"sundog", SUNDOG_VERSION},
                  {"compiler", compiler_text()},
                  {"vendors", folder.string()},
                  {"drivers", check_drivers(folder, options.timeout)},
                  {"caches", cache_figures()},
-                 {"devices", check_devices(rows, options)},
+                 {"devices", check_devices(wanted, options)},
                  {"problem", problem.empty() ? json(nullptr) : json("listing the devices " + problem)}};
   const std::string text =
       options.json ? report.dump(2, ' ', false, json::error_handler_t::replace) + "\n" : check_text(report);
@@ -175,13 +208,17 @@ void add_check(CLI::App& root, Command& chosen) {
   const auto options = std::make_shared<CheckOptions>();
   CLI::App* app =
       root.add_subcommand("check", "Check drivers, caches and devices; exit status 6 when a picture differs");
-  values(app, "--device", "P:D", options->devices, "only these devices, by their indices");
+  values(
+      app, "--device", "SPEC", options->devices,
+      "only these devices: P:D, cpu, gpu, accelerator, all, part of a name, or !SPEC to take away; /N for N "
+      "compute units (default: SUNDOG_DEVICE, or every device)");
   app->add_option("--timeout", options->timeout, "seconds that one device may take (default 600)")
       ->type_name("N")
       ->check(CLI::Range(1, 86400));
   app->add_flag("--json", options->json, "as JSON");
   app->add_option("--worker", options->worker)->group("");
   app->callback([options, &chosen] {
+    if (options->devices.empty()) options->devices = devices_of_environment();
     chosen =
         RunLater{[options] { return options->worker.empty() ? check(*options) : work(options->worker); }};
   });

@@ -52,7 +52,12 @@ std::string device_text(const json& device) {
                                ? fmt::format("{} {} / {}", text_of(device, "index"),
                                              text_of(device, "platform"), text_of(device, "name"))
                                : text_of(device, "platform");
-  std::string text = fmt::format("  {:<10}  {}\n", text_of(device, "status"), name);
+  const std::string part = device.contains("sub_units")
+                               ? fmt::format(", {} of its units", device.at("sub_units").get<unsigned>())
+                               : "";
+  std::string text = fmt::format("  {:<10}  {}{}\n", text_of(device, "status"), name, part);
+  if (device.contains("driver"))
+    text += fmt::format("      driver {}; {}\n", text_of(device, "driver"), text_of(device, "version"));
   if (device.contains("pixels") && device.at("pixels") > 0)
     text += fmt::format(
         "      {} kernel files in {:.2f} s, picture in {:.2f} s; {} of {} pixels differ visibly from plain "

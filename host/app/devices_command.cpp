@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "device/choice.h"
 #include "device/devices.h"
 
 namespace sundog {
@@ -31,6 +32,8 @@ std::vector<std::string> extensions_that_matter(const DeviceInfo& device) {
 }
 
 const char* class_name(DeviceClass value) { return value == DeviceClass::cpu ? "cpu" : "gpu"; }
+
+const char* tracer_name(const DeviceInfo& device) { return wants_vectors(device) ? "wide" : "compact"; }
 
 std::string bytes_text(std::uint64_t bytes) {
   const auto value = static_cast<double>(bytes);
@@ -68,6 +71,7 @@ json device_json(const DeviceInfo& device, bool is_default) {
               {"c_version", device.c_version},
               {"type", device.type},
               {"class", class_name(device.device_class)},
+              {"tracer", tracer_name(device)},
               {"compute_units", device.compute_units},
               {"clock_mhz", device.clock_mhz},
               {"native_vector_width", device.native_vector_width},
@@ -93,9 +97,11 @@ void print_details(const DeviceInfo& device) {
   const auto line = [](const char* what, const std::string& value) {
     fmt::print("      {:<12} {}\n", what, value);
   };
-  line("type", fmt::format("{} (driven as {}), {} compute units at {} MHz, vectors of {} floats (prefers {})",
-                           device.type, class_name(device.device_class), device.compute_units,
-                           device.clock_mhz, device.native_vector_width, device.preferred_vector_width));
+  line("type", fmt::format("{}, {} compute units at {} MHz, vectors of {} floats (prefers {})", device.type,
+                           device.compute_units, device.clock_mhz, device.native_vector_width,
+                           device.preferred_vector_width));
+  line("class", fmt::format("{}, tracer {} ({})", class_name(device.device_class), tracer_name(device),
+                            wants_vectors(device) ? "many rays a work-item, in vectors" : "a ray a lane"));
   line("memory", fmt::format("{}, at most {} in one buffer, {} local", bytes_text(device.global_memory),
                              bytes_text(device.max_allocation), bytes_text(device.local_memory)));
   line("limits", fmt::format("work-groups of {}, {}", device.max_work_group,

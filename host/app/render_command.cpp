@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/frames.h"
 #include "app/interrupt.h"
+#include "app/pick_devices.h"
 #include "app/progress.h"
 #include "app/remote_devices.h"
 #include "app/save_image.h"
@@ -206,8 +207,8 @@ int render_command(const RenderCommand& command) {
     scene = load_and_compile(command, times);
     print_warnings(scene->description.warnings);
   }
-  setup.devices =
-      select_devices(command.isolate ? enumerate_in_worker() : enumerate_devices(), command.devices);
+  setup.devices = pick_devices(command.isolate ? enumerate_in_worker() : enumerate_devices(), command.devices,
+                               command.verbose && !command.quiet);
   if (scene) return render_one(command, *scene, setup, clock, times);
   setup.pool = std::make_shared<DevicePool>();
   return render_frames(command, setup);

@@ -13,6 +13,7 @@
 #include "device/cl_status.h"
 #include "device/devices.h"
 #include "device/estimate.h"
+#include "device/pocl_folder.h"
 
 namespace sundog {
 namespace {
@@ -169,6 +170,7 @@ void prepare_drivers() {
     // PoCL compiles a kernel for each local size and again for grids below 65536, and once more to give its
     // binary out. One version for all was as fast in every kernel measured, so each kernel is compiled once.
     setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
+    give_pocl_a_folder();
     enlarge_thread_stacks();
   });
 }

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "device/choice.h"
 #include "device/devices.h"
 
 namespace sundog {
@@ -144,6 +145,30 @@ std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all,
   if (chosen.empty())
     throw DeviceError(fmt::format("--device: nothing is left after the exclusions; {}", candidates(all)));
   return chosen;
+}
+
+std::vector<std::string> idle_exclusions(std::span<const DeviceInfo> all,
+                                         const std::vector<std::string>& specs) {
+  std::vector<std::string> warnings;
+  for (const std::string& text : specs) {
+    const Spec spec = parse_spec(text);
+    const auto is_meant = [&](const DeviceInfo& device) {
+      return device.device >= 0 && matches(spec, device);
+    };
+    if (spec.exclude && std::ranges::none_of(all, is_meant))
+      warnings.push_back(
+          fmt::format("--device '{}' takes nothing away: no device matches it; {}", text, candidates(all)));
+  }
+  return warnings;
+}
+
+std::string choice_text(std::span<const DeviceInfo> all, const DeviceInfo& chosen) {
+  std::string others;
+  for (const DeviceInfo& device : all)
+    if (device.usable() && !same_device(device, chosen))
+      others +=
+          fmt::format("{}{} ({:.0f})", others.empty() ? ", before " : ", ", device.label(), device.estimate);
+  return fmt::format("{} (estimate {:.0f}){}", chosen.label(), chosen.estimate, others);
 }
 
 }  // namespace sundog

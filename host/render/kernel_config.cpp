@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "device/choice.h"
+
 namespace sundog {
 namespace {
 
@@ -66,7 +68,7 @@ unsigned traversal_stack_size(const CompiledScene& scene) {
 
 bool traces_compact(const CompiledScene& scene, const DeviceInfo& device) {
   if (scene.tracer != Tracer::automatic) return scene.tracer == Tracer::compact;
-  return device.device_class != DeviceClass::cpu || device.native_vector_width <= 1;
+  return !wants_vectors(device);
 }
 
 KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {

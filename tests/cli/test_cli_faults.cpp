@@ -190,8 +190,7 @@ TEST_CASE("a kernel cache that is corrupt or cannot be written costs time only")
   FaultyFolder folder;
   const std::string plain = folder.plain();
   folder.options.environment["XDG_CACHE_HOME"] = folder.file("cache");
-  folder.options.environment["POCL_CACHE_DIR"] =
-      folder.file("pocl");  // not to be corrupted: PoCL would abort
+  folder.options.environment["POCL_CACHE_DIR"] = folder.file("pocl");
   const std::vector<std::string> one = {"--device", "!0:0"};
   SECTION("corrupt") {
     REQUIRE(folder.render("", one).status == 0);
@@ -202,6 +201,28 @@ TEST_CASE("a kernel cache that is corrupt or cannot be written costs time only")
     CHECK(read_file(folder / "a.pfm") == plain);
     REQUIRE(folder.render("", one).status == 0);
     CHECK(folder.stats()["kernels_cached"] == true);
+  }
+  SECTION("PoCL's own, at which it would abort") {
+    folder.options.environment["POCL_CACHE_DIR"] = "";
+    // What a process that was killed has left, in the folder that PoCL takes by itself and in sundog's.
+    for (const char* place : {"cache/pocl/kcache", "cache/sundog/pocl/killed"}) {
+      CommandOptions user = folder.options;
+      user.environment["POCL_CACHE_DIR"] = folder.file(place);
+      std::filesystem::create_directories(folder / place);
+      REQUIRE(run_sundog({"render", folder.scene, "-o", folder.file("b.pfm")}, user).status == 0);
+      int files = 0;
+      for (const auto& file : std::filesystem::recursive_directory_iterator(folder / place))
+        if (file.path().extension() == ".bc" || file.path().extension() == ".so")
+          std::ofstream(file.path(), std::ios::in | std::ios::out).seekp(20) << "xxxxxxxxxxxx", ++files;
+      REQUIRE(files > 0);
+    }
+    folder.write("cache/sundog/pocl/killed/lock", "");
+    for (const char* kernels : {"", "off"}) {
+      folder.options.environment["SUNDOG_KERNEL_CACHE"] = kernels;
+      CHECK(folder.render("", one).status == 0);
+      CHECK(read_file(folder / "a.pfm") == plain);
+    }
+    CHECK(std::filesystem::is_empty(folder / "cache/sundog/pocl"));
   }
   SECTION("a file where the folder should be") {
     folder.write("cache", "");

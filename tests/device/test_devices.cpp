@@ -1,5 +1,8 @@
 // The list of devices: nothing that a driver does hides the others. Each environment needs a process of its
 // own, so the real binary is asked.
+#include <dlfcn.h>
+
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -115,4 +118,43 @@ TEST_CASE("all the devices of one driver are listed, and several drivers live to
   std::size_t defaults = 0;
   for (const json& row : list) defaults += row.value("default", false);
   CHECK(defaults == 1);
+}
+
+TEST_CASE("PoCL's two devices, llvmpipe, Oclgrind and Clover, which has none, stand in one list") {
+  struct Driver {
+    const char *library, *platform;
+    std::size_t devices;
+    const char* tracer;
+  };
+  const TemporaryFolder vendors;
+  std::vector<Driver> installed;
+  for (const Driver& driver : {Driver{"libpocl.so.2", "Portable Computing Language", 2, "wide"},
+                               Driver{"libRusticlOpenCL.so.1", "rusticl", 1, "compact"},
+                               Driver{"libMesaOpenCL.so.1", "Clover", 0, ""},
+                               Driver{"/usr/lib/oclgrind/liboclgrind-rt-icd.so", "Oclgrind", 1, "compact"}}) {
+    if (void* library = ::dlopen(driver.library, RTLD_LAZY | RTLD_LOCAL)) {
+      ::dlclose(library);
+      vendors.write(std::string(driver.platform) + ".icd", std::string(driver.library) + "\n");
+      installed.push_back(driver);
+    }
+  }
+  REQUIRE(installed.size() >= 1);  // PoCL; the others where they are installed
+  CHECK(std::string(installed.front().platform) == "Portable Computing Language");
+  const std::string environment = "OCL_ICD_VENDORS='" + vendors.path().string() +
+                                  "/' POCL_DEVICES='basic pthread' RUSTICL_ENABLE=llvmpipe";
+  const json list = device_list(environment);
+  CAPTURE(list.dump(2));
+  for (const Driver& driver : installed) {
+    CAPTURE(driver.platform);
+    const auto rows = rows_of(list, driver.platform);
+    REQUIRE(rows.size() == std::max<std::size_t>(driver.devices, 1));
+    for (const json& row : rows) {
+      CHECK(row.at("usable") == (driver.devices > 0));
+      CHECK(row.at("problem").is_null() == (driver.devices > 0));
+      if (driver.devices > 0) CHECK(row.at("tracer") == driver.tracer);
+    }
+  }
+  const auto pocl = rows_of(list, "Portable Computing Language");
+  CHECK(std::ranges::count_if(list, [](const json& row) { return row.value("default", false); }) == 1);
+  CHECK((pocl[0].at("default") == true || pocl[1].at("default") == true));
 }

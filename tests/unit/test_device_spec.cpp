@@ -1,6 +1,7 @@
 // What a --device SPEC selects, on made-up rows; and which device is the default.
 #include "base/error.h"
 #include "catch.h"
+#include "device/choice.h"
 #include "device/devices.h"
 #include "device/estimate.h"
 
@@ -135,4 +136,31 @@ TEST_CASE("a device is put in a class by its type and its vectors") {
   CHECK(device_class(vectors) == DeviceClass::gpu);
   vectors.native_vector_width = 8;
   CHECK(device_class(vectors) == DeviceClass::cpu);
+}
+
+TEST_CASE("an exclusion that takes nothing away is told, with what there is") {
+  CHECK(idle_exclusions(machine(), {"cpu", "!0:0", "!geforce"}).empty());
+  const auto warnings = idle_exclusions(machine(), {"all", "!radeon", "!7:0", "!broken"});
+  REQUIRE(warnings.size() == 2);
+  CHECK_THAT(warnings[0], ContainsSubstring("--device '!radeon' takes nothing away: no device matches it"));
+  CHECK_THAT(warnings[0], ContainsSubstring("2:0 NVIDIA CUDA / GeForce 4090/D"));
+  CHECK_THAT(warnings[1], ContainsSubstring("'!7:0'"));
+}
+
+TEST_CASE("the default is told with its estimate and those it was preferred to") {
+  const auto rows = machine();
+  const std::string text = choice_text(rows, select_devices(rows, {}).front());
+  CHECK_THAT(text, ContainsSubstring("2:0 NVIDIA CUDA / GeForce 4090/D (estimate 90000), before 0:0"));
+  CHECK_THAT(text, ContainsSubstring("pthread-skylake (800)") && !ContainsSubstring("Broken GPU"));
+}
+
+TEST_CASE("devices with vectors trace wide, all others a ray a lane") {
+  DeviceInfo device;
+  device.native_vector_width = 8;
+  CHECK(wants_vectors(device));
+  device.native_vector_width = 1;  // an emulated device
+  CHECK_FALSE(wants_vectors(device));
+  device.native_vector_width = 8;
+  device.device_class = DeviceClass::gpu;
+  CHECK_FALSE(wants_vectors(device));
 }

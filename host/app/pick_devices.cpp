@@ -1,0 +1,19 @@
+// See pick_devices.h.
+#include "app/pick_devices.h"
+
+#include <fmt/format.h>
+
+#include "app/warnings.h"
+#include "device/choice.h"
+
+namespace sundog {
+
+std::vector<DeviceInfo> pick_devices(const std::vector<DeviceInfo>& all,
+                                     const std::vector<std::string>& specs, bool verbose) {
+  const std::vector<DeviceInfo> chosen = select_devices(all, specs);
+  print_warnings(idle_exclusions(all, specs));
+  if (specs.empty() && verbose) fmt::print("default device: {}\n", choice_text(all, chosen.front()));
+  return chosen;
+}
+
+}  // namespace sundog

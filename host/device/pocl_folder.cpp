@@ -1,0 +1,73 @@
+// A folder is in use while its file "lock" is locked: the kernel lets go of the lock when a process ends,
+// however it ends.
+#include "device/pocl_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <string>
+
+#include "base/file.h"
+
+namespace sundog {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string& own_folder() {
+  static std::string folder;
+  return folder;
+}
+
+/// A descriptor that holds the folder's lock; negative when another has it, or there is none to hold.
+int lock_folder(const fs::path& folder, int more_flags) {
+  const int file = ::open((folder / "lock").c_str(), O_RDWR | O_CLOEXEC | more_flags, 0600);
+  if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+  if (file >= 0) ::close(file);
+  return -1;
+}
+
+/// Old enough that whoever made it would have locked it by now.
+bool is_old(const fs::path& folder) {
+  std::error_code error;
+  const auto written = fs::last_write_time(folder, error);
+  return !error && fs::file_time_type::clock::now() - written > std::chrono::hours(1);
+}
+
+void remove_left_over(const fs::path& root) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(root, error)) {
+    const int lock = lock_folder(entry.path(), 0);
+    if (lock < 0 && (fs::exists(entry.path() / "lock", error) || !is_old(entry.path()))) continue;
+    fs::remove_all(entry.path(), error);
+    if (lock >= 0) ::close(lock);
+  }
+}
+
+}  // namespace
+
+void give_pocl_a_folder() noexcept {
+  try {
+    const fs::path cache = cache_directory();
+    if (cache.empty() || std::getenv("POCL_CACHE_DIR")) return;
+    const fs::path root = cache / "pocl";
+    fs::create_directories(root);
+    remove_left_over(root);
+    std::string folder = (root / "XXXXXX").string();
+    if (!::mkdtemp(folder.data()) || lock_folder(folder, O_CREAT) < 0) return;
+    own_folder() = folder;
+    ::setenv("POCL_CACHE_DIR", folder.c_str(), 0);
+    // After PoCL's own end, because it is said before PoCL is loaded.
+    std::atexit([] {
+      std::error_code ignored;
+      fs::remove_all(own_folder(), ignored);
+    });
+  } catch (const std::exception&) {
+    // PoCL's own folder does as well, as long as nothing damages it.
+  }
+}
+
+}  // namespace sundog
