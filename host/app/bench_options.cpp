@@ -100,6 +100,7 @@ void add_bench(CLI::App& root, Command& chosen) {
   add_bench_workgroup(*bench, chosen);
   add_bench_threads(*bench, chosen);
   add_bench_rays(*bench, chosen);
+  add_bench_samples(*bench, chosen);
   add_bench_devices(*bench, chosen);
 }
 

@@ -58,5 +58,6 @@ void add_bench_threads(CLI::App& bench, Command& chosen);
 void add_bench_devices(CLI::App& bench, Command& chosen);
 void add_bench_workgroup(CLI::App& bench, Command& chosen);
 void add_bench_rays(CLI::App& bench, Command& chosen);
+void add_bench_samples(CLI::App& bench, Command& chosen);
 
 }  // namespace sundog

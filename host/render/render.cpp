@@ -55,6 +55,7 @@ std::vector<Tile> unfinished_rows(const Film& film, const RowRange& range, const
 TilePlan plan_tiles(const RenderOptions& options, const Film& film, const std::vector<ServerPlan>& devices) {
   TilePlan plan;
   plan.whole = options.tile > 0;
+  plan.exact = !options.split.shares.empty();
   for (const RowRange& range : row_ranges(options.split, film.height, devices)) {
     std::vector<Tile> tiles;
     for (const Tile& open : unfinished_rows(film, range, options.part)) {

@@ -1,5 +1,6 @@
 #include "render/tile_queue.h"
 
+#include <algorithm>
 #include <chrono>
 
 namespace sundog {
@@ -60,12 +61,18 @@ std::optional<TileJob> TileQueue::take_waiting(std::size_t device) {
   return job;
 }
 
+/// In a static split only a device's last tile may be made by another too.
+bool TileQueue::may_repeat(const Held& held) const {
+  if (plan_.lists.size() == 1) return true;
+  const auto is_last = [&](const auto& holder) { return plan_.lists[holder.first].pixels() == 0; };
+  return !plan_.exact && std::ranges::all_of(held.holders, is_last);
+}
+
 std::optional<TileJob> TileQueue::take_repeated(std::size_t device) {
-  if (plan_.lists.size() > 1) return std::nullopt;
   std::vector<HeldTile> tiles;
   std::vector<std::uint64_t> ids;
   for (const auto& [id, held] : held_) {
-    if (pixel_count(held.tile) > devices_[device]->most_pixels) continue;
+    if (pixel_count(held.tile) > devices_[device]->most_pixels || !may_repeat(held)) continue;
     tiles.push_back(as_held(held));
     ids.push_back(id);
   }

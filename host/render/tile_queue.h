@@ -26,6 +26,7 @@ struct TilePlan {
   /// One list for all devices, or one a device (a static split).
   std::vector<WaitingTiles> lists;
   bool whole = false;  // the lists' tiles are handed out uncut
+  bool exact = false;  // of lists a device: nobody makes another's tile too, not even the last
 };
 
 class TileQueue {
@@ -79,6 +80,7 @@ class TileQueue {
   static HeldTile as_held(const Held& held);
   void find_stuck();
   WaitingTiles& list_of(std::size_t device);
+  bool may_repeat(const Held& held) const;
   std::optional<TileJob> take_waiting(std::size_t device);
   std::optional<TileJob> take_repeated(std::size_t device);
   void release(std::size_t device, std::uint64_t id, bool give_back);

@@ -126,3 +126,31 @@ TEST_CASE("bench devices ranks devices and combinations, with shares that add up
     CHECK(std::abs(sum - 100) <= 1);
   }
 }
+
+TEST_CASE("bench samples tells time and error by samples, and the error falls") {
+  const CliFolder folder;
+  CommandResult result =
+      run_sundog({"bench", "samples", folder.scene, "--device", "pthread", "--counts", "8,1,2", "--reference",
+                  "64", "--repeat", "2", "--json", folder.file("t.json"), "--html", folder.file("t.html")});
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  CHECK_THAT(result.out, ContainsSubstring("time and error by samples a pixel"));
+  const json report = json::parse(sundog::read_file(folder.file("t.json")));
+  const json& rows = report.at("measurements");
+  REQUIRE(rows.size() == 3);
+  for (const json& row : rows) {
+    CAPTURE(row.dump());
+    CHECK(row.at("problem").is_null());
+    CHECK(row.at("reference_samples") == 64);
+    CHECK(row.at("time_ms").at("median") > 0);
+  }
+  CHECK(rows[0].at("samples") == 1);  // ascending
+  CHECK(rows[1].at("rms_error") < rows[0].at("rms_error"));
+  CHECK(rows[2].at("rms_error") < 0.5 * rows[0].at("rms_error").get<double>());
+  CHECK(rows[2].at("rms_error") > 0);
+  CHECK(sundog::read_file(folder.file("t.html")).starts_with("<!DOCTYPE html>"));
+
+  result = run_sundog({"bench", "samples", folder.scene, "--counts", "4,8", "--reference", "8"});
+  CHECK(result.status == 2);
+  CHECK(is_one_error_line(result.err));
+}
