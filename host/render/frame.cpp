@@ -134,10 +134,12 @@ void serve(const std::shared_ptr<Frame>& frame, std::size_t i) {
   TileServer& server = *frame->servers[i].server;
   try {
     be_nice(*frame, i);
-    const RenderTimes times = server.open();
-    begin_work(*frame, i, times);
-    frame->queue.ready(i);
-    work(*frame, i);
+    if (frame->queue.wait_until_needed(i)) {
+      const RenderTimes times = server.open();
+      begin_work(*frame, i, times);
+      frame->queue.ready(i);
+      work(*frame, i);
+    }
   } catch (const std::exception& error) {
     retire(*frame, i, error.what(), std::current_exception());
   }

@@ -93,6 +93,14 @@ std::uint64_t guided_pixels(std::span<const DeviceSpeed> devices, std::size_t de
   return std::min(left, std::max(cell, static_cast<std::uint64_t>(pixels)));
 }
 
+bool is_spared(std::span<const DeviceSpeed> devices, std::size_t device) {
+  const DeviceSpeed& own = devices[device];
+  return own.processor >= 0 && std::ranges::any_of(devices, [&](const DeviceSpeed& other) {
+           return !other.failed && other.processor == own.processor &&
+                  other.estimate > hopeless_factor * own.estimate;
+         });
+}
+
 bool is_stuck(std::span<const DeviceSpeed> devices, const HeldTile& tile, const HeldTile::Holder& holder) {
   const double expected = expected_seconds(devices, holder.device, tile.pixels);
   return holder.seconds > stuck_seconds && holder.seconds > stuck_factor * expected;

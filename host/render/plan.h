@@ -11,6 +11,10 @@ namespace sundog {
 /// From how many times the speed on a device loses more by sharing its cores than the slower one adds.
 constexpr double burden_factor = 8;
 
+/// From how many times the estimate on a device is not even started beside the faster one: compiling for it
+/// would take longer from the frame than it can ever give.
+constexpr double hopeless_factor = 64;
+
 /// What is known of one device's speed.
 struct DeviceSpeed {
   double measured = 0;   // pixels a second; 0: nothing measured yet
@@ -18,6 +22,7 @@ struct DeviceSpeed {
   double estimate = 0;   // relative to the other devices, from what they report; 0: unknown
   int processor = -1;    // devices with the same number run on the same cores; -1: on its own hardware
   bool working = false;  // ready and neither retired nor stuck
+  bool failed = false;   // retired or stuck
 };
 
 /// Pixels a second that a device can be expected to make: as measured, else its estimate scaled by the
@@ -29,6 +34,10 @@ double expected_speed(std::span<const DeviceSpeed> devices, std::size_t device);
 /// step. 0: the device had better rest, because the others need less time for all that is left, or because it
 /// takes the cores of a device that is many times faster. The fastest of the working devices never rests.
 std::uint64_t guided_pixels(std::span<const DeviceSpeed> devices, std::size_t device, std::uint64_t left);
+
+/// Whether a device should not be started, because one on the same cores that has not failed is estimated
+/// hopeless_factor times as fast.
+bool is_spared(std::span<const DeviceSpeed> devices, std::size_t device);
 
 /// A tile that is being made, by one device or more.
 struct HeldTile {

@@ -9,12 +9,26 @@ namespace {
 // How often an idle device looks whether another's tile has become worth repeating.
 constexpr std::chrono::milliseconds look_again{10};
 
+// A driver may compile in its first tile: only after so long is a device that has finished none taken to
+// hang.
+constexpr double first_tile_seconds = 10;
+
 }  // namespace
 
 TileQueue::TileQueue(TilePlan plan, std::vector<DeviceSpeed> devices)
     : plan_(std::move(plan)), speeds_(std::move(devices)) {
   for (const WaitingTiles& list : plan_.lists) unfinished_ += list.pixels();
   for (std::size_t i = 0; i < speeds_.size(); ++i) devices_.push_back(std::make_unique<State>());
+}
+
+bool TileQueue::wait_until_needed(std::size_t device) {
+  std::unique_lock lock(mutex_);
+  while (!over()) {
+    find_stuck();
+    if (plan_.lists.size() > 1 || !is_spared(speeds_, device)) return true;
+    changed_.wait_for(lock, look_again);
+  }
+  return false;
 }
 
 void TileQueue::ready(std::size_t device) {
@@ -38,11 +52,18 @@ HeldTile TileQueue::as_held(const Held& held) {
 /// Marks the devices whose tile takes much longer than it should, so that the others do not wait for them.
 void TileQueue::find_stuck() {
   for (std::size_t i = 0; i < speeds_.size(); ++i)
-    if (devices_[i]->ready && !devices_[i]->retired) speeds_[i].working = true;
+    if (!devices_[i]->retired) {
+      speeds_[i].working = devices_[i]->ready.has_value();
+      speeds_[i].failed = false;
+    }
   for (const auto& [id, held] : held_) {
     const HeldTile tile = as_held(held);
     for (const HeldTile::Holder& holder : tile.holders)
-      if (is_stuck(speeds_, tile, holder)) speeds_[holder.device].working = false;
+      if (is_stuck(speeds_, tile, holder)) {
+        speeds_[holder.device].working = false;
+        speeds_[holder.device].failed =
+            speeds_[holder.device].measured > 0 || holder.seconds > first_tile_seconds;
+      }
   }
 }
 
@@ -157,6 +178,7 @@ void TileQueue::retire(std::size_t device) {
   devices_[device]->retired = true;
   devices_[device]->cancelled = true;
   speeds_[device].working = false;
+  speeds_[device].failed = true;
   std::vector<std::uint64_t> ids;
   for (const auto& [id, held] : held_) ids.push_back(id);
   for (const std::uint64_t id : ids) release(device, id, true);

@@ -34,6 +34,9 @@ class TileQueue {
   /// `devices` hold estimates; none is working yet.
   TileQueue(TilePlan plan, std::vector<DeviceSpeed> devices);
 
+  /// Waits while the device is better not started (is_spared); false when it never will be, because the
+  /// frame is finished or closed. In a fixed split every device is needed.
+  bool wait_until_needed(std::size_t device);
   /// The device has built its kernels and will ask for tiles.
   void ready(std::size_t device);
   /// The next tile for a device: a waiting one, or, when none is left for it, one that another device is

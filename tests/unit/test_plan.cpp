@@ -263,6 +263,23 @@ TEST_CASE("a device rests where it takes the cores of one many times faster, unt
   CHECK(guided_pixels(devices, 1, 100'000'000) > 0);
 }
 
+TEST_CASE("a device that cannot help is not started, until the one that it would hinder has failed") {
+  std::vector<DeviceSpeed> devices(2);
+  devices[0].estimate = 1000;
+  devices[1].estimate = 10;
+  devices[0].processor = devices[1].processor = 0;
+  CHECK(is_spared(devices, 1));
+  CHECK_FALSE(is_spared(devices, 0));
+  devices[0].failed = true;
+  CHECK_FALSE(is_spared(devices, 1));
+  devices[0].failed = false;
+  devices[1].estimate = 100;  // worth a try
+  CHECK_FALSE(is_spared(devices, 1));
+  devices[1].estimate = 10;
+  devices[1].processor = -1;  // hardware of its own
+  CHECK_FALSE(is_spared(devices, 1));
+}
+
 TEST_CASE("no time, no pixels and no devices are no trouble") {
   CHECK(guided_pixels(std::vector{measured(100)}, 0, 0) == 0);
   CHECK(efficiency({}) == 1);

@@ -80,3 +80,35 @@ TEST_CASE("a retired device's part goes to the others, in an exact split too") {
   CHECK(tiles == 4);
   CHECK(queue->complete());
 }
+
+TEST_CASE("a device that was not started is needed when the others have failed, or in a fixed split") {
+  const auto queue_of = [](std::size_t lists) {
+    TilePlan plan;
+    for (std::size_t i = 0; i < lists; ++i)
+      plan.lists.emplace_back(std::vector<Tile>{{0, static_cast<int>(8 * i), 64, 8}});
+    DeviceSpeed fast, slow;
+    fast.estimate = 1000;
+    slow.estimate = 1;
+    fast.processor = slow.processor = 0;
+    auto queue = std::make_unique<TileQueue>(std::move(plan), std::vector{fast, slow});
+    queue->ready(0);
+    return queue;
+  };
+  CHECK(queue_of(2)->wait_until_needed(1));
+  CHECK(queue_of(1)->wait_until_needed(0));
+
+  const auto finished = queue_of(1);
+  std::thread worker([&] {
+    while (const auto job = finished->take(0)) finished->finished(0, *job, 0.001);
+  });
+  CHECK_FALSE(finished->wait_until_needed(1));
+  worker.join();
+
+  const auto failing = queue_of(1);
+  REQUIRE(failing->take(0).has_value());
+  std::thread killer([&] { failing->retire(0); });
+  CHECK(failing->wait_until_needed(1));
+  killer.join();
+  failing->ready(1);
+  CHECK(failing->take(1).has_value());
+}
