@@ -10,6 +10,7 @@ FrameRunner::FrameRunner(const DeviceInfo& device, const CompiledScene& scene, c
     : device_(device),
       options_(options),
       film_(static_cast<int>(scene.info.width), static_cast<int>(scene.info.height), !options.aovs.empty()) {
+  if (options_.tuning) speed_.tile_seconds = 1e-3 * options_.tuning(device).tile_ms;
   renderer_ = std::make_unique<TileRenderer>(device_, scene, options_, times_, watch_);
 }
 

@@ -23,13 +23,14 @@ struct Choices {
   std::vector<std::pair<unsigned, unsigned>> shapes{{0, 0}};
   std::vector<unsigned> packets{0};
   std::vector<double> launches{0, 10, 25, 100, 200};
+  std::vector<double> tiles{0, 50, 100, 500, 1000};
 
   std::vector<std::size_t> sizes() const {
-    return {groups.size(), shapes.size(), packets.size(), launches.size()};
+    return {groups.size(), shapes.size(), packets.size(), launches.size(), tiles.size()};
   }
   Tuning at(const TunePoint& point) const {
     const auto [w, h] = shapes[point[1]];
-    return {groups[point[0]], w, h, packets[point[2]], launches[point[3]]};
+    return {groups[point[0]], w, h, packets[point[2]], launches[point[3]], tiles[point[4]]};
   }
 };
 

@@ -86,7 +86,8 @@ std::uint64_t guided_pixels(std::span<const DeviceSpeed> devices, std::size_t de
   }
   // Half its share where there are equals to even out with; all of it beside those that hardly count.
   double pixels = waiting * own / total / (1 + std::min(1.0, others / own));
-  pixels = std::clamp(pixels, own * shortest_tile, own * longest_tile);
+  const double longest = devices[device].tile_seconds > 0 ? devices[device].tile_seconds : longest_tile;
+  pixels = std::clamp(pixels, own * std::min(shortest_tile, longest), own * longest);
   if (devices[device].sample > 0) pixels = std::min(pixels, growth * devices[device].sample);
   // Never more than brings all devices to the end together.
   pixels = std::min(pixels, waiting * own / total);

@@ -17,12 +17,13 @@ constexpr double hopeless_factor = 64;
 
 /// What is known of one device's speed.
 struct DeviceSpeed {
-  double measured = 0;   // pixels a second; 0: nothing measured yet
-  double sample = 0;     // pixels that this was measured by
-  double estimate = 0;   // relative to the other devices, from what they report; 0: unknown
-  int processor = -1;    // devices with the same number run on the same cores; -1: on its own hardware
-  bool working = false;  // ready and neither retired nor stuck
-  bool failed = false;   // retired or stuck
+  double measured = 0;      // pixels a second; 0: nothing measured yet
+  double sample = 0;        // pixels that this was measured by
+  double estimate = 0;      // relative to the other devices, from what they report; 0: unknown
+  int processor = -1;       // devices with the same number run on the same cores; -1: on its own hardware
+  double tile_seconds = 0;  // the longest tile it should be given; 0: the planner's own choice
+  bool working = false;     // ready and neither retired nor stuck
+  bool failed = false;      // retired or stuck
 };
 
 /// Pixels a second that a device can be expected to make: as measured, else its estimate scaled by the

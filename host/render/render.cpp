@@ -92,6 +92,7 @@ std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerP
   for (std::size_t i = 0; i < devices.size(); ++i) {
     speeds[i].estimate = devices[i].info.estimate;
     speeds[i].processor = devices[i].processor;
+    if (options.tuning) speeds[i].tile_seconds = 1e-3 * options.tuning(devices[i].info).tile_ms;
   }
   auto frame = std::make_shared<Frame>(options, std::move(film), std::move(plan), std::move(speeds));
   for (const ServerPlan& device : devices) {

@@ -37,6 +37,7 @@ json entry_json(const TuningEntry& entry) {
           {"tile_h", entry.tuning.tile_h},
           {"packet_least", entry.tuning.packet_least},
           {"launch_ms", entry.tuning.launch_ms},
+          {"tile_ms", entry.tuning.tile_ms},
           {"default_ms", entry.default_ms},
           {"tuned_ms", entry.tuned_ms}};
 }
@@ -50,11 +51,13 @@ TuningEntry entry_from(const json& entry, const std::string& where) {
   result.tuning.tile_h = entry.at("tile_h");
   result.tuning.packet_least = entry.at("packet_least");
   result.tuning.launch_ms = entry.at("launch_ms");
+  result.tuning.tile_ms = entry.at("tile_ms");
   result.default_ms = entry.at("default_ms");
   result.tuned_ms = entry.at("tuned_ms");
   const Tuning& tuning = result.tuning;
   if (tuning.tile_w > 16 || tuning.tile_h > 16 || (tuning.tile_w == 0) != (tuning.tile_h == 0) ||
-      tuning.packet_least > 64 || !(tuning.launch_ms >= 0 && tuning.launch_ms <= 10000))
+      tuning.packet_least > 64 || !(tuning.launch_ms >= 0 && tuning.launch_ms <= 10000) ||
+      !(tuning.tile_ms >= 0 && tuning.tile_ms <= 10000))
     throw UsageError(fmt::format("{}: {}: a value is out of its range", where, result.scene_class));
   return result;
 }
@@ -74,6 +77,7 @@ std::string tuning_text(const Tuning& tuning) {
   if (tuning.tile_w) parts.push_back(fmt::format("{}x{} pixels a work-item", tuning.tile_w, tuning.tile_h));
   if (tuning.packet_least) parts.push_back(fmt::format("packets of more than {}", tuning.packet_least));
   if (tuning.launch_ms > 0) parts.push_back(fmt::format("launches of {} ms", tuning.launch_ms));
+  if (tuning.tile_ms > 0) parts.push_back(fmt::format("tiles of {} ms", tuning.tile_ms));
   return parts.empty() ? "the defaults" : fmt::format("{}", fmt::join(parts, ", "));
 }
 

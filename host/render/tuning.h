@@ -20,6 +20,7 @@ struct Tuning {
   unsigned tile_w = 0, tile_h = 0;  // pixels a work-item
   unsigned packet_least = 0;        // rays below which a packet is traced ray by ray
   double launch_ms = 0;             // the length of a launch: how many rays are in flight
+  double tile_ms = 0;               // the length of a tile: how many pixels are made between two transfers
 };
 
 /// "64", "8x4", "default", "driver".

@@ -43,11 +43,13 @@ TEST_CASE("what tune finds is kept in one file a device, and a render with it gi
 
   entry["work_group"] = "2x2";
   entry["launch_ms"] = 10;
+  entry["tile_ms"] = 5;
   folder.write("kept.json", kept.dump());
   CHECK_THAT(folder.run({"--forget"}).out, ContainsSubstring("1 file removed"));
   CHECK_THAT(folder.run({"--show"}).out, ContainsSubstring("Nothing is kept"));
   CHECK_THAT(folder.run({"--import", folder.file("kept.json")}).out, ContainsSubstring("imported"));
-  CHECK_THAT(folder.run({"--show"}).out, ContainsSubstring("work-group 2x2"));
+  CHECK_THAT(folder.run({"--show"}).out,
+             ContainsSubstring("work-group 2x2, launches of 10 ms, tiles of 5 ms"));
   REQUIRE(folder.render("after.pfm").status == 0);
   const json stats = json::parse(sundog::read_file(folder.file("s.json")));
   CHECK(stats["devices"][0]["kernels"]["render_whitted"]["work_group"] == json({2, 2}));

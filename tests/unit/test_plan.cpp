@@ -235,6 +235,16 @@ TEST_CASE("tiles shrink towards the end, and none takes long") {
   }
 }
 
+TEST_CASE("a device is given tiles of the length that was found best for it") {
+  std::vector devices{measured(100'000)};
+  const std::uint64_t usual = guided_pixels(devices, 0, 10'000'000);
+  devices[0].tile_seconds = 0.01;
+  CHECK(guided_pixels(devices, 0, 10'000'000) == 1000);
+  devices[0].tile_seconds = 1;
+  CHECK(guided_pixels(devices, 0, 10'000'000) == 100'000);
+  CHECK(usual < 100'000);
+}
+
 TEST_CASE("nothing is left over for a device that would last longer than all the others") {
   const std::vector devices{measured(1'000'000), measured(1)};
   CHECK(guided_pixels(devices, 1, 100'000) == 0);
