@@ -110,6 +110,18 @@ void add_rows(Report& report, const std::string& scene, const DeviceInfo& device
   report.parts.emplace_back(std::move(bars));
 }
 
+/// What the report says of a scene before any time.
+std::string describe(const CompiledScene& scene) {
+  const u32 fields = scene.info.field_end - scene.info.instance_count;
+  const std::string left_out = fields ? fmt::format("{} distance field{}: marched, not traced, and left out",
+                                                    fields, fields == 1 ? "" : "s")
+                                      : "";
+  if (scene.info.instance_count == 0)
+    return (left_out.empty() ? "an empty scene" : left_out) + "; so there is nothing to time";
+  return fmt::format("{} triangles, BVH built in {:.1f} ms, SAH cost {:.2f}{}{}", scene.figures.triangles,
+                     scene.figures.build_seconds * 1e3, scene.figures.sah_cost, fields ? "; " : "", left_out);
+}
+
 int bench_rays(const RaysOptions& options) {
   Report report = new_report("rays", "Rays a second by kind", options);
   report.measurements.columns = {{"scene", ""}, {"device", ""},  {"kind", ""},   {"rays", ""},
@@ -120,9 +132,8 @@ int bench_rays(const RaysOptions& options) {
   for (const std::string& file : options.scenes) {
     const CompiledScene scene = bench_scene(file, options);
     const std::string name = scene_name(file);
-    report.facts.emplace_back(
-        name, fmt::format("{} triangles, BVH built in {:.1f} ms, SAH cost {:.2f}", scene.figures.triangles,
-                          scene.figures.build_seconds * 1e3, scene.figures.sah_cost));
+    report.facts.emplace_back(name, describe(scene));
+    if (scene.info.instance_count == 0) continue;
     for (const DeviceInfo& info : devices) {
       Device device(info);
       add_rows(report, name, info, time_scene(scene, device, options, name));
@@ -130,7 +141,9 @@ int bench_rays(const RaysOptions& options) {
   }
   report.notes.push_back(fmt::format(
       "Median of {} launches by the wall clock, each waited for. Shadow rays ask for any hit, the others for "
-      "the nearest. Distance fields are marched, not traced, and left out. `differ`: of the rays that the "
+      "the nearest. Distance fields are marched, not traced, and left out: `bench threads` and `bench "
+      "devices` "
+      "time their frames. `differ`: of the rays that the "
       "host traced too, those with another answer.",
       options.repeat));
   return publish(report, options);

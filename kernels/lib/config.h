@@ -15,8 +15,8 @@
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 
 // For the body of a kernel: PoCL compiles what stands in a kernel three times (the kernel, and two loops over
-// its work-groups), a function once; and it keeps the private arrays of a kernel apart for each work-item of a
-// group, those of a function once. Such a function takes no index from get_global_id(), or PoCL inlines it.
+// its work-groups), a function once; and it keeps the private arrays of a kernel apart for each work-item of
+// a group, those of a function once. Such a function takes no index from get_global_id(), or PoCL inlines it.
 // Also for what is called from several places, where copies would be compiled for longer than a call takes.
 #define NEVER_INLINE static __attribute__((noinline))
 
@@ -36,8 +36,13 @@
 #ifndef WIDE_VECTORS
 #define WIDE_VECTORS 1
 #endif
+// Whether there is anything that rays are traced to, and not only fields that they march to.
+#define HAS_TRACED                                                                                        \
+  (HAS_MESH || HAS_SPHERE || HAS_PLANE || HAS_BOX || HAS_CYLINDER || HAS_CONE || HAS_DISK || HAS_TORUS || \
+   HAS_ROUNDBOX)
+
 // Whether a batch of rays that run close together can go through the BVH as one.
-#define PACKETS (WIDE_VECTORS && BATCH == 16)
+#define PACKETS (WIDE_VECTORS && BATCH == 16 && HAS_TRACED)
 
 // Whether rays that go by themselves are walked a few in turn. It pays in meshes.
 #define WALKS_IN_TURN (WIDE_VECTORS && HAS_MESH)

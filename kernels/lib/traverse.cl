@@ -40,6 +40,7 @@ static inline void finish_hit(TRACE_PARAMETERS, Hit* hit) {
 // is its place.
 NEVER_INLINE void trace_alone(TRACE_PARAMETERS, const float3* o, const float3* d, const float* t_min,
                               const float* t_max, u32 count, bool any, Hit* found) {
+#if HAS_TRACED
   u32 which[BATCH], live = 0;
   for (u32 i = 0; i < count; ++i) {
     found[i] = no_hit(t_max[i]);
@@ -64,6 +65,9 @@ NEVER_INLINE void trace_alone(TRACE_PARAMETERS, const float3* o, const float3* d
     if (!any || found[i].instance == NO_INSTANCE)
       trace_planes(TRACE_ARGUMENTS, o[i], d[i], t_min[i], &found[i]);
   }
+#endif
+#else
+  for (u32 i = 0; i < count; ++i) found[i] = no_hit(t_max[i]);
 #endif
 }
 

@@ -102,6 +102,23 @@ TEST_CASE("bench rays times every kind of ray and checks the hits") {
   CHECK(kinds == std::vector<std::string>{"primary", "shadow", "bounce", "shuffled", "reflection", "glass"});
 }
 
+TEST_CASE("bench rays says that it leaves distance fields out, and times nothing where nothing else is") {
+  const CliFolder folder;
+  const CommandResult result = run_sundog({"bench", "rays", SUNDOG_SOURCE_DIR "/scenes/mandelbulb.json",
+                                           SUNDOG_SOURCE_DIR "/scenes/julia.json", "--device", "pthread",
+                                           "--size", "16", "--repeat", "1", "--json", folder.file("r.json")});
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  const json report = json::parse(sundog::read_file(folder.file("r.json")));
+  CHECK_THAT(
+      report.at("facts").at("mandelbulb").get<std::string>(),
+      ContainsSubstring("1 distance field: marched, not traced") && ContainsSubstring("nothing to time"));
+  CHECK_THAT(report.at("facts").at("julia").get<std::string>(),
+             ContainsSubstring("SAH cost") && ContainsSubstring("1 distance field: marched, not traced"));
+  for (const json& row : report.at("measurements")) CHECK(row.at("scene") == "julia");
+  CHECK(!report.at("measurements").empty());
+}
+
 TEST_CASE("bench devices ranks devices and combinations, with shares that add up") {
   const CliFolder folder;
   CommandOptions options;
