@@ -44,6 +44,7 @@ Report new_report(const std::string& name, const std::string& title, const Bench
   report.title = title;
   report.facts = machine_facts();
   report.facts.insert(report.facts.begin(), {"sundog", SUNDOG_VERSION});
+  if (const std::string note = busy_note(); !note.empty()) report.notes.push_back(note);
   return report;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/utsname.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <ctime>
@@ -50,6 +51,18 @@ Facts machine_facts() {
           {"system", system_name()},
           {"load before", load_text()},
           {"time", time_text()}};
+}
+
+std::string busy_note() {
+  constexpr double disturbing = 0.25;  // of a core, for each core
+  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  std::array<double, 1> load{};
+  if (::getloadavg(load.data(), 1) != 1 || load[0] < disturbing * cores) return {};
+  return fmt::format(
+      "Before it began the machine was busy with other work (a load of {:.1f} on {} logical cores): times "
+      "and "
+      "speed-ups may be worse than they would be, and are spread more.",
+      load[0], cores);
 }
 
 std::string compiler_text() { return fmt::format("{} ({})", SUNDOG_COMPILER, SUNDOG_COMPILER_OPTIONS); }

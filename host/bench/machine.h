@@ -13,6 +13,10 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 /// Processor, logical cores, operating system, load when asked, and the time (UTC).
 Facts machine_facts();
 
+/// A sentence for the reader of times that were taken while other programs had a good part of the processor;
+/// empty where they had not. By the load of the last minute.
+std::string busy_note();
+
 /// The compiler of this program and its options, for figures of plain C++.
 std::string compiler_text();
 

@@ -19,7 +19,7 @@ constexpr const char* style = R"(
 @media print { :root { color-scheme: light;
   --paper: #ffffff; --ink: #000000; --soft: #444444; --line: #bbbbbb; --fill: #ffffff; --accent: #0072b2;
   --c0: #0072b2; --c1: #c04e00; --c2: #00805e; --c3: #a8467f; --c4: #8a6d00; --c5: #2f7ea8; --c6: #000000; --c7: #8b3a3a; }
-  body { font-size: 10pt; padding: 0; } figure, table, tr, h2 { break-inside: avoid; } h2 { break-after: avoid; } }
+  body { font-size: 10pt; padding: 0; } .scroll { overflow-x: visible; } th, td { padding: 3px 6px; font-size: 8.5pt; } figure, table, tr, h2 { break-inside: avoid; } h2 { break-after: avoid; } }
 * { box-sizing: border-box; }
 body { margin: 0 auto; max-width: 860px; padding: 32px 24px 64px; background: var(--paper); color: var(--ink);
   font: 15px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }
@@ -34,9 +34,9 @@ svg .bar { fill: var(--accent); fill-opacity: .75; } svg .whisker { stroke: var(
 svg .on-dark { fill: #ffffff; } svg .on-light { fill: #1c2126; } svg .best { stroke: var(--ink); stroke-width: 2.5; }
 svg, .heat rect { -webkit-print-color-adjust: exact; print-color-adjust: exact; }
 .scroll { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-th, td { padding: 4px 12px; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; }
-th { color: var(--soft); font-weight: 600; background: var(--fill); } th.w, td.w { text-align: left; }
-th small { font-weight: 400; } td.w { white-space: normal; }
+th, td { padding: 4px 9px; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; }
+th { color: var(--soft); font-weight: 600; background: var(--fill); white-space: normal; vertical-align: bottom; } th.w, td.w { text-align: left; }
+th small { font-weight: 400; display: block; } td.w { white-space: normal; }
 ul { padding-left: 20px; color: var(--soft); } details { margin-top: 36px; } summary { cursor: pointer; color: var(--soft); }
 )";
 

@@ -68,7 +68,7 @@ const std::vector<Column> figure_columns = {{"time", "ms"},
 /// Curves of one value over the samples, for the device of the plan.
 CurvePlot curves(const SampleScaling& plan, const std::vector<SampleTime>& times, const std::string& what,
                  const std::string& unit, const std::function<Spread(const SampleTime&)>& value) {
-  Curve curve{plan.device.label().substr(0, 24), {}};
+  Curve curve{plan.device.label().substr(0, plan.device.label().find(' ')), {}};
   for (const SampleTime& time : times)
     if (time.problem.empty()) curve.points.push_back({static_cast<double>(time.samples), value(time)});
   return {
@@ -117,7 +117,8 @@ void add_sample_tables(Report& report, const SampleScaling& plan, const std::vec
     measured.columns.push_back({"problem", ""});
   }
   table.columns.insert(table.columns.end(), figure_columns.begin(), figure_columns.end());
-  table.columns.push_back({"problem", ""});
+  const bool sound = std::ranges::all_of(times, [](const SampleTime& time) { return time.problem.empty(); });
+  if (!sound) table.columns.push_back({"problem", ""});
   for (const SampleTime& time : times) {
     std::vector<Cell> row{static_cast<double>(time.samples)};
     std::vector<Cell> tidy{plan.scene, plan.device.label(), static_cast<double>(time.samples),
