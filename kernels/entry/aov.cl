@@ -14,31 +14,34 @@ NEVER_INLINE void first_surfaces_item(TRACE_PARAMETERS, SHADE_PARAMETERS,
   counts[COUNT_MARCH_LEFT] = MARCH_WORK;
 #endif
   const MediaStack stack = (MediaStack)camera_media[1] << 32 | camera_media[0];
-  const u32 count = min((u32)BATCH, pixel_count - first);
-  SceneRay rays[BATCH];
-  Encounter met[BATCH];
-  for (u32 i = 0; i < count; ++i) {
-    const u32 pixel = first + i;
-    const CameraRay camera =
-        camera_ray(info, (float)(x0 + pixel % width) + 0.5f, (float)(y0 + pixel / width) + 0.5f);
-    rays[i] = scene_ray(&camera, stack);
+  const MASK lanes = lanes_of((1u << min((u32)BATCH, pixel_count - first)) - 1u);
+  REAL x = (REAL)(0.0f), y = (REAL)(0.0f);
+  for (u32 i = 0; i < BATCH; ++i) {
+    REAL_LANE(x, i) = (float)(x0 + (first + i) % width) + 0.5f;
+    REAL_LANE(y, i) = (float)(y0 + (first + i) / width) + 0.5f;
   }
-  next_surfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, count, true, met, counts);
-  for (u32 i = 0; i < count; ++i) {
-    const Encounter* e = &met[i];
+  const CameraRays camera = camera_rays(info, x, y);
+  SceneRays rays = scene_rays(&camera, stack);
+  Encounters met;
+  Surfaces s;
+  next_surfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lanes, true, &met, counts);
+  const MASK hit = lanes & hit_anything(&met.hit);
+  interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays.o, rays.d, &met.hit, &met.face, hit, &s);
+  const REAL depth = met.hit.t * dot3(rays.d, all3(info->camera_forward.xyz));
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
     __global float4* out = aovs + 3u * (first + i);
-    if (e->hit.instance == NO_INSTANCE) {
+    if (!MASK_LANE(hit, i)) {
       out[0] = (float4)(0.0f, 0.0f, 0.0f, INFINITY);
       out[1] = (float4)(0.0f, 0.0f, 0.0f, -1.0f);
       out[2] = (float4)(0.0f, 0.0f, 0.0f, -1.0f);
       continue;
     }
-    const SurfaceInteraction s = interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays[i].o, rays[i].d, &e->hit);
-    out[0] = (float4)(s.ns, e->hit.t * dot(rays[i].d, info->camera_forward.xyz));
-    out[1] = (float4)(s.p, (float)instances[e->hit.instance].object);
-    out[2] = (float4)(s.diffuse, (float)s.material);
+    out[0] = (float4)(get3(&s.ns, i), REAL_LANE(depth, i));
+    out[1] = (float4)(get3(&s.p, i), (float)instances[MASK_LANE(met.hit.instance, i)].object);
+    out[2] = (float4)(get3(&s.diffuse, i), (float)MASK_LANE(met.face.material, i));
   }
-  add_finished(counters, count, pixel_count);
+  add_finished(counters, lane_count(lanes), pixel_count);
 }
 
 // Reads the scene; writes three float4 a pixel of the rectangle, through the pixel's centre: (normal, depth

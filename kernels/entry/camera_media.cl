@@ -4,15 +4,12 @@
 // The work of the kernel below.
 NEVER_INLINE void follow_line_outside(TRACE_PARAMETERS, SHADE_PARAMETERS,
                                       __global u32* restrict camera_media) {
-  const float3 o = info->camera_position.xyz;
   const float3 d =
-      unit((float3)(0.3141f, 0.8660f, 0.3890f));  // off every axis that a scene is likely to be built along
-  const CameraRay line = {o, d, 0.0f, INFINITY};
-  SceneRay rays[BATCH];  // one ray; Mesa's compiler crashes where a batch's functions get a single struct
-  Hit hits[BATCH];
-  u32 which[BATCH];
-  which[0] = 0;
-  rays[0] = scene_ray(&line, 0);
+      (float3)(0.3141f, 0.8660f, 0.3890f);  // off every axis that a scene is likely to be built along
+  const CameraRays line = {all3(info->camera_position.xyz), renormalized3(all3(d)), (REAL)(0.0f),
+                           (REAL)(INFINITY)};
+  SceneRays rays = scene_rays(&line, 0);  // one ray, in lane 0
+  const MASK lane = lanes_of(1u);
   u32 counts[COUNTERS];  // marching counts, which nobody asks for here
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
 #if HAS_SDF
@@ -20,12 +17,13 @@ NEVER_INLINE void follow_line_outside(TRACE_PARAMETERS, SHADE_PARAMETERS,
 #endif
   MediaStack entered = 0, holding = 0;
   for (u32 i = 0; i < 4096u; ++i) {
-    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, which, 1, false, false, hits, counts);
-    const Hit hit = hits[0];
-    if (hit.instance == NO_INSTANCE) break;
-    const bool entering = dot(outward_normal(TRACE_ARGUMENTS, &hit), d) < 0.0f;
-    continue_behind(instances, &rays[0], &hit, entering);
-    __global const Material* material = materials + hit_material(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &hit);
+    Hits hits;
+    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lane, false, false, &hits, counts);
+    if (MASK_LANE(hits.instance, 0) == (int)NO_INSTANCE) break;
+    const Faces faces = hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays.d, &hits, lane);
+    continue_behind(info, &rays, &hits, faces.entering, lane);
+    const bool entering = MASK_LANE(faces.entering, 0);
+    __global const Material* material = materials + MASK_LANE(faces.material, 0);
     if (!(material->flags & MATERIAL_TRANSMITS) || (material->flags & MATERIAL_THIN)) continue;
     if (entering) {
       cross_boundary(&entered, material->medium, true);

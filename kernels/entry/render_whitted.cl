@@ -5,63 +5,78 @@
 #include "lib/random.cl"
 #include "lib/whitted.cl"
 
-#define NO_PIXEL 0xFFFFFFFFu
+// Rectangle of pixels in the image, and what is added to it.
+typedef struct Job {
+  u32 x0, y0, width, height;
+  u32 first_sample, sample_count;
+} Job;
 
-// Pixel of this work-item's lane in the rectangle, NO_PIXEL outside of it. Neighbouring work-items take
+// Pixel of lane `lane` of work-item `item`, counted from the rectangle's corner. Neighbouring work-items take
 // neighbouring tiles.
-static inline u32 lane_pixel(u32 item, u32 lane, u32 x0, u32 y0, u32 width, u32 height, u32* x, u32* y) {
-  const u32 columns = (width + TILE_W - 1u) / TILE_W;
-  const u32 local_x = (item % columns) * TILE_W + lane % TILE_W,
-            local_y = (item / columns) * TILE_H + lane / TILE_W;
-  *x = x0 + local_x;
-  *y = y0 + local_y;
-  return local_x < width && local_y < height ? local_y * width + local_x : NO_PIXEL;
+static inline uint2 lane_pixel(const Job* job, u32 item, u32 lane) {
+  const u32 columns = (job->width + TILE_W - 1u) / TILE_W;
+  return (uint2)(item % columns * TILE_W + lane % TILE_W, item / columns * TILE_H + lane / TILE_W);
+}
+
+// The camera's rays of one sample. Returns the lanes that have a pixel.
+static inline MASK start_rays(__global const SceneInfo* restrict info, const Job* job, u32 item, u32 sample,
+                              MediaStack around, SceneRays* rays) {
+  MASK lanes = NO_LANES;
+  REAL x = (REAL)(0.0f), y = (REAL)(0.0f);
+  for (u32 lane = 0; lane < BATCH; ++lane) {
+    const uint2 at = lane_pixel(job, item, lane);
+    if (at.x >= job->width || at.y >= job->height) continue;
+    const u32 px = job->x0 + at.x, py = job->y0 + at.y;
+    const float2 in_pixel = sample_offset(px, py, sample, info->samples);
+    REAL_LANE(x, lane) = (float)px + in_pixel.x;
+    REAL_LANE(y, lane) = (float)py + in_pixel.y;
+    MASK_LANE(lanes, lane) = -1;
+  }
+  const CameraRays camera = camera_rays(info, x, y);
+  *rays = scene_rays(&camera, around);
+  return lanes;
+}
+
+// Adds the light of one sample to film and weights.
+static inline void store_sample(const Job* job, u32 item, MASK lanes, const float4* radiance,
+                                __global float4* restrict film, __global float* restrict weights,
+                                u32* counts) {
+  for (u32 lane = 0; lane < BATCH; ++lane) {
+    if (!MASK_LANE(lanes, lane)) continue;
+    const float3 zero = radiance[lane].xyz * 0.0f;  // NaN where one is not finite
+    if (zero.x + zero.y + zero.z != 0.0f) {
+      counts[COUNT_NON_FINITE] += 1u;
+      continue;
+    }
+    const uint2 at = lane_pixel(job, item, lane);
+    const u32 pixel = at.y * job->width + at.x;
+    film[pixel] += radiance[lane];
+    weights[pixel] += 1.0f;
+  }
 }
 
 // One work-item of the kernel below.
-NEVER_INLINE void render_item(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const u32* restrict camera_media,
+NEVER_INLINE void render_item(TRACE_PARAMETERS, SHADE_PARAMETERS, MediaStack around, const Job* job, u32 item,
                               __global float4* restrict film, __global float* restrict weights,
-                              __global u32* restrict counters, u32 item, u32 x0, u32 y0, u32 width,
-                              u32 height, u32 first_sample, u32 sample_count) {
+                              __global u32* restrict counters) {
   u32 counts[COUNTERS];
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
-  const MediaStack start = (MediaStack)camera_media[1] << 32 | camera_media[0];
   RayStack stack;
-  for (u32 sample = first_sample; sample < first_sample + sample_count; ++sample) {
+  for (u32 sample = job->first_sample; sample < job->first_sample + job->sample_count; ++sample) {
     float4 radiance[BATCH];
-    stack.count = 0;
+    for (u32 lane = 0; lane < BATCH; ++lane) radiance[lane] = (float4)(0.0f);
 #if HAS_SDF
     counts[COUNT_MARCH_LEFT] = MARCH_WORK;
 #endif
-    for (u32 lane = 0; lane < BATCH; ++lane) {
-      u32 x, y;
-      radiance[lane] = (float4)(0.0f);
-      if (lane_pixel(item, lane, x0, y0, width, height, &x, &y) == NO_PIXEL) continue;
-      const float2 at = sample_offset(x, y, sample, info->samples);
-      const CameraRay camera = camera_ray(info, (float)x + at.x, (float)y + at.y);
-      stack.rays[stack.count] = scene_ray(&camera, start);
-      PathState* path = &stack.paths[stack.count++];
-      path->throughput = (float3)(1.0f);
-      path->pixel = lane;
-      path->depth = 1u;
-      counts[COUNT_PRIMARY] += 1u;
-    }
-    trace_whitted(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &stack, radiance, counts);
-    for (u32 lane = 0; lane < BATCH; ++lane) {
-      u32 x, y;
-      const u32 pixel = lane_pixel(item, lane, x0, y0, width, height, &x, &y);
-      if (pixel == NO_PIXEL) continue;
-      if (!finite3(radiance[lane].xyz)) {
-        counts[COUNT_NON_FINITE] += 1u;
-        continue;
-      }
-      film[pixel] += radiance[lane];
-      weights[pixel] += 1.0f;
-    }
+    SceneRays rays;
+    const MASK lanes = start_rays(info, job, item, sample, around, &rays);
+    counts[COUNT_PRIMARY] += lane_count(lanes);
+    trace_whitted(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lanes, &stack, radiance, counts);
+    store_sample(job, item, lanes, radiance, film, weights, counts);
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);
-  add_finished(counters, counts[COUNT_PRIMARY], sample_count);
+  add_finished(counters, counts[COUNT_PRIMARY], job->sample_count);
 }
 
 // Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of work-items
@@ -75,6 +90,7 @@ __kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const 
   // Items count through the rectangle row by row; a launch in two dimensions takes whole rows of them.
   const u32 item = first_item + get_global_id(1) * row_items + get_global_id(0);
   if (get_global_id(0) >= row_items || item >= last_item) return;
-  render_item(TRACE_ARGUMENTS, SHADE_ARGUMENTS, camera_media, film, weights, counters, item, x0, y0, width,
-              height, first_sample, sample_count);
+  const Job job = {x0, y0, width, height, first_sample, sample_count};
+  render_item(TRACE_ARGUMENTS, SHADE_ARGUMENTS, (MediaStack)camera_media[1] << 32 | camera_media[0], &job,
+              item, film, weights, counters);
 }

@@ -3,33 +3,33 @@
 #include "lib/traverse.cl"
 
 // The BATCH rays of work-item `item`, in the form that the tracer takes.
-#define LOAD_BATCH                                      \
-  const u32 first = item * BATCH;                       \
-  if (first >= ray_count) return;                       \
-  const u32 count = min((u32)BATCH, ray_count - first); \
-  float3 o[BATCH], d[BATCH];                            \
-  float t_min[BATCH], t_max[BATCH];                     \
-  for (u32 i = 0; i < count; ++i) {                     \
-    const Ray ray = rays[first + i];                    \
-    o[i] = (float3)(ray.ox, ray.oy, ray.oz);            \
-    d[i] = (float3)(ray.dx, ray.dy, ray.dz);            \
-    t_min[i] = ray.t_min;                               \
-    t_max[i] = ray.t_max;                               \
+#define LOAD_BATCH                                                              \
+  const u32 first = item * BATCH;                                               \
+  if (first >= ray_count) return;                                               \
+  const MASK lanes = lanes_of((1u << min((u32)BATCH, ray_count - first)) - 1u); \
+  REAL3 o, d;                                                                   \
+  REAL t_min, t_max;                                                            \
+  for (u32 i = 0; i < BATCH; ++i) {                                             \
+    const Ray ray = rays[min(first + i, ray_count - 1u)];                       \
+    set3(&o, i, (float3)(ray.ox, ray.oy, ray.oz));                              \
+    set3(&d, i, (float3)(ray.dx, ray.dy, ray.dz));                              \
+    REAL_LANE(t_min, i) = ray.t_min;                                            \
+    REAL_LANE(t_max, i) = ray.t_max;                                            \
   }
 
 NEVER_INLINE void trace_rays_item(TRACE_PARAMETERS, __global const Ray* restrict rays,
                                   __global Hit* restrict hits, u32 ray_count, u32 coherent, u32 item) {
   LOAD_BATCH
-  Hit found[BATCH];
-  trace_batch(TRACE_ARGUMENTS, o, d, t_min, t_max, count, coherent != 0u, found);
-  for (u32 i = 0; i < count; ++i) hits[first + i] = found[i];
+  Hits found;
+  trace_batch(TRACE_ARGUMENTS, &o, &d, &t_min, t_max, lanes, coherent != 0u, &found);
+  for (u32 i = 0; i < BATCH && first + i < ray_count; ++i) hits[first + i] = get_hit(&found, i);
 }
 NEVER_INLINE void occluded_rays_item(TRACE_PARAMETERS, __global const Ray* restrict rays,
                                      __global u32* restrict occluded, u32 ray_count, u32 coherent, u32 item) {
   LOAD_BATCH
-  u32 found[BATCH];
-  occluded_batch(TRACE_ARGUMENTS, o, d, t_min, t_max, count, coherent != 0u, found);
-  for (u32 i = 0; i < count; ++i) occluded[first + i] = found[i];
+  const MASK found = occluded_batch(TRACE_ARGUMENTS, &o, &d, &t_min, t_max, lanes, coherent != 0u);
+  for (u32 i = 0; i < BATCH && first + i < ray_count; ++i)
+    occluded[first + i] = (u32)MASK_LANE(found, i) & 1u;
 }
 // Reads ray_count rays; writes the nearest hit of each in (t_min, t_max].
 __kernel void trace_rays(TRACE_PARAMETERS, __global const Ray* restrict rays, __global Hit* restrict hits,

@@ -1,23 +1,24 @@
 // The pinhole camera and what lies behind everything.
 #ifndef SUNDOG_LIB_CAMERA_CL
 #define SUNDOG_LIB_CAMERA_CL
+#include "lib/lanes.h"
 #include "lib/tables.h"
-#include "lib/transform.cl"
 
-typedef struct CameraRay {
-  float3 o, d;  // d unit
-  float t_min, t_max;
-} CameraRay;
+typedef struct CameraRays {
+  REAL3 o, d;  // d unit
+  REAL t_min, t_max;
+} CameraRays;
 
-static inline CameraRay camera_ray(__global const SceneInfo* restrict info, float x, float y) {
-  CameraRay ray;
-  const float3 along = info->camera_corner.xyz + x * info->camera_dx.xyz + y * info->camera_dy.xyz;
-  const float depth_to_t = sqrt(dot(along, along));  // `along` has length 1 along the view
-  ray.o = info->camera_position.xyz;
-  ray.d = along / depth_to_t;
-  ray.t_min = info->camera_forward.w * depth_to_t;
-  ray.t_max = info->background_bottom.w * depth_to_t;
-  return ray;
+static inline CameraRays camera_rays(__global const SceneInfo* restrict info, REAL x, REAL y) {
+  CameraRays rays;
+  const REAL3 along = along3(along3(all3(info->camera_corner.xyz), x, all3(info->camera_dx.xyz)), y,
+                             all3(info->camera_dy.xyz));
+  const REAL depth_to_t = length3(along);  // `along` has length 1 along the view
+  rays.o = all3(info->camera_position.xyz);
+  rays.d = scale3(along, 1.0f / depth_to_t);
+  rays.t_min = info->camera_forward.w * depth_to_t;
+  rays.t_max = info->background_bottom.w * depth_to_t;
+  return rays;
 }
 
 // How much wider a pixel's footprint becomes on each unit of a ray's way.
@@ -27,10 +28,11 @@ static inline float pixel_spread(__global const SceneInfo* restrict info) {
 }
 
 // What a ray sees that meets nothing, by its unit direction.
-static inline float3 background_along(__global const SceneInfo* restrict info, float3 d) {
-  const float s = clamp(0.5f + 0.5f * dot(d, info->up.xyz), 0.0f, 1.0f);
-  const float3 bottom = info->background_bottom.xyz, top = info->background_top.xyz;
-  return bottom + s * (top - bottom);
+static inline REAL3 background_along(__global const SceneInfo* restrict info, REAL3 d) {
+  const float3 bottom = info->background_bottom.xyz;
+  const REAL sine = dot3(d, all3(info->up.xyz));
+  const REAL s = real_clamp(fma(sine, (REAL)(0.5f), (REAL)(0.5f)), (REAL)(0.0f), (REAL)(1.0f));
+  return along3(all3(bottom), s, all3(info->background_top.xyz - bottom));
 }
 
 #endif

@@ -8,11 +8,11 @@
 #include "lib/transform.cl"
 
 #if HAS_SDF
-// LANES rays of a batch, transposed.
+// The rays of a batch as marching sees them.
 typedef struct RayLanes {
   REAL3 o, d;  // world
   REAL t_min, t_best, footprint;
-  MASK from;  // SceneRay.from
+  MASK from;  // SceneRays.from
   MASK active;
   // Of the nearest hit among the fields:
   MASK winner;       // its instance, or -1
@@ -23,48 +23,23 @@ typedef struct RayLanes {
 #endif
 } RayLanes;
 
-static inline RayLanes load_lanes(const SceneRay* rays, const u32* which, u32 first, u32 count,
-                                  const Hit* hits) {
+static inline RayLanes load_lanes(const SceneRays* rays, REAL t_best, MASK active) {
   RayLanes lanes;
+  lanes.o = rays->o;
+  lanes.d = rays->d;
+  lanes.t_min = rays->t_min;
+  lanes.t_best = t_best;
+  lanes.footprint = rays->footprint;
+  lanes.from = rays->from;
+  lanes.active = active;
   lanes.winner = ALL_LANES;
   lanes.inside = NO_LANES;
   lanes.cut = NO_LANES;
   lanes.threshold = (REAL)(0.0f);
 #if HAS_GLOW
-  lanes.glow = real3((REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f));
+  lanes.glow = all3((float3)(0.0f));
 #endif
-  for (u32 i = 0; i < LANES; ++i) {
-    const u32 k = min(first + i, count - 1u);
-    const SceneRay* ray = rays + which[k];
-    REAL_LANE(lanes.o.x, i) = ray->o.x;
-    REAL_LANE(lanes.o.y, i) = ray->o.y;
-    REAL_LANE(lanes.o.z, i) = ray->o.z;
-    REAL_LANE(lanes.d.x, i) = ray->d.x;
-    REAL_LANE(lanes.d.y, i) = ray->d.y;
-    REAL_LANE(lanes.d.z, i) = ray->d.z;
-    REAL_LANE(lanes.t_min, i) = ray->t_min;
-    REAL_LANE(lanes.t_best, i) = hits[k].t;
-    REAL_LANE(lanes.footprint, i) = ray->footprint;
-    MASK_LANE(lanes.from, i) = (int)ray->from;
-    MASK_LANE(lanes.active, i) = first + i < count ? -1 : 0;
-  }
   return lanes;
-}
-
-static inline REAL3 object_points(__global const Instance* instance, REAL3 p) {
-  const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
-               r2 = instance->object_from_world[2];
-  return real3(fma(p.x, (REAL)(r0.x), fma(p.y, (REAL)(r0.y), fma(p.z, (REAL)(r0.z), (REAL)(r0.w)))),
-               fma(p.x, (REAL)(r1.x), fma(p.y, (REAL)(r1.y), fma(p.z, (REAL)(r1.z), (REAL)(r1.w)))),
-               fma(p.x, (REAL)(r2.x), fma(p.y, (REAL)(r2.y), fma(p.z, (REAL)(r2.z), (REAL)(r2.w)))));
-}
-
-static inline REAL3 object_vectors(__global const Instance* instance, REAL3 d) {
-  const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
-               r2 = instance->object_from_world[2];
-  return real3(fma(d.x, (REAL)(r0.x), fma(d.y, (REAL)(r0.y), d.z * r0.z)),
-               fma(d.x, (REAL)(r1.x), fma(d.y, (REAL)(r1.y), d.z * r1.z)),
-               fma(d.x, (REAL)(r2.x), fma(d.y, (REAL)(r2.y), d.z * r2.z)));
 }
 
 // Lanes that start in the interval.
@@ -151,9 +126,9 @@ static inline void march_field(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, Ra
   pay_for_steps(field, most, counts);
 }
 
-// Normals and colours of the lanes that met instance `index`, as hits[k] of the batch.
+// Normals and colours of the lanes that met instance `index`.
 static inline void shade_lanes(SDF_PARAMETERS, __global const Instance* restrict instances, u32 index,
-                               const RayLanes* lanes, u32 first, Hit* hits) {
+                               const RayLanes* lanes, Hits* hits) {
   const MASK mine = MASK_OF(lanes->winner == (int)index);
   if (!any_lane(mine)) return;
   const REAL3 o = object_points(instances + index, lanes->o), d = object_vectors(instances + index, lanes->d);
@@ -165,19 +140,13 @@ static inline void shade_lanes(SDF_PARAMETERS, __global const Instance* restrict
   const REAL limit = select((REAL)(-1e-3f), (REAL)(1e-3f), inside);
   const MASK wrong = select(MASK_OF(towards > limit), MASK_OF(towards < limit), inside);
   const REAL3 bent = along3(surface.normal, select((REAL)(0.0f), (limit - towards) / speed, wrong), d);
-  for (u32 i = 0; i < LANES; ++i) {
-    if (!MASK_LANE(mine, i)) continue;
-    Hit* hit = &hits[first + i];
-    hit->t = REAL_LANE(lanes->t_best, i);
-    hit->instance = index;
-    hit->ng_x = REAL_LANE(bent.x, i);
-    hit->ng_y = REAL_LANE(bent.y, i);
-    hit->ng_z = REAL_LANE(bent.z, i);
-    // A field has no parameters u, v and no parts: their place takes the colour.
-    hit->u = REAL_LANE(surface.color.x, i);
-    hit->v = REAL_LANE(surface.color.y, i);
-    hit->prim = as_uint(REAL_LANE(surface.color.z, i));
-  }
+  hits->t = select(hits->t, lanes->t_best, mine);
+  hits->instance = select(hits->instance, (MASK)((int)index), mine);
+  hits->ng = select3(hits->ng, bent, mine);
+  // A field has no parameters u, v and no parts: their place takes the colour.
+  hits->u = select(hits->u, surface.color.x, mine);
+  hits->v = select(hits->v, surface.color.y, mine);
+  hits->prim = select(hits->prim, AS_MASK(surface.color.z), mine);
 }
 
 // What of a hit is wanted: all; all, on the way to a light, so that fields with soft shadows are left to
@@ -186,29 +155,24 @@ static inline void shade_lanes(SDF_PARAMETERS, __global const Instance* restrict
 #define MARCH_TO_LIGHT 1u
 #define MARCH_TO_BLOCK 2u
 
-// Takes hits[k], which holds the nearest hit of rays[which[k]] so far, to a field's where that is nearer,
-// k < count. A hit's u, v and prim hold its colour. Adds to the rays' glow.
-NEVER_INLINE void march_fields(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* rays, const u32* which,
-                               u32 count, u32 purpose, Hit* hits, u32* counts) {
+// Takes `hits`, which holds the nearest ones so far, to a field's where that is nearer, for the lanes of
+// `active`. A hit's u, v and prim hold its colour. Adds to the rays' glow.
+NEVER_INLINE void march_fields(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active, u32 purpose,
+                               Hits* hits, u32* counts) {
   const bool to_light = purpose != MARCH_TO_SEE;
-  for (u32 first = 0; first < count; first += LANES) {
-    RayLanes lanes = load_lanes(rays, which, first, count, hits);
-    for (u32 index = info->instance_count; index < info->field_end; ++index)
-      if (!(to_light && sdf_fields[instances[index].root].shadow_hardness > 0.0f))
-        march_field(TRACE_ARGUMENTS, SHADE_ARGUMENTS, index, &lanes, counts);
-    if (purpose == MARCH_TO_BLOCK) {
-      for (u32 i = 0; i < LANES && first + i < count; ++i)
-        if (MASK_LANE(lanes.winner, i) >= 0) hits[first + i].instance = (u32)MASK_LANE(lanes.winner, i);
-      continue;
-    }
-    for (u32 index = info->instance_count; index < info->field_end; ++index)
-      shade_lanes(SDF_ARGUMENTS, instances, index, &lanes, first, hits);
-#if HAS_GLOW
-    for (u32 i = 0; i < LANES && first + i < count && !to_light; ++i)
-      rays[which[first + i]].glow +=
-          (float3)(REAL_LANE(lanes.glow.x, i), REAL_LANE(lanes.glow.y, i), REAL_LANE(lanes.glow.z, i));
-#endif
+  RayLanes lanes = load_lanes(rays, hits->t, active);
+  for (u32 index = info->instance_count; index < info->field_end; ++index)
+    if (!(to_light && sdf_fields[instances[index].root].shadow_hardness > 0.0f))
+      march_field(TRACE_ARGUMENTS, SHADE_ARGUMENTS, index, &lanes, counts);
+  if (purpose == MARCH_TO_BLOCK) {
+    hits->instance = select(hits->instance, lanes.winner, MASK_OF(lanes.winner >= 0));
+    return;
   }
+  for (u32 index = info->instance_count; index < info->field_end; ++index)
+    shade_lanes(SDF_ARGUMENTS, instances, index, &lanes, hits);
+#if HAS_GLOW
+  if (!to_light) rays->glow = select3(rays->glow, add3(rays->glow, lanes.glow), active);
+#endif
 }
 
 #endif

@@ -1,45 +1,49 @@
-// Light arriving at a point, and what a surface makes of it (Phong 1975, Blinn 1977).
+// Light arriving at points, and what surfaces make of it (Phong 1975, Blinn 1977). A point a lane.
 #ifndef SUNDOG_LIB_LIGHTS_CL
 #define SUNDOG_LIB_LIGHTS_CL
-#include "lib/config.h"
 #include "lib/surface.cl"
 #include "lib/tables.h"
 
-typedef struct LightSample {
-  float3 wi;        // unit, from the surface to the light
-  float distance;   // infinite for a directional light
-  float3 radiance;  // before shadowing
-} LightSample;
+typedef struct LightSamples {
+  REAL3 wi;        // unit, from the surface to the light
+  REAL distance;   // infinite for a directional light
+  REAL3 radiance;  // before shadowing
+} LightSamples;
 
-static inline LightSample sample_light(__global const Light* light, float3 p) {
-  LightSample sample;
-  sample.radiance = light->color.xyz;
+static inline LightSamples sample_light(__global const Light* light, REAL3 p) {
+  LightSamples sample;
+  sample.radiance = all3(light->color.xyz);
   if (light->kind == LIGHT_DIRECTIONAL) {
-    sample.wi = -light->direction.xyz;
-    sample.distance = INFINITY;
+    sample.wi = all3(-light->direction.xyz);
+    sample.distance = (REAL)(INFINITY);
     return sample;
   }
-  const float3 to = light->position.xyz - p;
-  sample.wi = unit(to);
-  const float d = dot(to, sample.wi);
+  const REAL3 to = subtract3(all3(light->position.xyz), p);
+  sample.wi = safe_unit3(to);
+  const REAL d = dot3(to, sample.wi);
   sample.distance = d;
-  sample.radiance /=
-      fma(light->falloff_quadratic * d, d, fma(light->falloff_linear, d, light->falloff_constant));
+  if (light->falloff_linear != 0.0f || light->falloff_quadratic != 0.0f || light->falloff_constant != 1.0f) {
+    const REAL falloff = fma(light->falloff_quadratic * d, d,
+                             fma((REAL)(light->falloff_linear), d, (REAL)(light->falloff_constant)));
+    sample.radiance =
+        real3(sample.radiance.x / falloff, sample.radiance.y / falloff, sample.radiance.z / falloff);
+  }
   if (light->kind == LIGHT_SPOT) {
-    const float cosine = -dot(sample.wi, light->direction.xyz), outer = light->direction.w,
-                inner = light->color.w;
-    const float s = inner > outer ? clamp((cosine - outer) / (inner - outer), 0.0f, 1.0f)
-                                  : (cosine >= outer ? 1.0f : 0.0f);
-    sample.radiance *= s * s * (3.0f - 2.0f * s);
+    const REAL cosine = -dot3(sample.wi, all3(light->direction.xyz));
+    const float outer = light->direction.w, inner = light->color.w;
+    const REAL one = (REAL)(1.0f), zero = (REAL)(0.0f);
+    const REAL s = inner > outer ? real_clamp((cosine - outer) / (inner - outer), zero, one)
+                                 : select(zero, one, MASK_OF(cosine >= outer));
+    sample.radiance = scale3(sample.radiance, s * s * (3.0f - 2.0f * s));
   }
   return sample;
 }
 
-// x^e for x in [0, 1]. Whole exponents, which most are, by squaring: quicker than pow(), and the same bits on
-// every device.
-static inline float highlight(float x, float e) {
-  if (e != floor(e) || e > 65535.0f) return pow(x, e);
-  float result = 1.0f;
+// x^e for x in [0, 1]. Whole exponents, which most are, by squaring.
+static inline REAL highlight(REAL x, float e) {
+  if (e != floor(e) || e > 65535.0f)
+    return select(real_exp(e * real_log(real_max(x, (REAL)(1e-37f)))), (REAL)(0.0f), MASK_OF(x < 1e-37f));
+  REAL result = (REAL)(1.0f);
   for (u32 bits = (u32)e; bits; bits >>= 1) {
     if (bits & 1u) result *= x;
     x *= x;
@@ -47,19 +51,22 @@ static inline float highlight(float x, float e) {
   return result;
 }
 
-// kd (n.l) + ks (r.v)^beta, or (n.h)^beta for Blinn. d is the ray's direction, so the viewer is along -d.
-static inline float3 local_reflection(__global const Material* material, const SurfaceInteraction* s,
-                                      float3 d, float3 wi) {
-  const float n_dot_l = dot(s->ns, wi);
-  float3 sum = s->diffuse * n_dot_l;
-  const float4 specular = material->specular;
-  if (specular.x != 0.0f || specular.y != 0.0f || specular.z != 0.0f) {
-    float cosine;
-    if (material->flags & MATERIAL_BLINN)
-      cosine = dot(s->ns, unit(wi - d));
-    else
-      cosine = dot(2.0f * n_dot_l * s->ns - wi, -d);
-    if (cosine > 0.0f) sum += specular.xyz * highlight(fmin(cosine, 1.0f), specular.w);
+// kd (n.l) + ks (r.v)^beta, or (n.h)^beta for Blinn, for the lanes of `lanes`. d are the rays' directions, so
+// the viewer is along -d.
+static inline REAL3 local_reflection(__global const Material* restrict materials, const Faces* faces,
+                                     const Surfaces* s, REAL3 d, REAL3 wi, MASK lanes) {
+  const REAL n_dot_l = dot3(s->ns, wi);
+  REAL3 sum = scale3(s->diffuse, n_dot_l);
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(faces->material, &lanes, &index);
+    const float4 specular = materials[index].specular;
+    if (specular.x == 0.0f && specular.y == 0.0f && specular.z == 0.0f) continue;
+    const REAL cosine = materials[index].flags & MATERIAL_BLINN
+                            ? dot3(s->ns, safe_unit3(subtract3(wi, d)))
+                            : dot3(subtract3(wi, scale3(s->ns, 2.0f * n_dot_l)), d);
+    const REAL shine = highlight(real_clamp(cosine, (REAL)(0.0f), (REAL)(1.0f)), specular.w);
+    sum = select3(sum, along3(sum, shine, all3(specular.xyz)), mine & MASK_OF(cosine > 0.0f));
   }
   return sum;
 }

@@ -3,7 +3,7 @@
 // Dielectrics in Ray Traced Images").
 #ifndef SUNDOG_LIB_MEDIA_CL
 #define SUNDOG_LIB_MEDIA_CL
-#include "lib/config.h"
+#include "lib/lanes.h"
 #include "lib/tables.h"
 
 // Up to eight media in the order of entry, the last in the lowest byte; a byte holds the medium's index plus
@@ -42,12 +42,30 @@ static inline bool cross_boundary(MediaStack* stack, u32 medium, bool entering) 
   return false;
 }
 
-// Beer-Lambert: what is left of light after `distance` in the medium.
-static inline float3 absorb(__global const Medium* restrict media, u32 medium, float distance) {
-  const float3 a = media[medium].absorption.xyz;
-  // A colour that is not absorbed keeps its bits, over infinite distances too.
-  return (float3)(a.x == 0.0f ? 1.0f : exp(-a.x * distance), a.y == 0.0f ? 1.0f : exp(-a.y * distance),
-                  a.z == 0.0f ? 1.0f : exp(-a.z * distance));
+// Beer-Lambert: what is left of light after `distance` in the medium of each lane of `lanes`, 1 elsewhere.
+static inline REAL3 absorb(__global const Medium* restrict media, MASK medium, REAL distance, MASK lanes) {
+  REAL3 kept = all3((float3)(1.0f));
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(medium, &lanes, &index);
+    const float3 a = media[index].absorption.xyz;
+    // A colour that is not absorbed keeps its bits, over infinite distances too.
+    if (a.x != 0.0f) kept.x = select(kept.x, real_exp(-a.x * distance), mine);
+    if (a.y != 0.0f) kept.y = select(kept.y, real_exp(-a.y * distance), mine);
+    if (a.z != 0.0f) kept.z = select(kept.z, real_exp(-a.z * distance), mine);
+  }
+  return kept;
+}
+
+// Index of refraction of the medium of each lane of `lanes`, 1 elsewhere.
+static inline REAL refraction_index(__global const Medium* restrict media, MASK medium, MASK lanes) {
+  REAL index = (REAL)(1.0f);
+  u32 at;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(medium, &lanes, &at);
+    index = select(index, (REAL)(media[at].absorption.w), mine);
+  }
+  return index;
 }
 
 #endif

@@ -63,12 +63,12 @@ ALWAYS_INLINE int16 slab_distance(float bound, float16 rcp, float16 shift) {
 ALWAYS_INLINE u32 rays_in_child(__global const Bvh8Node* node, u32 slot, const PacketRays* rays,
                                 const PacketHits* hits) {
   __global const float* bounds = node->lower_x + slot;
-  int16 near = as_int16(hits->t_min), far = as_int16(hits->t);
+  int16 near = as_int16(hits->t_min), far = as_int16(hits->found.t);
   for (u32 axis = 0; axis < 3u; ++axis) {
     near = max(near, slab_distance(bounds[rays->near[axis]], rays->rcp_near[axis], rays->shift_near[axis]));
     far = min(far, slab_distance(bounds[rays->far[axis]], rays->rcp_far[axis], rays->shift_far[axis]));
   }
-  return lane_mask16(near <= far);
+  return lane_bits(near <= far);
 }
 
 // Goes on to the next place where something is to be done: a leaf, or a node that few rays cross. Writes its
@@ -105,24 +105,24 @@ ALWAYS_INLINE bool packet_triangle(__global const TriangleBlock* blocks, u32 pla
   const float16 e0 = x2 * y1 - y2 * x1, e1 = x0 * y2 - y0 * x2, e2 = x1 * y0 - y1 * x0;
   const float16 a = select(e1, e0, e0 < e1), b = select(e1, e0, e0 > e1);
   int16 hit = (select(e2, a, a < e2) >= 0.0f) | (select(e2, b, b > e2) <= 0.0f);
-  if (!lane_mask16(hit)) return false;
+  if (!lane_bits(hit)) return false;
   const float16 scale = 1.0f / (e0 + e1 + e2);
   const float16 w0 = e0 * scale, u = e1 * scale, v = e2 * scale;
   const float16 t = fma(w0, z0, fma(u, z1, v * z2)) * rays->sz;
-  hit &= (t > hits->t_min) & (t <= hits->t);
-  if (!lane_mask16(hit)) return false;
-  u32 ties = lane_mask16(hit & (t == hits->t));
+  hit &= (t > hits->t_min) & (t <= hits->found.t);
+  if (!lane_bits(hit)) return false;
+  u32 ties = lane_bits(hit & (t == hits->found.t));
   while (ties) {
     const u32 i = lowest_bit(ties);
     ties &= ties - 1u;
-    const Hit other = packet_hit(hits, i);
+    const Hit other = get_hit(&hits->found, i);
     if (!wins_tie(blocks, instance, place, &other)) hit &= ~lanes_of(1u << i);
   }
-  hits->t = select(hits->t, any ? (float16)(-1.0f) : t, hit);
-  hits->u = select(hits->u, u, hit);
-  hits->v = select(hits->v, v, hit);
-  hits->prim = select(hits->prim, (uint16)(place), hit);
-  hits->instance = select(hits->instance, (uint16)(instance), hit);
+  hits->found.t = select(hits->found.t, any ? (float16)(-1.0f) : t, hit);
+  hits->found.u = select(hits->found.u, u, hit);
+  hits->found.v = select(hits->found.v, v, hit);
+  hits->found.prim = select(hits->found.prim, (int16)((int)place), hit);
+  hits->found.instance = select(hits->found.instance, (int16)((int)instance), hit);
   return true;
 }
 
@@ -130,27 +130,13 @@ ALWAYS_INLINE bool packet_triangle(__global const TriangleBlock* blocks, u32 pla
 // whether any hits something nearer.
 NEVER_INLINE bool walk_lanes(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active, u32 word,
                              u32 instance, bool any) {
-  float3 o[PACKET], d[PACKET];
-  float t_min[PACKET];
-  Hit found[PACKET];
-  u32 which[PACKET], count = 0;
-  for (; active; active &= active - 1u) {
-    const u32 i = lowest_bit(active);
-    o[i] = packet_origin(rays, i);
-    d[i] = packet_direction(rays, i);
-    t_min[i] = get_lane(&hits->t_min, i);
-    found[i] = packet_hit(hits, i);
-    which[count++] = i;
-  }
-  const WalkRays walkers = {o, d, t_min, found};
-  walk_rays(TRACE_ARGUMENTS, &walkers, which, count, word, instance, any);
-  bool nearer = false;
-  for (u32 k = 0; k < count; ++k) {
-    const u32 i = which[k];
-    nearer |= found[i].t < get_lane(&hits->t, i);
-    set_packet_hit(hits, i, &found[i], any);
-  }
-  return nearer;
+  const REAL3 o = real3(rays->o[0], rays->o[1], rays->o[2]), d = real3(rays->d[0], rays->d[1], rays->d[2]);
+  const REAL before = hits->found.t;
+  const WalkRays walkers = {&o, &d, &hits->t_min, &hits->found};
+  walk_rays(TRACE_ARGUMENTS, &walkers, active, word, instance, any);
+  const MASK nearer = MASK_OF(hits->found.t < before);
+  if (any) end_lanes(hits, lanes_of(active));
+  return any_lane(nearer);
 }
 
 NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 root,
@@ -170,28 +156,17 @@ NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, Packe
         for (u32 i = 0; i < 8u && blocks[index].prim[i] != NO_PRIM; ++i)
           hit |= packet_triangle(blocks, index * 8u + i, rays, hits, instance, any);
     }
-    if (hit) hits->t_most = most_of(hits->t);
+    if (hit) hits->t_most = most_of(hits->found.t);
   }
 }
+
 #endif
 
-// The rays of `active` by themselves against an instance; world space.
-NEVER_INLINE void instance_alone(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,
-                                 u32 index, bool any) {
-  __global const Instance* instance = instances + index;
-#if HAS_MESH
-  if (instance->shape == SHAPE_MESH) {
-    walk_lanes(TRACE_ARGUMENTS, rays, hits, active, BVH_LEAF | index, NO_INSTANCE, any);
-    return;
-  }
-#endif
-  for (; active; active &= active - 1u) {
-    const u32 i = lowest_bit(active);
-    Hit hit = packet_hit(hits, i);
-    trace_solid(instances, index, object_point(instance, packet_origin(rays, i)),
-                object_vector(instance, packet_direction(rays, i)), get_lane(&hits->t_min, i), &hit);
-    set_packet_hit(hits, i, &hit, any);
-  }
+static inline void packet_in_solid(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,
+                                   u32 index, bool any) {
+  const REAL3 o = real3(rays->o[0], rays->o[1], rays->o[2]), d = real3(rays->d[0], rays->d[1], rays->d[2]);
+  hit_solid(instances, index, &o, &d, &hits->t_min, lanes_of(active), &hits->found);
+  if (any) end_lanes(hits, lanes_of(active));
 }
 
 // The rays of `active` against an instance; world space.
@@ -199,7 +174,11 @@ NEVER_INLINE void packet_in_instance(TRACE_PARAMETERS, const PacketRays* rays, P
                                      u32 index, bool any) {
 #if HAS_MESH
   __global const Instance* instance = instances + index;
-  if (instance->shape == SHAPE_MESH && popcount(active) > PACKET_LEAST) {
+  if (instance->shape == SHAPE_MESH) {
+    if (popcount(active) <= PACKET_LEAST) {
+      walk_lanes(TRACE_ARGUMENTS, rays, hits, active, BVH_LEAF | index, NO_INSTANCE, any);
+      return;
+    }
     if (instance->flags & INSTANCE_IDENTITY) {
       packet_in_mesh(TRACE_ARGUMENTS, rays, hits, instance->root, index, any);
       return;
@@ -208,15 +187,16 @@ NEVER_INLINE void packet_in_instance(TRACE_PARAMETERS, const PacketRays* rays, P
     packet_in_object(instance, rays, active, &object);
     if (aim_packet(&object)) {
       const int16 lanes = lanes_of(active);
-      const float16 t = hits->t;  // of the others, for afterwards
-      hits->t = select((float16)(-1.0f), t, lanes);
+      const float16 t = hits->found.t;  // of the others, for afterwards
+      hits->found.t = select((float16)(-1.0f), t, lanes);
       packet_in_mesh(TRACE_ARGUMENTS, &object, hits, instance->root, index, any);
-      hits->t = select(t, hits->t, lanes);
-      return;
-    }
+      hits->found.t = select(t, hits->found.t, lanes);
+    } else
+      walk_lanes(TRACE_ARGUMENTS, rays, hits, active, BVH_LEAF | index, NO_INSTANCE, any);
+    return;
   }
 #endif
-  instance_alone(TRACE_ARGUMENTS, rays, hits, active, index, any);
+  packet_in_solid(TRACE_ARGUMENTS, rays, hits, active, index, any);
 }
 
 // The rays of `active` by themselves, from `word` of the scene BVH on.
@@ -225,13 +205,14 @@ static inline void bounded_alone(TRACE_PARAMETERS, const PacketRays* rays, Packe
 #if HAS_MESH
   walk_lanes(TRACE_ARGUMENTS, rays, hits, active, word, NO_INSTANCE, any);
 #else
-  for (; active; active &= active - 1u) {
-    const u32 i = lowest_bit(active);
-    Hit hit = packet_hit(hits, i);
+  for (u32 bits = active; bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    Hit hit = get_hit(&hits->found, i);
     trace_bounded(TRACE_ARGUMENTS, word, packet_origin(rays, i), packet_direction(rays, i),
                   get_lane(&hits->t_min, i), any, &hit);
-    set_packet_hit(hits, i, &hit, any);
+    set_hit(&hits->found, i, &hit);
   }
+  if (any) end_lanes(hits, lanes_of(active));
 #endif
 }
 
@@ -239,20 +220,20 @@ NEVER_INLINE void packet_in_leaf(TRACE_PARAMETERS, const PacketRays* rays, Packe
                                  u32 word, bool any) {
   const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
   for (u32 i = first; i <= last; ++i) {
-    if (any) active &= ~lane_mask16(as_int16(hits->t));  // these have found something
+    if (any) active &= ~lane_bits(as_int16(hits->found.t));  // these have found something
     if (active) packet_in_instance(TRACE_ARGUMENTS, rays, hits, active, i, any);
   }
-  hits->t_most = most_of(hits->t);
+  hits->t_most = most_of(hits->found.t);
 }
 
-// All instances; `rays` in world space and aimed.
+// The bounded instances; `rays` in world space and aimed.
 NEVER_INLINE void packet_in_scene(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, bool any) {
-  const u32 live = ALL_RAYS & ~lane_mask16(as_int16(hits->t)), root = info->tlas_root;
+  const u32 live = ALL_RAYS & ~lane_bits(as_int16(hits->found.t)), root = info->tlas_root;
   if (info->bounded_count == 1u) {
     packet_in_instance(TRACE_ARGUMENTS, rays, hits, live, 0u, any);
-  } else if (info->bounded_count > 0u && (root & BVH_LEAF)) {
+  } else if (root & BVH_LEAF) {
     packet_in_leaf(TRACE_ARGUMENTS, rays, hits, live, root, any);
-  } else if (info->bounded_count > 0u) {
+  } else {
     PacketWalk walk;
     walk.top = 0;
     open_node(nodes, root, rays, hits, &walk);
@@ -262,15 +243,9 @@ NEVER_INLINE void packet_in_scene(TRACE_PARAMETERS, const PacketRays* rays, Pack
         packet_in_leaf(TRACE_ARGUMENTS, rays, hits, active, word, any);
       else
         bounded_alone(TRACE_ARGUMENTS, rays, hits, active, word, any);
-      hits->t_most = most_of(hits->t);
+      hits->t_most = most_of(hits->found.t);
     }
   }
-#if HAS_PLANE
-  for (u32 i = info->bounded_count; i < info->instance_count; ++i) {
-    const u32 left = ALL_RAYS & ~lane_mask16(as_int16(hits->t));
-    if (left) instance_alone(TRACE_ARGUMENTS, rays, hits, left, i, any);
-  }
-#endif
 }
 
 #endif

@@ -3,11 +3,12 @@
 #ifndef SUNDOG_LIB_PACKET_RAYS_CL
 #define SUNDOG_LIB_PACKET_RAYS_CL
 #include "lib/config.h"
+#include "lib/hits.cl"
 #include "lib/nodes.cl"
 #include "lib/transform.cl"
 #include "lib/triangles.cl"
 
-#define PACKET 16u
+#if PACKETS
 #define ALL_RAYS 0xFFFFu
 
 // The rays in world or object space; arrays are by axis.
@@ -24,24 +25,12 @@ typedef struct PacketRays {
 // What the rays found so far. A lane without a ray, and with `any` one that has found something, has a t
 // below 0: it crosses nothing.
 typedef struct PacketHits {
-  float16 t_min, t, u, v;  // t: of the hit, or t_max
-  uint16 prim, instance;   // prim of a triangle is its place (see finish_triangle)
-  float16 ng[3];           // of solids
-  float t_least, t_most;   // of t_min and t over the rays
+  Hits found;  // prim of a triangle is its place (see finish_triangle)
+  float16 t_min;
+  float t_least, t_most;  // of t_min and t over the rays
 } PacketHits;
 
-static inline u32 lane_mask16(int16 lanes) { return lane_mask(lanes.lo) | lane_mask(lanes.hi) << 8; }
-
-// All bits of lane i are bit i of the mask.
-static inline int16 lanes_of(u32 mask) {
-  const int16 bit = (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
-  return ((int16)((int)mask) & bit) != 0;
-}
-
 static inline float get_lane(const float16* v, u32 i) { return ((const float*)v)[i]; }
-static inline void set_lane(float16* v, u32 i, float value) { ((float*)v)[i] = value; }
-static inline u32 get_index(const uint16* v, u32 i) { return ((const u32*)v)[i]; }
-static inline void set_index(uint16* v, u32 i, u32 value) { ((u32*)v)[i] = value; }
 
 static inline float least_of(float16 v) {
   const float8 a = least8(v.lo, v.hi);
@@ -59,7 +48,7 @@ static inline float16 safe_reciprocal16(float16 d) {
 // One axis of aim_packet.
 static inline bool aim_axis(PacketRays* rays, u32 axis) {
   const float16 o = rays->o[axis], rcp = safe_reciprocal16(rays->d[axis]);
-  const u32 signs = lane_mask16(as_int16(rcp));
+  const u32 signs = lane_bits(as_int16(rcp));
   if (signs != 0u && signs != ALL_RAYS) return false;
   rays->near[axis] = axis * 8u + (signs ? 24u : 0u);
   rays->far[axis] = axis * 8u + (signs ? 0u : 24u);
@@ -88,7 +77,7 @@ static inline bool aim_axis(PacketRays* rays, u32 axis) {
 NEVER_INLINE bool aim_packet(PacketRays* rays) {
   const float16 x = fabs(rays->d[0]), y = fabs(rays->d[1]), z = fabs(rays->d[2]);
   const int16 along_x = (x >= y) & (x >= z);
-  const u32 xs = lane_mask16(along_x), ys = lane_mask16(~along_x & (y >= z));
+  const u32 xs = lane_bits(along_x), ys = lane_bits(~along_x & (y >= z));
   if ((xs != 0u && xs != ALL_RAYS) || (ys != 0u && ys != ALL_RAYS)) return false;
   for (u32 axis = 0; axis < 3u; ++axis)
     if (!aim_axis(rays, axis)) return false;
@@ -127,39 +116,11 @@ static inline float3 packet_direction(const PacketRays* rays, u32 i) {
   return (float3)(get_lane(rays->d, i), get_lane(rays->d + 1, i), get_lane(rays->d + 2, i));
 }
 
-static inline void set_packet_ray(PacketRays* rays, u32 i, float3 o, float3 d) {
-  for (u32 axis = 0; axis < 3u; ++axis) {
-    set_lane(&rays->o[axis], i, axis == 0u ? o.x : axis == 1u ? o.y : o.z);
-    set_lane(&rays->d[axis], i, axis == 0u ? d.x : axis == 1u ? d.y : d.z);
-  }
+// Lanes that have found something are switched off.
+static inline void end_lanes(PacketHits* hits, MASK lanes) {
+  hits->found.t = select(hits->found.t, (REAL)(-1.0f), lanes & hit_anything(&hits->found));
 }
 
-// The rays that can hit something: see traceable().
-static inline u32 live_rays(const PacketRays* rays, const PacketHits* hits) {
-  int16 live = hits->t > hits->t_min, still = -1;
-  for (u32 axis = 0; axis < 3u; ++axis) {
-    live &= isfinite(rays->o[axis]) & isfinite(rays->d[axis]);
-    still &= rays->d[axis] == 0.0f;
-  }
-  return lane_mask16(live & ~still);
-}
-
-static inline Hit packet_hit(const PacketHits* hits, u32 i) {
-  const Hit hit = {get_lane(&hits->t, i),     get_lane(&hits->u, i),         get_lane(&hits->v, i),
-                   get_index(&hits->prim, i), get_index(&hits->instance, i), get_lane(hits->ng, i),
-                   get_lane(hits->ng + 1, i), get_lane(hits->ng + 2, i)};
-  return hit;
-}
-
-static inline void set_packet_hit(PacketHits* hits, u32 i, const Hit* hit, bool any) {
-  set_lane(&hits->t, i, any && hit->instance != NO_INSTANCE ? -1.0f : hit->t);
-  set_lane(&hits->u, i, hit->u);
-  set_lane(&hits->v, i, hit->v);
-  set_index(&hits->prim, i, hit->prim);
-  set_index(&hits->instance, i, hit->instance);
-  set_lane(hits->ng, i, hit->ng_x);
-  set_lane(hits->ng + 1, i, hit->ng_y);
-  set_lane(hits->ng + 2, i, hit->ng_z);
-}
+#endif
 
 #endif

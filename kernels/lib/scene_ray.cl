@@ -1,71 +1,92 @@
-// A ray on its way through the scene, with what travels along, and how it starts again from what it met.
+// Rays on their way through the scene, a ray a lane, with what travels along, and how they start again from
+// what they met.
 #ifndef SUNDOG_LIB_SCENE_RAY_CL
 #define SUNDOG_LIB_SCENE_RAY_CL
 #include "lib/camera.cl"
-#include "lib/config.h"
+#include "lib/hits.cl"
 #include "lib/media.cl"
 #include "lib/tables.h"
 
-#define FROM_NOWHERE 0xFFFFFFFFu
+#define FROM_NOWHERE (-1)
 
-// A ray in world space with what travels along.
-typedef struct SceneRay {
-  float3 o, d;  // d unit
-  float t_min, t_max;
-  MediaStack media;  // at t_min
+// Rays in world space with what travels along.
+typedef struct SceneRays {
+  REAL3 o, d;  // d unit
+  REAL t_min, t_max;
+  MASK media_low, media_high;  // the words of the MediaStack at t_min
 #if HAS_SDF
-  u32 from;         // the field that it starts on: instance * 2, plus 1 inside of it; else FROM_NOWHERE
-  float footprint;  // of the pixel at o, in world units
+  MASK from;       // the field that it starts on: instance * 2, plus 1 inside of it; else FROM_NOWHERE
+  REAL footprint;  // of the pixel at o, in world units
 #endif
 #if HAS_GLOW
-  float3 glow;  // gathered from fields that it passed
+  REAL3 glow;  // gathered from fields that it passed
 #endif
-} SceneRay;
+} SceneRays;
 
-static inline SceneRay scene_ray(const CameraRay* camera, MediaStack media) {
-  SceneRay ray;
-  ray.o = camera->o;
-  ray.d = camera->d;
-  ray.t_min = camera->t_min;
-  ray.t_max = camera->t_max;
-  ray.media = media;
+static inline SceneRays scene_rays(const CameraRays* camera, MediaStack media) {
+  SceneRays rays;
+  rays.o = camera->o;
+  rays.d = camera->d;
+  rays.t_min = camera->t_min;
+  rays.t_max = camera->t_max;
+  rays.media_low = (MASK)((int)media);
+  rays.media_high = (MASK)((int)(media >> 32));
 #if HAS_SDF
-  ray.from = FROM_NOWHERE;
-  ray.footprint = 0.0f;
+  rays.from = (MASK)(FROM_NOWHERE);
+  rays.footprint = (REAL)(0.0f);
 #endif
 #if HAS_GLOW
-  ray.glow = (float3)(0.0f);
+  rays.glow = all3((float3)(0.0f));
 #endif
-  return ray;
+  return rays;
 }
 
-// Where the ray goes on from a hit: `inside` what it hit, or not.
-static inline void start_on_hit(__global const Instance* restrict instances, SceneRay* ray, const Hit* hit,
-                                bool inside) {
+static inline MediaStack get_media(const SceneRays* rays, u32 i) {
+  return (MediaStack)(u32)MASK_LANE(rays->media_high, i) << 32 | (u32)MASK_LANE(rays->media_low, i);
+}
+static inline void set_media(SceneRays* rays, u32 i, MediaStack stack) {
+  MASK_LANE(rays->media_low, i) = (int)stack;
+  MASK_LANE(rays->media_high, i) = (int)(stack >> 32);
+}
+
+// The media that the lanes of `lanes` are in.
+static inline MASK current_media(__global const Medium* restrict media, const SceneRays* rays, MASK lanes) {
+  MASK current = NO_LANES;
+  const MASK somewhere = lanes & MASK_OF((rays->media_low | rays->media_high) != 0);
+  for (u32 bits = lane_bits(somewhere); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    MASK_LANE(current, i) = (int)current_medium(media, get_media(rays, i));
+  }
+  return current;
+}
+
+// Where the lanes of `lanes` go on from their hits: `inside` what they hit, or not.
+static inline void start_on_hits(__global const SceneInfo* restrict info, SceneRays* rays, const Hits* hits,
+                                 MASK inside, MASK lanes) {
 #if HAS_SDF
-  ray->from =
-      instances[hit->instance].shape == SHAPE_SDF ? hit->instance * 2u + (inside ? 1u : 0u) : FROM_NOWHERE;
+  const MASK on_field = MASK_OF(hits->instance >= (int)info->instance_count);
+  const MASK from = select((MASK)(FROM_NOWHERE), hits->instance * 2 - inside, on_field);
+  rays->from = select(rays->from, from, lanes);
 #endif
 }
 
-// The same for a new ray, whose origin is the hit; `ray` is still the one that hit.
-static inline void start_on_surface(__global const SceneInfo* restrict info,
-                                    __global const Instance* restrict instances, SceneRay* ray,
-                                    const Hit* hit, bool inside) {
+// The same for new rays, whose origins are the hits; `rays` are still the ones that hit.
+static inline void start_on_surfaces(__global const SceneInfo* restrict info, SceneRays* rays,
+                                     const Hits* hits, MASK inside, MASK lanes) {
 #if HAS_SDF
-  ray->footprint += hit->t * pixel_spread(info);
+  rays->footprint = select(rays->footprint, fma(hits->t, (REAL)(pixel_spread(info)), rays->footprint), lanes);
 #endif
 #if HAS_GLOW
-  ray->glow = (float3)(0.0f);
+  rays->glow = all3((float3)(0.0f));
 #endif
-  start_on_hit(instances, ray, hit, inside);
+  start_on_hits(info, rays, hits, inside, lanes);
 }
 
-// The ray goes on behind a surface that it does not see.
-static inline void continue_behind(__global const Instance* restrict instances, SceneRay* ray, const Hit* hit,
-                                   bool entering) {
-  ray->t_min = hit->t;
-  start_on_hit(instances, ray, hit, entering);
+// The lanes of `lanes` go on behind a surface that they do not see.
+static inline void continue_behind(__global const SceneInfo* restrict info, SceneRays* rays, const Hits* hits,
+                                   MASK entering, MASK lanes) {
+  rays->t_min = select(rays->t_min, hits->t, lanes);
+  start_on_hits(info, rays, hits, entering, lanes);
 }
 
 #endif

@@ -8,107 +8,103 @@
 #include "lib/optics.cl"
 #include "lib/surface.cl"
 
-// What a ray meets. `before` and `after` are the media on the two sides as the ray crosses; equal where
-// nothing is crossed.
-typedef struct Encounter {
-  Hit hit;
-  u32 material;
-  u32 before, after;
-  bool entering;
-  float3 absorbed;  // factor on the ray's light from its start to the hit
-} Encounter;
-
-// There is nothing to see where both sides are one medium, nor where a clear material parts media of equal
-// index.
-static inline bool is_invisible(__global const Medium* restrict media, const Encounter* e, u32 flags) {
-  return e->after == e->before ||
-         ((flags & MATERIAL_CLEAR) && media[e->after].absorption.w == media[e->before].absorption.w);
-}
-
-static inline void identify(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRay* ray, Encounter* e) {
-  e->material = hit_material(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &e->hit);
-  e->entering = dot(outward_normal(TRACE_ARGUMENTS, &e->hit), ray->d) < 0.0f;
-}
+// What rays meet. `before` and `after` are the media on the two sides as a ray crosses; equal where nothing
+// is crossed.
+typedef struct Encounters {
+  Hits hit;
+  Faces face;
+  MASK before, after;
+  REAL3 absorbed;  // factor on the ray's light from its start to the hit
+} Encounters;
 
 #if HAS_MEDIA
-// The ray at e->hit, having come from `from`: whether it goes on through an invisible interface. Then its
-// stack, its t_min and `from` are what holds behind.
-static inline bool crosses_unseen(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* ray, Encounter* e,
-                                  float* from, u32 crossing, u32* counts) {
-  const u32 here = current_medium(media, ray->media);
-  e->before = here;
-  e->after = here;
-  if (e->hit.instance == NO_INSTANCE) {
-    e->absorbed *= absorb(media, here, ray->t_max - *from);
-    return false;
+// Lane i at an interface. There is nothing to see where both sides are one medium, nor where a clear material
+// parts media of equal index; then the ray's stack becomes the one behind. Returns whether that is so.
+static inline bool cross_if_unseen(__global const Medium* restrict media, SceneRays* rays, Encounters* met,
+                                   u32 i, bool may_cross, u32* counts) {
+  const bool entering = MASK_LANE(met->face.entering, i);
+  const u32 before = (u32)MASK_LANE(met->before, i);
+  MediaStack crossed = get_media(rays, i);
+  if (!cross_boundary(&crossed, (u32)MASK_LANE(met->face.medium, i), entering))
+    counts[entering ? COUNT_MEDIA_STACK_OVERFLOW : COUNT_STRAY_EXIT] += 1u;
+  const u32 after = current_medium(media, crossed);
+  MASK_LANE(met->after, i) = (int)after;
+  const bool clear = (u32)MASK_LANE(met->face.flags, i) & MATERIAL_CLEAR;
+  const bool unseen = after == before || (clear && media[after].absorption.w == media[before].absorption.w);
+  if (!unseen || !may_cross) return false;
+  set_media(rays, i, crossed);
+  return true;
+}
+
+// The lanes of `waiting` at their next hits, having come from `from`. Returns those that go on through
+// invisible interfaces: their stack, t_min and `from` are what holds behind.
+static inline MASK cross_unseen(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, Encounters* met,
+                                MASK waiting, REAL* from, bool may_cross, u32* counts) {
+  const MASK hit = waiting & hit_anything(&met->hit);
+  const MASK here = current_media(media, rays, waiting);
+  met->before = select(met->before, here, waiting);
+  met->after = select(met->after, here, waiting);
+  const Faces faces = hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->d, &met->hit, hit);
+  met->face.outward = select3(met->face.outward, faces.outward, hit);
+  met->face.entering = select(met->face.entering, faces.entering, hit);
+  met->face.material = select(met->face.material, faces.material, hit);
+  met->face.flags = select(met->face.flags, faces.flags, hit);
+  met->face.medium = select(met->face.medium, faces.medium, hit);
+  const int kind = (int)(MATERIAL_TRANSMITS | MATERIAL_THIN);
+  const MASK interface = hit & MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
+  MASK unseen = NO_LANES;
+  for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    if (cross_if_unseen(media, rays, met, i, may_cross, counts)) MASK_LANE(unseen, i) = -1;
   }
-  identify(TRACE_ARGUMENTS, SHADE_ARGUMENTS, ray, e);
-  const u32 flags = materials[e->material].flags;
-  const bool interface = (flags & MATERIAL_TRANSMITS) && !(flags & MATERIAL_THIN);
-  if (interface) {
-    MediaStack crossed = ray->media;
-    if (!cross_boundary(&crossed, materials[e->material].medium, e->entering))
-      counts[e->entering ? COUNT_MEDIA_STACK_OVERFLOW : COUNT_STRAY_EXIT] += 1u;
-    e->after = current_medium(media, crossed);
-    if (is_invisible(media, e, flags) && crossing < MAX_CROSSINGS) {
-      if (e->after != e->before) {
-        e->absorbed *= absorb(media, here, e->hit.t - *from);
-        *from = e->hit.t;
-      }
-      ray->media = crossed;
-      continue_behind(instances, ray, &e->hit, e->entering);
-      return true;
-    }
+  const MASK leaves = (waiting & ~unseen) | (unseen & MASK_OF(met->after != met->before));
+  const REAL3 kept = absorb(media, here, met->hit.t - *from, leaves);
+  met->absorbed = multiply3(met->absorbed, kept);
+  if (any_lane(unseen)) {
+    *from = select(*from, met->hit.t, unseen & leaves);
+    continue_behind(info, rays, &met->hit, faces.entering, unseen);
   }
-  e->absorbed *= absorb(media, here, e->hit.t - *from);
-  return false;
+  return unseen;
 }
 #endif
 
-// Follows the first `count` of rays in (t_min, t_max] to their next visible surfaces. A ray's media are those
-// at its start, and afterwards those just before the surface. Crossed interfaces do not move the origin, so
-// what lies behind a vanished interface keeps its bits. `coherent`: the rays run close together.
-static inline void next_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* rays, u32 count, bool coherent,
-                                 Encounter* met, u32* counts) {
-  Hit hits[BATCH];
-  u32 waiting[BATCH];
-  for (u32 i = 0; i < count; ++i) waiting[i] = i;
+// Follows the lanes of `active` in (t_min, t_max] to their next visible surfaces. A ray's media are those at
+// its start, and afterwards those just before the surface. Crossed interfaces do not move the origin, so what
+// lies behind a vanished interface keeps its bits. `coherent`: the rays run close together.
+static inline void next_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active,
+                                 bool coherent, Encounters* met, u32* counts) {
+  nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, coherent, false, &met->hit, counts);
+  met->absorbed = all3((float3)(1.0f));
+  met->before = NO_LANES;
+  met->after = NO_LANES;
 #if HAS_MEDIA
-  float from[BATCH];
-  for (u32 i = 0; i < count; ++i) {
-    from[i] = 0.0f;
-    met[i].absorbed = (float3)(1.0f);
-  }
-  for (u32 crossing = 0; count; ++crossing) {
-    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, count, coherent && crossing == 0u, false,
-                 hits, counts);
-    u32 left = 0;
-    for (u32 k = 0; k < count; ++k) {
-      const u32 i = waiting[k];
-      met[i].hit = hits[k];
-      if (crosses_unseen(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays[i], &met[i], &from[i], crossing, counts))
-        waiting[left++] = i;
-    }
-    count = left;
+  met->face.outward = all3((float3)(0.0f));
+  met->face.entering = NO_LANES;
+  met->face.material = NO_LANES;
+  met->face.flags = NO_LANES;
+  met->face.medium = NO_LANES;
+  REAL from = (REAL)(0.0f);
+  MASK waiting = active;
+  for (u32 crossing = 1;; ++crossing) {
+    waiting = cross_unseen(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, met, waiting, &from,
+                           crossing <= MAX_CROSSINGS, counts);
+    if (!any_lane(waiting)) break;
+    Hits hits;
+    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, false, false, &hits, counts);
+    met->hit = select_hits(&met->hit, &hits, waiting);
   }
 #else
-  nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, count, coherent, false, hits, counts);
-  for (u32 i = 0; i < count; ++i) {
-    met[i].hit = hits[i];
-    met[i].before = 0;
-    met[i].after = 0;
-    met[i].absorbed = (float3)(1.0f);
-    if (hits[i].instance != NO_INSTANCE) identify(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays[i], &met[i]);
-  }
+  met->face =
+      hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->d, &met->hit, active & hit_anything(&met->hit));
 #endif
 }
 
-// Index of the transmitting side over that of the incident side.
-static inline float relative_index(__global const Medium* restrict media, const Encounter* e) {
+// Index of the transmitting side over that of the incident side, for the lanes of `lanes`.
+static inline REAL relative_index(__global const Medium* restrict media, const Encounters* met, MASK lanes) {
 #if HAS_MEDIA
-  return media[e->after].absorption.w / media[e->before].absorption.w;
+  return refraction_index(media, met->after, lanes) / refraction_index(media, met->before, lanes);
 #else
-  return 1.0f;
+  return (REAL)(1.0f);
 #endif
 }
 

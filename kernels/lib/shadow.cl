@@ -9,82 +9,91 @@
 #define MAX_FILTERS 64u
 
 #if HAS_SHADOW_FILTERS
-// A dielectric's part of light that a straight shadow ray lets through. The straight ray stands for one that
+// Shadow rays on their way.
+typedef struct Filtered {
+  REAL from;      // where the medium that they are in began
+  REAL3 through;  // what is left of the light
+} Filtered;
+
+// A dielectric's part of light that straight shadow rays let through. The straight ray stands for one that
 // bends, whose slant is this one in the rarer medium: a pane at any angle then loses (1 - F)^2, and nothing
 // to a total reflection that the bent ray would not meet.
-static inline float straight_transmittance(__global const Medium* restrict media, u32 here, u32 there,
-                                           float3 normal, float3 wi) {
-  const float ratio = media[there].absorption.w / media[here].absorption.w;
-  const float eta = fmax(ratio, 1.0f / ratio);
-  const float cos_i = fmin(fabs(dot(unit(normal), wi)), 1.0f);
+static inline REAL straight_transmittance(__global const Medium* restrict media, MASK here, MASK there,
+                                          REAL3 normal, REAL3 wi, MASK lanes) {
+  const REAL ratio = refraction_index(media, there, lanes) / refraction_index(media, here, lanes);
+  const REAL eta = real_max(ratio, 1.0f / ratio);
+  const REAL cos_i = real_min(fabs(dot3(safe_unit3(normal), wi)), (REAL)(1.0f));
   return 1.0f - fresnel_reflectance(cos_i, refracted_cosine(cos_i, eta), eta);
 }
 
-// The shadow ray at its nearest hit, having come from `from`: whether it goes on to the light with what is
-// left in `through`.
-static inline bool passes_filter(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* ray, const Hit* hit,
-                                 float* from, float3* through) {
-  const u32 here = current_medium(media, ray->media);
-  if (hit->instance == NO_INSTANCE) {
-    *through *= absorb(media, here, ray->t_max - *from);
-    return false;
+// Multiplies `through` by the transmission of the surfaces that the lanes of `lanes` pass.
+static inline void filter_light(__global const Material* restrict materials,
+                                __global const Medium* restrict media, const Faces* faces, MASK here,
+                                MASK there, REAL3 wi, MASK lanes, REAL3* through) {
+  MASK dielectric = NO_LANES;
+  u32 index;
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(faces->material, &left, &index);
+    *through = select3(*through, multiply3(*through, all3(materials[index].transmission.xyz)), mine);
+    if (materials[index].kind == MATERIAL_DIELECTRIC) dielectric |= mine;
   }
-  __global const Material* material = materials + hit_material(TRACE_ARGUMENTS, SHADE_ARGUMENTS, hit);
-  if (!(material->flags & MATERIAL_TRANSMITS) || (material->flags & MATERIAL_SHADOW_OPAQUE)) {
-    *through = (float3)(0.0f);
-    return false;
+  if (!any_lane(dielectric)) return;
+  const REAL kept = straight_transmittance(media, here, there, faces->outward, wi, dielectric);
+  *through = select3(*through, scale3(*through, kept), dielectric);
+}
+
+// The lanes of `waiting` at their next hits. Returns those that go on to the light.
+static inline MASK pass_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, const Hits* hits,
+                                MASK waiting, Filtered* light) {
+  const MASK hit = waiting & hit_anything(hits);
+  const MASK here = current_media(media, rays, waiting);
+  const Faces faces = hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->d, hits, hit);
+  const int kind = (int)(MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE);
+  const MASK passing = hit & MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
+  light->through = select3(light->through, all3((float3)(0.0f)), hit & ~passing);
+  const MASK interface = passing & MASK_OF((faces.flags & (int)MATERIAL_THIN) == 0);
+  MASK there = here;
+  for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    MediaStack stack = get_media(rays, i);
+    cross_boundary(&stack, (u32)MASK_LANE(faces.medium, i), MASK_LANE(faces.entering, i));
+    set_media(rays, i, stack);
+    MASK_LANE(there, i) = (int)current_medium(media, stack);
   }
-  u32 there = here;
-  const float3 normal = outward_normal(TRACE_ARGUMENTS, hit);
-  const bool entering = dot(normal, ray->d) < 0.0f;
-  continue_behind(instances, ray, hit, entering);
-  if (!(material->flags & MATERIAL_THIN)) {
-    cross_boundary(&ray->media, material->medium, entering);
-    there = current_medium(media, ray->media);
-    if (there == here) return true;
-    *through *= absorb(media, here, hit->t - *from);
-    *from = hit->t;
-  }
-  *through *= material->transmission.xyz;
-  if (material->kind == MATERIAL_DIELECTRIC)
-    *through *= straight_transmittance(media, here, there, normal, ray->d);
-  return fmax(through->x, fmax(through->y, through->z)) > 0.0f;
+  const MASK changes = interface & MASK_OF(there != here);
+  const REAL3 kept = absorb(media, here, hits->t - light->from, (waiting & ~hit) | changes);
+  light->through = multiply3(light->through, kept);
+  if (!any_lane(passing)) return NO_LANES;
+  light->from = select(light->from, hits->t, changes);
+  filter_light(materials, media, &faces, here, there, rays->d, (passing & ~interface) | changes,
+               &light->through);
+  continue_behind(info, rays, hits, faces.entering, passing);
+  return passing & MASK_OF(greatest3(light->through) > 0.0f);
 }
 #endif
 
-// through[i] becomes the factor on the light that comes along rays[i] from its end to its start, i < count.
-static inline void visibilities(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* rays, u32 count, bool coherent,
-                                float3* through, u32* counts) {
-  for (u32 i = 0; i < count; ++i) through[i] = (float3)(1.0f);
+// The factors on the light that comes along the rays from their ends to their starts.
+static inline REAL3 visibilities(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active,
+                                 bool coherent, u32* counts) {
+  REAL3 through = all3((float3)(1.0f));
 #if HAS_SDF
-  soft_shadows(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, count, through, counts);
+  const REAL soft = soft_shadows(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, counts);
+  through = real3(soft, soft, soft);
 #endif
 #if HAS_SHADOW_FILTERS
-  Hit hits[BATCH];
-  u32 waiting[BATCH];
-  float from[BATCH];
-  for (u32 i = 0; i < count; ++i) {
-    waiting[i] = i;
-    from[i] = 0.0f;
-  }
-  for (u32 filter = 0; count && filter < MAX_FILTERS; ++filter) {
-    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, count, coherent && filter == 0u, true, hits,
+  Filtered light = {(REAL)(0.0f), through};
+  MASK waiting = active;
+  for (u32 filter = 0; any_lane(waiting) && filter < MAX_FILTERS; ++filter) {
+    Hits hits;
+    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, coherent && filter == 0u, true, &hits,
                  counts);
-    u32 left = 0;
-    for (u32 k = 0; k < count; ++k) {
-      const u32 i = waiting[k];
-      if (passes_filter(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays[i], &hits[k], &from[i], &through[i]))
-        waiting[left++] = i;
-    }
-    count = left;
+    waiting = pass_filters(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, &hits, waiting, &light);
   }
-  counts[COUNT_SHADOW_LIMIT] += count;
-  for (u32 k = 0; k < count; ++k) through[waiting[k]] = (float3)(0.0f);
+  counts[COUNT_SHADOW_LIMIT] += lane_count(waiting);
+  return select3(light.through, all3((float3)(0.0f)), waiting);
 #else
-  u32 occluded[BATCH];
-  any_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, count, coherent, occluded, counts);
-  for (u32 i = 0; i < count; ++i)
-    if (occluded[i]) through[i] = (float3)(0.0f);
+  const MASK occluded = any_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, coherent, counts);
+  return select3(through, all3((float3)(0.0f)), occluded);
 #endif
 }
 

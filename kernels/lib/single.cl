@@ -52,21 +52,21 @@ static inline void trace_mesh(TRACE_PARAMETERS, u32 root, const SlabRay* slab_ra
 // One instance in (t_min, hit->t]; world-space ray.
 static inline void trace_instance(TRACE_PARAMETERS, u32 index, float3 o, float3 d, float t_min, bool any,
                                   u32* stack, float* stack_t, Hit* hit) {
-  __global const Instance* instance = instances + index;
-  float3 oo = o, dd = d;
-  if (!(instance->flags & INSTANCE_IDENTITY)) {
-    oo = object_point(instance, o);
-    dd = object_vector(instance, d);
-  }
 #if HAS_MESH
+  __global const Instance* instance = instances + index;
   if (instance->shape == SHAPE_MESH) {
+    float3 oo = o, dd = d;
+    if (!(instance->flags & INSTANCE_IDENTITY)) {
+      oo = object_point(instance, o);
+      dd = object_vector(instance, d);
+    }
     const SlabRay slabs = make_slab_ray(oo, dd);
     const ShearRay shear = make_shear_ray(oo, dd);
     trace_mesh(TRACE_ARGUMENTS, instance->root, &slabs, &shear, t_min, index, any, stack, stack_t, hit);
     return;
   }
 #endif
-  trace_solid(instances, index, oo, dd, t_min, hit);
+  trace_solid(instances, index, o, d, t_min, hit);
 }
 
 // The bounded instances below `word` of the scene BVH.

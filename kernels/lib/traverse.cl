@@ -1,139 +1,130 @@
-// The narrow interface of the tracer that shading sees. In: a ray or a batch of rays, and the tables. Out:
-// the nearest hit, or whether there is any. What is found does not depend on the order of visits, nor on
-// whether a ray goes alone.
+// The narrow interface of the tracer that shading sees. In: a batch of rays, a ray a lane, and the tables.
+// Out: the nearest hits, or whether there are any. What is found does not depend on the order of visits, nor
+// on whether a ray goes alone.
 #ifndef SUNDOG_LIB_TRAVERSE_CL
 #define SUNDOG_LIB_TRAVERSE_CL
 #include "lib/config.h"
+#include "lib/hits.cl"
 #include "lib/packet.cl"
 #include "lib/single.cl"
 #include "lib/tables.h"
 #include "lib/walk.cl"
 
-static inline bool finite3(float3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
+// Up to so many solids are tried one after another for all rays of a batch, which is quicker than taking each
+// ray through the BVH.
+#define FEW_SOLIDS (2u * LANES)
 
-// A ray with a component that is not finite, or with no direction, hits nothing.
-static inline bool traceable(float3 o, float3 d, float t_min, float t_max) {
-  const float3 zero = o * 0.0f + d * 0.0f;  // NaN where one is not finite
-  return zero.x + zero.y + zero.z == 0.0f && t_max > t_min && (d.x != 0.0f || d.y != 0.0f || d.z != 0.0f);
+// Rays that can hit something: a ray with a component that is not finite, or without a direction, hits
+// nothing.
+static inline MASK traceable(const REAL3* o, const REAL3* d, REAL t_min, REAL t_max) {
+  const REAL zero = o->x * 0.0f + o->y * 0.0f + o->z * 0.0f + d->x * 0.0f + d->y * 0.0f + d->z * 0.0f;
+  return MASK_OF(zero == 0.0f) & MASK_OF(t_max > t_min) &
+         (MASK_OF(d->x != 0.0f) | MASK_OF(d->y != 0.0f) | MASK_OF(d->z != 0.0f));
 }
 
-static inline Hit no_hit(float t_max) {
-  const Hit hit = {t_max, 0.0f, 0.0f, NO_PRIM, NO_INSTANCE, 0.0f, 0.0f, 0.0f};
-  return hit;
-}
-
-#if HAS_PLANE
-static inline void trace_planes(TRACE_PARAMETERS, float3 o, float3 d, float t_min, Hit* hit) {
-  for (u32 i = info->bounded_count; i < info->instance_count; ++i)
-    trace_solid(instances, i, object_point(instances + i, o), object_vector(instances + i, d), t_min, hit);
-}
-#endif
-
-static inline void finish_hit(TRACE_PARAMETERS, Hit* hit) {
-#if HAS_MESH
-  if (hit->instance != NO_INSTANCE && instances[hit->instance].shape == SHAPE_MESH)
-    finish_triangle(blocks, hit);
-#endif
-}
-
-// The nearest hits of `count` rays, or with `any` whichever come first; each ray by itself. A triangle's prim
-// is its place.
-NEVER_INLINE void trace_alone(TRACE_PARAMETERS, const float3* o, const float3* d, const float* t_min,
-                              const float* t_max, u32 count, bool any, Hit* found) {
-#if HAS_TRACED
-  u32 which[BATCH], live = 0;
-  for (u32 i = 0; i < count; ++i) {
-    found[i] = no_hit(t_max[i]);
-    if (traceable(o[i], d[i], t_min[i], t_max[i])) which[live++] = i;
+// The instances [first, last), all solids. With `any`, lanes that have found something are done.
+static inline void hit_solids(__global const Instance* restrict instances, u32 first, u32 last,
+                              const REAL3* o, const REAL3* d, const REAL* t_min, MASK active, bool any,
+                              Hits* hits) {
+  for (u32 i = first; i < last; ++i) {
+    const MASK left = any ? active & ~hit_anything(hits) : active;
+    if (any_lane(left)) hit_solid(instances, i, o, d, t_min, left, hits);
   }
+}
+
+#if PACKETS
+// Rays become a packet; a lane that is not active stands in as a copy of another and is switched off. Returns
+// false when the rays do not go as one.
+NEVER_INLINE bool make_packet(const REAL3* o, const REAL3* d, const REAL* t_min, MASK active,
+                              const Hits* hits, PacketRays* rays, PacketHits* packet) {
+  const u32 stand_in = lowest_bit(lane_bits(active));
+  const REAL3 oo = select3(all3(get3(o, stand_in)), *o, active),
+              dd = select3(all3(get3(d, stand_in)), *d, active);
+  rays->o[0] = oo.x, rays->o[1] = oo.y, rays->o[2] = oo.z;
+  rays->d[0] = dd.x, rays->d[1] = dd.y, rays->d[2] = dd.z;
+  if (!aim_packet(rays)) return false;
+  packet->found = *hits;
+  packet->found.t = select((REAL)(-1.0f), hits->t, active);
+  packet->t_min = select((REAL)(REAL_LANE(*t_min, stand_in)), *t_min, active);
+  packet->t_least = least_of(packet->t_min);
+  packet->t_most = most_of(packet->found.t);
+  return true;
+}
+#endif
+
+// The bounded instances for the lanes of `active`.
+static inline void trace_bounded_batch(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min,
+                                       MASK active, bool coherent, bool any, Hits* hits) {
+#if !HAS_MESH
+  if (info->bounded_count <= FEW_SOLIDS) {
+    hit_solids(instances, 0u, info->bounded_count, o, d, t_min, active, any, hits);
+    return;
+  }
+#endif
+#if PACKETS
+  PacketRays rays;
+  PacketHits packet;
+  if (coherent && lane_count(active) > PACKET_LEAST &&
+      make_packet(o, d, t_min, active, hits, &rays, &packet)) {
+    packet_in_scene(TRACE_ARGUMENTS, &rays, &packet, any);
+    *hits = select_hits(hits, &packet.found, active);
+    return;
+  }
+#endif
 #if WALKS_IN_TURN
-  const WalkRays rays = {o, d, t_min, found};
-  if (info->bounded_count == 1u && instances->shape == SHAPE_MESH && (instances->flags & INSTANCE_IDENTITY))
-    walk_rays(TRACE_ARGUMENTS, &rays, which, live, instances->root, 0u, any);
-  else if (info->bounded_count > 0u)
-    walk_rays(TRACE_ARGUMENTS, &rays, which, live, info->bounded_count == 1u ? BVH_LEAF : info->tlas_root,
-              NO_INSTANCE, any);
+  const WalkRays walkers = {o, d, t_min, hits};
+  const bool lone_mesh = info->bounded_count == 1u && (instances->flags & INSTANCE_IDENTITY);
+  if (lone_mesh && instances->shape == SHAPE_MESH)
+    walk_rays(TRACE_ARGUMENTS, &walkers, lane_bits(active), instances->root, 0u, any);
+  else
+    walk_rays(TRACE_ARGUMENTS, &walkers, lane_bits(active),
+              info->bounded_count == 1u ? BVH_LEAF : info->tlas_root, NO_INSTANCE, any);
 #else
-  for (u32 k = 0; k < live; ++k) {
-    const u32 i = which[k];
-    trace_instances(TRACE_ARGUMENTS, o[i], d[i], t_min[i], any, &found[i]);
+  for (u32 bits = lane_bits(active); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    Hit hit = get_hit(hits, i);
+    trace_instances(TRACE_ARGUMENTS, get3(o, i), get3(d, i), REAL_LANE(*t_min, i), any, &hit);
+    set_hit(hits, i, &hit);
   }
 #endif
+}
+
+// The nearest hits of the lanes of `active` in (t_min, t_max], or with `any` some hits. `coherent`: the rays
+// run close together.
+static inline void find_hits(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min, REAL t_max,
+                             MASK active, bool coherent, bool any, Hits* hits) {
+  *hits = no_hits(t_max);
+  active &= traceable(o, d, *t_min, t_max);
 #if HAS_PLANE
-  for (u32 k = 0; k < live; ++k) {
-    const u32 i = which[k];
-    if (!any || found[i].instance == NO_INSTANCE)
-      trace_planes(TRACE_ARGUMENTS, o[i], d[i], t_min[i], &found[i]);
-  }
+  hit_solids(instances, info->bounded_count, info->instance_count, o, d, t_min, active, any, hits);
 #endif
-#else
-  for (u32 i = 0; i < count; ++i) found[i] = no_hit(t_max[i]);
-#endif
+  if (any) active &= ~hit_anything(hits);
+  if (info->bounded_count > 0u && any_lane(active))
+    trace_bounded_batch(TRACE_ARGUMENTS, o, d, t_min, active, coherent, any, hits);
 }
 
-#if PACKETS
-// Rays become a packet; a lane beyond `count` and a ray that hits nothing stand in as a copy of another and
-// are switched off. Returns false when the rays do not go as one.
-NEVER_INLINE bool make_packet(const float3* o, const float3* d, const float* t_min, const float* t_max,
-                              u32 count, PacketRays* rays, PacketHits* hits) {
-  for (u32 i = 0; i < count; ++i) {
-    set_packet_ray(rays, i, o[i], d[i]);
-    set_lane(&hits->t_min, i, t_min[i]);
-    set_lane(&hits->t, i, t_max[i]);
-  }
-  const u32 live = live_rays(rays, hits) & (ALL_RAYS >> (PACKET - count));
-  if (!live) return false;
-  if (live != ALL_RAYS) {
-    const u32 stand_in = lowest_bit(live);
-    for (u32 i = 0; i < PACKET; ++i) {
-      if (live >> i & 1u) continue;
-      set_packet_ray(rays, i, packet_origin(rays, stand_in), packet_direction(rays, stand_in));
-      set_lane(&hits->t_min, i, get_lane(&hits->t_min, stand_in));
-      set_lane(&hits->t, i, -1.0f);
+// The nearest hits of the lanes of `active` in (t_min, t_max].
+static inline void trace_batch(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min,
+                               REAL t_max, MASK active, bool coherent, Hits* hits) {
+  find_hits(TRACE_ARGUMENTS, o, d, t_min, t_max, active, coherent, false, hits);
+#if HAS_MESH
+  for (u32 bits = lane_bits(hit_anything(hits)); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    if (instances[MASK_LANE(hits->instance, i)].shape == SHAPE_MESH) {
+      Hit hit = get_hit(hits, i);
+      finish_triangle(blocks, &hit);
+      set_hit(hits, i, &hit);
     }
   }
-  hits->prim = (uint16)(NO_PRIM);
-  hits->instance = (uint16)(NO_INSTANCE);
-  hits->t_least = least_of(hits->t_min);
-  hits->t_most = most_of(hits->t);
-  return aim_packet(rays);
-}
 #endif
-
-// The first `count` (at most BATCH) of rays (o, d) in (t_min, t_max]. `coherent`: they run close together.
-static inline void trace_batch(TRACE_PARAMETERS, const float3* o, const float3* d, const float* t_min,
-                               const float* t_max, u32 count, bool coherent, Hit* found) {
-#if PACKETS
-  PacketRays rays;
-  PacketHits hits;
-  if (coherent && count > PACKET_LEAST && make_packet(o, d, t_min, t_max, count, &rays, &hits)) {
-    packet_in_scene(TRACE_ARGUMENTS, &rays, &hits, false);
-    for (u32 i = 0; i < count; ++i) {
-      found[i] = get_index(&hits.instance, i) == NO_INSTANCE ? no_hit(t_max[i]) : packet_hit(&hits, i);
-      finish_hit(TRACE_ARGUMENTS, &found[i]);
-    }
-    return;
-  }
-#endif
-  trace_alone(TRACE_ARGUMENTS, o, d, t_min, t_max, count, false, found);
-  for (u32 i = 0; i < count; ++i) finish_hit(TRACE_ARGUMENTS, &found[i]);
 }
 
-// The same for whether anything is hit: occluded[i] becomes 1 or 0.
-static inline void occluded_batch(TRACE_PARAMETERS, const float3* o, const float3* d, const float* t_min,
-                                  const float* t_max, u32 count, bool coherent, u32* occluded) {
-#if PACKETS
-  PacketRays rays;
-  PacketHits hits;
-  if (coherent && count > PACKET_LEAST && make_packet(o, d, t_min, t_max, count, &rays, &hits)) {
-    packet_in_scene(TRACE_ARGUMENTS, &rays, &hits, true);
-    for (u32 i = 0; i < count; ++i) occluded[i] = get_index(&hits.instance, i) != NO_INSTANCE;
-    return;
-  }
-#endif
-  Hit found[BATCH];
-  trace_alone(TRACE_ARGUMENTS, o, d, t_min, t_max, count, true, found);
-  for (u32 i = 0; i < count; ++i) occluded[i] = found[i].instance != NO_INSTANCE ? 1u : 0u;
+// The lanes of `active` that hit anything in (t_min, t_max].
+static inline MASK occluded_batch(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min,
+                                  REAL t_max, MASK active, bool coherent) {
+  Hits hits;
+  find_hits(TRACE_ARGUMENTS, o, d, t_min, t_max, active, coherent, true, &hits);
+  return active & hit_anything(&hits);
 }
 
 #endif

@@ -6,6 +6,7 @@
 #define SUNDOG_LIB_WALK_CL
 #include "lib/config.h"
 #if WALKS_IN_TURN
+#include "lib/hits.cl"
 #include "lib/nodes.cl"
 #include "lib/solid_instance.cl"
 #include "lib/tables.h"
@@ -36,20 +37,19 @@ typedef struct Walk {
 
 #define NO_RAY 0xFFFFFFFFu
 
-// Rays o[i], d[i] from t_min[i] on, of which hits[i].t is the end.
+// Lanes of rays; hits->t is where they end.
 typedef struct WalkRays {
-  const float3 *o, *d;
-  const float* t_min;
-  Hit* hits;
+  const REAL3 *o, *d;
+  const REAL* t_min;
+  Hits* hits;
 } WalkRays;
 
 static inline void start_walk(Walk* walk, const WalkRays* rays, u32 ray, u32 word, u32 instance) {
-  walk->slabs = make_slab_ray(rays->o[ray], rays->d[ray]);
-#if HAS_MESH
-  if (instance != NO_INSTANCE) walk->shear = make_shear_ray(rays->o[ray], rays->d[ray]);
-#endif
-  walk->hit = rays->hits[ray];
-  walk->t_min = rays->t_min[ray];
+  const float3 o = get3(rays->o, ray), d = get3(rays->d, ray);
+  walk->slabs = make_slab_ray(o, d);
+  if (instance != NO_INSTANCE) walk->shear = make_shear_ray(o, d);
+  walk->hit = get_hit(rays->hits, ray);
+  walk->t_min = REAL_LANE(*rays->t_min, ray);
   walk->ray = ray;
   walk->instance = instance;
   walk->word = word;
@@ -65,33 +65,28 @@ NEVER_INLINE bool walk_instance(__global const Instance* restrict instances, Wal
     walk->stack_t[walk->top++] = -INFINITY;
   }
   __global const Instance* instance = instances + index;
-  const bool moved = !(instance->flags & INSTANCE_IDENTITY);
-  if (moved) {
+  if (instance->shape != SHAPE_MESH) {
+    trace_solid(instances, index, o, d, walk->t_min, &walk->hit);
+    return false;
+  }
+  if (!(instance->flags & INSTANCE_IDENTITY)) {
     o = object_point(instance, o);
     d = object_vector(instance, d);
+    walk->slabs = make_slab_ray(o, d);
   }
-#if HAS_MESH
-  if (instance->shape == SHAPE_MESH) {
-    if (moved) walk->slabs = make_slab_ray(o, d);
-    walk->shear = make_shear_ray(o, d);
-    walk->instance = index;
-    walk->base = walk->top;
-    walk->word = instance->root;
-    return true;
-  }
-#endif
-  trace_solid(instances, index, o, d, walk->t_min, &walk->hit);
-  return false;
+  walk->shear = make_shear_ray(o, d);
+  walk->instance = index;
+  walk->base = walk->top;
+  walk->word = instance->root;
+  return true;
 }
 
-#if HAS_MESH
 ALWAYS_INLINE void walk_blocks(__global const TriangleBlock* blocks, Walk* walk) {
   const u32 first = walk->word & BVH_FIRST_MASK,
             last = first + (walk->word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK);
   for (u32 i = first; i <= last; ++i)
     closest_in_block(blocks, i, &walk->shear, walk->t_min, walk->instance, &walk->hit);
 }
-#endif
 
 // Sets what comes next to the nearest that waits. Returns false when nothing does.
 ALWAYS_INLINE bool next_word(__global const Instance* restrict instances, Walk* walk, const WalkRays* rays) {
@@ -99,13 +94,11 @@ ALWAYS_INLINE bool next_word(__global const Instance* restrict instances, Walk* 
   do {
     if (top == walk->base) {
       if (!top) return false;
-#if HAS_MESH
       // Back from a mesh to the scene BVH.
       if (!(instances[walk->instance].flags & INSTANCE_IDENTITY))
-        walk->slabs = make_slab_ray(rays->o[walk->ray], rays->d[walk->ray]);
+        walk->slabs = make_slab_ray(get3(rays->o, walk->ray), get3(rays->d, walk->ray));
       walk->instance = NO_INSTANCE;
       walk->base = 0;
-#endif
     }
     --top;
   } while (walk->stack_t[top] > walk->hit.t);
@@ -120,34 +113,32 @@ ALWAYS_INLINE bool step_walk(TRACE_PARAMETERS, Walk* walk, const WalkRays* rays,
     walk->top += push_crossed(node_at(nodes, walk->word), &walk->slabs, walk->t_min, walk->hit.t,
                               walk->stack + walk->top, walk->stack_t + walk->top);
   } else {
-#if HAS_MESH
     if (walk->instance != NO_INSTANCE)
       walk_blocks(blocks, walk);
-    else
-#endif
-        if (walk_instance(instances, walk, rays->o[walk->ray], rays->d[walk->ray]))
+    else if (walk_instance(instances, walk, get3(rays->o, walk->ray), get3(rays->d, walk->ray)))
       return true;
     if (any && walk->hit.instance != NO_INSTANCE) return false;
   }
   return next_word(instances, walk, rays);
 }
 
-// The nearest hits, or with `any` whichever come first, of the rays which[0..count), from `word` of the scene
-// BVH on; or, rays in object space, of the mesh BVH of `instance`.
-NEVER_INLINE void walk_rays(TRACE_PARAMETERS, const WalkRays* rays, const u32* which, u32 count, u32 word,
-                            u32 instance, bool any) {
+// The nearest hits, or with `any` whichever come first, of the lanes of `bits`, from `word` of the scene BVH
+// on; or, rays in object space, of the mesh BVH of `instance`.
+NEVER_INLINE void walk_rays(TRACE_PARAMETERS, const WalkRays* rays, u32 bits, u32 word, u32 instance,
+                            bool any) {
   Walk walks[WALKS];
   for (u32 k = 0; k < WALKS; ++k) walks[k].ray = NO_RAY;
-  u32 next = 0, left = count;
+  u32 left = popcount(bits);
   while (left) {
     for (u32 k = 0; k < WALKS; ++k) {
       Walk* walk = &walks[k];
       if (walk->ray == NO_RAY) {
-        if (next == count) continue;
-        start_walk(walk, rays, which[next++], word, instance);
+        if (!bits) continue;
+        start_walk(walk, rays, lowest_bit(bits), word, instance);
+        bits &= bits - 1u;
       }
       if (step_walk(TRACE_ARGUMENTS, walk, rays, any)) continue;
-      rays->hits[walk->ray] = walk->hit;
+      set_hit(rays->hits, walk->ray, &walk->hit);
       walk->ray = NO_RAY;
       --left;
     }

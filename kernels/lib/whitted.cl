@@ -1,219 +1,207 @@
 // Whitted's ray tree (Whitted 1980) walked with an explicit stack: the BATCH pixels of a work-item share it,
-// so that the newest BATCH rays are taken together. What a pixel receives is added in an order that depends
-// on nothing but those pixels.
+// so that the newest BATCH rays are taken together, a ray a lane. What a pixel receives is added in an order
+// that depends on nothing but those pixels.
 #ifndef SUNDOG_LIB_WHITTED_CL
 #define SUNDOG_LIB_WHITTED_CL
 #include "lib/camera.cl"
 #include "lib/lights.cl"
+#include "lib/ray_stack.cl"
 #include "lib/segment.cl"
 #include "lib/shadow.cl"
 
-// What a ray carries besides its way.
-typedef struct PathState {
-  float3 throughput;
-  u32 pixel;  // in the work-item's tile
-  u32 depth;  // the camera's ray has 1
-} PathState;
+// What one light does to the surfaces of `lanes`: Ij (kd n.l + ks (r.v)^b) Vj, nothing elsewhere. `coherent`:
+// the points lie close together.
+static inline REAL3 light_from(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, const SceneRays* rays,
+                               MASK lanes, bool coherent, const Encounters* met, const Surfaces* s,
+                               u32* counts) {
+  const REAL3 none = all3((float3)(0.0f));
+  const LightSamples light = sample_light(lights + index, s->p);
+  const MASK facing = lanes & MASK_OF(dot3(s->ns, light.wi) > 0.0f);
+  if (!any_lane(facing)) return none;
+  const REAL3 possible =
+      multiply3(light.radiance, local_reflection(materials, &met->face, s, rays->d, light.wi, facing));
+  const MASK lit = facing & MASK_OF(greatest3(possible) > 0.0f);
+  if (!any_lane(lit)) return none;
+  counts[COUNT_SHADOW] += lane_count(lit);
+  SceneRays to_light = *rays;
+  start_on_surfaces(info, &to_light, &met->hit, ~met->face.entering, lit);
+  to_light.o = along3(s->p, s->offset, s->ng);
+  to_light.d = light.wi;
+  to_light.t_min = (REAL)(0.0f);
+  to_light.t_max = light.distance;
+  const REAL3 through = visibilities(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &to_light, lit, coherent, counts);
+  return select3(none, multiply3(possible, through), lit);
+}
 
-// The rays that wait.
-
-typedef struct RayStack {
-  SceneRay rays[RAY_STACK];
-  PathState paths[RAY_STACK];
-  u32 count;
-} RayStack;
-
-static inline float greatest(float3 v) { return fmax(v.x, fmax(v.y, v.z)); }
-
-// Puts a child on the stack unless it is too weak, too deep or there is no room; each case is counted.
-static inline void spawn(RayStack* stack, const SceneRay* ray, const PathState* path,
-                         __global const SceneInfo* restrict info, u32 kind, u32* counts) {
-  const float weight = greatest(path->throughput);
-  if (!(weight > 0.0f)) return;
-  if (path->depth > info->max_depth)
-    counts[COUNT_DEPTH_LIMIT] += 1u;
-  else if (weight < info->cutoff)
-    counts[COUNT_CUT_OFF] += 1u;
-  else if (stack->count == RAY_STACK)
+#if HAS_SECONDARY
+// Puts children on the stack, those of `lanes` that are not too weak, nor too deep, nor without room; each
+// case is counted.
+NEVER_INLINE void spawn(__global const SceneInfo* restrict info, RayStack* stack, const SceneRays* rays,
+                        const PathStates* paths, MASK lanes, u32 kind, u32* counts) {
+  const REAL weight = greatest3(paths->throughput);
+  const MASK some = lanes & MASK_OF(weight > 0.0f);
+  const MASK deep = some & MASK_OF(paths->depth > (int)info->max_depth);
+  const MASK weak = some & ~deep & MASK_OF(weight < info->cutoff);
+  u32 bits = lane_bits(some & ~deep & ~weak);
+  counts[COUNT_DEPTH_LIMIT] += lane_count(deep);
+  counts[COUNT_CUT_OFF] += lane_count(weak);
+  while (stack->count + popcount(bits) > RAY_STACK) {
     counts[COUNT_RAY_STACK_OVERFLOW] += 1u;
-  else {
-    counts[kind] += 1u;
-    stack->rays[stack->count] = *ray;
-    stack->paths[stack->count++] = *path;
+    bits &= bits - 1u;
   }
+  if (!bits) return;
+  counts[kind] += popcount(bits);
+  push_rays(stack, rays, paths, lanes_of(bits));
 }
 
-// What the rays of a batch met.
-typedef struct BatchSurfaces {
-  Encounter met[BATCH];
-  SurfaceInteraction surface[BATCH];  // where met[i].hit.instance is not NO_INSTANCE
-  float3 own_light[BATCH];            // light that the surface itself sends back along the ray
-} BatchSurfaces;
+// kr and kt of surfaces.
+typedef struct Splits {
+  REAL3 kr, kt;
+  MASK branches, dielectric;  // branches: reflects or transmits at all
+} Splits;
 
-// Adds what one light does to every surface of the batch: Ij (kd n.l + ks (r.v)^b) Vj. `coherent`: the points
-// lie close together.
-static inline void add_light(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, const SceneRay* rays,
-                             u32 ray_count, bool coherent, BatchSurfaces* batch, u32* counts) {
-  SceneRay to_light[BATCH];
-  float3 possible[BATCH], through[BATCH];
-  u32 lit[BATCH], lit_count = 0;
-  for (u32 i = 0; i < ray_count; ++i) {
-    if (batch->met[i].hit.instance == NO_INSTANCE) continue;
-    const SurfaceInteraction* s = &batch->surface[i];
-    const LightSample light = sample_light(lights + index, s->p);
-    if (!(dot(s->ns, light.wi) > 0.0f)) continue;
-    const float3 radiance =
-        light.radiance * local_reflection(materials + s->material, s, rays[i].d, light.wi);
-    if (!(greatest(radiance) > 0.0f)) continue;
-    SceneRay* ray = &to_light[lit_count];
-    *ray = rays[i];
-    start_on_surface(info, instances, ray, &batch->met[i].hit, !s->entering);
-    ray->o = s->p + s->offset * s->ng;
-    ray->d = light.wi;
-    ray->t_min = 0.0f;
-    ray->t_max = light.distance;
-    possible[lit_count] = radiance;
-    lit[lit_count++] = i;
+static inline Splits split_light(__global const Material* restrict materials, const Faces* faces,
+                                 MASK lanes) {
+  const REAL3 none = all3((float3)(0.0f));
+  Splits split = {none, none, NO_LANES, NO_LANES};
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(faces->material, &lanes, &index);
+    __global const Material* material = materials + index;
+    if (!(material->flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS))) continue;
+    split.kr = select3(split.kr, all3(material->reflection.xyz), mine);
+    split.kt = select3(split.kt, all3(material->transmission.xyz), mine);
+    split.branches |= mine;
+    if (material->kind == MATERIAL_DIELECTRIC) split.dielectric |= mine;
   }
-  counts[COUNT_SHADOW] += lit_count;
-  if (!lit_count) return;
-  visibilities(TRACE_ARGUMENTS, SHADE_ARGUMENTS, to_light, lit_count, coherent, through, counts);
-  for (u32 k = 0; k < lit_count; ++k) batch->own_light[lit[k]] += possible[k] * through[k];
+  return split;
 }
 
-// The two children of a surface: kr I(reflected) + kt I(transmitted).
-static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const SurfaceInteraction* s,
-                                  const Encounter* e, const SceneRay* ray, const PathState* path,
-                                  RayStack* stack, u32* counts) {
-  __global const Material* material = materials + s->material;
-  if (!(material->flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS))) return;
-  float3 kr = material->reflection.xyz, kt = material->transmission.xyz;
-  const bool transmits = material->flags & MATERIAL_TRANSMITS, thin = material->flags & MATERIAL_THIN;
-  const float eta = transmits && !thin ? relative_index(media, e) : 1.0f;
-  const float cos_i = clamp(-dot(s->ns, ray->d), 0.0f, 1.0f), cos_t = refracted_cosine(cos_i, eta);
-  if (material->kind == MATERIAL_DIELECTRIC) {
-    const float f = thin ? 0.0f : fresnel_reflectance(cos_i, cos_t, eta);
-    kr *= f;
-    kt *= 1.0f - f;
-  } else if (transmits && cos_t <= 0.0f) {  // total internal reflection turns everything into reflection
-    kr += kt;
-    kt = (float3)(0.0f);
-  }
-  SceneRay child = *ray;
-  PathState state = *path;
-  state.depth = path->depth + 1u;
-  child.t_min = 0.0f;
-  child.t_max = INFINITY;
-  start_on_surface(info, instances, &child, &e->hit, !s->entering);
+// The refracted directions; a shading normal must not send them outside again.
+static inline REAL3 transmitted_direction(REAL3 d, const Surfaces* s, REAL cos_i, REAL cos_t, REAL eta) {
+  const REAL3 by_shading = refract_direction(d, s->ns, cos_i, cos_t, eta);
+  const MASK good = MASK_OF(dot3(by_shading, s->ng) < 0.0f), straight = MASK_OF(eta == 1.0f);
+  const REAL cos_g = real_clamp(-dot3(s->ng, d), (REAL)(0.0f), (REAL)(1.0f));
+  const REAL3 by_face = refract_direction(d, s->ng, cos_g, refracted_cosine(cos_g, eta), eta);
+  return select3(select3(by_face, by_shading, good), d, straight);
+}
 
-  child.d = reflect_direction(ray->d, s->ns);
-  if (!(dot(child.d, s->ng) > 0.0f))
-    child.d = reflect_direction(ray->d, s->ng);  // a shading normal must not send it inside
-  child.o = s->p + s->offset * s->ng;
-  state.throughput = path->throughput * kr;
-  spawn(stack, &child, &state, info, COUNT_REFLECTION, counts);
-
-  if (!transmits) return;
-  child.d = ray->d;
-  if (eta != 1.0f) {
-    child.d = refract_direction(ray->d, s->ns, cos_i, cos_t, eta);
-    if (!(dot(child.d, s->ng) < 0.0f)) {
-      const float cos_g = clamp(-dot(s->ng, ray->d), 0.0f, 1.0f);
-      child.d = refract_direction(ray->d, s->ng, cos_g, refracted_cosine(cos_g, eta), eta);
-    }
+// The children of the surfaces of `lanes`: kr I(reflected) + kt I(transmitted).
+static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const Surfaces* s,
+                                  const Encounters* met, const SceneRays* rays, const PathStates* paths,
+                                  MASK lanes, RayStack* stack, u32* counts) {
+  const Faces* faces = &met->face;
+  Splits split = split_light(materials, faces, lanes);
+  if (!any_lane(split.branches)) return;
+  const MASK transmits = split.branches & MASK_OF((faces->flags & (int)MATERIAL_TRANSMITS) != 0);
+  const MASK bends = transmits & MASK_OF((faces->flags & (int)MATERIAL_THIN) == 0);
+  REAL eta = (REAL)(1.0f), cos_t = (REAL)(1.0f);
+  const REAL cos_i = real_clamp(-dot3(s->ns, rays->d), (REAL)(0.0f), (REAL)(1.0f));
+  if (any_lane(transmits | split.dielectric)) {
+    eta = relative_index(media, met, bends);
+    cos_t = refracted_cosine(cos_i, eta);
+    const REAL f = select((REAL)(0.0f), fresnel_reflectance(cos_i, cos_t, eta), bends);
+    // Total internal reflection turns everything into reflection.
+    const MASK total = transmits & ~split.dielectric & MASK_OF(cos_t <= 0.0f);
+    split.kr = select3(split.kr, add3(split.kr, split.kt), total);
+    split.kt = select3(split.kt, all3((float3)(0.0f)), total);
+    split.kr = select3(split.kr, scale3(split.kr, f), split.dielectric);
+    split.kt = select3(split.kt, scale3(split.kt, 1.0f - f), split.dielectric);
   }
-  child.o = s->p - s->offset * s->ng;
-  state.throughput = path->throughput * kt;
-  start_on_hit(instances, &child, &e->hit, s->entering);
+  SceneRays child = *rays;
+  PathStates state = *paths;
+  state.depth = paths->depth + 1;
+  start_on_surfaces(info, &child, &met->hit, ~faces->entering, split.branches);
+  child.d = reflect_direction(rays->d, s->ns);
+  // A shading normal must not send it inside.
+  child.d = select3(reflect_direction(rays->d, s->ng), child.d, MASK_OF(dot3(child.d, s->ng) > 0.0f));
+  child.o = along3(s->p, s->offset, s->ng);
+  state.throughput = multiply3(paths->throughput, split.kr);
+  spawn(info, stack, &child, &state, split.branches, COUNT_REFLECTION, counts);
+
+  if (!any_lane(transmits)) return;
+  child.d = transmitted_direction(rays->d, s, cos_i, cos_t, eta);
+  child.o = along3(s->p, -s->offset, s->ng);
+  state.throughput = multiply3(paths->throughput, split.kt);
+  start_on_hits(info, &child, &met->hit, faces->entering, transmits);
 #if HAS_MEDIA
-  if (!thin) cross_boundary(&child.media, material->medium, e->entering);
+  for (u32 bits = lane_bits(bends); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    MediaStack crossed = get_media(rays, i);
+    cross_boundary(&crossed, (u32)MASK_LANE(faces->medium, i), MASK_LANE(faces->entering, i));
+    set_media(&child, i, crossed);
+  }
 #endif
-  spawn(stack, &child, &state, info, COUNT_REFRACTION, counts);
-}
-
-#if HAS_SDF
-// Fields take ambient light from their own crevices.
-static inline void dim_crevices(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRay* rays, u32 ray_count,
-                                BatchSurfaces* batch) {
-  Hit hits[BATCH];
-  float open[BATCH];
-  for (u32 i = 0; i < ray_count; ++i) hits[i] = batch->met[i].hit;
-  field_openness(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, hits, ray_count, open);
-  for (u32 i = 0; i < ray_count; ++i)
-    if (hits[i].instance != NO_INSTANCE) batch->own_light[i] *= open[i];
+  spawn(info, stack, &child, &state, transmits, COUNT_REFRACTION, counts);
 }
 #endif
 
-#if HAS_FOG
-// What the fog adds to a ray's light over `distance`, by which it weakens what comes from behind.
-static inline float3 go_through_fog(__global const SceneInfo* restrict info, float3* throughput,
-                                    float distance) {
-  const float kept = exp(-info->fog.w * distance);
-  const float3 added = *throughput * (1.0f - kept) * info->fog.xyz;
-  *throughput *= kept;
-  return added;
+// Adds light to the pixels of `lanes`, one lane after another: several may have the same pixel.
+static inline void add_to_pixels(REAL3 light, MASK pixel, MASK lanes, float4* radiance) {
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    radiance[MASK_LANE(pixel, i)].xyz += get3(&light, i);
+  }
 }
-#endif
 
 // Takes a batch to the next surfaces, adds what it sees there to the pixels and leaves the children on the
 // stack.
-static inline void follow_batch(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay* rays, PathState* paths,
-                                u32 ray_count, RayStack* stack, float4* radiance, u32* counts) {
-  BatchSurfaces batch;
-  const bool coherent = paths[0].depth == 1u;
-  next_surfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, ray_count, coherent, batch.met, counts);
-  for (u32 i = 0; i < ray_count; ++i) {
+NEVER_INLINE void follow_batch(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, PathStates* paths,
+                               MASK lanes, bool coherent, RayStack* stack, float4* radiance, u32* counts) {
+  Encounters met;
+  next_surfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, lanes, coherent, &met, counts);
+  const MASK hit = lanes & hit_anything(&met.hit);
+  REAL3 seen = all3((float3)(0.0f));
 #if HAS_GLOW
-    radiance[paths[i].pixel].xyz += paths[i].throughput * rays[i].glow;
+  seen = multiply3(paths->throughput, rays->glow);
 #endif
-    paths[i].throughput *= batch.met[i].absorbed;
+  paths->throughput = multiply3(paths->throughput, met.absorbed);
 #if HAS_FOG
-    if (batch.met[i].before == 0u)
-      radiance[paths[i].pixel].xyz += go_through_fog(info, &paths[i].throughput, batch.met[i].hit.t);
+  const MASK foggy = MASK_OF(met.before == 0);
+  const REAL clear = select((REAL)(1.0f), real_exp(-info->fog.w * met.hit.t), foggy);
+  seen = add3(seen, multiply3(scale3(paths->throughput, 1.0f - clear), all3(info->fog.xyz)));
+  paths->throughput = scale3(paths->throughput, clear);
 #endif
-    if (batch.met[i].hit.instance == NO_INSTANCE) continue;
-    batch.surface[i] = interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays[i].o, rays[i].d, &batch.met[i].hit);
-    batch.own_light[i] = batch.surface[i].ambient * info->ambient.xyz;
-  }
+  const REAL3 background = multiply3(paths->throughput, background_along(info, rays->d));
+  seen = select3(add3(seen, background), seen, hit);
+  if (any_lane(hit)) {
+    Surfaces s;
+    interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->o, rays->d, &met.hit, &met.face, hit, &s);
+    REAL3 own = multiply3(s.ambient, all3(info->ambient.xyz));
 #if HAS_SDF
-  dim_crevices(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, ray_count, &batch);
+    own = scale3(own, field_openness(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, &met.hit, hit));
 #endif
-  for (u32 light = 0; light < info->light_count; ++light)
-    add_light(TRACE_ARGUMENTS, SHADE_ARGUMENTS, light, rays, ray_count, coherent, &batch, counts);
-  for (u32 i = 0; i < ray_count; ++i) {
-    const PathState* path = &paths[i];
-    float4* pixel = &radiance[path->pixel];
-    if (batch.met[i].hit.instance == NO_INSTANCE) {
-      pixel->xyz += path->throughput * background_along(info, rays[i].d);
-      continue;
-    }
-    if (path->depth == 1u) {
-      counts[COUNT_PRIMARY_HIT] += 1u;
-      pixel->w = 1.0f;
-    }
-    pixel->xyz += path->throughput * batch.own_light[i];
+    for (u32 light = 0; light < info->light_count; ++light)
+      own = add3(own,
+                 light_from(TRACE_ARGUMENTS, SHADE_ARGUMENTS, light, rays, hit, coherent, &met, &s, counts));
+    seen = select3(seen, add3(seen, multiply3(paths->throughput, own)), hit);
 #if HAS_SECONDARY
-    spawn_children(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &batch.surface[i], &batch.met[i], &rays[i], path, stack,
-                   counts);
+    spawn_children(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &s, &met, rays, paths, hit, stack, counts);
 #endif
+    if (coherent) {
+      counts[COUNT_PRIMARY_HIT] += lane_count(hit);
+      for (u32 i = 0; i < BATCH; ++i)
+        if (MASK_LANE(hit, i)) radiance[i].w = 1.0f;
+    }
   }
+  add_to_pixels(seen, paths->pixel, lanes, radiance);
 }
 
-// Empties the stack. radiance[i].xyz receives the light of pixel i of the tile, w whether its camera ray hit
-// anything.
-static inline void trace_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, RayStack* stack, float4* radiance,
-                                 u32* counts) {
-  while (stack->count) {
-    SceneRay rays[BATCH];
-    PathState paths[BATCH];
-    const u32 ray_count = min(stack->count, (u32)BATCH);
-    stack->count -= ray_count;
-    for (u32 i = 0; i < ray_count; ++i) {
-      rays[i] = stack->rays[stack->count + i];
-      paths[i] = stack->paths[stack->count + i];
-    }
-    follow_batch(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, paths, ray_count, stack, radiance, counts);
-  }
+// The camera's rays of the lanes of `lanes`, pixel i in lane i, with all that comes of them. radiance[i].xyz
+// receives the light of pixel i of the tile, w whether its camera ray hit anything.
+static inline void trace_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK lanes,
+                                 RayStack* stack, float4* radiance, u32* counts) {
+  PathStates paths;
+  paths.throughput = all3((float3)(1.0f));
+  paths.depth = (MASK)(1);
+  for (u32 i = 0; i < BATCH; ++i) MASK_LANE(paths.pixel, i) = (int)i;
+  stack->count = 0;
+  bool from_camera = true;
+  do {
+    follow_batch(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, &paths, lanes, from_camera, stack, radiance, counts);
+    from_camera = false;
+    lanes = stack->count ? pop_rays(stack, rays, &paths) : NO_LANES;
+  } while (any_lane(lanes));
 }
 
 #endif
