@@ -55,16 +55,16 @@ json table_bytes(const CompiledScene& flat) {
   return {{"bvh", bvh}, {"shading", shading}, {"tables", rest}, {"total", bvh + shading + rest}};
 }
 
-/// The union of the scene BVH's root's children.
 json bounds(const CompiledScene& flat) {
-  if (flat.info.bounded_count == 0) return nullptr;
-  const Bvh8Node& root = flat.nodes[flat.info.tlas_root];
-  const auto lower = [](const float(&side)[8]) {
-    return *std::min_element(side, side + 8);
-  };  // an empty slot's
-  const auto upper = [](const float(&side)[8]) { return *std::max_element(side, side + 8); };  // is inverted
-  return {{"min", {lower(root.lower_x), lower(root.lower_y), lower(root.lower_z)}},
-          {"max", {upper(root.upper_x), upper(root.upper_y), upper(root.upper_z)}}};
+  const Bounds& box = flat.figures.box;
+  if (box.empty()) return nullptr;
+  return {{"min", {box.lower[0], box.lower[1], box.lower[2]}},
+          {"max", {box.upper[0], box.upper[1], box.upper[2]}}};
+}
+
+json planes(const CompiledScene& flat) {
+  return std::count_if(flat.instances.begin(), flat.instances.end(),
+                       [](const Instance& instance) { return instance.shape == SHAPE_PLANE; });
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ json scene_figures(const SceneDescription& scene, const CompiledScene& flat) {
           {"placed_triangles", placed_triangles(scene)},
           {"meshes", scene.meshes.size()},
           {"instances", flat.instances.size()},
-          {"unbounded", flat.instances.size() - flat.info.bounded_count},
+          {"unbounded", planes(flat)},
           {"objects", count_shapes(scene)},
           {"lights", count_lights(scene)},
           {"materials", scene.materials.size()},

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compile/bounds.h"
 #include "compile/sdf.h"
 #include "scene/description.h"
 #include "shared/bvh.h"
@@ -33,6 +34,7 @@ struct BvhFigures {
   double build_seconds = 0;    // not part of the pure result's bytes
   double mean_block_fill = 0;  // triangles in a block, 1..8; a cut triangle counts in each
   std::size_t bytes = 0;
+  Bounds box = Bounds::none();  // of all instances but planes and fields
 };
 
 struct CompiledScene {

@@ -181,13 +181,25 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
 
   out.info.tlas_root = root;
   out.info.bounded_count = static_cast<u32>(bounded.size());
-  out.info.scene_center = bounded.empty() ? float4{} : sphere_around(tree.box);
   out.features.bvh_stack = std::max(1u, stack_need(tree.nodes, 0) + mesh_stack);
   out.figures.sah_cost = expected_cost(tree.nodes, 0, [&](u32 first, u32 count) {
     double sum = 0;
     for (u32 i = first; i < first + count; ++i) sum += bounded[i].cost;
     return sum;
   });
+}
+
+/// Beside meshes a few solids stay out of the scene BVH: testing each for a whole batch of rays is quicker than
+/// taking every ray to it through the tree, and a lone mesh is then walked without one. Takes them out.
+std::vector<Placed> take_few_solids(std::vector<Placed>& bounded) {
+  constexpr std::ptrdiff_t few = 16;
+  const auto solids = std::stable_partition(bounded.begin(), bounded.end(), [](const Placed& placed) {
+    return placed.instance.shape == SHAPE_MESH;
+  });
+  if (solids == bounded.begin() || bounded.end() - solids > few) return {};
+  std::vector<Placed> taken(solids, bounded.end());
+  bounded.erase(solids, bounded.end());
+  return taken;
 }
 
 }  // namespace
@@ -209,8 +221,12 @@ void add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>&
     out.features.camera_inside |= may_contain(placed, scene.camera.position);
     (placed.instance.shape == SHAPE_SDF ? fields : placed.bounded() ? bounded : unbounded).push_back(placed);
   }
+  for (const Placed& placed : bounded) out.figures.box.extend(placed.box);
+  out.info.scene_center = bounded.empty() ? float4{} : sphere_around(out.figures.box);
+  const std::vector<Placed> few = take_few_solids(bounded);
   add_scene_bvh(bounded, out, mesh_stack);
   for (const Placed& placed : bounded) out.instances.push_back(placed.instance);
+  for (const Placed& placed : few) out.instances.push_back(placed.instance);
   for (const Placed& placed : unbounded) out.instances.push_back(placed.instance);
   out.info.instance_count = static_cast<u32>(out.instances.size());
   for (const Placed& placed : fields) out.instances.push_back(placed.instance);

@@ -2,6 +2,16 @@
 // in a row. `coherent` says that they run close together.
 #include "lib/traverse.cl"
 
+// Lane i is ray first + i, or the last one. Lanes are put together in registers: read back from memory, they
+// would wait for sixteen writes.
+#define LOAD_MEMBER(to, member)                                                  \
+  {                                                                              \
+    REAL lanes_read;                                                             \
+    _Pragma("unroll") for (u32 i = 0; i < BATCH; ++i) REAL_LANE(lanes_read, i) = \
+        rays[min(first + i, ray_count - 1u)].member;                             \
+    to = lanes_read;                                                             \
+  }
+
 // The BATCH rays of work-item `item`, in the form that the tracer takes.
 #define LOAD_BATCH                                                              \
   const u32 first = item * BATCH;                                               \
@@ -9,13 +19,14 @@
   const MASK lanes = lanes_of((1u << min((u32)BATCH, ray_count - first)) - 1u); \
   REAL3 o, d;                                                                   \
   REAL t_min, t_max;                                                            \
-  for (u32 i = 0; i < BATCH; ++i) {                                             \
-    const Ray ray = rays[min(first + i, ray_count - 1u)];                       \
-    set3(&o, i, (float3)(ray.ox, ray.oy, ray.oz));                              \
-    set3(&d, i, (float3)(ray.dx, ray.dy, ray.dz));                              \
-    REAL_LANE(t_min, i) = ray.t_min;                                            \
-    REAL_LANE(t_max, i) = ray.t_max;                                            \
-  }
+  LOAD_MEMBER(o.x, ox)                                                          \
+  LOAD_MEMBER(o.y, oy)                                                          \
+  LOAD_MEMBER(o.z, oz)                                                          \
+  LOAD_MEMBER(d.x, dx)                                                          \
+  LOAD_MEMBER(d.y, dy)                                                          \
+  LOAD_MEMBER(d.z, dz)                                                          \
+  LOAD_MEMBER(t_min, t_min)                                                     \
+  LOAD_MEMBER(t_max, t_max)
 
 NEVER_INLINE void trace_rays_item(TRACE_PARAMETERS, __global const Ray* restrict rays,
                                   __global Hit* restrict hits, u32 ray_count, u32 coherent, u32 item) {

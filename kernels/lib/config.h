@@ -36,10 +36,10 @@
 #ifndef WIDE_VECTORS
 #define WIDE_VECTORS 1
 #endif
+#define HAS_SOLID                                                                                          \
+  (HAS_SPHERE || HAS_PLANE || HAS_BOX || HAS_CYLINDER || HAS_CONE || HAS_DISK || HAS_TORUS || HAS_ROUNDBOX)
 // Whether there is anything that rays are traced to, and not only fields that they march to.
-#define HAS_TRACED                                                                                        \
-  (HAS_MESH || HAS_SPHERE || HAS_PLANE || HAS_BOX || HAS_CYLINDER || HAS_CONE || HAS_DISK || HAS_TORUS || \
-   HAS_ROUNDBOX)
+#define HAS_TRACED (HAS_MESH || HAS_SOLID)
 
 // Whether a batch of rays that run close together can go through the BVH as one.
 #define PACKETS (WIDE_VECTORS && BATCH == 16 && HAS_TRACED)
@@ -110,5 +110,8 @@
 #ifndef HAS_SHADOW_FILTERS
 #define HAS_SHADOW_FILTERS 1
 #endif
+
+// Whether rays go on behind surfaces: interfaces that they do not see, or filters.
+#define RAYS_CROSS (HAS_MEDIA || HAS_SHADOW_FILTERS)
 
 #endif

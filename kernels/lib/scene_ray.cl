@@ -14,6 +14,12 @@ typedef struct SceneRays {
   REAL3 o, d;  // d unit
   REAL t_min, t_max;
   MASK media_low, media_high;  // the words of the MediaStack at t_min
+#if HAS_MEDIA
+  REAL since;  // distance from which on they are in their medium
+#endif
+#if RAYS_CROSS
+  MASK crossings;  // unseen interfaces or filters behind them
+#endif
 #if HAS_SDF
   MASK from;       // the field that it starts on: instance * 2, plus 1 inside of it; else FROM_NOWHERE
   REAL footprint;  // of the pixel at o, in world units
@@ -31,6 +37,12 @@ static inline SceneRays scene_rays(const CameraRays* camera, MediaStack media) {
   rays.t_max = camera->t_max;
   rays.media_low = (MASK)((int)media);
   rays.media_high = (MASK)((int)(media >> 32));
+#if HAS_MEDIA
+  rays.since = (REAL)(0.0f);
+#endif
+#if RAYS_CROSS
+  rays.crossings = NO_LANES;
+#endif
 #if HAS_SDF
   rays.from = (MASK)(FROM_NOWHERE);
   rays.footprint = (REAL)(0.0f);
@@ -79,6 +91,12 @@ static inline void start_on_surfaces(__global const SceneInfo* restrict info, Sc
 #if HAS_GLOW
   rays->glow = all3((float3)(0.0f));
 #endif
+#if HAS_MEDIA
+  rays->since = (REAL)(0.0f);
+#endif
+#if RAYS_CROSS
+  rays->crossings = NO_LANES;
+#endif
   start_on_hits(info, rays, hits, inside, lanes);
 }
 
@@ -86,6 +104,9 @@ static inline void start_on_surfaces(__global const SceneInfo* restrict info, Sc
 static inline void continue_behind(__global const SceneInfo* restrict info, SceneRays* rays, const Hits* hits,
                                    MASK entering, MASK lanes) {
   rays->t_min = select(rays->t_min, hits->t, lanes);
+#if RAYS_CROSS
+  rays->crossings -= lanes;
+#endif
   start_on_hits(info, rays, hits, entering, lanes);
 }
 

@@ -21,7 +21,7 @@ typedef struct Encounters {
 // Lane i at an interface. There is nothing to see where both sides are one medium, nor where a clear material
 // parts media of equal index; then the ray's stack becomes the one behind. Returns whether that is so.
 static inline bool cross_if_unseen(__global const Medium* restrict media, SceneRays* rays, Encounters* met,
-                                   u32 i, bool may_cross, u32* counts) {
+                                   u32 i, u32* counts) {
   const bool entering = MASK_LANE(met->face.entering, i);
   const u32 before = (u32)MASK_LANE(met->before, i);
   MediaStack crossed = get_media(rays, i);
@@ -31,15 +31,15 @@ static inline bool cross_if_unseen(__global const Medium* restrict media, SceneR
   MASK_LANE(met->after, i) = (int)after;
   const bool clear = (u32)MASK_LANE(met->face.flags, i) & MATERIAL_CLEAR;
   const bool unseen = after == before || (clear && media[after].absorption.w == media[before].absorption.w);
-  if (!unseen || !may_cross) return false;
+  if (!unseen || MASK_LANE(rays->crossings, i) >= MAX_CROSSINGS) return false;
   set_media(rays, i, crossed);
   return true;
 }
 
-// The lanes of `waiting` at their next hits, having come from `from`. Returns those that go on through
-// invisible interfaces: their stack, t_min and `from` are what holds behind.
+// The lanes of `waiting` at their next hits. Returns those that go on through invisible interfaces: their
+// rays are then what holds behind.
 static inline MASK cross_unseen(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, Encounters* met,
-                                MASK waiting, REAL* from, bool may_cross, u32* counts) {
+                                MASK waiting, u32* counts) {
   const MASK hit = waiting & hit_anything(&met->hit);
   const MASK here = current_media(media, rays, waiting);
   met->before = select(met->before, here, waiting);
@@ -55,24 +55,25 @@ static inline MASK cross_unseen(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* r
   MASK unseen = NO_LANES;
   for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    if (cross_if_unseen(media, rays, met, i, may_cross, counts)) MASK_LANE(unseen, i) = -1;
+    if (cross_if_unseen(media, rays, met, i, counts)) MASK_LANE(unseen, i) = -1;
   }
   const MASK leaves = (waiting & ~unseen) | (unseen & MASK_OF(met->after != met->before));
-  const REAL3 kept = absorb(media, here, met->hit.t - *from, leaves);
+  const REAL3 kept = absorb(media, here, met->hit.t - rays->since, leaves);
   met->absorbed = multiply3(met->absorbed, kept);
   if (any_lane(unseen)) {
-    *from = select(*from, met->hit.t, unseen & leaves);
+    rays->since = select(rays->since, met->hit.t, unseen & leaves);
     continue_behind(info, rays, &met->hit, faces.entering, unseen);
   }
   return unseen;
 }
 #endif
 
-// Follows the lanes of `active` in (t_min, t_max] to their next visible surfaces. A ray's media are those at
-// its start, and afterwards those just before the surface. Crossed interfaces do not move the origin, so what
-// lies behind a vanished interface keeps its bits. `coherent`: the rays run close together.
-static inline void next_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active,
-                                 bool coherent, Encounters* met, u32* counts) {
+// Takes the lanes of `active` in (t_min, t_max] to their next interfaces. Returns those that cannot see them:
+// their rays are then what holds behind. The media of the others are those just before the surface. Crossed
+// interfaces do not move the origin, so what lies behind a vanished interface keeps its bits. `coherent`: the
+// rays run close together.
+static inline MASK next_interfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active,
+                                   bool coherent, Encounters* met, u32* counts) {
   nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, coherent, false, &met->hit, counts);
   met->absorbed = all3((float3)(1.0f));
   met->before = NO_LANES;
@@ -83,20 +84,26 @@ static inline void next_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* 
   met->face.material = NO_LANES;
   met->face.flags = NO_LANES;
   met->face.medium = NO_LANES;
-  REAL from = (REAL)(0.0f);
-  MASK waiting = active;
-  for (u32 crossing = 1;; ++crossing) {
-    waiting = cross_unseen(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, met, waiting, &from,
-                           crossing <= MAX_CROSSINGS, counts);
-    if (!any_lane(waiting)) break;
-    Hits hits;
-    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, false, false, &hits, counts);
-    met->hit = select_hits(&met->hit, &hits, waiting);
-  }
+  return cross_unseen(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, met, active, counts);
 #else
   met->face =
       hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->d, &met->hit, active & hit_anything(&met->hit));
+  return NO_LANES;
 #endif
+}
+
+// The same to their next visible surfaces.
+static inline void next_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active,
+                                 bool coherent, Encounters* met, u32* counts) {
+  MASK waiting = next_interfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, coherent, met, counts);
+  while (any_lane(waiting)) {
+#if HAS_MEDIA
+    Hits hits;
+    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, false, false, &hits, counts);
+    met->hit = select_hits(&met->hit, &hits, waiting);
+    waiting = cross_unseen(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, met, waiting, counts);
+#endif
+  }
 }
 
 // Index of the transmitting side over that of the incident side, for the lanes of `lanes`.

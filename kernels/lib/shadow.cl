@@ -4,17 +4,12 @@
 #ifndef SUNDOG_LIB_SHADOW_CL
 #define SUNDOG_LIB_SHADOW_CL
 #include "lib/field_light.cl"
+#include "lib/ray_stack.cl"
 #include "lib/segment.cl"
 
-#define MAX_FILTERS 64u
+#define MAX_FILTERS 64
 
 #if HAS_SHADOW_FILTERS
-// Shadow rays on their way.
-typedef struct Filtered {
-  REAL from;      // where the medium that they are in began
-  REAL3 through;  // what is left of the light
-} Filtered;
-
 // A dielectric's part of light that straight shadow rays let through. The straight ray stands for one that
 // bends, whose slant is this one in the rarer medium: a pane at any angle then loses (1 - F)^2, and nothing
 // to a total reflection that the bent ray would not meet.
@@ -42,15 +37,17 @@ static inline void filter_light(__global const Material* restrict materials,
   *through = select3(*through, scale3(*through, kept), dielectric);
 }
 
-// The lanes of `waiting` at their next hits. Returns those that go on to the light.
+// The lanes of `waiting` at their next hits. Returns those that go on to the light, of which `light` is left.
 static inline MASK pass_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, const Hits* hits,
-                                MASK waiting, Filtered* light) {
+                                MASK waiting, REAL3* light) {
   const MASK hit = waiting & hit_anything(hits);
   const MASK here = current_media(media, rays, waiting);
   const Faces faces = hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->d, hits, hit);
   const int kind = (int)(MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE);
   const MASK passing = hit & MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
-  light->through = select3(light->through, all3((float3)(0.0f)), hit & ~passing);
+  *light = select3(*light, all3((float3)(0.0f)), hit & ~passing);
+  MASK through = passing;
+#if HAS_MEDIA
   const MASK interface = passing & MASK_OF((faces.flags & (int)MATERIAL_THIN) == 0);
   MASK there = here;
   for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
@@ -61,39 +58,38 @@ static inline MASK pass_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* r
     MASK_LANE(there, i) = (int)current_medium(media, stack);
   }
   const MASK changes = interface & MASK_OF(there != here);
-  const REAL3 kept = absorb(media, here, hits->t - light->from, (waiting & ~hit) | changes);
-  light->through = multiply3(light->through, kept);
+  const REAL3 kept = absorb(media, here, hits->t - rays->since, (waiting & ~hit) | changes);
+  *light = multiply3(*light, kept);
+  rays->since = select(rays->since, hits->t, changes);
+  through = (passing & ~interface) | changes;
+#else
+  const MASK there = here;
+#endif
   if (!any_lane(passing)) return NO_LANES;
-  light->from = select(light->from, hits->t, changes);
-  filter_light(materials, media, &faces, here, there, rays->d, (passing & ~interface) | changes,
-               &light->through);
+  filter_light(materials, media, &faces, here, there, rays->d, through, light);
   continue_behind(info, rays, hits, faces.entering, passing);
-  return passing & MASK_OF(greatest3(light->through) > 0.0f);
+  return passing & MASK_OF(greatest3(*light) > 0.0f);
 }
 #endif
 
-// The factors on the light that comes along the rays from their ends to their starts.
-static inline REAL3 visibilities(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active,
-                                 bool coherent, u32* counts) {
-  REAL3 through = all3((float3)(1.0f));
-#if HAS_SDF
-  const REAL soft = soft_shadows(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, counts);
-  through = real3(soft, soft, soft);
-#endif
+// Takes the newest shadow rays, at most `most`, to the light or to their next filters, where those that pass
+// wait again. What reaches the lights is added to the pixels. `coherent`: the rays run close together.
+NEVER_INLINE void advance_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, ShadowStack* stack, u32 most,
+                                  bool coherent, float4* radiance, u32* counts) {
+  SceneRays rays;
+  PathStates paths;
+  const MASK lanes = pop_shadows(stack, most, &rays, &paths);
 #if HAS_SHADOW_FILTERS
-  Filtered light = {(REAL)(0.0f), through};
-  MASK waiting = active;
-  for (u32 filter = 0; any_lane(waiting) && filter < MAX_FILTERS; ++filter) {
-    Hits hits;
-    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, coherent && filter == 0u, true, &hits,
-                 counts);
-    waiting = pass_filters(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, &hits, waiting, &light);
-  }
-  counts[COUNT_SHADOW_LIMIT] += lane_count(waiting);
-  return select3(light.through, all3((float3)(0.0f)), waiting);
+  Hits hits;
+  nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lanes, coherent, true, &hits, counts);
+  const MASK passing = pass_filters(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, &hits, lanes, &paths.throughput);
+  const MASK too_many = passing & MASK_OF(rays.crossings >= MAX_FILTERS);
+  counts[COUNT_SHADOW_LIMIT] += lane_count(too_many);
+  push_shadows(stack, &rays, &paths, passing & ~too_many);
+  add_to_pixels(paths.throughput, paths.pixel, lanes & ~passing, radiance);
 #else
-  const MASK occluded = any_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, coherent, counts);
-  return select3(through, all3((float3)(0.0f)), occluded);
+  const MASK occluded = any_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lanes, coherent, counts);
+  add_to_pixels(paths.throughput, paths.pixel, lanes & ~occluded, radiance);
 #endif
 }
 

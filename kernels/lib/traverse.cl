@@ -94,13 +94,15 @@ static inline void trace_bounded_batch(TRACE_PARAMETERS, const REAL3* o, const R
 static inline void find_hits(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min, REAL t_max,
                              MASK active, bool coherent, bool any, Hits* hits) {
   *hits = no_hits(t_max);
+#if HAS_TRACED
   active &= traceable(o, d, *t_min, t_max);
-#if HAS_PLANE
+#if HAS_SOLID
   hit_solids(instances, info->bounded_count, info->instance_count, o, d, t_min, active, any, hits);
 #endif
   if (any) active &= ~hit_anything(hits);
   if (info->bounded_count > 0u && any_lane(active))
     trace_bounded_batch(TRACE_ARGUMENTS, o, d, t_min, active, coherent, any, hits);
+#endif
 }
 
 // The nearest hits of the lanes of `active` in (t_min, t_max].

@@ -9,19 +9,18 @@
 #include "lib/segment.cl"
 #include "lib/shadow.cl"
 
-// What one light does to the surfaces of `lanes`: Ij (kd n.l + ks (r.v)^b) Vj, nothing elsewhere. `coherent`:
-// the points lie close together.
-static inline REAL3 light_from(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, const SceneRays* rays,
-                               MASK lanes, bool coherent, const Encounters* met, const Surfaces* s,
-                               u32* counts) {
-  const REAL3 none = all3((float3)(0.0f));
+// Sends shadow rays from the surfaces of `lanes` to one light, with what it would do there: Ij (kd n.l +
+// ks (r.v)^b) Vj.
+static inline void cast_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, const SceneRays* rays,
+                                const PathStates* paths, MASK lanes, const Encounters* met, const Surfaces* s,
+                                ShadowStack* stack, u32* counts) {
   const LightSamples light = sample_light(lights + index, s->p);
   const MASK facing = lanes & MASK_OF(dot3(s->ns, light.wi) > 0.0f);
-  if (!any_lane(facing)) return none;
+  if (!any_lane(facing)) return;
   const REAL3 possible =
       multiply3(light.radiance, local_reflection(materials, &met->face, s, rays->d, light.wi, facing));
   const MASK lit = facing & MASK_OF(greatest3(possible) > 0.0f);
-  if (!any_lane(lit)) return none;
+  if (!any_lane(lit)) return;
   counts[COUNT_SHADOW] += lane_count(lit);
   SceneRays to_light = *rays;
   start_on_surfaces(info, &to_light, &met->hit, ~met->face.entering, lit);
@@ -29,8 +28,13 @@ static inline REAL3 light_from(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, co
   to_light.d = light.wi;
   to_light.t_min = (REAL)(0.0f);
   to_light.t_max = light.distance;
-  const REAL3 through = visibilities(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &to_light, lit, coherent, counts);
-  return select3(none, multiply3(possible, through), lit);
+  PathStates weights = *paths;
+  weights.throughput = multiply3(paths->throughput, possible);
+#if HAS_SDF
+  weights.throughput =
+      scale3(weights.throughput, soft_shadows(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &to_light, lit, counts));
+#endif
+  push_shadows(stack, &to_light, &weights, lit);
 }
 
 #if HAS_SECONDARY
@@ -109,6 +113,8 @@ static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const Surf
     split.kt = select3(split.kt, scale3(split.kt, 1.0f - f), split.dielectric);
   }
   SceneRays child = *rays;
+  child.t_min = (REAL)(0.0f);
+  child.t_max = (REAL)(INFINITY);
   PathStates state = *paths;
   state.depth = paths->depth + 1;
   start_on_surfaces(info, &child, &met->hit, ~faces->entering, split.branches);
@@ -136,54 +142,73 @@ static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const Surf
 }
 #endif
 
-// Adds light to the pixels of `lanes`, one lane after another: several may have the same pixel.
-static inline void add_to_pixels(REAL3 light, MASK pixel, MASK lanes, float4* radiance) {
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
-    radiance[MASK_LANE(pixel, i)].xyz += get3(&light, i);
+// Adds the lights that the surfaces of `lanes` see. `coherent`: the rays run close together, and so do those
+// to one light; else shadow rays wait until there are many, or with `last` until no others come.
+static inline void add_lights(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRays* rays,
+                              const PathStates* paths, MASK lanes, bool coherent, bool last,
+                              const Encounters* met, const Surfaces* s, ShadowStack* stack, float4* radiance,
+                              u32* counts) {
+  u32 light = any_lane(lanes) ? 0u : info->light_count;
+  for (;;) {
+    u32 most = BATCH;
+    bool together = false;
+    if (stack->count < BATCH) {
+      if (light < info->light_count) {
+        const u32 before = stack->count;
+        cast_shadows(TRACE_ARGUMENTS, SHADE_ARGUMENTS, light++, rays, paths, lanes, met, s, stack, counts);
+        most = stack->count - before;
+        together = coherent && most;
+        if (!together) continue;
+      } else if (!last || !stack->count)
+        return;
+    }
+    // The only place where shadow rays are traced: some compilers copy all that is called.
+    advance_shadows(TRACE_ARGUMENTS, SHADE_ARGUMENTS, stack, most, together, radiance, counts);
   }
 }
 
-// Takes a batch to the next surfaces, adds what it sees there to the pixels and leaves the children on the
-// stack.
+// Takes a batch to the next interfaces, adds what it sees there to the pixels and leaves the rays that come
+// of it on the stacks.
 NEVER_INLINE void follow_batch(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, PathStates* paths,
-                               MASK lanes, bool coherent, RayStack* stack, float4* radiance, u32* counts) {
+                               MASK lanes, bool coherent, RayStack* stack, ShadowStack* shadows,
+                               float4* radiance, u32* counts) {
   Encounters met;
-  next_surfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, lanes, coherent, &met, counts);
-  const MASK hit = lanes & hit_anything(&met.hit);
+  const MASK unseen = next_interfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, lanes, coherent, &met, counts);
   REAL3 seen = all3((float3)(0.0f));
 #if HAS_GLOW
   seen = multiply3(paths->throughput, rays->glow);
 #endif
   paths->throughput = multiply3(paths->throughput, met.absorbed);
+#if HAS_MEDIA
+  if (any_lane(unseen)) push_rays(stack, rays, paths, unseen);
+#endif
+  const MASK ended = lanes & ~unseen, hit = ended & hit_anything(&met.hit);
 #if HAS_FOG
-  const MASK foggy = MASK_OF(met.before == 0);
+  const MASK foggy = ended & MASK_OF(met.before == 0);
   const REAL clear = select((REAL)(1.0f), real_exp(-info->fog.w * met.hit.t), foggy);
   seen = add3(seen, multiply3(scale3(paths->throughput, 1.0f - clear), all3(info->fog.xyz)));
   paths->throughput = scale3(paths->throughput, clear);
 #endif
   const REAL3 background = multiply3(paths->throughput, background_along(info, rays->d));
-  seen = select3(add3(seen, background), seen, hit);
+  seen = select3(seen, add3(seen, background), ended & ~hit);
+  Surfaces s;
   if (any_lane(hit)) {
-    Surfaces s;
     interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->o, rays->d, &met.hit, &met.face, hit, &s);
     REAL3 own = multiply3(s.ambient, all3(info->ambient.xyz));
 #if HAS_SDF
     own = scale3(own, field_openness(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, &met.hit, hit));
 #endif
-    for (u32 light = 0; light < info->light_count; ++light)
-      own = add3(own,
-                 light_from(TRACE_ARGUMENTS, SHADE_ARGUMENTS, light, rays, hit, coherent, &met, &s, counts));
     seen = select3(seen, add3(seen, multiply3(paths->throughput, own)), hit);
 #if HAS_SECONDARY
     spawn_children(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &s, &met, rays, paths, hit, stack, counts);
 #endif
-    if (coherent) {
-      counts[COUNT_PRIMARY_HIT] += lane_count(hit);
-      for (u32 i = 0; i < BATCH; ++i)
-        if (MASK_LANE(hit, i)) radiance[i].w = 1.0f;
-    }
+    const MASK first = hit & MASK_OF(paths->depth == 1);
+    counts[COUNT_PRIMARY_HIT] += lane_count(first);
+    for (u32 bits = lane_bits(first); bits; bits &= bits - 1u)
+      radiance[MASK_LANE(paths->pixel, lowest_bit(bits))].w = 1.0f;
   }
+  add_lights(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, paths, hit, coherent, stack->count == 0u, &met, &s,
+             shadows, radiance, counts);
   add_to_pixels(seen, paths->pixel, lanes, radiance);
 }
 
@@ -195,12 +220,15 @@ static inline void trace_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* 
   paths.throughput = all3((float3)(1.0f));
   paths.depth = (MASK)(1);
   for (u32 i = 0; i < BATCH; ++i) MASK_LANE(paths.pixel, i) = (int)i;
+  ShadowStack shadows;
+  shadows.count = 0;
   stack->count = 0;
   bool from_camera = true;
   do {
-    follow_batch(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, &paths, lanes, from_camera, stack, radiance, counts);
+    follow_batch(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, &paths, lanes, from_camera, stack, &shadows,
+                 radiance, counts);
     from_camera = false;
-    lanes = stack->count ? pop_rays(stack, rays, &paths) : NO_LANES;
+    lanes = stack->count ? pop_rays(stack, BATCH, rays, &paths) : NO_LANES;
   } while (any_lane(lanes));
 }
 

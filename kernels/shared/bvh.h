@@ -94,8 +94,8 @@ SUNDOG_SHARED_SIZE(Vertex, 32)
 #define SHAPE_SDF 9u
 #define SHAPE_COUNT 10u
 
-// 128 bytes. Instances [0, bounded_count) are leaves of the scene BVH in leaf order; the rest are unbounded and
-// are tried one by one. A ray is taken into object space without renormalising, so t is the same in both;
+// 128 bytes. Instances [0, bounded_count) are leaves of the scene BVH in leaf order; the rest, planes and a few
+// solids beside meshes, are tried one by one. A ray is taken into object space without renormalising, so t is the same in both;
 // a normal goes to world space by the transpose of object_from_world's linear part.
 typedef struct Instance {
   float4 object_from_world[3];  // rows of the affine matrix

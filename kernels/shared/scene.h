@@ -78,7 +78,7 @@ typedef struct SceneInfo {
   u32 samples;               // per pixel
   float cutoff;              // a ray whose greatest throughput component is below it ends
   u32 camera_inside;         // 1: the camera may be inside a solid with a medium; its media stack must be found
-  float4 scene_center;       // bounding sphere of the bounded instances; w = radius
+  float4 scene_center;       // bounding sphere of all instances but planes and fields; w = radius
   float4 up;                 // unit: the scene's up
   float4 fog;                // colour of the world's fog; w = its density per unit of length (0: none)
   u32 field_end;             // instances [instance_count, field_end) place distance fields

@@ -87,7 +87,14 @@ TEST_CASE("a solid inside one of the same medium vanishes") {
   SceneDescription filled = bare;
   scenes::place(filled, SphereShape{0.4}, glass, at({0.1, 0.2, 0.1}));
   on_every_device([&](const DeviceInfo& device) {
-    REQUIRE(scenes::render_on(device, bare).image.data == scenes::render_on(device, filled).image.data);
+    // A ray that crosses what it cannot see waits for others, so a pixel's sum may be made in another order.
+    const std::vector<float> without = scenes::render_on(device, bare).image.data,
+                             with = scenes::render_on(device, filled).image.data;
+    REQUIRE(without.size() == with.size());
+    float farthest = 0;
+    for (std::size_t i = 0; i < with.size(); ++i)
+      farthest = std::max(farthest, std::abs(with[i] - without[i]));
+    REQUIRE(farthest <= 5e-7f);
   });
 }
 
