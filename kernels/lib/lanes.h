@@ -114,7 +114,9 @@ static inline MASK take_alike(MASK index, MASK* left, u32* value) {
 
 // Writes the lanes of the mask one after another. Up to LANES - 1 values behind them may be overwritten.
 static inline void write_packed(float* to, REAL v, MASK m) {
-#if LANES == 16 && defined(__AVX512F__) && !defined(SUNDOG_PORTABLE)
+#if LANES == 1
+  *to = v;
+#elif LANES == 16 && defined(__AVX512F__) && !defined(SUNDOG_PORTABLE)
   vstore16(__builtin_ia32_compresssf512_mask(v, v, (ushort)lane_bits(m)), 0, to);
 #elif LANES == 8 && defined(__AVX512VL__) && !defined(SUNDOG_PORTABLE)
   vstore8(__builtin_ia32_compresssf256_mask(v, v, (uchar)lane_bits(m)), 0, to);
