@@ -55,12 +55,6 @@ NEVER_INLINE bool make_packet(const REAL3* o, const REAL3* d, const REAL* t_min,
 // The bounded instances for the lanes of `active`.
 static inline void trace_bounded_batch(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min,
                                        MASK active, bool coherent, bool any, Hits* hits) {
-#if !HAS_MESH
-  if (info->bounded_count <= FEW_SOLIDS) {
-    hit_solids(instances, 0u, info->bounded_count, o, d, t_min, active, any, hits);
-    return;
-  }
-#endif
 #if PACKETS
   PacketRays rays;
   PacketHits packet;
@@ -96,11 +90,16 @@ static inline void find_hits(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, c
   *hits = no_hits(t_max);
 #if HAS_TRACED
   active &= traceable(o, d, *t_min, t_max);
+  bool in_tree = info->bounded_count > 0u;
 #if HAS_SOLID
-  hit_solids(instances, info->bounded_count, info->instance_count, o, d, t_min, active, any, hits);
+#if !HAS_MESH
+  in_tree = info->bounded_count > FEW_SOLIDS;
+#endif
+  const u32 first = in_tree ? info->bounded_count : 0u;
+  hit_solids(instances, first, info->instance_count, o, d, t_min, active, any, hits);
 #endif
   if (any) active &= ~hit_anything(hits);
-  if (info->bounded_count > 0u && any_lane(active))
+  if (in_tree && any_lane(active))
     trace_bounded_batch(TRACE_ARGUMENTS, o, d, t_min, active, coherent, any, hits);
 #endif
 }
