@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <mutex>
 #include <thread>
 
@@ -127,6 +128,7 @@ std::string place(const DeviceInfo& info) { return fmt::format("{}:{}", info.pla
 void inject_launch_faults(const DeviceInfo& info, const std::string& name, std::size_t items) {
   while (fault("hang", place(info), items)) std::this_thread::sleep_for(std::chrono::hours(1));
   if (fault("crash", place(info), items)) std::abort();
+  if (fault("kill", place(info), items)) ::raise(SIGKILL);
   if (const auto status = fault("launch", place(info), items))
     check_cl(*status, info, fmt::format("launch of {}", name));
 }
