@@ -2,31 +2,26 @@
 // in a row. `coherent` says that they run close together.
 #include "lib/traverse.cl"
 
-// Lane i is ray first + i, or the last one. Lanes are put together in registers: read back from memory, they
-// would wait for sixteen writes.
-#define LOAD_MEMBER(to, member)                                                  \
-  {                                                                              \
-    REAL lanes_read;                                                             \
-    _Pragma("unroll") for (u32 i = 0; i < BATCH; ++i) REAL_LANE(lanes_read, i) = \
-        rays[min(first + i, ray_count - 1u)].member;                             \
-    to = lanes_read;                                                             \
-  }
-
-// The BATCH rays of work-item `item`, in the form that the tracer takes.
+// The BATCH rays of work-item `item`, in the form that the tracer takes; lanes without a ray have the last
+// one. Lanes are put together in registers: read back from memory, they would wait for sixteen writes.
 #define LOAD_BATCH                                                              \
   const u32 first = item * BATCH;                                               \
   if (first >= ray_count) return;                                               \
   const MASK lanes = lanes_of((1u << min((u32)BATCH, ray_count - first)) - 1u); \
-  REAL3 o, d;                                                                   \
-  REAL t_min, t_max;                                                            \
-  LOAD_MEMBER(o.x, ox)                                                          \
-  LOAD_MEMBER(o.y, oy)                                                          \
-  LOAD_MEMBER(o.z, oz)                                                          \
-  LOAD_MEMBER(d.x, dx)                                                          \
-  LOAD_MEMBER(d.y, dy)                                                          \
-  LOAD_MEMBER(d.z, dz)                                                          \
-  LOAD_MEMBER(t_min, t_min)                                                     \
-  LOAD_MEMBER(t_max, t_max)
+  REAL ox, oy, oz, dx, dy, dz, starts, ends;                                    \
+  _Pragma("unroll") for (u32 i = 0; i < BATCH; ++i) {                           \
+    const float8 ray = vload8(min(first + i, ray_count - 1u), &rays->ox);       \
+    REAL_LANE(ox, i) = ray.s0;                                                  \
+    REAL_LANE(oy, i) = ray.s1;                                                  \
+    REAL_LANE(oz, i) = ray.s2;                                                  \
+    REAL_LANE(starts, i) = ray.s3;                                              \
+    REAL_LANE(dx, i) = ray.s4;                                                  \
+    REAL_LANE(dy, i) = ray.s5;                                                  \
+    REAL_LANE(dz, i) = ray.s6;                                                  \
+    REAL_LANE(ends, i) = ray.s7;                                                \
+  }                                                                             \
+  const REAL3 o = real3(ox, oy, oz), d = real3(dx, dy, dz);                     \
+  const REAL t_min = starts, t_max = ends;
 
 NEVER_INLINE void trace_rays_item(TRACE_PARAMETERS, __global const Ray* restrict rays,
                                   __global Hit* restrict hits, u32 ray_count, u32 coherent, u32 item) {

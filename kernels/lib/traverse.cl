@@ -111,11 +111,12 @@ static inline void trace_batch(TRACE_PARAMETERS, const REAL3* o, const REAL3* d,
 #if HAS_MESH
   for (u32 bits = lane_bits(hit_anything(hits)); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    if (instances[MASK_LANE(hits->instance, i)].shape == SHAPE_MESH) {
-      Hit hit = get_hit(hits, i);
-      finish_triangle(blocks, &hit);
-      set_hit(hits, i, &hit);
-    }
+    if (instances[MASK_LANE(hits->instance, i)].shape != SHAPE_MESH) continue;
+    Hit hit;
+    hit.prim = (u32)MASK_LANE(hits->prim, i);
+    finish_triangle(blocks, &hit);
+    MASK_LANE(hits->prim, i) = (int)hit.prim;
+    set3(&hits->ng, i, (float3)(hit.ng_x, hit.ng_y, hit.ng_z));
   }
 #endif
 }
