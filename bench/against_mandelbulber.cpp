@@ -3,12 +3,7 @@
 // they shade differently, so outlines are what can be compared. Mandelbulber's Mandelbulb counts its angle
 // from the equator, which makes it another set of the same kind: there outlines differ.
 #include <fmt/format.h>
-#include <sched.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
@@ -18,6 +13,7 @@
 #include "base/file.h"
 #include "base/image_io.h"
 #include "bench/samples.h"
+#include "run_program.h"
 
 using namespace sundog;
 
@@ -74,30 +70,9 @@ struct Times {
 
 /// Runs a program on one processor with its output in `log`. Throws when it fails.
 void run(const std::vector<std::string>& command, const std::string& log, Times& times) {
-  const auto start = std::chrono::steady_clock::now();
-  std::fflush(stdout);
-  const pid_t child = fork();
-  if (child == 0) {
-    cpu_set_t one;
-    CPU_ZERO(&one);
-    CPU_SET(0, &one);
-    sched_setaffinity(0, sizeof one, &one);
-    if (!std::freopen(log.c_str(), "w", stdout) || dup2(1, 2) < 0) _exit(126);
-    std::vector<char*> words;
-    for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
-    words.push_back(nullptr);
-    execvp(words[0], words.data());
-    _exit(127);
-  }
-  int status = 0;
-  rusage used{};
-  if (child < 0 || wait4(child, &status, 0, &used) != child || status != 0)
-    throw std::runtime_error(command[0] + " failed; see " + log);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  times.wall.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  times.processor.push_back(seconds(used.ru_utime) + seconds(used.ru_stime));
+  const Elapsed used = run_program({command, log, {}, true});
+  times.wall.push_back(used.wall);
+  times.processor.push_back(used.processor);
 }
 
 /// Share of the pixels that show the background, which is magenta, in one picture alone.

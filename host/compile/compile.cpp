@@ -1,7 +1,9 @@
 // compile(): from the description to the tables, in the order of their dependence.
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "base/error.h"
 #include "compile/camera.h"
@@ -44,6 +46,26 @@ CompiledFields fields_of(const SceneDescription& scene) {
   }
 }
 
+bool absorbs(const Medium& medium) {
+  const float4& a = medium.absorption;
+  return a.x != 0 || a.y != 0 || a.z != 0;
+}
+
+/// As highlight() of kernels/lib/lights.cl tells them.
+bool has_fractional_exponent(const Material& material) {
+  const float exponent = material.specular.w;
+  return exponent != std::floor(exponent) || exponent > 65535.0f;
+}
+
+void add_field_features(CompiledScene& out) {
+  for (const SdfField& field : out.fields.fields) {
+    out.features.glow |= field.glow.w > 0;
+    out.features.occlusion |= field.occlusion_reach > 0;
+    out.features.soft_shadows |= field.shadow_hardness > 0;
+    out.features.field_flags |= field.flags;
+  }
+}
+
 void set_counts(CompiledScene& out) {
   out.info.light_count = static_cast<u32>(out.lights.size());
   out.info.material_count = static_cast<u32>(out.materials.size());
@@ -77,12 +99,13 @@ CompiledScene compile(const SceneDescription& scene) {
   set_camera(scene, out.info);
   add_lights(scene, out);
   const u32 default_material = add_materials(scene, out);
-  const float4& world = out.media[0].absorption;
-  out.features.media = world.x != 0 || world.y != 0 || world.z != 0;
+  out.features.media = absorbs(out.media[0]);
+  out.features.absorption = std::ranges::any_of(out.media, absorbs);
+  out.features.fractional_exponents = std::ranges::any_of(out.materials, has_fractional_exponent);
   const std::vector<PlacedMesh> meshes = add_meshes(scene, default_material, out);
   add_instances(scene, meshes, default_material, out);
   out.fields = fields_of(scene);
-  for (const SdfField& field : out.fields.fields) out.features.glow |= field.glow.w > 0;
+  add_field_features(out);
   add_fog(scene, out);
   set_counts(out);
   set_figures(out);

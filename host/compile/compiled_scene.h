@@ -20,11 +20,16 @@ struct SceneFeatures {
   bool media = false;           // some material has an interior medium, or the world's absorbs
   bool shadow_filters = false;  // shadow rays must look through transmissive things
   bool camera_inside = false;
-  bool unbounded = false;  // there are planes
+  bool unbounded = false;         // there are planes
   bool two_sided_fields = false;  // rays may be inside of a distance field
   bool glow = false;              // some field glows
+  bool occlusion = false;         // some field takes ambient light from its crevices
+  bool soft_shadows = false;      // some field's shadow has a penumbra
+  u32 field_flags = 0;            // SdfField.flags that some field has
   bool fog = false;
-  u32 bvh_stack = 1;       // entries a traversal stack needs at most (scene BVH and the mesh BVH below it)
+  bool absorption = false;            // some medium absorbs
+  bool fractional_exponents = false;  // some highlight's exponent is no integer
+  u32 bvh_stack = 1;  // entries a traversal stack needs at most (scene BVH and the mesh BVH below it)
 };
 
 struct BvhFigures {

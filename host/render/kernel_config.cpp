@@ -104,8 +104,16 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   define("HAS_SDF", scene.features.shapes[SHAPE_SDF]);
   define("SDF_TWO_SIDED", scene.features.two_sided_fields);
   define("HAS_GLOW", scene.features.glow);
+  define("HAS_OCCLUSION", scene.features.occlusion);
+  define("HAS_SOFT_SHADOWS", scene.features.soft_shadows);
+  define("SDF_FLAGS", scene.features.field_flags);
   define("HAS_FOG", scene.features.fog);
-  define("LANES", marched_lanes(batch));
+  const unsigned lanes = marched_lanes(batch), few_solids = 2 * lanes;
+  define("FEW_SOLIDS", few_solids);
+  define("HAS_BVH", scene.features.shapes[SHAPE_MESH] || scene.info.bounded_count > few_solids);
+  define("HAS_ABSORPTION", scene.features.absorption);
+  define("HAS_FRACTIONAL_EXPONENTS", scene.features.fractional_exponents);
+  define("LANES", lanes);
   if (!scene.fields.source.empty()) config.generated["generated/sdf.cl"] = scene.fields.source;
   return config;
 }

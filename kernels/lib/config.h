@@ -42,7 +42,7 @@
 #define HAS_TRACED (HAS_MESH || HAS_SOLID)
 
 // Whether a batch of rays that run close together can go through the BVH as one.
-#define PACKETS (WIDE_VECTORS && BATCH == 16 && HAS_TRACED)
+#define PACKETS (WIDE_VECTORS && BATCH == 16 && HAS_BVH)
 
 // Whether rays that go by themselves are walked a few in turn. It pays in meshes.
 #define WALKS_IN_TURN (WIDE_VECTORS && HAS_MESH)
@@ -87,12 +87,27 @@
 #ifndef HAS_ROUNDBOX
 #define HAS_ROUNDBOX 1
 #endif
+// There is a mesh, or more bounded solids than FEW_SOLIDS: a BVH leads to them.
+#ifndef HAS_BVH
+#define HAS_BVH 1
+#endif
 #ifndef HAS_SDF
 #define HAS_SDF 1
 #endif
 // Some field glows.
 #ifndef HAS_GLOW
 #define HAS_GLOW HAS_SDF
+#endif
+// Some field takes ambient light from its crevices; some has a penumbra.
+#ifndef HAS_OCCLUSION
+#define HAS_OCCLUSION HAS_SDF
+#endif
+#ifndef HAS_SOFT_SHADOWS
+#define HAS_SOFT_SHADOWS HAS_SDF
+#endif
+// SdfField.flags that some field has.
+#ifndef SDF_FLAGS
+#define SDF_FLAGS 3u
 #endif
 #ifndef HAS_FOG
 #define HAS_FOG 1
@@ -106,6 +121,12 @@
 #endif
 #ifndef HAS_MEDIA
 #define HAS_MEDIA 1
+#endif
+#ifndef HAS_ABSORPTION
+#define HAS_ABSORPTION 1
+#endif
+#ifndef HAS_FRACTIONAL_EXPONENTS
+#define HAS_FRACTIONAL_EXPONENTS 1
 #endif
 #ifndef HAS_SHADOW_FILTERS
 #define HAS_SHADOW_FILTERS 1

@@ -4,7 +4,7 @@
 #include "lib/fields.cl"
 #include "lib/sdf/light.cl"
 
-#if HAS_SDF
+#if HAS_OCCLUSION
 // The part of ambient light that the field of a hit lets reach that point of it: 1 for everything else, and
 // where the field has no occlusion.
 NEVER_INLINE REAL field_openness(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRays* rays, const Hits* hits,
@@ -21,7 +21,9 @@ NEVER_INLINE REAL field_openness(TRACE_PARAMETERS, SHADE_PARAMETERS, const Scene
   }
   return open;
 }
+#endif
 
+#if HAS_SOFT_SHADOWS
 // What the fields with soft shadows let pass along the rays.
 NEVER_INLINE REAL soft_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRays* rays, MASK active,
                                u32* counts) {

@@ -41,8 +41,10 @@ static inline LightSamples sample_light(__global const Light* light, REAL3 p) {
 
 // x^e for x in [0, 1]. Whole exponents, which most are, by squaring.
 static inline REAL highlight(REAL x, float e) {
+#if HAS_FRACTIONAL_EXPONENTS
   if (e != floor(e) || e > 65535.0f)
     return select(real_exp(e * real_log(real_max(x, (REAL)(1e-37f)))), (REAL)(0.0f), MASK_OF(x < 1e-37f));
+#endif
   REAL result = (REAL)(1.0f);
   for (u32 bits = (u32)e; bits; bits >>= 1) {
     if (bits & 1u) result *= x;

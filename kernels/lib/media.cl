@@ -45,6 +45,7 @@ static inline bool cross_boundary(MediaStack* stack, u32 medium, bool entering) 
 // Beer-Lambert: what is left of light after `distance` in the medium of each lane of `lanes`, 1 elsewhere.
 static inline REAL3 absorb(__global const Medium* restrict media, MASK medium, REAL distance, MASK lanes) {
   REAL3 kept = all3((float3)(1.0f));
+#if HAS_ABSORPTION
   u32 index;
   while (any_lane(lanes)) {
     const MASK mine = take_alike(medium, &lanes, &index);
@@ -54,6 +55,7 @@ static inline REAL3 absorb(__global const Medium* restrict media, MASK medium, R
     if (a.y != 0.0f) kept.y = select(kept.y, real_exp(-a.y * distance), mine);
     if (a.z != 0.0f) kept.z = select(kept.z, real_exp(-a.z * distance), mine);
   }
+#endif
   return kept;
 }
 

@@ -12,7 +12,9 @@
 
 // Up to so many solids are tried one after another for all rays of a batch, which is quicker than taking each
 // ray through the BVH.
+#ifndef FEW_SOLIDS
 #define FEW_SOLIDS (2u * LANES)
+#endif
 
 // Rays that can hit something: a ray with a component that is not finite, or without a direction, hits
 // nothing.
@@ -52,6 +54,7 @@ NEVER_INLINE bool make_packet(const REAL3* o, const REAL3* d, const REAL* t_min,
 }
 #endif
 
+#if HAS_BVH
 // The bounded instances for the lanes of `active`.
 static inline void trace_bounded_batch(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min,
                                        MASK active, bool coherent, bool any, Hits* hits) {
@@ -82,6 +85,7 @@ static inline void trace_bounded_batch(TRACE_PARAMETERS, const REAL3* o, const R
   }
 #endif
 }
+#endif
 
 // The nearest hits of the lanes of `active` in (t_min, t_max], or with `any` some hits. `coherent`: the rays
 // run close together.
@@ -98,9 +102,11 @@ static inline void find_hits(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, c
   const u32 first = in_tree ? info->bounded_count : 0u;
   hit_solids(instances, first, info->instance_count, o, d, t_min, active, any, hits);
 #endif
+#if HAS_BVH
   if (any) active &= ~hit_anything(hits);
   if (in_tree && any_lane(active))
     trace_bounded_batch(TRACE_ARGUMENTS, o, d, t_min, active, coherent, any, hits);
+#endif
 #endif
 }
 

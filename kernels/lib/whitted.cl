@@ -30,7 +30,7 @@ static inline void cast_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, c
   to_light.t_max = light.distance;
   PathStates weights = *paths;
   weights.throughput = multiply3(paths->throughput, possible);
-#if HAS_SDF
+#if HAS_SOFT_SHADOWS
   weights.throughput =
       scale3(weights.throughput, soft_shadows(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &to_light, lit, counts));
 #endif
@@ -195,7 +195,7 @@ NEVER_INLINE void follow_batch(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* ra
   if (any_lane(hit)) {
     interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->o, rays->d, &met.hit, &met.face, hit, &s);
     REAL3 own = multiply3(s.ambient, all3(info->ambient.xyz));
-#if HAS_SDF
+#if HAS_OCCLUSION
     own = scale3(own, field_openness(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, &met.hit, hit));
 #endif
     seen = select3(seen, add3(seen, multiply3(paths->throughput, own)), hit);

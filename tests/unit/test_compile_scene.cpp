@@ -126,8 +126,16 @@ TEST_CASE("features follow the materials that are used") {
   flat = compile(scene);
   CHECK_FALSE(flat.features.secondary_rays);
   CHECK_FALSE(flat.features.media);
+  CHECK_FALSE(flat.features.absorption);
   scene.media[0].absorption = {0, 0.1, 0};
   CHECK(compile(scene).features.media);
+  CHECK(compile(scene).features.absorption);
+
+  CHECK_FALSE(flat.features.fractional_exponents);
+  for (const double exponent : {20.5, 65536.0}) {
+    scene.materials[1].exponent = exponent;
+    CHECK(compile(scene).features.fractional_exponents);
+  }
 }
 
 TEST_CASE("the camera inside a medium is noticed") {

@@ -21,7 +21,7 @@ static inline void clip_to_interval(__global const SdfField* restrict field, REA
   clip_slab(o.x, d.x, field->lower.x, field->upper.x, enter, leave);
   clip_slab(o.y, d.y, field->lower.y, field->upper.y, enter, leave);
   clip_slab(o.z, d.z, field->lower.z, field->upper.z, enter, leave);
-  if (!(field->flags & SDF_CUT_SPHERE)) return;
+  if (!(field->flags & SDF_FLAGS & SDF_CUT_SPHERE)) return;
   const REAL3 c =
       subtract3(o, real3((REAL)(field->sphere.x), (REAL)(field->sphere.y), (REAL)(field->sphere.z)));
   const REAL a = dot3(d, d), middle = -dot3(c, d) / a;
@@ -43,7 +43,7 @@ static inline REAL3 cut_normal(__global const SdfField* restrict field, REAL3 p)
   const MASK on_x = MASK_OF(x >= y) & MASK_OF(x >= z), on_y = MASK_OF(y >= z) & ~on_x;
   REAL3 n = real3(select(zero, copysign(one, c.x), on_x), select(zero, copysign(one, c.y), on_y),
                   select(copysign(one, c.z), zero, on_x | on_y));
-  if (!(field->flags & SDF_CUT_SPHERE)) return n;
+  if (!(field->flags & SDF_FLAGS & SDF_CUT_SPHERE)) return n;
   const REAL3 radial =
       subtract3(p, real3((REAL)(field->sphere.x), (REAL)(field->sphere.y), (REAL)(field->sphere.z)));
   return select3(n, unit3(radial), MASK_OF(length3(radial) - field->sphere.w > fmax(x, fmax(y, z))));

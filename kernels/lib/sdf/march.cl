@@ -103,7 +103,7 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   REAL previous = (REAL)(0.0f), step = (REAL)(0.0f), slope = (REAL)(-1.0f);
   // How far on the wrong side, in thresholds, a ray that leaves the surface must be to have met it again: it
   // starts on a refined surface, but before an estimated one (below).
-  const bool smooth = field->flags & SDF_SMOOTH;
+  const bool smooth = field->flags & SDF_FLAGS & SDF_SMOOTH;
   const REAL wrong = select((REAL)(smooth ? -1.0f : 0.25f), (REAL)(-2.0f), rays->inside);
   const REAL pull = select(smooth ? (REAL)(0.0f) : -inverse_speed, (REAL)(0.0f), rays->inside);
 #if SDF_TWO_SIDED

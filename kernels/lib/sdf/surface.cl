@@ -58,7 +58,7 @@ static inline REAL3 difference_normal(SDF_PARAMETERS, u32 index, REAL3 p, REAL w
 static inline SdfSurface sdf_surface(SDF_PARAMETERS, u32 index, REAL3 p, REAL threshold, MASK hit,
                                      MASK inside, MASK cut) {
   __global const SdfField* restrict field = sdf_fields + index;
-  const bool exact = field->flags & SDF_SMOOTH, colored = field->color_by != SDF_COLOR_NONE;
+  const bool exact = field->flags & SDF_FLAGS & SDF_SMOOTH, colored = field->color_by != SDF_COLOR_NONE;
   SdfSurface surface;
   surface.color = real3((REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f));
   REAL3 gradient = surface.color;

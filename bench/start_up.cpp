@@ -1,0 +1,108 @@
+// How long sundog takes from the command to a small picture: with no kernel in any cache, with all of them,
+// and after an edit of a scene's formula with all else cached. The caches are folders of this program's own.
+// A picture of 64x64 pixels is one tile, so its end is the first that anyone can see of it.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <filesystem>
+
+#include "base/file.h"
+#include "bench/samples.h"
+#include "run_program.h"
+
+using namespace sundog;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Options {
+  int size = 64, repeats = 5;
+  std::string json, folder = "start_up", device = "cpu";
+};
+
+struct Start {
+  std::string name, what;
+  std::vector<double> wall, processor;
+};
+
+std::string shipped(const char* name) { return fmt::format("{}/scenes/{}.json", SUNDOG_SOURCE_DIR, name); }
+
+/// scenes/formula.json with another map.
+void write_edited(const fs::path& file) {
+  std::string text = read_file(shipped("formula"));
+  const std::string line = "\"z = abs(z) - shift\"";
+  const std::size_t at = text.find(line);
+  if (at == std::string::npos) throw std::runtime_error("scenes/formula.json has no line " + line);
+  write_file(file, text.replace(at, line.size(), "\"z = abs(z + shift) - 2 * shift\""));
+}
+
+void time_start(const Options& options, const std::string& scene, const fs::path& caches, Start& start) {
+  const fs::path folder = options.folder;
+  const std::vector<std::string> command{
+      SUNDOG_BINARY, "render",       scene,     "--size", fmt::format("{0}x{0}", options.size),
+      "--device",    options.device, "--quiet", "-o",     (folder / (start.name + ".png")).string()};
+  const Elapsed used = run_program(
+      {command,
+       (folder / (start.name + ".log")).string(),
+       {{"XDG_CACHE_HOME", (caches / "sundog").string()}, {"POCL_CACHE_DIR", (caches / "pocl").string()}}});
+  start.wall.push_back(used.wall);
+  start.processor.push_back(used.processor);
+}
+
+/// One run of each, so that a machine's moods touch all alike.
+void time_round(const Options& options, std::vector<Start>& starts) {
+  const fs::path folder = options.folder, edited = folder / "edited.json";
+  const fs::path of_spheres = folder / "caches_spheres", of_formula = folder / "caches_formula";
+  fs::remove_all(of_spheres);
+  fs::remove_all(of_formula);
+  write_edited(edited);
+  time_start(options, shipped("spheres"), of_spheres, starts[0]);
+  time_start(options, shipped("spheres"), of_spheres, starts[1]);
+  time_start(options, shipped("formula"), of_formula, starts[2]);
+  time_start(options, shipped("formula"), of_formula, starts[3]);
+  time_start(options, edited.string(), of_formula, starts[4]);
+}
+
+void report(const Options& options, const std::vector<Start>& starts) {
+  nlohmann::json json{{"size", options.size}, {"repeats", options.repeats}, {"device", options.device}};
+  fmt::print("{:16} {:>9} {:>17} {:>11}\n", "", "wall [s]", "range", "processor");
+  for (const Start& start : starts) {
+    const Spread wall = spread(start.wall), processor = spread(start.processor);
+    fmt::print("{:16} {:9.3f} {:8.3f}-{:8.3f} {:11.3f}   {}\n", start.name, wall.median, wall.min, wall.max,
+               processor.median, start.what);
+    json["starts"].push_back({{"name", start.name},
+                              {"what", start.what},
+                              {"wall_seconds", to_json(wall)},
+                              {"processor_seconds", to_json(processor)}});
+  }
+  if (!options.json.empty()) write_file(options.json, json.dump(2) + "\n");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("Times from the command to a small picture: with and without cached kernels.");
+  app.add_option("--size", options.size, "pixels a side")->check(CLI::Range(16, 4096));
+  app.add_option("--repeats", options.repeats)->check(CLI::Range(1, 100));
+  app.add_option("--device", options.device, "sundog's OpenCL device");
+  app.add_option("--folder", options.folder, "for caches, scenes and pictures");
+  app.add_option("--json", options.json, "file for the figures");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    options.folder = fs::absolute(options.folder).string();
+    fs::create_directories(options.folder);
+    std::vector<Start> starts{{"spheres_cold", "scenes/spheres.json, no kernel in any cache", {}, {}},
+                              {"spheres_warm", "its kernels cached", {}, {}},
+                              {"formula_cold", "scenes/formula.json, no kernel in any cache", {}, {}},
+                              {"formula_warm", "its kernels cached", {}, {}},
+                              {"formula_edited", "another map in it, all else cached", {}, {}}};
+    for (int i = 0; i < options.repeats; ++i) time_round(options, starts);
+    report(options, starts);
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "start_up: {}\n", error.what());
+    return 1;
+  }
+}
