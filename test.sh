@@ -10,4 +10,7 @@ if [[ ! -e $stamp || -n $(find "${sources[@]}" -newer "$stamp" -print -quit) ]];
   "$root/cmake/prepare.sh" tests
 fi
 cd "$root"
+if [[ ! -e build/release/sundog_mpi.so ]]; then
+  echo "sundog: built without Open MPI (libopenmpi-dev, openmpi-bin): the tests of mpirun are left out" >&2
+fi
 exec ctest --preset release "$@"

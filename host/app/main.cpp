@@ -2,15 +2,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <future>
-#include <new>
-#include <string>
+#include <string_view>
 
 #include "app/commands.h"
 #include "app/devices_command.h"
+#include "app/exit_status.h"
+#include "app/job.h"
 #include "app/options.h"
 #include "base/error.h"
 #include "render/render.h"
@@ -32,44 +31,23 @@ int run(const ShowText& command) {
 
 int run_command_line(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "worker") return worker_command(argc, argv);
-  const Command command = parse_command_line(argc, argv);
+  // All processes of a job have the same command line: what is wrong with it is told once.
+  Command command = ShowText{};
+  const auto parse = [&] {
+    command = parse_command_line(argc, argv);
+    return exit_done;
+  };
+  if (const int status = exit_status_of(parse, job_rank() <= 0)) return status;
   const int status = std::visit([](const auto& chosen) { return run(chosen); }, command);
   if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw IoError("the standard output cannot be written");
   return status;
-}
-
-/// Prints the error in one line, whatever a library's message holds.
-int fail(ExitStatus status, std::string message) {
-  std::ranges::replace(message, '\n', ' ');
-  fmt::print(stderr, "sundog: {}\n", message);
-  return status;
-}
-
-int status_of(int argc, char** argv) {
-  try {
-    return run_command_line(argc, argv);
-  } catch (const UsageError& error) {
-    return fail(exit_usage, error.what());
-  } catch (const SceneError& error) {
-    return fail(exit_scene, error.what());
-  } catch (const DeviceError& error) {
-    return fail(exit_device, error.what());
-  } catch (const BuildError& error) {
-    fail(exit_build, error.what());
-    fmt::print(stderr, "{}{}", error.log, error.log.ends_with('\n') ? "" : "\n");
-    return exit_build;
-  } catch (const std::bad_alloc&) {
-    return fail(exit_failure, "out of memory");
-  } catch (const std::exception& error) {
-    return fail(exit_failure, error.what());
-  }
 }
 
 }  // namespace
 }  // namespace sundog
 
 int main(int argc, char** argv) {
-  const int status = sundog::status_of(argc, argv);
+  const int status = sundog::exit_status_of([&] { return sundog::run_command_line(argc, argv); });
   if (sundog::threads_left_behind() == 0) return status;
   // A driver that is still at work would find its own globals destroyed by a return.
   std::fflush(nullptr);

@@ -60,7 +60,8 @@ RenderCommand checked(const TypedRender& typed) {
 void add_render(CLI::App& root, Command& chosen) {
   const auto typed = std::make_shared<TypedRender>();
   RenderCommand& command = typed->command;
-  CLI::App* app = root.add_subcommand("render", "Render a scene to an image file");
+  CLI::App* app = root.add_subcommand(
+      "render", "Render a scene to an image file; under mpirun, on the devices of all its processes");
   value(app, "SCENE", "FILE", command.scene, scene_help)->required();
   value(app, "-o,--out", "FILE", command.out, "image file: .png, .exr, .hdr or .pfm")->required();
   values(app, "--device", "SPEC", command.devices, device_help);

@@ -15,14 +15,14 @@ namespace {
 
 using nlohmann::json;
 
-constexpr unsigned restarts = 3;
-
 /// The device of that place and name on this side.
 DeviceInfo find_device(const DeviceInfo& wanted) {
   for (DeviceInfo& device : enumerate_devices())
     if (device.platform == wanted.platform && device.device == wanted.device && device.name == wanted.name) {
       device.sub_units = wanted.sub_units;
       device.estimate = wanted.estimate;
+      device.rank = wanted.rank;
+      device.host = wanted.host;
       return device;
     }
   throw DeviceError(fmt::format("{}: its process does not find it", wanted.label()));
@@ -41,27 +41,57 @@ json remote_settings(const RenderCommand& command, const DeviceInfo& device) {
           {"nice", false}};
 }
 
-OpenedServer open_server(const json& settings) {
-  struct Frame {
-    RenderOptions options;
-    std::shared_ptr<const CompiledScene> scene;
-  };
-  const auto frame = std::make_shared<Frame>();
-  frame->options.work_group = settings.at("work_group").get<WorkGroup>();
-  frame->options.aovs = settings.at("aovs").get<std::vector<std::string>>();
+namespace {
+
+std::shared_ptr<const CompiledScene> load_flat(const json& settings) {
   const auto overrides = settings.at("overrides").get<std::vector<std::string>>();
   LoadOptions options{std::nullopt, settings.at("native_code").get<bool>()};
   if (settings.at("frame").is_number()) options.frame = settings["frame"].get<double>();
-  frame->scene = std::make_shared<const CompiledScene>(
+  return std::make_shared<const CompiledScene>(
       compile(load_scene(settings.at("scene").get<std::string>(), overrides, options)));
-  frame->options.tuning = [flat = frame->scene](const DeviceInfo& device) {
-    return saved_tuning(device, *flat);
+}
+
+/// The devices of one process render the same scene: it is loaded once.
+std::shared_ptr<const CompiledScene> load_once(const json& settings, KeptOpen& kept) {
+  json of_scene;
+  for (const char* key : {"scene", "overrides", "native_code", "frame"}) of_scene[key] = settings.at(key);
+  const std::lock_guard lock(kept.mutex);
+  if (kept.scene_settings != of_scene.dump()) kept.scene = load_flat(settings);
+  kept.scene_settings = of_scene.dump();
+  return kept.scene;
+}
+
+std::shared_ptr<std::mutex> in_use(const DeviceInfo& device, KeptOpen& kept) {
+  const std::lock_guard lock(kept.mutex);
+  std::shared_ptr<std::mutex>& mutex = kept.in_use[device.label()];
+  if (!mutex) mutex = std::make_shared<std::mutex>();
+  return mutex;
+}
+
+}  // namespace
+
+OpenedServer open_server(const json& settings, KeptOpen* kept) {
+  struct Frame {
+    std::shared_ptr<std::mutex> mutex;
+    std::unique_lock<std::mutex> in_use;
+    RenderOptions options;
+    std::shared_ptr<const CompiledScene> scene;
   };
+  const auto device = settings.at("device").get<DeviceInfo>();
+  const auto frame = std::make_shared<Frame>();
+  if (kept) {
+    frame->mutex = in_use(device, *kept);
+    frame->in_use = std::unique_lock(*frame->mutex);
+    frame->options.pool = kept->pool;
+  }
+  frame->options.work_group = settings.at("work_group").get<WorkGroup>();
+  frame->options.aovs = settings.at("aovs").get<std::vector<std::string>>();
+  frame->scene = kept ? load_once(settings, *kept) : load_flat(settings);
+  frame->options.tuning = [flat = frame->scene](const DeviceInfo& info) { return saved_tuning(info, *flat); };
   OpenedServer opened;
   opened.scene = hash_scene(*frame->scene);
   opened.kept = frame;
-  opened.server = std::make_shared<DeviceServer>(find_device(settings.at("device").get<DeviceInfo>()),
-                                                 frame->scene, frame->options);
+  opened.server = std::make_shared<DeviceServer>(find_device(device), frame->scene, frame->options);
   if (settings.at("nice").get<bool>()) opened.server->be_nice();
   return opened;
 }
@@ -78,21 +108,16 @@ std::vector<DeviceInfo> enumerate_in_worker() {
   }
 }
 
-std::vector<ServerPlan> isolated(const RenderCommand& command, const std::vector<DeviceInfo>& devices,
-                                 const CompiledScene& scene) {
-  std::vector<ServerPlan> plans;
-  const std::uint64_t hash = hash_scene(scene);
-  for (const DeviceInfo& device : devices) {
-    RemoteDevice remote{device,
-                        device.type == "cpu" ? 0 : -1,
-                        [label = device.label()] { return start_worker(label); },
-                        remote_settings(command, device),
-                        hash,
-                        restarts};
-    plans.push_back({device, remote.processor,
-                     [remote](const RenderOptions&) { return std::make_shared<RemoteServer>(remote); }});
-  }
-  return plans;
+ServerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device, std::uint64_t scene_hash) {
+  const RemoteDevice remote{device,
+                            device.type == "cpu" ? 0 : -1,
+                            [label = device.label()] { return start_worker(label); },
+                            remote_settings(command, device),
+                            scene_hash,
+                            worker_restarts,
+                            worker_restarts + 1};
+  return {device, remote.processor,
+          [remote](const RenderOptions&) { return std::make_shared<RemoteServer>(remote); }};
 }
 
 }  // namespace sundog

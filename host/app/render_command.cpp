@@ -2,12 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 
 #include "app/commands.h"
+#include "app/exit_status.h"
 #include "app/frames.h"
 #include "app/interrupt.h"
+#include "app/job.h"
 #include "app/pick_devices.h"
 #include "app/progress.h"
 #include "app/remote_devices.h"
@@ -67,6 +71,8 @@ RenderOptions render_options(const RenderCommand& command) {
   options.tile = command.tile;
   options.aovs = command.aovs;
   options.resume = command.resume;
+  if (const char* seconds = std::getenv("SUNDOG_CHECKPOINT_EVERY"))
+    options.checkpoint_seconds = std::max(0.0, std::strtod(seconds, nullptr));
   options.keep_failed = true;
   return options;
 }
@@ -123,6 +129,7 @@ int conclude(const RenderCommand& command, const RenderResult& result) {
 /// What the frames of one run share: the devices stay open, with their kernels.
 struct Setup {
   const StopOnSignal stop;
+  Mailbox* job = nullptr;  // the other processes that mpirun has started
   std::vector<DeviceInfo> devices;
   std::shared_ptr<DevicePool> pool;
 };
@@ -141,6 +148,16 @@ LoadedScene load_and_compile(const RenderCommand& command, TimeLedger& times) {
   return scene;
 }
 
+std::vector<ServerPlan> plan_servers(const RenderCommand& command, const LoadedScene& scene,
+                                     const Setup& setup) {
+  if (setup.job) return plan_job(*setup.job, command, setup.devices, scene.flat);
+  const std::uint64_t hash = command.isolate ? hash_scene(*scene.flat) : 0;
+  std::vector<ServerPlan> plans;
+  for (const DeviceInfo& device : setup.devices)
+    plans.push_back(command.isolate ? plan_isolated(command, device, hash) : plan_local(scene.flat, device));
+  return plans;
+}
+
 int render_one(const RenderCommand& command, const LoadedScene& scene, const Setup& setup,
                const Stopwatch& clock, TimeLedger& times) {
   ProgressBar bar(!command.quiet);
@@ -149,9 +166,7 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
   options.stop = &setup.stop.flag();
   options.tuning = [flat = scene.flat](const DeviceInfo& device) { return saved_tuning(device, *flat); };
   options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
-  const RenderResult result = command.isolate
-                                  ? render(scene.flat, isolated(command, setup.devices, *scene.flat), options)
-                                  : render(scene.flat, setup.devices, options);
+  const RenderResult result = render(scene.flat, plan_servers(command, scene, setup), options);
   bar.erase();
 
   times.render = result.times;
@@ -165,6 +180,7 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
     write_file(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   }
   warn(result);
+  if (setup.job && !result.complete) print_warnings(missing_ranks(*setup.job));
   summarise(command, result, times);
   return conclude(command, result);
 }
@@ -195,9 +211,14 @@ int render_frames(const RenderCommand& command, const Setup& setup) {
   return exit_done;
 }
 
-}  // namespace
+std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job) {
+  if (job) return job_devices(*job, command);
+  return pick_devices(command.isolate ? enumerate_in_worker() : enumerate_devices(), command.devices,
+                      command.verbose && !command.quiet);
+}
 
-int render_command(const RenderCommand& command) {
+/// Of this process, or of rank 0 of a job.
+int render_here(const RenderCommand& command, Mailbox* job) {
   const Stopwatch clock;
   check_outputs(command.frames ? frame_command(command, command.frames->first) : command);
   TimeLedger times;
@@ -207,11 +228,28 @@ int render_command(const RenderCommand& command) {
     scene = load_and_compile(command, times);
     print_warnings(scene->description.warnings);
   }
-  setup.devices = pick_devices(command.isolate ? enumerate_in_worker() : enumerate_devices(), command.devices,
-                               command.verbose && !command.quiet);
+  setup.job = job;
+  setup.devices = choose_devices(command, job);
   if (scene) return render_one(command, *scene, setup, clock, times);
   setup.pool = std::make_shared<DevicePool>();
   return render_frames(command, setup);
+}
+
+}  // namespace
+
+int render_command(const RenderCommand& command) {
+  if (job_rank() < 0) return render_here(command, nullptr);
+  std::unique_ptr<Mailbox> job;
+  const auto join = [&] {
+    job = join_job();
+    return exit_done;
+  };
+  if (const int status = exit_status_of(join, job_rank() == 0)) return status;
+  if (job->rank() > 0) serve_job(std::move(job));
+  const int status = exit_status_of([&] { return render_here(command, job.get()); });
+  std::fflush(nullptr);
+  job->leave(status);
+  return status;
 }
 
 }  // namespace sundog

@@ -1,6 +1,9 @@
 #include "app/stats.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
 
 #include "app/scene_figures.h"
 
@@ -20,6 +23,11 @@ json image_json(const RenderCommand& command, const SceneDescription& scene, con
           {"complete", result.complete}};
 }
 
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
 json device_json(const DeviceReport& report) {
   json kernels = json::object();
   for (const auto& [name, times] : report.kernels)
@@ -31,6 +39,8 @@ json device_json(const DeviceReport& report) {
           {"platform", report.info.platform_name},
           {"name", report.info.name},
           {"driver", report.info.driver},
+          {"rank", report.info.rank},
+          {"host", report.info.host.empty() ? host_name() : report.info.host},
           {"sub_units", report.info.sub_units},
           {"tiles", report.tiles},
           {"outrun", report.outrun},

@@ -16,6 +16,7 @@ namespace sundog {
 ///     cut@P:D             the loops of launches of more than SIZE samples are ended early, without an error
 ///     crash@P:D           a launch ends the process
 ///     kill@P:D            the process is killed (SIGKILL) at a launch
+///     stop@P:D            a launch stops the process, as SIGSTOP from outside does
 ///     write@NAME          a file of that name cannot be written, as on a full disk
 /// Returns VALUE (0 without one) where a fault strikes now. Throws UsageError for a variable that is none.
 std::optional<int> fault(std::string_view kind, std::string_view where, std::size_t size = 0);

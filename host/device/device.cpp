@@ -129,6 +129,7 @@ void inject_launch_faults(const DeviceInfo& info, const std::string& name, std::
   while (fault("hang", place(info), items)) std::this_thread::sleep_for(std::chrono::hours(1));
   if (fault("crash", place(info), items)) std::abort();
   if (fault("kill", place(info), items)) ::raise(SIGKILL);
+  if (fault("stop", place(info), items)) ::raise(SIGSTOP);
   if (const auto status = fault("launch", place(info), items))
     check_cl(*status, info, fmt::format("launch of {}", name));
 }

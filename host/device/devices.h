@@ -25,10 +25,13 @@ struct DeviceInfo {
   std::string problem;     // empty: usable
   double estimate = 0;     // relative speed (estimate.cpp): for the default choice
   unsigned sub_units = 0;  // not 0: a sub-device of that many compute units was asked for (/N)
+  std::string identity;  // the same in every process that sees it: its UUID or place on the bus; often empty
+  int rank = 0;          // of the process that has it, in a job of several
+  std::string host;      // that process's machine; empty: there is only this process
   void* handle = nullptr;  // cl_device_id
 
   bool usable() const { return problem.empty() && device >= 0; }
-  /// "0:1 Portable Computing Language / pthread-...".
+  /// "0:1 Portable Computing Language / pthread-...", and behind it "(rank 1 on node7)" in a job of several.
   std::string label() const;
 };
 

@@ -2,8 +2,10 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <pthread.h>
 
+#include <array>
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
@@ -119,11 +121,31 @@ void read_figures(Query& query, DeviceInfo& info) {
   info.host_unified_memory = query.optional<cl_bool>(CL_DEVICE_HOST_UNIFIED_MEMORY, CL_FALSE) != CL_FALSE;
 }
 
+/// Two processes of one machine that see the same device get the same text. Drivers that cannot tell give
+/// none.
+std::string identity(cl_device_id device, const std::string& extensions) {
+  const auto hex = [&](cl_device_info what, std::size_t size) {
+    std::array<unsigned char, 16> bytes{};
+    if (clGetDeviceInfo(device, what, size, bytes.data(), nullptr) != CL_SUCCESS) return std::string();
+    return fmt::format("{:02x}",
+                       fmt::join(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size), ""));
+  };
+  // From extensions, by number: older headers have no names for them.
+  constexpr cl_device_info device_uuid = 0x106A, pci_bus_info = 0x410F, pci_bus_nv = 0x4008,
+                           pci_slot_nv = 0x4009;
+  const auto has = [&](const char* name) { return extensions.find(name) != std::string::npos; };
+  if (has("cl_khr_device_uuid")) return hex(device_uuid, 16);
+  if (has("cl_khr_pci_bus_info")) return hex(pci_bus_info, 16);
+  if (has("cl_nv_device_attribute_query")) return hex(pci_bus_nv, 4) + hex(pci_slot_nv, 4);
+  return {};
+}
+
 DeviceInfo describe(DeviceInfo info, cl_device_id device) {
   Query query{device, {}};
   info.handle = device;
   read_texts(query, info);
   read_figures(query, info);
+  info.identity = identity(device, info.extensions);
   info.device_class = device_class(info);
   info.estimate = estimate_speed(info, std::thread::hardware_concurrency());
   info.problem = query.problem.empty() ? unusable_because(info) : query.problem;

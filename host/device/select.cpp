@@ -123,7 +123,8 @@ DeviceInfo fastest(std::span<const DeviceInfo> all) {
 std::string DeviceInfo::label() const {
   if (device < 0) return fmt::format("{} {}", platform, platform_name);
   const std::string part = sub_units > 0 ? fmt::format("/{}", sub_units) : "";
-  return fmt::format("{}:{}{} {} / {}", platform, device, part, platform_name, name);
+  const std::string where = host.empty() ? "" : fmt::format(" (rank {} on {})", rank, host);
+  return fmt::format("{}:{}{} {} / {}{}", platform, device, part, platform_name, name, where);
 }
 
 std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all,

@@ -20,14 +20,18 @@ struct ChannelClosed : DeviceError {
 struct Message {
   enum Kind : std::uint32_t {
     list,     // to a worker: which devices are there?
-    devices,  // back: {devices}
+    devices,  // back: {devices, cores}
     open,     // to a worker: make a device ready for a frame
     ready,    // back: {times, scene}
     render,   // to a worker: {job, tile}
     stop,     // to a worker: {job}: enough of that tile
     tile,     // back: {tile, counts, figures}, data: its pixels
-    failed,   // back, at any time: {what, status, build, log}
+    failed,   // back, at any time: {what, status, build, log}; {closed}: nothing else will come; {hangs}:
+              // never
     close,    // to a worker: the end
+    alive,    // both ways, again and again (silence.h); no receive() gives it out
+    leave,    // to another rank: the job is over
+    left,     // back: it is ready for the end
   };
   Kind kind = close;
   nlohmann::json values;

@@ -42,6 +42,25 @@ void look_for_stop(Frame& frame) {
   frame.queue.close();
 }
 
+/// Keeps what is done against what gives no warning: a process killed, a machine that goes down.
+void keep_checkpoint(Frame& frame) {
+  const RenderOptions& options = frame.options;
+  if (options.resume.empty() || frame.since_checkpoint.seconds() < options.checkpoint_seconds) return;
+  frame.since_checkpoint = Stopwatch();
+  Film film;
+  {
+    const std::lock_guard lock(frame.mutex);
+    if (frame.pixels_done == frame.pixels_kept) return;
+    frame.pixels_kept = frame.pixels_done;
+    film = frame.film;
+  }
+  try {
+    write_checkpoint(options.resume, film, frame.key);
+  } catch (const IoError&) {
+    // What keeps it from being written is told at the end, if the frame does not come to its end.
+  }
+}
+
 /// Puts a tile, or the finished rows of one, into the film.
 void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
   const std::lock_guard lock(frame.mutex);
@@ -157,6 +176,7 @@ void serve(const std::shared_ptr<Frame>& frame, std::size_t i) {
 void watch(Frame& frame) {
   while (!frame.queue.wait(look_again)) {
     look_for_stop(frame);
+    keep_checkpoint(frame);
     for (std::size_t i = 0; i < frame.servers.size(); ++i) {
       const double seconds = frame.servers[i].server->overdue();
       if (seconds <= 0) continue;

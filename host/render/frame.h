@@ -38,8 +38,9 @@ struct Frame {
   bool timed = false;
   double readback = 0;
   std::exception_ptr last_error;
-  std::uint64_t pixels_done = 0;
-  Stopwatch clock;
+  std::uint64_t pixels_done = 0, pixels_kept = 0;  // the latter are in the checkpoint
+  std::uint64_t key = 0;                           // the checkpoint's
+  Stopwatch clock, since_checkpoint;
   bool over = false;  // the result is being gathered: nothing more goes in
   std::atomic<bool> stop{false};
 };

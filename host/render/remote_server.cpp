@@ -9,15 +9,20 @@ namespace {
 
 constexpr double look_again = 0.005;  // seconds between looks at the flags while a tile is made elsewhere
 
-/// What the other side failed at, as the exception that it was there.
-[[noreturn]] void rethrow(const nlohmann::json& failure) {
-  const std::string what = failure.at("what");
+}  // namespace
+
+/// Throws what the other side failed at, as the exception that it was there.
+void RemoteServer::fail(const nlohmann::json& failure) {
+  std::string what = failure.at("what");
+  const std::string where = fmt::format("rank {} on {}", device_.info.rank, device_.info.host);
+  if (!device_.info.host.empty() && what.find(where) == std::string::npos)
+    what = fmt::format("{}: {}", where, what);
+  if (failure.value("hangs", false)) hangs_ = what;
+  if (failure.value("closed", false)) throw ChannelClosed(what);
   if (failure.value("usage", false)) throw UsageError(what);
   if (failure.value("build", false)) throw BuildError(what, failure.value("log", ""));
   throw DeviceError(what, failure.value("status", 0));
 }
-
-}  // namespace
 
 Message RemoteServer::answer(Message::Kind expected, const StopFlags& flags) {
   bool stopped = false;
@@ -28,7 +33,7 @@ Message RemoteServer::answer(Message::Kind expected, const StopFlags& flags) {
     }
     std::optional<Message> message = channel_->receive(look_again);
     if (!message) continue;
-    if (message->kind == Message::failed) rethrow(message->values);
+    if (message->kind == Message::failed) fail(message->values);
     if (message->kind == expected && message->values.value("job", job_) == job_) return std::move(*message);
   }
 }
@@ -46,6 +51,7 @@ RenderTimes RemoteServer::try_open() {
 
 RenderTimes RemoteServer::open() {
   while (true) {
+    if (!hangs_.empty()) throw DeviceError(hangs_);
     try {
       return try_open();
     } catch (const ChannelClosed& error) {

@@ -16,6 +16,7 @@ struct RemoteDevice {
   nlohmann::json settings;                            // of Message::open
   std::uint64_t scene = 0;                            // hash_scene() of what it must render
   unsigned restarts = 0;                              // how often it may be connected to again
+  unsigned failures = 3;                              // TileServer::failures_allowed()
 };
 
 class RemoteServer : public TileServer {
@@ -28,12 +29,13 @@ class RemoteServer : public TileServer {
   ServerFigures figures() const override;
   void close() override;
   void be_nice() override { device_.settings["nice"] = true; }
-  unsigned failures_allowed() const override { return device_.restarts + 1; }
+  unsigned failures_allowed() const override { return device_.failures; }
   int processor() const override { return device_.processor; }
 
  private:
   RenderTimes try_open();
   Message answer(Message::Kind expected, const StopFlags& flags);
+  [[noreturn]] void fail(const nlohmann::json& failure);
 
   RemoteDevice device_;
   std::unique_ptr<Channel> channel_;
@@ -41,6 +43,7 @@ class RemoteServer : public TileServer {
   ServerFigures figures_;           // as of the last tile
   std::vector<std::string> notes_;  // of this side
   unsigned restarts_ = 0;
+  std::string hangs_;  // what was said when its driver was seen to hang
 };
 
 }  // namespace sundog

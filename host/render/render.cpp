@@ -101,7 +101,8 @@ std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerP
     server.report.info = device.info;
     frame->servers.push_back(std::move(server));
   }
-  frame->pixels_done = done;
+  frame->pixels_done = frame->pixels_kept = done;
+  frame->key = key;
   return frame;
 }
 
@@ -172,14 +173,18 @@ RenderResult render_frame(const Scene& scene, const std::vector<ServerPlan>& dev
 /// Devices of this process.
 std::vector<ServerPlan> plan_servers(const Scene& scene, const std::vector<DeviceInfo>& devices) {
   std::vector<ServerPlan> plans;
-  for (const DeviceInfo& device : devices)
-    plans.push_back({device, device.type == "cpu" ? 0 : -1, [scene, device](const RenderOptions& options) {
-                       return std::make_shared<DeviceServer>(device, scene, options);
-                     }});
+  for (const DeviceInfo& device : devices) plans.push_back(plan_local(scene, device));
   return plans;
 }
 
 }  // namespace
+
+ServerPlan plan_local(Scene scene, const DeviceInfo& device) {
+  return {device, device.type == "cpu" ? 0 : -1,
+          [scene = std::move(scene), device](const RenderOptions& options) {
+            return std::make_shared<DeviceServer>(device, scene, options);
+          }};
+}
 
 RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options) {

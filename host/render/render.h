@@ -41,7 +41,8 @@ struct RenderOptions {
   PartOfFrame part;               // what to render of the frame
   std::vector<std::string> aovs;  // of aov_names()
   std::filesystem::path
-      resume;  // checkpoint: read when it exists, written on interrupt; the caller removes it
+      resume;  // checkpoint: read when it exists, written on interrupt and on the way; the caller removes it
+  double checkpoint_seconds = 60;                          // between those written on the way
   std::function<void(const RenderProgress&)> on_progress;  // called by one thread at a time
   const std::atomic<bool>* stop = nullptr;                 // set: finish what runs, return what there is
   bool keep_failed = false;  // when every device failed, return what there is, and the failure, not throw it
@@ -94,6 +95,9 @@ struct ServerPlan {
   int processor = -1;  // devices with the same number run on the same cores (plan.h)
   std::function<std::shared_ptr<TileServer>(const RenderOptions&)> make;
 };
+
+/// A device of this process.
+ServerPlan plan_local(std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device);
 
 /// The AOVs `render` can make: depth, normal, position, albedo, object, material.
 const std::vector<std::string>& aov_names();

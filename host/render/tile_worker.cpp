@@ -1,5 +1,7 @@
 #include "render/tile_worker.h"
 
+#include <sched.h>
+
 #include "render/remote_values.h"
 
 namespace sundog {
@@ -17,6 +19,12 @@ Message failure(const std::exception& error) {
 }
 
 }  // namespace
+
+unsigned usable_cores() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  return ::sched_getaffinity(0, sizeof set, &set) == 0 ? static_cast<unsigned>(CPU_COUNT(&set)) : 0;
+}
 
 Orders::Orders(Channel& channel, std::function<void()> on_closed)
     : channel_(channel), on_closed_(std::move(on_closed)), thread_([this] { read(); }) {}
@@ -92,7 +100,7 @@ void serve_orders(Channel& channel, Orders& orders,
     Message answer;
     try {
       if (order->kind == Message::list)
-        answer = {Message::devices, {{"devices", enumerate_devices()}}, {}};
+        answer = {Message::devices, {{"devices", enumerate_devices()}, {"cores", usable_cores()}}, {}};
       else if (order->kind == Message::open)
         answer = opened(current, *order, make);
       else if (current.server)

@@ -10,6 +10,9 @@
 
 namespace sundog {
 
+/// The cores that this process may run on; 0: unknown.
+unsigned usable_cores();
+
 /// Reads a channel in a thread of its own, so that an order to stop, or the end of the other side, is noticed
 /// while a driver is at work.
 class Orders {

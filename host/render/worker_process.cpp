@@ -14,6 +14,8 @@
 #include <cstring>
 #include <thread>
 
+#include "render/silence.h"
+
 namespace sundog {
 namespace {
 
@@ -38,10 +40,15 @@ class WorkerChannel : public Channel {
   }
   std::optional<Message> receive(double seconds) override {
     try {
-      return socket_->receive(seconds);
+      while (std::optional<Message> message = socket_->receive(seconds)) {
+        silence_.heard();
+        if (message->kind != Message::alive) return message;
+      }
     } catch (const ChannelClosed&) {
       throw_end();
     }
+    if (silence_.seconds() > limit_) throw_silent();
+    return std::nullopt;
   }
 
  private:
@@ -63,6 +70,17 @@ class WorkerChannel : public Channel {
     throw ChannelClosed(fmt::format("{}: its worker process {}", name_, how));
   }
 
+  /// It is stopped, or hangs as a whole: it will not end by itself.
+  [[noreturn]] void throw_silent() {
+    const double seconds = silence_.seconds();
+    ::kill(process_, SIGKILL);
+    wait_for_end(2);
+    throw ChannelClosed(fmt::format("{}: its worker process had not been heard of for {:.1f} s and was ended",
+                                    name_, seconds));
+  }
+
+  Silence silence_;
+  const double limit_ = silence_limit();
   std::unique_ptr<SocketChannel> socket_;
   pid_t process_;  // 0: ended, and waited for
   int status_ = 0;

@@ -98,6 +98,18 @@ TEST_CASE("a worker killed in the middle of a frame costs time, not the frame") 
   CHECK(stats["devices"][0]["retired"] == false);
 }
 
+TEST_CASE("a worker that is stopped is noticed by its silence") {
+  IsolatedFolder folder;
+  folder.options.environment["SUNDOG_SILENCE_LIMIT"] = "1.5";
+  const CommandResult result =
+      folder.render("stop@0:0#2", {"--device", "0:0", "--device", "0:1", "--split", "1,1"});
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+  CHECK(contains(result.err, "its worker process had not been heard of for "));
+  CHECK(contains(result.err, "and was ended"));
+  CHECK(read_file(folder / "a.pfm") == folder.plain);
+}
+
 TEST_CASE("an interrupt reaches the workers") {
   IsolatedFolder folder;
   folder.options.terminal = true;

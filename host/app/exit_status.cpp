@@ -1,0 +1,49 @@
+#include "app/exit_status.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "app/commands.h"
+#include "base/error.h"
+
+namespace sundog {
+namespace {
+
+/// Prints the error in one line, whatever a library's message holds.
+void say(std::string message) {
+  std::ranges::replace(message, '\n', ' ');
+  fmt::print(stderr, "sundog: {}\n", message);
+}
+
+}  // namespace
+
+int exit_status_of(const std::function<int()>& command, bool speaks) {
+  const auto fail = [&](ExitStatus status, const char* message) {
+    if (speaks) say(message);
+    return status;
+  };
+  try {
+    return command();
+  } catch (const UsageError& error) {
+    return fail(exit_usage, error.what());
+  } catch (const SceneError& error) {
+    return fail(exit_scene, error.what());
+  } catch (const DeviceError& error) {
+    return fail(exit_device, error.what());
+  } catch (const BuildError& error) {
+    fail(exit_build, error.what());
+    if (speaks) fmt::print(stderr, "{}{}", error.log, error.log.ends_with('\n') ? "" : "\n");
+    return exit_build;
+  } catch (const std::bad_alloc&) {
+    return fail(exit_failure, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(exit_failure, error.what());
+  }
+}
+
+}  // namespace sundog
