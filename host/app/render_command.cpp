@@ -168,6 +168,8 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
   options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
   const RenderResult result = render(scene.flat, plan_servers(command, scene, setup), options);
   bar.erase();
+  // Said before the picture is written: mpirun may leave no time for that.
+  if (setup.job && !result.complete) print_warnings(missing_ranks(*setup.job));
 
   times.render = result.times;
   const Stopwatch writing;
@@ -180,7 +182,6 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
     write_file(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   }
   warn(result);
-  if (setup.job && !result.complete) print_warnings(missing_ranks(*setup.job));
   summarise(command, result, times);
   return conclude(command, result);
 }

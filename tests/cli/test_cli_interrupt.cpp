@@ -60,18 +60,18 @@ TEST_CASE("an interrupt before the first tile is done leaves a file too") {
   CommandOptions options;
   options.signal_after = 3;
   const CommandResult result = run_sundog({"render", folder.scene, "-o", folder.file("a.exr"), "--samples",
-                                           "65536", "--size", "640x480", "--tile", "256"},
+                                           "65536", "--size", "4096x64", "--tile", "4096"},
                                           options);
   CAPTURE(result.err);
   CHECK(result.status == 130);
   CHECK(result.seconds_after_signal < 1);
   CHECK(result.err == "sundog: interrupted: 0 % of the pixels are in " + folder.file("a.exr") + "\n");
-  CHECK(read_image(folder / "a.exr").width == 640);
+  CHECK(read_image(folder / "a.exr").width == 4096);
 }
 
 TEST_CASE("an interrupted render goes on from its checkpoint to the same image") {
   const CliFolder folder;
-  const std::vector<std::string> end = {"--size", "128x96", "--samples", "100", "--tile", "16", "--quiet"};
+  const std::vector<std::string> end = {"--size", "128x96", "--samples", "4000", "--tile", "16", "--quiet"};
   std::vector<std::string> whole = {"render", folder.scene, "-o", folder.file("whole.pfm")};
   whole.insert(whole.end(), end.begin(), end.end());
   REQUIRE(run_sundog(whole).status == 0);
