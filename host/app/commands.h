@@ -20,6 +20,7 @@ int render_command(const RenderCommand& command);
 int info_command(const InfoCommand& command);
 /// `argv` as main() has it.
 int worker_command(int argc, const char* const* argv);
+int compile_command(int argc, const char* const* argv);
 int merge_command(const MergeCommand& command);
 int compare_command(const CompareCommand& command);
 

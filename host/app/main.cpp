@@ -12,6 +12,7 @@
 #include "app/job.h"
 #include "app/options.h"
 #include "base/error.h"
+#include "device/compile_process.h"
 #include "render/render.h"
 
 namespace sundog {
@@ -30,7 +31,10 @@ int run(const ShowText& command) {
 }
 
 int run_command_line(int argc, char** argv) {
-  if (argc > 1 && std::string_view(argv[1]) == "worker") return worker_command(argc, argv);
+  const std::string_view name = argc > 1 ? argv[1] : "";
+  if (name == "compile") return compile_command(argc, argv);
+  allow_compile_process();
+  if (name == "worker") return worker_command(argc, argv);
   // All processes of a job have the same command line: what is wrong with it is told once.
   Command command = ShowText{};
   const auto parse = [&] {

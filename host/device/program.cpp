@@ -11,6 +11,7 @@
 #include "base/faults.h"
 #include "base/file.h"
 #include "device/cl_status.h"
+#include "device/compile_process.h"
 #include "device/program_cache.h"
 
 namespace sundog {
@@ -81,6 +82,39 @@ cl::Program program_from_binary(const cl::Context& context, const cl::Device& de
   return program;
 }
 
+/// Builds a program of nothing: the driver reads what it needs to build any. A name of its own, lest the
+/// driver has it in a cache.
+void warm_up(const cl::Context& context, const cl::Device& device, const std::string& name) {
+  cl_int status = CL_SUCCESS;
+  const cl::Program nothing(context, fmt::format("__kernel void nothing_{}(void) {{}}", name), false,
+                            &status);
+  if (status == CL_SUCCESS) nothing.build({device}, build_options);
+}
+
+/// The program of a binary that another process compiled; null when the driver will not have it.
+cl::Program program_of_parts(const cl::Context& context, const cl::Device& device,
+                             const std::string& compiled) {
+  std::vector<cl_int> statuses;
+  cl_int status = CL_SUCCESS;
+  const cl::Program::Binaries binaries{{compiled.begin(), compiled.end()}};
+  const cl::Program part(context, {device}, binaries, &statuses, &status);
+  if (status != CL_SUCCESS || std::ranges::any_of(statuses, [](cl_int s) { return s != CL_SUCCESS; }))
+    return {};
+  cl::Program whole = cl::linkProgram({part}, nullptr, nullptr, nullptr, &status);
+  return status == CL_SUCCESS && kernels_work(whole) ? whole : cl::Program();
+}
+
+/// Compiles in another process while this one's driver makes itself ready; false: it has to be done here.
+bool compile_beside(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
+                    const std::string& source) {
+  auto process = CompileProcess::start(record.device, source, build_options);
+  if (!process) return false;
+  warm_up(context, device, hash128(source));
+  const std::string compiled = process->wait();
+  if (!compiled.empty()) record.program = program_of_parts(context, device, compiled);
+  return record.program() != nullptr;
+}
+
 void compile(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
              const std::string& source, const std::string& options, BuildReport& report) {
   cl_int status = CL_SUCCESS;
@@ -138,7 +172,8 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
       report.note = *reason;
       record->cache_file.clear();
     }
-  compile_to_kernels(*record, context, device, source, report);
+  if (!compile_beside(*record, context, device, source))
+    compile_to_kernels(*record, context, device, source, report);
   return record;
 }
 

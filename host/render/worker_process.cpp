@@ -1,9 +1,7 @@
 #include "render/worker_process.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +12,8 @@
 #include <cstring>
 #include <thread>
 
+#include "base/error.h"
+#include "base/spawn_self.h"
 #include "render/silence.h"
 
 namespace sundog {
@@ -88,22 +88,11 @@ class WorkerChannel : public Channel {
 };
 
 pid_t spawn(int socket, const std::string& name) {
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_adddup2(&actions, socket, worker_descriptor);
-  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  std::string program = "sundog", command = "worker", descriptor = std::to_string(worker_descriptor),
-              label = name;
-  const std::array<char*, 5> arguments = {program.data(), command.data(), descriptor.data(), label.data(),
-                                          nullptr};
-  pid_t process = 0;
-  const int failed = ::posix_spawn(&process, "/proc/self/exe", &actions, nullptr, arguments.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0)
-    throw DeviceError(
-        fmt::format("{}: its worker process cannot be started: {}", name, std::strerror(failed)));
-  return process;
+  try {
+    return spawn_self({"worker", std::to_string(worker_descriptor), name}, {{socket, worker_descriptor}});
+  } catch (const IoError& error) {
+    throw DeviceError(fmt::format("{}: no worker process: {}", name, error.what()));
+  }
 }
 
 }  // namespace

@@ -20,10 +20,11 @@ struct FaultyFolder : CliFolder {
   CommandOptions options;
   FaultyFolder() { options.environment["POCL_DEVICES"] = "basic pthread"; }
 
+  std::string size = "160x120";
   CommandResult render(const std::string& faults, const std::vector<std::string>& more = {}) {
     options.environment["SUNDOG_FAULTS"] = faults;
     std::vector<std::string> arguments = {"render",  scene,          "-o",        file("a.pfm"),
-                                          "--size",  "160x120",      "--samples", "4",
+                                          "--size",  size,           "--samples", "4",
                                           "--stats", file("s.json"), "--device",  "portable comp"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_sundog(arguments, options);
@@ -123,6 +124,7 @@ TEST_CASE(
 
 TEST_CASE("a launch that never ends does not hold up a frame that others can finish") {
   FaultyFolder folder;
+  folder.size = "800x600";  // large enough for both devices to take part
   const std::string plain = folder.plain();
   const CommandResult result = folder.render("hang@0:0#2");
   CAPTURE(result.err);
@@ -239,4 +241,23 @@ TEST_CASE("faults that nobody understands are refused") {
   const CommandResult result = folder.render("build");
   CHECK(result.status == 2);
   CHECK(contains(result.err, "SUNDOG_FAULTS: wanted KIND"));
+}
+
+TEST_CASE(
+    "a process that compiles beside the renderer, and one that fails at it, make no difference to the "
+    "picture") {
+  const CliFolder folder;
+  CommandOptions options;
+  std::vector<std::string> pictures;
+  for (const std::string faults : {"", "compile@0:0"}) {
+    options.environment["SUNDOG_FAULTS"] = faults;
+    options.environment["XDG_CACHE_HOME"] = folder.file("cache" + faults);  // nothing is compiled yet
+    const CommandResult result =
+        run_sundog({"render", folder.scene, "-o", folder.file("a.pfm"), "--device", "0:0"}, options);
+    CAPTURE(faults, result.err);
+    REQUIRE(result.status == 0);
+    CHECK(result.err.empty());
+    pictures.push_back(read_file(folder / "a.pfm"));
+  }
+  CHECK(pictures[0] == pictures[1]);
 }

@@ -1,0 +1,64 @@
+// See spawn_self.h.
+#include "base/spawn_self.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "base/error.h"
+
+namespace sundog {
+namespace {
+
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+  std::vector<char*> result;
+  for (std::string& text : texts) result.push_back(text.data());
+  result.push_back(nullptr);
+  return result;
+}
+
+/// The environment, with the variables in place of those of the same name.
+std::vector<std::string> environment_with(const std::vector<std::string>& variables) {
+  std::vector<std::string> result = variables;
+  for (char** entry = environ; *entry; ++entry) {
+    const std::string text = *entry, name = text.substr(0, text.find('=') + 1);
+    const auto same_name = [&](const std::string& variable) { return variable.starts_with(name); };
+    if (std::ranges::none_of(variables, same_name)) result.push_back(text);
+  }
+  return result;
+}
+
+}  // namespace
+
+pid_t spawn_self(std::vector<std::string> arguments, std::vector<HandedDown> descriptors,
+                 const std::vector<std::string>& variables) {
+  arguments.insert(arguments.begin(), "sundog");
+  std::vector<std::string> environment = environment_with(variables);
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  descriptors.insert(descriptors.begin(), {{nowhere, STDIN_FILENO}, {nowhere, STDOUT_FILENO}});
+  for (const HandedDown& one : descriptors)
+    if (one.here == nowhere)
+      ::posix_spawn_file_actions_addopen(&actions, one.there, "/dev/null", O_RDWR, 0);
+    else
+      ::posix_spawn_file_actions_adddup2(&actions, one.here, one.there);
+  pid_t process = 0;
+  const int failed = ::posix_spawn(&process, "/proc/self/exe", &actions, nullptr, pointers(arguments).data(),
+                                   pointers(environment).data());
+  ::posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) throw IoError(std::string("sundog cannot start itself: ") + std::strerror(failed));
+  return process;
+}
+
+int wait_for_end(pid_t process) {
+  int status = 0;
+  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) continue;
+  return status;
+}
+
+}  // namespace sundog

@@ -1,0 +1,27 @@
+// Starts this program again, for what may crash, hang or go on beside it.
+#pragma once
+#include <sys/types.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sundog {
+
+constexpr int nowhere = -1;  // /dev/null
+
+/// A descriptor of this process, or nowhere, and the number that the new one knows it by.
+struct HandedDown {
+  int here, there;
+};
+
+/// Starts this very program with `arguments` (without its own name); `variables` ("NAME=VALUE") are added to
+/// its environment, `descriptors` handed down; its stdin and stdout, unless they are among these, are
+/// nowhere. Throws IoError.
+pid_t spawn_self(std::vector<std::string> arguments, std::vector<HandedDown> descriptors,
+                 const std::vector<std::string>& variables = {});
+
+/// Waits until the process has ended; its status as waitpid gives it.
+int wait_for_end(pid_t process);
+
+}  // namespace sundog

@@ -1,0 +1,149 @@
+// Source and binary go through files in memory, so that neither process waits for the other to read.
+#include "device/compile_process.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <thread>
+#include <utility>
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/faults.h"
+#include "base/spawn_self.h"
+#include "device/cl_status.h"
+#include "device/device.h"
+
+namespace sundog {
+namespace {
+
+constexpr double longest_wait = 30;  // seconds: something hangs
+
+std::atomic<bool>& allowed() {
+  static std::atomic<bool> value = false;
+  return value;
+}
+
+/// By name, as it is the habit of one driver that is got round here.
+bool reads_a_library(const DeviceInfo& device) {
+  return device.platform_name == "Portable Computing Language" && device.type == "cpu";
+}
+
+/// A file in memory that holds `text`, read from its start; -1 where there can be none.
+int memory_file(const std::string& text) {
+  const int file = ::memfd_create("sundog", MFD_CLOEXEC);
+  std::size_t written = 0;
+  while (file >= 0 && written < text.size()) {
+    const ssize_t part =
+        ::pwrite(file, text.data() + written, text.size() - written, static_cast<off_t>(written));
+    if (part > 0) {
+      written += static_cast<std::size_t>(part);
+    } else if (part == 0 || errno != EINTR) {
+      ::close(file);
+      return -1;
+    }
+  }
+  return file;
+}
+
+std::string contents(int file) {
+  struct stat size {};
+  if (::fstat(file, &size) != 0 || size.st_size <= 0) return {};
+  std::string text(static_cast<std::size_t>(size.st_size), '\0');
+  std::size_t got = 0;
+  while (got < text.size()) {
+    const ssize_t part = ::pread(file, text.data() + got, text.size() - got, static_cast<off_t>(got));
+    if (part == 0 || (part < 0 && errno != EINTR)) return {};
+    if (part > 0) got += static_cast<std::size_t>(part);
+  }
+  return text;
+}
+
+cl::Device device_at(const std::string& place) {
+  for (const DeviceInfo& info : enumerate_devices())
+    if (info.usable() && place == fmt::format("{}:{}", info.platform, info.device))
+      return cl::Device(static_cast<cl_device_id>(info.handle), true);
+  throw DeviceError(fmt::format("no device {} to compile for", place));
+}
+
+void write_all(int file, const std::vector<unsigned char>& bytes) {
+  for (std::size_t written = 0; written < bytes.size();) {
+    const ssize_t part = ::write(file, bytes.data() + written, bytes.size() - written);
+    if (part < 0 && errno != EINTR) throw IoError(std::strerror(errno));
+    if (part > 0) written += static_cast<std::size_t>(part);
+  }
+}
+
+}  // namespace
+
+void allow_compile_process() noexcept { allowed() = true; }
+
+std::optional<CompileProcess> CompileProcess::start(const DeviceInfo& device, const std::string& source,
+                                                    const std::string& options) noexcept {
+  if (!allowed() || !reads_a_library(device) || std::thread::hardware_concurrency() < 2) return std::nullopt;
+  const int in = memory_file(options + "\n" + source), out = memory_file("");
+  std::optional<CompileProcess> process;
+  try {
+    if (in >= 0 && out >= 0) {
+      const std::string place = fmt::format("{}:{}", device.platform, device.device);
+      const pid_t started = spawn_self({"compile", place},
+                                       {{in, STDIN_FILENO}, {out, STDOUT_FILENO}, {nowhere, STDERR_FILENO}});
+      process.emplace(CompileProcess(started, out));
+    }
+  } catch (const std::exception&) {
+    // no process to be had
+  }
+  if (in >= 0) ::close(in);
+  if (out >= 0 && !process) ::close(out);
+  return process;
+}
+
+CompileProcess::CompileProcess(CompileProcess&& other) noexcept
+    : process_(std::exchange(other.process_, 0)), result_(std::exchange(other.result_, -1)) {}
+
+CompileProcess::~CompileProcess() {
+  if (process_ > 0) {
+    ::kill(process_, SIGKILL);
+    wait_for_end(process_);
+  }
+  if (result_ >= 0) ::close(result_);
+}
+
+std::string CompileProcess::wait() noexcept {
+  int status = 0;
+  pid_t ended = 0;
+  const Stopwatch clock;
+  while ((ended = ::waitpid(process_, &status, WNOHANG)) == 0) {
+    if (clock.seconds() > longest_wait) return {};
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  process_ = 0;
+  if (ended < 0) return {};  // someone else has waited for it: who knows how it ended
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? contents(result_) : std::string();
+}
+
+void serve_compile(const std::string& place, int in, int out) {
+  if (fault("compile", place)) throw BuildError("a fault was asked for", "");
+  const std::string text = contents(in), options = text.substr(0, text.find('\n')),
+                    source = text.substr(std::min(text.size(), options.size() + 1));
+  const cl::Device device = device_at(place);
+  cl_int status = CL_SUCCESS;
+  const cl::Context context(device, nullptr, nullptr, nullptr, &status);
+  if (status != CL_SUCCESS) throw DeviceError("no context", status);
+  cl::Program program(context, source, false);
+  if (program.compile(options.c_str()) != CL_SUCCESS) throw BuildError("the program does not compile", "");
+  const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+  if (binaries.empty() || binaries.front().empty()) throw BuildError("the driver gives no binary", "");
+  write_all(out, binaries.front());
+}
+
+}  // namespace sundog

@@ -1,0 +1,42 @@
+// The compiler's front end in a process of its own. Internal to the device layer, but for what main needs.
+#pragma once
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+
+#include "device/devices.h"
+
+namespace sundog {
+
+/// From now on a program may be compiled by `sundog compile P:D`, which a main that says this has to answer
+/// with serve_compile().
+void allow_compile_process() noexcept;
+
+/// A program that is being compiled, not linked, by another process. PoCL reads 10 MB of its own built-in
+/// functions (half a second) before it can link a process's first program, and holds one lock meanwhile.
+/// Another process can compile in that time; what it made is linked here in 20 ms.
+class CompileProcess {
+ public:
+  /// None where nothing would be gained: another driver, one processor, or no main that allows it. Never
+  /// throws: without it programs are built as ever.
+  static std::optional<CompileProcess> start(const DeviceInfo& device, const std::string& source,
+                                             const std::string& options) noexcept;
+  CompileProcess(CompileProcess&& other) noexcept;
+  CompileProcess& operator=(CompileProcess&&) = delete;
+  ~CompileProcess();  // ends it
+
+  /// The compiled program, as its driver's binary; empty where there is none.
+  std::string wait() noexcept;
+
+ private:
+  CompileProcess(pid_t process, int result) : process_(process), result_(result) {}
+  pid_t process_;  // 0: ended, and waited for
+  int result_;     // a file in memory that it writes
+};
+
+/// The other side: compiles the source and options in the file `in` for the device "P:D" and writes the
+/// binary to the file `out`. Throws DeviceError, BuildError, IoError.
+void serve_compile(const std::string& place, int in, int out);
+
+}  // namespace sundog
