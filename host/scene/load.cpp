@@ -46,10 +46,13 @@ SceneDescription read_with_overrides(json document, const fs::path& file,
                                      const std::vector<std::string>& overrides, const LoadOptions& options,
                                      std::optional<Model> model) {
   apply_overrides(document, file, overrides);
-  const JsonContext context{file, nullptr, options.native_code};
+  std::vector<std::string> warnings;
+  const JsonContext context{file, nullptr, options.native_code, &warnings};
   if (options.frame) apply_animation(document, *options.frame, context);
   try {
-    return read_scene(JsonValue(document, context), std::move(model));
+    SceneDescription scene = read_scene(JsonValue(document, context), std::move(model));
+    scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
+    return scene;
   } catch (const SceneError& error) {
     // The place is in the file as the overrides changed it: say which of them had a part in it.
     if (error.file == file.string())

@@ -251,7 +251,7 @@ TEST_CASE("the running derivative bounds how far the map can take two points apa
 TEST_CASE("the estimate falls to nothing at the surface on which the iterations' limit ends orbits") {
   for (const char* name : {"julia", "mandelbulb"}) {
     FormulaDefinition d = *find_formula(name);
-    const FormulaEvaluator field({{{d, default_values(d), 1}}, 4, 4, 1});
+    FormulaEvaluator field({{{d, default_values(d), 1}}, 4, 4, 1});
     const glm::dvec3 way = glm::normalize(glm::dvec3(0.6, 0.4, 0.7));
     double inside = 0, outside = 2;
     while (outside - inside > 1e-12) {

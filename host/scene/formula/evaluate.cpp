@@ -4,14 +4,13 @@
 #include <cmath>
 
 namespace sundog {
-namespace {
 
 namespace in = formula_input;
 
 /// Inputs of the graphs at one moment of an orbit.
-struct Orbit {
+struct FormulaEvaluator::Orbit {
   glm::dvec3 p{0};
-  std::vector<double> z, c, tangents;
+  std::vector<double> z, c, tangents, c_tangents;
   const std::vector<double>* parameters = nullptr;
   double derivative = 1, c_slope = 0;
   int iteration = 0;
@@ -23,7 +22,7 @@ struct Orbit {
   }
   double operator()(int index) const {
     if (index >= in::parameter) return parameters->at(static_cast<std::size_t>(index - in::parameter));
-    if (index >= in::tangent_c) return 0;
+    if (index >= in::tangent_c) return c_tangents[static_cast<std::size_t>(index - in::tangent_c)];
     if (index >= in::tangent_z) return tangents[static_cast<std::size_t>(index - in::tangent_z)];
     if (index == in::derivative) return derivative;
     if (index == in::c_slope) return c_slope;
@@ -34,6 +33,8 @@ struct Orbit {
     return p[index];
   }
 };
+
+namespace {
 
 /// The greatest singular value of the Jacobian that the tangents are, by the formula of lib/sdf/sample.h.
 double stretch_of(const std::vector<double>& tangents) {
@@ -48,80 +49,162 @@ double stretch_of(const std::vector<double>& tangents) {
   return std::sqrt(mean + 2 * std::sqrt(spread / 6));
 }
 
+void append(std::vector<NodeId>& to, const std::vector<std::array<NodeId, 3>>& rows) {
+  for (const auto& row : rows) to.insert(to.end(), row.begin(), row.end());
+}
+
+/// The next `count` of `values`.
+std::vector<double> take(const std::vector<double>& values, std::size_t& next, std::size_t count) {
+  const auto first = values.begin() + static_cast<std::ptrdiff_t>(next);
+  next += count;
+  return {first, first + static_cast<std::ptrdiff_t>(count)};
+}
+
 }  // namespace
 
-FormulaEvaluator::FormulaEvaluator(const FormulaField& field)
-    : field_(field), lowered_(lower(field.steps.at(0).definition, field.steps.at(0).values)) {}
+FormulaEvaluator::FormulaEvaluator(const FormulaField& field) : field_(field) {
+  for (const FormulaStep& step : field_.steps) {
+    lowered_.push_back(lower(step.definition, step.values, lowered_.empty() ? nullptr : &lowered_[0].start));
+    jacobian_ |= lowered_.back().jacobian;
+    turns_ += step.times;
+  }
+  const std::size_t last = lowered_.size() - 1;
+  const Section& finish = lowered_[last].finish;
+  if (finish.distance != no_node)
+    finish_ = part(finish, "distance", last,
+                   {finish.distance, finish.gradient[0], finish.gradient[1], finish.gradient[2]});
+  if (field_.steps[last].definition.kind == FormulaKind::direct) return;
+  const Section& start = lowered_[0].start;
+  std::vector<NodeId> outputs = start.z;
+  outputs.insert(outputs.end(), start.c.begin(), start.c.end());
+  append(outputs, start.z_tangents);
+  append(outputs, start.c_tangents);
+  if (start.derivative != no_node) outputs.push_back(start.derivative);
+  if (start.c_slope != no_node) outputs.push_back(start.c_slope);
+  start_ = part(start, "start", 0, std::move(outputs));
+  for (std::size_t i = 0; i <= last; ++i) {
+    const Section& map = lowered_[i].map;
+    outputs = map.z;
+    if (jacobian_)
+      append(outputs, map.z_tangents);
+    else
+      outputs.push_back(map.derivative);
+    maps_.push_back(part(map, "map", i, std::move(outputs)));
+  }
+}
 
-FieldValue FormulaEvaluator::at(const glm::dvec3& p) const {
-  const FormulaDefinition& d = field_.steps[0].definition;
+FormulaEvaluator::Part FormulaEvaluator::part(const Section& section, const std::string& name,
+                                              std::size_t step, std::vector<NodeId> outputs) {
+  Part result;
+  for (const DomainGuard& guard : section.guards) {
+    result.guards.push_back(breaches_.size());
+    breaches_.push_back({guard, name, step});
+    outputs.push_back(guard.argument);
+    outputs.push_back(guard.condition == no_node ? guard.argument : guard.condition);
+  }
+  met_.resize(breaches_.size());
+  result.program = GraphProgram(section.graph, std::move(outputs));
+  return result;
+}
+
+const std::vector<double>& FormulaEvaluator::run(Part& part, const Orbit& orbit) {
+  const auto& values = part.program.run(std::cref(orbit));
+  std::size_t place = values.size() - 2 * part.guards.size();
+  for (const std::size_t index : part.guards) {
+    DomainBreach& breach = breaches_[index];
+    const double argument = values[place], condition = values[place + 1];
+    place += 2;
+    const bool used = breach.guard.condition == no_node || condition != 0;
+    const double slack = 1e-6;  // of rounding
+    if (!used || met_[index] ||
+        !(argument < breach.guard.low - slack || argument > breach.guard.high + slack))
+      continue;
+    met_[index] = 1;
+    if (breach.count++ > 0) continue;
+    breach.value = argument;
+    breach.at = orbit.p;
+  }
+  return values;
+}
+
+std::size_t FormulaEvaluator::cost() const {
+  std::size_t maps = 0;
+  for (std::size_t i = 0; i < maps_.size(); ++i)
+    maps += maps_[i].program.size() * static_cast<std::size_t>(field_.steps[i].times);
+  const auto rounds = static_cast<std::size_t>(field_.iterations);
+  return start_.program.size() + finish_.program.size() +
+         maps * rounds / static_cast<std::size_t>(std::max(turns_, 1));
+}
+
+void FormulaEvaluator::begin(Orbit& orbit) {
+  const Section& start = lowered_[0].start;
+  const auto& values = run(start_, orbit);
+  std::size_t next = 0;
+  orbit.z = take(values, next, start.z.size());
+  orbit.c = take(values, next, start.z.size());
+  orbit.tangents = take(values, next, 3 * start.z.size());
+  orbit.c_tangents = take(values, next, 3 * start.z.size());
+  if (start.derivative != no_node) orbit.derivative = values[next++];
+  if (start.c_slope != no_node) orbit.c_slope = values[next++];
+}
+
+void FormulaEvaluator::iterate(Orbit& orbit) {
+  int turn = orbit.iteration % turns_;
+  std::size_t step = 0;
+  while (turn >= field_.steps[step].times) turn -= field_.steps[step++].times;
+  orbit.parameters = &field_.steps[step].values;
+  const auto& values = run(maps_[step], orbit);
+  std::size_t next = 0;
+  orbit.z = take(values, next, orbit.z.size());
+  if (jacobian_)
+    orbit.tangents = take(values, next, 3 * orbit.z.size());
+  else
+    orbit.derivative = values[next];
+}
+
+double FormulaEvaluator::escape_distance(const Orbit& orbit) const {
+  const double r = std::sqrt(orbit.square());
+  const double level = orbit.iteration == field_.iterations ? field_.bailout : 0;  // as in lib/sdf/sample.h
+  return field_.steps.back().definition.estimate == EscapeEstimate::logarithmic
+             ? 0.5 * std::max(std::log(level > 0 ? r / level : r), 0.0) * r
+             : r - level;
+}
+
+FieldValue FormulaEvaluator::at(const glm::dvec3& p) {
+  const FormulaDefinition& d = field_.steps.back().definition;
+  std::fill(met_.begin(), met_.end(), 0);
   Orbit orbit;
   orbit.p = p;
   orbit.parameters = &field_.steps[0].values;
-  const auto one = [&](const Section& s, NodeId id) {
-    return evaluate(s.graph, std::vector<NodeId>{id}, orbit)[0];
+  const auto slope = [&](const std::vector<double>& values) {
+    return d.normalize ? 0 : std::sqrt(values[1] * values[1] + values[2] * values[2] + values[3] * values[3]);
   };
   if (d.kind == FormulaKind::direct) {
-    const double distance = one(lowered_.finish, lowered_.finish.distance) * field_.safety;
-    return {distance, distance < 0, 0};
+    const auto& values = run(finish_, orbit);
+    const double distance = values[0] * field_.safety;
+    return {distance, distance < 0, 0, slope(values)};
   }
-  const Section& start = lowered_.start;
-  orbit.z = evaluate(start.graph, start.z, orbit);
-  orbit.c = evaluate(start.graph, start.c, orbit);
-  if (start.derivative != no_node) orbit.derivative = one(start, start.derivative);
-  if (start.c_slope != no_node) orbit.c_slope = one(start, start.c_slope);
-  std::vector<NodeId> map = lowered_.map.z, tangent_nodes, first_tangents;
-  for (const auto& row : start.z_tangents)
-    first_tangents.insert(first_tangents.end(), row.begin(), row.end());
-  orbit.tangents = evaluate(start.graph, first_tangents, orbit);
-  if (lowered_.jacobian)
-    for (const auto& row : lowered_.map.z_tangents) map.insert(map.end(), row.begin(), row.end());
-  else
-    map.push_back(lowered_.map.derivative);
+  begin(orbit);
   const bool bails_out = d.kind == FormulaKind::escape || field_.bailout > 0;
-  bool escaped = bails_out && !(orbit.square() < field_.bailout * field_.bailout);
+  const auto is_out = [&] { return bails_out && !(orbit.square() < field_.bailout * field_.bailout); };
+  bool escaped = is_out();
   for (; orbit.iteration < field_.iterations && !escaped; ++orbit.iteration) {
-    const auto next = evaluate(lowered_.map.graph, map, orbit);
-    const auto size = static_cast<std::ptrdiff_t>(orbit.z.size());
-    orbit.z.assign(next.begin(), next.begin() + size);
-    if (lowered_.jacobian)
-      orbit.tangents.assign(next.begin() + size, next.end());
-    else
-      orbit.derivative = next.back();
-    escaped = bails_out && !(orbit.square() < field_.bailout * field_.bailout);
+    iterate(orbit);
+    escaped = is_out();
   }
-  if (lowered_.jacobian) orbit.derivative = stretch_of(orbit.tangents);
+  if (jacobian_) orbit.derivative = stretch_of(orbit.tangents);
   const double growth = std::max(orbit.derivative, 1e-30) / field_.safety;
   if (d.kind == FormulaKind::folded) {
-    const double distance = one(lowered_.finish, lowered_.finish.distance) / growth;
-    return {distance, distance < 0, orbit.iteration};
+    orbit.parameters = &field_.steps.back().values;
+    std::fill(orbit.tangents.begin(), orbit.tangents.end(), 0);
+    std::fill(orbit.c_tangents.begin(), orbit.c_tangents.end(), 0);
+    for (std::size_t axis = 0; axis < 3; ++axis) orbit.tangents[4 * axis] = 1;  // by z, not by p
+    const auto& values = run(finish_, orbit);
+    const double distance = values[0] / growth;
+    return {distance, distance < 0, orbit.iteration, slope(values)};
   }
   if (!escaped) return {0, true, orbit.iteration};
-  const double r = std::sqrt(orbit.square());
-  const double level = orbit.iteration == field_.iterations ? field_.bailout : 0;  // as in lib/sdf/sample.h
-  const double reach = d.estimate == EscapeEstimate::logarithmic
-                           ? 0.5 * std::max(std::log(level > 0 ? r / level : r), 0.0) * r
-                           : r - level;
-  return {reach / growth, false, orbit.iteration};
-}
-
-void probe_formula(const FormulaField& field, const glm::dvec3& lower, const glm::dvec3& upper) {
-  const FormulaEvaluator evaluator(field);
-  constexpr int points = 64;
-  int finite = 0, inside = 0;
-  for (int i = 0; i < points; ++i) {
-    // Points of an additive sequence with the plastic number's powers (M. Roberts, 2018), which leave no
-    // gaps.
-    const double n = i + 0.5;
-    const glm::dvec3 place = glm::fract(n * glm::dvec3(0.8191725134, 0.6710436067, 0.5497004779));
-    const FieldValue value = evaluator.at(glm::mix(lower, upper, place));
-    finite += std::isfinite(value.distance);
-    inside += value.inside && std::isfinite(value.distance);
-  }
-  const std::string of = " of " + std::to_string(points) + " points of its interval";
-  if (finite == 0) throw FormulaError(0, 0, "gives a finite distance at none" + of);
-  if (inside == points && field.steps[0].definition.kind == FormulaKind::escape)
-    throw FormulaError(0, 0, "lets the orbit escape from none" + of + ": the whole interval would be solid");
+  return {escape_distance(orbit) / growth, false, orbit.iteration};
 }
 
 }  // namespace sundog

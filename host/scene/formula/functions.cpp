@@ -22,13 +22,16 @@ const Value& scalar(const Value& v) {
 }
 
 /// A function of one number within [low, high]: a constant outside of it is an error, anything else is kept
-/// inside.
-Value of_number(Values& v, Op op, const Value& a, std::optional<double> low, std::optional<double> high) {
+/// inside, and guarded.
+Value of_number(Values& v, Op op, const char* name, const Value& a, std::optional<double> low,
+                std::optional<double> high) {
   Graph& g = v.g;
   NodeId x = scalar(a).x();
   if (g.is_constant(x))
     require((!low || g[x].value >= *low) && (!high || g[x].value <= *high),
             "the function is not defined at " + std::to_string(g[x].value));
+  if ((low || high) && a.varies)
+    v.guards.push_back({x, no_node, low.value_or(-1e300), high.value_or(1e300), name});
   if (low) x = g.max(x, g.constant(*low));
   if (high) x = g.min(x, g.constant(*high));
   Value inner = a;
@@ -36,8 +39,8 @@ Value of_number(Values& v, Op op, const Value& a, std::optional<double> low, std
   return v.each(op, inner);
 }
 
-Value sine(Values& v, const Value& a) { return of_number(v, Op::sine, a, {}, {}); }
-Value cosine(Values& v, const Value& a) { return of_number(v, Op::cosine, a, {}, {}); }
+Value sine(Values& v, const Value& a) { return of_number(v, Op::sine, "sin", a, {}, {}); }
+Value cosine(Values& v, const Value& a) { return of_number(v, Op::cosine, "cos", a, {}, {}); }
 Value exponential(Values& v, const Value& a) {  // e^80 is the greatest that leaves room in a float
   return v.each(Op::exponential, v.each(Op::minimum, scalar(a), v.number(80)));
 }
@@ -125,19 +128,20 @@ std::map<std::string, Function> make_functions() {
                        return v.negate(smooth_minimum(v, v.negate(a[0]), v.negate(a[1]), a[2]));
                      }};
   f["sqrt"] = {"sqrt(x)", "square root; 0 below 0", 1, 1,
-               [](V v, A a) { return of_number(v, Op::square_root, a[0], 0.0, {}); }};
+               [](V v, A a) { return of_number(v, Op::square_root, "sqrt", a[0], 0.0, {}); }};
   f["exp"] = {"exp(x)", "e^x", 1, 1, [](V v, A a) { return exponential(v, a[0]); }};
   f["log"] = {"log(x)", "natural logarithm", 1, 1,
-              [](V v, A a) { return of_number(v, Op::logarithm, a[0], 1e-30, {}); }};
+              [](V v, A a) { return of_number(v, Op::logarithm, "log", a[0], 1e-30, {}); }};
   f["pow"] = {"pow(x, n)", "x^n: of a vec3 the triplex power, of a quat the quaternion's", 2, 2,
               [](V v, A a) { return pow_of(v, a[0], a[1]); }};
   f["sin"] = {"sin(x)", "angles are in radians", 1, 1, [](V v, A a) { return sine(v, a[0]); }};
   f["cos"] = {"cos(x)", "", 1, 1, [](V v, A a) { return cosine(v, a[0]); }};
   f["tan"] = {"tan(x)", "", 1, 1, [](V v, A a) { return v.divide(sine(v, a[0]), cosine(v, a[0])); }};
-  f["acos"] = {"acos(x)", "", 1, 1, [](V v, A a) { return of_number(v, Op::arc_cosine, a[0], -1.0, 1.0); }};
+  f["acos"] = {"acos(x)", "", 1, 1,
+               [](V v, A a) { return of_number(v, Op::arc_cosine, "acos", a[0], -1.0, 1.0); }};
   f["asin"] = {"asin(x)", "", 1, 1, [](V v, A a) {
-                 return v.add(v.number(std::numbers::pi / 2), of_number(v, Op::arc_cosine, a[0], -1.0, 1.0),
-                              true);
+                 return v.add(v.number(std::numbers::pi / 2),
+                              of_number(v, Op::arc_cosine, "asin", a[0], -1.0, 1.0), true);
                }};
   f["atan"] = {"atan(y, x)", "angle of the point (x, y); atan(t) is atan(t, 1)", 1, 2, [](V v, A a) {
                  return v.each(Op::arc_tangent, scalar(a[0]), a.size() == 2 ? scalar(a[1]) : v.number(1));

@@ -174,24 +174,43 @@ NodeId Graph::simplified(Op op, NodeId a, NodeId b, NodeId c) {
   }
 }
 
-std::vector<double> evaluate(const Graph& graph, std::span<const NodeId> outputs,
-                             const std::function<double(int)>& input) {
+GraphProgram::GraphProgram(const Graph& graph, std::vector<NodeId> outputs) {
   NodeId last = 0;
   for (const NodeId id : outputs) last = std::max(last, id);
-  std::vector<double> values(last + 1);
-  const auto at = [&](NodeId id) { return id == no_node ? 0.0 : values[id]; };
+  std::vector<bool> needed(last + 1, false);
+  for (const NodeId id : outputs) needed[id] = true;
+  for (NodeId id = last + 1; id-- > 0;)
+    if (needed[id])
+      for (const NodeId operand : {graph[id].a, graph[id].b, graph[id].c})
+        if (operand != no_node) needed[operand] = true;
+  std::vector<NodeId> place(last + 1, no_node);
+  const auto placed = [&](NodeId id) { return id == no_node ? no_node : place[id]; };
   for (NodeId id = 0; id <= last; ++id) {
+    if (!needed[id]) continue;
+    place[id] = static_cast<NodeId>(nodes_.size());
     const Node& node = graph[id];
-    if (node.op == Op::constant)
-      values[id] = node.value;
-    else if (node.op == Op::input)
-      values[id] = input(static_cast<int>(node.value));
-    else
-      values[id] = evaluate(node.op, at(node.a), at(node.b), at(node.c));
+    nodes_.push_back({node.op, placed(node.a), placed(node.b), placed(node.c), node.value});
   }
-  std::vector<double> result;
-  for (const NodeId id : outputs) result.push_back(values[id]);
-  return result;
+  for (const NodeId id : outputs) outputs_.push_back(place[id]);
+  values_.resize(nodes_.size());
+  results_.resize(outputs_.size());
+}
+
+const std::vector<double>& GraphProgram::run(const std::function<double(int)>& input) {
+  const auto at = [&](NodeId id) { return id == no_node ? 0.0 : values_[id]; };
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const Node& node = nodes_[i];
+    values_[i] = node.op == Op::constant ? node.value
+                 : node.op == Op::input  ? input(static_cast<int>(node.value))
+                                         : evaluate(node.op, at(node.a), at(node.b), at(node.c));
+  }
+  for (std::size_t i = 0; i < outputs_.size(); ++i) results_[i] = values_[outputs_[i]];
+  return results_;
+}
+
+std::vector<double> evaluate(const Graph& graph, std::span<const NodeId> outputs,
+                             const std::function<double(int)>& input) {
+  return GraphProgram(graph, {outputs.begin(), outputs.end()}).run(input);
 }
 
 }  // namespace sundog

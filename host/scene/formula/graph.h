@@ -106,6 +106,21 @@ std::vector<double> evaluate(const Graph& graph, std::span<const NodeId> outputs
 /// One operation on numbers, as the devices do it.
 double evaluate(Op op, double a, double b, double c);
 
+/// The part of a graph that some outputs need, to be evaluated at many points.
+class GraphProgram {
+ public:
+  GraphProgram() = default;
+  GraphProgram(const Graph& graph, std::vector<NodeId> outputs);
+  /// The outputs' values, in their order; valid until the next run.
+  const std::vector<double>& run(const std::function<double(int)>& input);
+  std::size_t size() const { return nodes_.size(); }
+
+ private:
+  std::vector<Node> nodes_;
+  std::vector<NodeId> outputs_;
+  std::vector<double> values_, results_;
+};
+
 /// Forward-mode differentiation: the tangents of `outputs` along one direction, where tangent(index) gives
 /// each input's tangent (a node; no_node is zero). New nodes are added to the graph.
 std::vector<NodeId> differentiate(Graph& graph, std::span<const NodeId> outputs,

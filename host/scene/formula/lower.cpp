@@ -46,7 +46,14 @@ class Lowering {
 
   Value value_of(const Expression& e) {
     try {
-      return lower(e);
+      const Value value = lower(e);
+      for (DomainGuard& guard : v.guards)
+        if (guard.line == 0) {
+          guard.line = e.place.line;
+          guard.column = e.place.column;
+          guard.condition = branch_;
+        }
+      return value;
     } catch (const std::invalid_argument& error) {
       throw FormulaError(e.place.line, e.place.column, error.what());
     } catch (const std::domain_error& error) {
@@ -97,7 +104,7 @@ class Lowering {
       case Expression::Kind::member:
         return v.members(value_of(e.operands[0]), e.text);
       case Expression::Kind::choose:
-        return v.choose(value_of(e.operands[0]), value_of(e.operands[1]), value_of(e.operands[2]));
+        return choice(e);
       case Expression::Kind::binary:
         return binary(e);
       case Expression::Kind::call:
@@ -136,6 +143,22 @@ class Lowering {
     return a;
   }
 
+  /// What a branch computes matters only where it is taken.
+  Value choice(const Expression& e) {
+    const Value condition = value_of(e.operands[0]);
+    const NodeId outer = branch_;
+    const auto taken = [&](NodeId when, const Expression& operand) {
+      if (condition.type == ValueType::condition)
+        branch_ = outer == no_node ? when : g.apply(Op::both, outer, when);
+      const Value value = value_of(operand);
+      branch_ = outer;
+      return value;
+    };
+    const Value a = taken(condition.x(), e.operands[1]);
+    const Value b = taken(g.apply(Op::opposite, condition.x()), e.operands[2]);
+    return v.choose(condition, a, b);
+  }
+
   Value binary(const Expression& e) {
     if (e.text == "&&" || e.text == "||") return logical(e);
     if (e.text == "^") return power(e);
@@ -164,6 +187,7 @@ class Lowering {
 
   Graph& g;
   const std::vector<double>& parameter_values_;
+  NodeId branch_ = no_node;  // where what is being lowered is used; no_node: everywhere
   std::map<std::string, Value> fixed_, variables_;
   std::map<std::string, bool> set_;
 };
@@ -231,6 +255,7 @@ void lower_start(LoweredFormula& out, const FormulaDefinition& d, const std::vec
   const auto identity = [&](int input, int axis) {
     return input == in::p + axis ? s.graph.constant(1) : no_node;
   };
+  s.guards = low.v.guards;
   s.z_tangents = tangents(s.graph, s.z, identity);
   s.c_tangents = tangents(s.graph, s.c, identity);
 }
@@ -290,6 +315,7 @@ void lower_map(LoweredFormula& out, const FormulaDefinition& d, const std::vecto
   if (!low.was_set("z")) throw FormulaError(1, 1, "a map must set z, as in \"z = z^8 + c\"");
   s.z = parts(low.variable("z"));
   s.derivative = slope_of(g, low.variable("z"));
+  s.guards = low.v.guards;
   s.z_tangents = tangents(g, s.z, [&](int input, int axis) { return tangent_of_input(g, out, input, axis); });
 }
 
@@ -313,6 +339,7 @@ void lower_finish(LoweredFormula& out, const FormulaDefinition& d, const std::ve
     throw FormulaError(expression.place.line, expression.place.column,
                        "a distance is a number, found a " + name_of(distance.type));
   s.distance = distance.x();
+  s.guards = low.v.guards;
   const auto columns =
       tangents(g, {s.distance}, [&](int input, int axis) { return tangent_of_input(g, out, input, axis); });
   s.gradient = columns[0];

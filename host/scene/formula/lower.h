@@ -13,6 +13,7 @@
 
 #include "scene/formula/definition.h"
 #include "scene/formula/graph.h"
+#include "scene/formula/value.h"
 
 namespace sundog {
 
@@ -33,6 +34,7 @@ struct Section {
   std::vector<std::array<NodeId, 3>> z_tangents, c_tangents;  // per component and axis
   NodeId distance = no_node;
   std::array<NodeId, 3> gradient{no_node, no_node, no_node};  // of the distance
+  std::vector<DomainGuard> guards;
 };
 
 /// start: p -> z, c. map: z, c, derivative -> z, derivative. finish: z, derivative, p -> distance, gradient.

@@ -150,8 +150,10 @@ Value Values::power(const Value& base, const Value& exponent, std::optional<int>
     r.part[0] = g.constant(1);
   else if (whole)
     r.part[0] = n > 0 ? powers.whole(base.x(), n) : g.div(g.constant(1), powers.whole(base.x(), -n));
-  else
+  else {
+    if (base.varies) guards.push_back({base.x(), no_node, 0, 1e300, "a power that is not whole"});
     r.part[0] = g.apply(Op::power, g.max(base.x(), g.constant(1e-30)), exponent.x());
+  }
   return r;
 }
 

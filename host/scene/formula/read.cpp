@@ -8,8 +8,9 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "scene/formula/evaluate.h"
+#include "scene/formula/judge.h"
 #include "scene/formula/list.h"
+#include "scene/formula/lower.h"
 #include "scene/formula/syntax.h"
 
 namespace sundog {
@@ -327,8 +328,16 @@ void read_light(JsonObject& object, SdfDescription& field, double size) {
     });
 }
 
+double least_safety(const SdfNode& node) {
+  double least = node.kind == SdfNode::Kind::formula ? node.formula.safety : 1;
+  for (const SdfNode& child : node.children) least = std::min(least, least_safety(child));
+  return least;
+}
+
 /// What a field has besides its tree: where it is built, how closely it is followed, what it looks like.
-void read_whole(JsonObject& object, SdfDescription& field, const std::array<double, 6>& bounds) {
+/// `root`: what its tree was read from.
+void read_whole(JsonObject& object, SdfDescription& field, const JsonValue& root,
+                const std::array<double, 6>& bounds) {
   const bool is_leaf = field.root.kind == SdfNode::Kind::formula;
   field.lower = {bounds[0], bounds[1], bounds[2]};
   field.upper = {bounds[3], bounds[4], bounds[5]};
@@ -342,14 +351,17 @@ void read_whole(JsonObject& object, SdfDescription& field, const std::array<doub
   field.least = object.number("least_threshold", 3e-5 * size, {.low = 1e-7 * size, .high = size});
   field.greatest = object.number("greatest_threshold", std::max(0.03 * size, field.least),
                                  {.low = field.least, .high = size});
+  const bool has_limit = object.has("step_limit");
   field.step_limit = object.integer("step_limit", field.step_limit, 16, 65536);
   if (const auto coloring = object.find("coloring")) field.coloring = read_coloring(*coloring);
   read_light(object, field, size);
-  if (is_leaf && field.root.formula.steps.size() == 1) try {
-      probe_formula(field.root.formula, field.lower, field.upper);
-    } catch (const FormulaError& error) {
-      fail(object.value(), error);
-    }
+  try {
+    judge_field(field.root, root, field.lower, field.upper);
+  } catch (const FormulaError& error) {
+    fail(root, error);
+  }
+  if (!has_limit)  // shorter steps, more of them
+    field.step_limit = static_cast<int>(std::clamp(128 / least_safety(field.root), 512.0, 8192.0));
 }
 
 }  // namespace
@@ -361,7 +373,7 @@ SdfDescription read_field(JsonObject& object, std::string_view type) {
   field.name = type;
   std::array<double, 6> bounds{};
   field.root = read_node(object, type, &bounds, 1);
-  read_whole(object, field, bounds);
+  read_whole(object, field, object.value(), bounds);
   return field;
 }
 
@@ -370,8 +382,9 @@ SdfDescription read_named_field(const JsonValue& value, std::string name) {
   field.name = std::move(name);
   value.object("field_entry", [&](JsonObject& object) {
     std::array<double, 6> bounds{};
-    field.root = read_child(object.at("field", "a field"), 1, &bounds);
-    read_whole(object, field, bounds);
+    const JsonValue root = object.at("field", "a field");
+    field.root = read_child(root, 1, &bounds);
+    read_whole(object, field, root, bounds);
   });
   return field;
 }

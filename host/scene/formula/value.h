@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scene/formula/graph.h"
 
@@ -29,6 +30,15 @@ struct Value {
   NodeId y() const { return part[1]; }
   NodeId z() const { return part[2]; }
   NodeId w() const { return part[3]; }
+};
+
+/// An argument that a function keeps within its domain [low, high]: beyond it the formula means nothing.
+/// `condition`, when there is one, says where the argument is used at all.
+struct DomainGuard {
+  NodeId argument = no_node, condition = no_node;
+  double low = 0, high = 0;
+  std::string function;
+  int line = 0, column = 0;
 };
 
 /// Operations on values. Those that do not fit their operands' types throw std::invalid_argument with the
@@ -71,6 +81,7 @@ class Values {
   Value clamped(const Value& v, const Value& low, const Value& high);
 
   Graph& g;
+  std::vector<DomainGuard> guards;
   bool radial = false;  // a triplex power's slope is the one along z alone
 
  private:

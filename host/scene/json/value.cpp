@@ -110,6 +110,11 @@ void JsonValue::fail(std::string_view reason) const {
   throw SceneError(context_->file.string(), pointer_, std::string(reason));
 }
 
+void JsonValue::warn(std::string_view reason) const {
+  if (context_->warnings)
+    context_->warnings->push_back(SceneError(context_->file.string(), pointer_, std::string(reason)).what());
+}
+
 void JsonValue::wanted(std::string_view what) const {
   fail(fmt::format("wanted {}, found {}", what, describe(*json_)));
 }

@@ -32,7 +32,8 @@ inline constexpr Range color_range{.low = 0, .high = 1e6};
 struct JsonContext {
   std::filesystem::path file;
   std::map<std::string, std::set<std::string>, std::less<>>* asked = nullptr;
-  bool native_code = false;  // a scene may carry OpenCL C
+  bool native_code = false;                      // a scene may carry OpenCL C
+  std::vector<std::string>* warnings = nullptr;  // when set, collects what the values were warned of
 };
 
 /// Keys or choices; pass a static array of them.
@@ -52,6 +53,8 @@ class JsonValue {
 
   /// Throws SceneError at this place.
   [[noreturn]] void fail(std::string_view reason) const;
+  /// Warns of this place, in one line like an error's.
+  void warn(std::string_view reason) const;
   /// Throws "wanted `what`, found <this value, shortened>".
   [[noreturn]] void wanted(std::string_view what) const;
 
