@@ -1,13 +1,12 @@
 // See embree_finder.h.
 #include "embree_finder.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
+#include "embree_mesh.h"
 
 namespace sundog {
 namespace {
@@ -19,18 +18,6 @@ void set_ray(RTCRay& to, const plain::Ray& from) {
   to.tnear = from.t_min > 0 ? std::nextafter(from.t_min, std::numeric_limits<float>::infinity()) : from.t_min;
   to.tfar = from.t_max;
   to.time = 0, to.mask = ~0u, to.id = 0, to.flags = 0;
-}
-
-RTCGeometry make_geometry(RTCDevice device, const Mesh& mesh) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.positions.size()));
-  std::copy(mesh.positions.begin(), mesh.positions.end(), vertices);
-  auto* triangles = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), mesh.triangles.size()));
-  std::copy(mesh.triangles.begin(), mesh.triangles.end(), triangles);
-  rtcCommitGeometry(geometry);
-  return geometry;
 }
 
 /// Throws SceneError unless there is one mesh, and that in world space.
@@ -116,7 +103,7 @@ EmbreeFinder::EmbreeFinder(const SceneDescription& scene, const CompiledScene& c
       state_->solids.push_back(make_solid(i, compiled.instances[i]));
   }
   rtcSetSceneBuildQuality(state_->scene, RTC_BUILD_QUALITY_MEDIUM);
-  RTCGeometry geometry = make_geometry(state_->device, scene.meshes.at(0));
+  RTCGeometry geometry = embree_mesh(state_->device, scene.meshes.at(0), RTC_BUILD_QUALITY_MEDIUM);
   rtcAttachGeometry(state_->scene, geometry);
   rtcReleaseGeometry(geometry);
   rtcCommitScene(state_->scene);

@@ -54,7 +54,7 @@ bool absorbs(const Medium& medium) {
 /// As highlight() of kernels/lib/lights.cl tells them.
 bool has_fractional_exponent(const Material& material) {
   const float exponent = material.specular.w;
-  return exponent != std::floor(exponent) || exponent > 65535.0f;
+  return exponent != std::floor(exponent) || exponent > GREATEST_WHOLE_EXPONENT;
 }
 
 void add_field_features(CompiledScene& out) {

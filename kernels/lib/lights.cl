@@ -42,7 +42,7 @@ static inline LightSamples sample_light(__global const Light* light, REAL3 p) {
 // x^e for x in [0, 1]. Whole exponents, which most are, by squaring.
 static inline REAL highlight(REAL x, float e) {
 #if HAS_FRACTIONAL_EXPONENTS
-  if (e != floor(e) || e > 65535.0f)
+  if (e != floor(e) || e > GREATEST_WHOLE_EXPONENT)
     return select(real_exp(e * real_log(real_max(x, (REAL)(1e-37f)))), (REAL)(0.0f), MASK_OF(x < 1e-37f));
 #endif
   REAL result = (REAL)(1.0f);

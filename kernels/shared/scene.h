@@ -17,6 +17,9 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_FLAT 128u         // shades with the geometric normal
 #define MATERIAL_CLEAR 256u        // no local terms, no tint in transmission: cannot be seen between equal indices
 
+// Highlights up to this exponent, where it is whole, are products alone.
+#define GREATEST_WHOLE_EXPONENT 65535.0f
+
 // 128 bytes. Each colour is already multiplied by its coefficient.
 typedef struct Material {
   float4 ambient;       // ka

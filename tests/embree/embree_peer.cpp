@@ -1,7 +1,6 @@
 // See embree_peer.h.
 #include "embree_peer.h"
 
-#include <embree3/rtcore.h>
 #include <pmmintrin.h>
 #include <xmmintrin.h>
 
@@ -12,6 +11,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "embree_mesh.h"
 
 namespace sundog {
 namespace {
@@ -59,19 +59,6 @@ void set_rays(RTCRay16& to, std::span<const Ray> from, int* valid) {
     to.dir_x[i] = ray.dx, to.dir_y[i] = ray.dy, to.dir_z[i] = ray.dz, to.tfar[i] = ray.t_max;
     to.time[i] = 0, to.mask[i] = ~0u, to.id[i] = 0, to.flags[i] = 0;
   }
-}
-
-RTCGeometry make_mesh(RTCDevice device, const Mesh& mesh, RTCBuildQuality quality) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.positions.size()));
-  std::copy(mesh.positions.begin(), mesh.positions.end(), vertices);
-  auto* triangles = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), mesh.triangles.size()));
-  std::copy(mesh.triangles.begin(), mesh.triangles.end(), triangles);
-  rtcSetGeometryBuildQuality(geometry, quality);
-  rtcCommitGeometry(geometry);
-  return geometry;
 }
 
 }  // namespace
@@ -131,7 +118,7 @@ EmbreePeer::EmbreePeer(const SceneDescription& scene, const EmbreeOptions& optio
   };
   state.scene = state.new_scene(options);
   std::vector<RTCGeometry> geometries;
-  for (const Mesh& mesh : scene.meshes) geometries.push_back(make_mesh(state.device, mesh, quality));
+  for (const Mesh& mesh : scene.meshes) geometries.push_back(embree_mesh(state.device, mesh, quality));
   const Stopwatch clock;
   const std::clock_t start = std::clock();
   if (state.instanced) {
