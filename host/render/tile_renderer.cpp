@@ -94,14 +94,15 @@ LaunchSize TileRenderer::launch_size(std::size_t columns, std::size_t rows) cons
     return {items, 1, group.x, 1};
   }
   if (alone_) return {items, 1, 1, 1};
-  // With many pixels a work-item, small groups leave no unit idle at a launch's end; one ray a lane wants a
-  // full group, if only to fill the driver's vectors.
-  const std::size_t units = std::max(1u, device_.info().compute_units);
-  const bool lanes = config_.tile_w * config_.tile_h == 1;
-  const std::size_t wanted =
-      device_.info().device_class == DeviceClass::cpu
-          ? std::clamp<std::size_t>(items / (4 * units), lanes ? 8 : 1, lanes ? 64 : 16)
-          : 64;
+  // One ray a lane wants a full group, if only to fill the driver's vectors. With many pixels a work-item,
+  // small groups leave no unit idle at a launch's end, as PoCL hands them out 32 at a time; of two sizes, as
+  // it compiles for each.
+  const std::size_t share = items / (4 * std::max(1u, device_.info().compute_units));
+  std::size_t wanted = 64;
+  if (device_.info().device_class == DeviceClass::cpu) {
+    const bool many_pixels = config_.tile_w * config_.tile_h > 1;
+    wanted = many_pixels ? (share < 4 ? 1 : 4) : std::clamp<std::size_t>(share, 8, 64);
+  }
   return {items, 1, std::min(wanted, std::max<std::size_t>(1, device_.info().max_work_group)), 1};
 }
 
