@@ -1,4 +1,5 @@
-// Ctrl-C: the first one asks the render to stop, the second ends the program.
+// Ctrl-C: the first one asks the render to stop, the second ends the program. And SIGCONT, which mpirun sends
+// a second before it ends a process.
 #pragma once
 #include <atomic>
 
@@ -14,6 +15,8 @@ class StopOnSignal {
   StopOnSignal& operator=(const StopOnSignal&) = delete;
 
   const std::atomic<bool>& flag() const;
+  /// Set by SIGCONT; whoever has seen it takes it back.
+  std::atomic<bool>& continued() const;
 };
 
 }  // namespace sundog

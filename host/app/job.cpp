@@ -19,10 +19,6 @@ namespace {
 // The longest that a rank may take to list its devices.
 constexpr double patience = 60;
 
-// A rank that says nothing for so long when the job is interrupted has died: mpirun ends the others a second
-// later.
-constexpr double suspicious_silence = 0.7;
-
 struct Listed {
   std::vector<DeviceInfo> devices;
   unsigned cores = 0;
@@ -147,16 +143,6 @@ std::vector<ServerPlan> plan_job(Mailbox& job, const RenderCommand& command,
   }
   if (plans.empty()) throw DeviceError("every rank that had devices is gone");
   return plans;
-}
-
-std::vector<std::string> missing_ranks(Mailbox& job) {
-  std::vector<std::string> sentences;
-  for (const int rank : job.silent_for(suspicious_silence))
-    sentences.push_back(fmt::format(
-        "{} says nothing any more: it has died or is stopped; mpirun ends all ranks when one dies, "
-        "with --enable-recovery the others go on",
-        job.name(rank)));
-  return sentences;
 }
 
 }  // namespace sundog

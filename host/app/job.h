@@ -30,7 +30,4 @@ std::vector<ServerPlan> plan_job(Mailbox& job, const RenderCommand& command,
                                  const std::vector<DeviceInfo>& devices,
                                  const std::shared_ptr<const CompiledScene>& scene);
 
-/// For rank 0, after an interrupt: a sentence for each rank that seems to be the reason for it.
-std::vector<std::string> missing_ranks(Mailbox& job);
-
 }  // namespace sundog

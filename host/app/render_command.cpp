@@ -14,6 +14,7 @@
 #include "app/job.h"
 #include "app/pick_devices.h"
 #include "app/progress.h"
+#include "app/rank_watch.h"
 #include "app/remote_devices.h"
 #include "app/save_image.h"
 #include "app/stats.h"
@@ -78,15 +79,16 @@ RenderOptions render_options(const RenderCommand& command) {
 }
 
 /// Writes the image, whole or in part, and takes the checkpoint of a whole one away: not before it is safe.
-void save(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result) {
-  Picture picture{result.image, result.aovs, result.film, result.key, command.resume, command.full_floats};
+void save(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result,
+          const std::string& checkpoint) {
+  Picture picture{result.image, result.aovs, result.film, result.key, checkpoint, command.full_floats};
   if (picture.key == 0) picture.key = hash_scene(scene);
   if (!command.part)
     save_image(picture, command.out);
   else if (result.complete)
     write_part(command.out, {*command.part, picture.key, command.scene, command.aovs, result.film});
   if (!result.checkpoint_error.empty()) throw IoError(result.checkpoint_error);
-  if (result.complete && !command.resume.empty()) std::filesystem::remove(command.resume);
+  if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint);
 }
 
 void warn(const RenderResult& result) {
@@ -104,25 +106,37 @@ void summarise(const RenderCommand& command, const RenderResult& result, const T
   if (command.verbose) fmt::print("{}", details_text(result, times));
 }
 
-std::string part_text(const RenderCommand& command, const RenderResult& result) {
+double percent_done(const RenderResult& result) {
   const auto& done = result.film.done;
+  const double pixels = static_cast<double>(std::max<std::size_t>(1, done.size()));
+  return 100 * static_cast<double>(std::ranges::count(done, 1)) / pixels;
+}
+
+std::string part_text(const RenderCommand& command, const RenderResult& result) {
   if (command.part)
     return fmt::format("{} is not written{}", command.out,
                        command.resume.empty() ? "" : "; the same command goes on from its checkpoint");
-  const double pixels = static_cast<double>(std::max<std::size_t>(1, done.size()));
-  return fmt::format("{:.3g} % of the pixels are in {}{}",
-                     100 * static_cast<double>(std::ranges::count(done, 1)) / pixels, command.out,
+  return fmt::format("{:.3g} % of the pixels are in {}{}", percent_done(result), command.out,
                      command.resume.empty() ? "" : "; the same command goes on from there");
 }
 
+/// Told before the picture is written, for which mpirun may leave no time.
+void tell_kept(const RenderResult& result, const std::string& checkpoint) {
+  fmt::print(
+      stderr,
+      "sundog: interrupted: {:.3g} % of the pixels are in {}; the same command with --resume {} goes on "
+      "from there\n",
+      percent_done(result), checkpoint, checkpoint);
+}
+
 /// The exit status of a frame, after what there is of it has been saved.
-int conclude(const RenderCommand& command, const RenderResult& result) {
+int conclude(const RenderCommand& command, const RenderResult& result, bool told) {
   if (result.complete) return exit_done;
   if (result.failure) {
     fmt::print(stderr, "sundog: every device failed: {}\n", part_text(command, result));
     std::rethrow_exception(result.failure);
   }
-  fmt::print(stderr, "sundog: interrupted: {}\n", part_text(command, result));
+  if (!told) fmt::print(stderr, "sundog: interrupted: {}\n", part_text(command, result));
   return exit_interrupted;
 }
 
@@ -133,6 +147,11 @@ struct Setup {
   std::vector<DeviceInfo> devices;
   std::shared_ptr<DevicePool> pool;
 };
+
+/// In a job there always is one: mpirun kills all ranks when one dies.
+std::string checkpoint_file(const RenderCommand& command, const Setup& setup) {
+  return setup.job && command.resume.empty() ? command.out + ".checkpoint" : command.resume;
+}
 
 /// A scene as it is read, flattened and recognised.
 struct LoadedScene {
@@ -162,18 +181,23 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
                const Stopwatch& clock, TimeLedger& times) {
   ProgressBar bar(!command.quiet);
   RenderOptions options = render_options(command);
+  const std::string checkpoint = checkpoint_file(command, setup);
+  RankWatch watch(setup.job, setup.stop.flag(), checkpoint);
   options.pool = setup.pool;
   options.stop = &setup.stop.flag();
+  options.checkpoint = checkpoint;
+  options.in_haste = setup.job != nullptr;
+  if (setup.job) options.keep_now = &setup.stop.continued();
   options.tuning = [flat = scene.flat](const DeviceInfo& device) { return saved_tuning(device, *flat); };
   options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
   const RenderResult result = render(scene.flat, plan_servers(command, scene, setup), options);
   bar.erase();
-  // Said before the picture is written: mpirun may leave no time for that.
-  if (setup.job && !result.complete) print_warnings(missing_ranks(*setup.job));
+  const bool told = setup.job && result.checkpoint_kept && !result.failure;
+  if (told) tell_kept(result, checkpoint);
 
   times.render = result.times;
   const Stopwatch writing;
-  save(command, *scene.flat, result);
+  save(command, *scene.flat, result, checkpoint);
   times.write = writing.seconds();
   times.total = clock.seconds();
   if (!command.stats.empty()) {
@@ -183,7 +207,7 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
   }
   warn(result);
   summarise(command, result, times);
-  return conclude(command, result);
+  return conclude(command, result, told);
 }
 
 /// The command of one frame: its files are numbered.

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <thread>
 
 #include "base/error.h"
 #include "base/faults.h"
@@ -48,6 +50,7 @@ void write_file(const fs::path& path, std::string_view bytes) {
     throw IoError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(code)));
   };
   if (fault("write", path.filename().string())) fail(ENOSPC);
+  while (fault("stall", path.filename().string())) std::this_thread::sleep_for(std::chrono::hours(1));
   errno = 0;
   std::ofstream out(temporary, std::ios::binary);
   if (!out) fail(errno);

@@ -45,7 +45,9 @@ void look_for_stop(Frame& frame) {
 /// Keeps what is done against what gives no warning: a process killed, a machine that goes down.
 void keep_checkpoint(Frame& frame) {
   const RenderOptions& options = frame.options;
-  if (options.resume.empty() || frame.since_checkpoint.seconds() < options.checkpoint_seconds) return;
+  const bool now = options.keep_now && options.keep_now->exchange(false);
+  if (checkpoint_path(options).empty()) return;
+  if (!now && frame.since_checkpoint.seconds() < options.checkpoint_seconds) return;
   frame.since_checkpoint = Stopwatch();
   Film film;
   {
@@ -55,7 +57,7 @@ void keep_checkpoint(Frame& frame) {
     film = frame.film;
   }
   try {
-    write_checkpoint(options.resume, film, frame.key);
+    write_checkpoint(checkpoint_path(options), film, frame.key);
   } catch (const IoError&) {
     // What keeps it from being written is told at the end, if the frame does not come to its end.
   }
@@ -188,7 +190,8 @@ void watch(Frame& frame) {
 }
 
 /// Gives those that may soon be gone the time for it.
-void wait_for_threads(Frame& frame, double grace) {
+void wait_for_threads(Frame& frame, bool stopped) {
+  const bool in_haste = stopped && frame.options.in_haste;
   std::unique_lock lock(frame.mutex);
   const auto wait = [&](double seconds, auto... phases) {
     frame.changed.wait_for(lock, std::chrono::duration<double>(seconds), [&] {
@@ -197,8 +200,8 @@ void wait_for_threads(Frame& frame, double grace) {
       });
     });
   };
-  wait(grace, Phase::working);
-  wait(closing_grace, Phase::closing);
+  wait(stopped && !in_haste ? stop_grace : launch_grace, Phase::working);
+  if (!in_haste) wait(closing_grace, Phase::closing);
 }
 
 }  // namespace
@@ -216,7 +219,7 @@ void run_frame(const std::shared_ptr<Frame>& frame, bool wait) {
     });
   watch(*frame);
   const bool stopped = frame->stop.exchange(true);
-  if (!wait) wait_for_threads(*frame, stopped ? stop_grace : launch_grace);
+  if (!wait) wait_for_threads(*frame, stopped);
   for (std::size_t i = 0; i < threads.size(); ++i) {
     std::unique_lock lock(frame->mutex);
     Frame::Server& server = frame->servers[i];

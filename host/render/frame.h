@@ -45,6 +45,11 @@ struct Frame {
   std::atomic<bool> stop{false};
 };
 
+/// Where a frame that does not come to its end is kept; empty: nowhere.
+inline const std::filesystem::path& checkpoint_path(const RenderOptions& options) {
+  return options.checkpoint.empty() ? options.resume : options.checkpoint;
+}
+
 /// Runs the frame to its end: finished, stopped (options.stop), or out of servers. With `wait`, every thread
 /// has ended on return; else those in a driver are left behind (see threads_left_behind()).
 void run_frame(const std::shared_ptr<Frame>& frame, bool wait);

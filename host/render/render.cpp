@@ -126,9 +126,10 @@ double frame_efficiency(const Frame& frame) {
 
 /// Keeps what an interrupted frame has; a disk that is full must not take the image along.
 void keep_checkpoint(const RenderOptions& options, RenderResult& result) {
-  if (options.resume.empty() || result.complete) return;
+  if (checkpoint_path(options).empty() || result.complete) return;
   try {
-    write_checkpoint(options.resume, result.film, result.key);
+    write_checkpoint(checkpoint_path(options), result.film, result.key);
+    result.checkpoint_kept = true;
   } catch (const IoError& error) {
     result.checkpoint_error = error.what();
   }
@@ -142,6 +143,7 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   result.film = std::move(frame.film);
   result.key = key;
   result.complete = frame.queue.complete();
+  keep_checkpoint(frame.options, result);
   result.efficiency = frame_efficiency(frame);
   result.counts = frame.counts;
   result.image = result.film.develop();
@@ -150,7 +152,6 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   result.times.readback = frame.readback;
   result.times.render = std::max(
       0.0, frame.clock.seconds() - result.times.build_kernels - result.times.upload - frame.readback);
-  keep_checkpoint(frame.options, result);
   return result;
 }
 
@@ -159,7 +160,7 @@ RenderResult render_frame(const Scene& scene, const std::vector<ServerPlan>& dev
   check_aovs(options.aovs);
   if (devices.empty()) throw DeviceError("no device to render on");
   check_shares(options.split, devices);
-  const std::uint64_t key = options.resume.empty() ? 0 : hash_scene(*scene);
+  const std::uint64_t key = checkpoint_path(options).empty() ? 0 : hash_scene(*scene);
   const std::shared_ptr<Frame> frame = begin_frame(scene, devices, options, key);
   run_frame(frame, wait);
   const bool stopped = options.stop && options.stop->load();

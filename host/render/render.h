@@ -38,11 +38,14 @@ struct RenderOptions {
   std::function<Tuning(const DeviceInfo&)> tuning;  // of each device; empty: the defaults
   int tile = 0;  // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
   Split split;
-  PartOfFrame part;               // what to render of the frame
-  std::vector<std::string> aovs;  // of aov_names()
-  std::filesystem::path
-      resume;  // checkpoint: read when it exists, written on interrupt and on the way; the caller removes it
-  double checkpoint_seconds = 60;                          // between those written on the way
+  PartOfFrame part;                  // what to render of the frame
+  std::vector<std::string> aovs;     // of aov_names()
+  std::filesystem::path resume;      // a checkpoint: read when it exists
+  std::filesystem::path checkpoint;  // written on interrupt and on the way, and removed by the caller; empty:
+                                     // that is `resume`
+  double checkpoint_seconds = 60;    // between those written on the way
+  std::atomic<bool>* keep_now = nullptr;                   // set: write one at once, and take this back
+  bool in_haste = false;                                   // when stopped, a moment more may be too long
   std::function<void(const RenderProgress&)> on_progress;  // called by one thread at a time
   const std::atomic<bool>* stop = nullptr;                 // set: finish what runs, return what there is
   bool keep_failed = false;  // when every device failed, return what there is, and the failure, not throw it
@@ -82,9 +85,10 @@ struct RenderResult {
   double efficiency = 1;  // work done over what the devices could have done (plan.h)
   RenderTimes times;
   Film film;                     // what the image was developed from
-  std::uint64_t key = 0;         // of the scene, for write_checkpoint; 0 without options.resume
+  std::uint64_t key = 0;         // of the scene, for write_checkpoint; 0 without a checkpoint
   std::exception_ptr failure;    // every device failed: what the last one threw (options.keep_failed)
-  std::string checkpoint_error;  // why the checkpoint of an interrupted frame could not be written
+  bool checkpoint_kept = false;  // an interrupted frame is in the checkpoint
+  std::string checkpoint_error;  // why it could not be written there
 };
 
 class TileServer;

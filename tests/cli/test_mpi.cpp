@@ -190,6 +190,38 @@ TEST_CASE(
   CHECK_FALSE(std::filesystem::exists(folder / "checkpoint"));
 }
 
+TEST_CASE("mpirun: a dead rank is named first, then what is done is kept, then the picture is written") {
+  const char* crash = "export SUNDOG_FAULTS=crash@0:0#2;";
+  struct Case {
+    const char* fault;  // of rank 0: what never comes to its end before mpirun ends the job
+    bool kept;
+  };
+  for (const Case& c : {Case{"stall@a.pfm", true}, Case{"stall@a.pfm.checkpoint", false}}) {
+    CAPTURE(c.fault);
+    MpiFolder folder;
+    folder.options.environment["SUNDOG_FAULTS"] = c.fault;
+    const CommandResult died = folder.mpirun(2, folder.arguments(halves), crash);
+    CAPTURE(died.err);
+    CHECK(died.status != 0);
+    const std::string checkpoint = folder.file("a.pfm.checkpoint");
+    const std::vector<std::string> lines = lines_of_sundog(died.err);
+    REQUIRE(lines.size() == (c.kept ? 2 : 1));
+    CHECK(lines[0].starts_with("sundog: warning: rank 1 on "));
+    CHECK(lines[0].ends_with("what is done is kept in " + checkpoint));
+    CHECK_FALSE(std::filesystem::exists(folder / "a.pfm"));
+    CHECK(std::filesystem::exists(checkpoint) == c.kept);
+    if (!c.kept) continue;
+    CHECK(contains(lines[1], "sundog: interrupted: "));
+    CHECK(contains(lines[1], "--resume " + checkpoint));
+    folder.options.environment.erase("SUNDOG_FAULTS");
+    REQUIRE(
+        run_sundog(folder.arguments({"--device", "0:0", "--resume", checkpoint}), folder.options).status ==
+        0);
+    CHECK(folder.stats()["devices"][0]["pixels"] < 160 * 120);
+    CHECK(read_file(folder / "a.pfm") == folder.plain);
+  }
+}
+
 TEST_CASE("mpirun: a rank that stops, or that dies with --enable-recovery, costs time alone") {
   const MpiFolder folder;
   struct Case {
