@@ -105,7 +105,7 @@ void print_details(const DeviceInfo& device) {
   line("memory", fmt::format("{}, at most {} in one buffer, {} local", bytes_text(device.global_memory),
                              bytes_text(device.max_allocation), bytes_text(device.local_memory)));
   line("limits", fmt::format("work-groups of {}, {}", device.max_work_group,
-                             device.max_sub_devices > 0
+                             device.max_sub_devices > 1
                                  ? fmt::format("{} sub-devices (--device {}:{}/N)", device.max_sub_devices,
                                                device.platform, device.device)
                                  : "no sub-devices"));

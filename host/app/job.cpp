@@ -40,8 +40,9 @@ Listed list_of(Channel& channel, const std::string& name) {
 }
 
 /// Without SPECs: the fastest device and those like it, so that each rank of a machine finds one.
-std::vector<DeviceInfo> choose(const std::vector<DeviceInfo>& all, const std::vector<std::string>& specs) {
-  std::vector<DeviceInfo> chosen = select_devices(all, specs);
+std::vector<DeviceInfo> choose(const std::vector<DeviceInfo>& all, const std::vector<std::string>& specs,
+                               std::vector<std::string>& warnings) {
+  std::vector<DeviceInfo> chosen = select_devices(all, specs, &warnings);
   if (!specs.empty()) return chosen;
   const DeviceInfo best = chosen.front();
   for (const DeviceInfo& device : all)
@@ -62,7 +63,10 @@ class Choice {
     try {
       const Listed listed = list();
       RankDevices& mine = ranks_[static_cast<std::size_t>(rank)];
-      mine = {listed.cores, choose(listed.devices, specs)};
+      std::vector<std::string> warnings;
+      mine = {listed.cores, choose(listed.devices, specs, warnings)};
+      for (const std::string& warning : warnings)
+        warnings_.push_back(fmt::format("{}: {}", job_.name(rank), warning));
       for (DeviceInfo& device : mine.devices) {
         device.rank = rank;
         device.host = job_.host(rank);

@@ -149,6 +149,27 @@ void check_command_name(const CLI::App& root, int argc, const char* const* argv)
                                  wanted.empty() ? "none" : "'" + wanted + "'", more_help));
 }
 
+/// The library takes whatever follows an option for its value: with a forgotten value, that is the next
+/// option. (What really begins like one goes as --stats=-o.)
+void check_values_given(const CLI::App& root, int argc, const char* const* argv) {
+  const CLI::App* command = &root;
+  for (int i = 1; i + 1 < argc && std::string_view(argv[i]) != "--"; ++i) {
+    for (const CLI::App* inner : command->get_subcommands(nullptr))
+      if (inner->get_name() == argv[i]) {
+        command = inner;
+        break;
+      }
+    if (argv[i][0] != '-') continue;
+    const CLI::Option* option = command->get_option_no_throw(argv[i]);
+    if (!option || option->get_items_expected_min() == 0) continue;
+    const std::string next = argv[++i];
+    const std::string type = option->get_type_name();  // with what it is checked for behind a colon
+    if (next.size() > 1 && next[0] == '-' && command->get_option_no_throw(next))
+      throw UsageError(fmt::format("{} wants a value ({}), found the option {} {}", argv[i - 1],
+                                   type.substr(0, type.find(':')), next, more_help));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> devices_of_environment() {
@@ -174,6 +195,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_merge(root, chosen);
   add_bench(root, chosen);
   check_command_name(root, argc, argv);
+  check_values_given(root, argc, argv);
   try {
     root.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

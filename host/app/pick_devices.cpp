@@ -10,8 +10,9 @@ namespace sundog {
 
 std::vector<DeviceInfo> pick_devices(const std::vector<DeviceInfo>& all,
                                      const std::vector<std::string>& specs, bool verbose) {
-  const std::vector<DeviceInfo> chosen = select_devices(all, specs);
-  print_warnings(idle_exclusions(all, specs));
+  std::vector<std::string> warnings;
+  const std::vector<DeviceInfo> chosen = select_devices(all, specs, &warnings);
+  print_warnings(warnings);
   if (specs.empty() && verbose) fmt::print("default device: {}\n", choice_text(all, chosen.front()));
   return chosen;
 }

@@ -20,6 +20,7 @@ DeviceInfo find_device(const DeviceInfo& wanted) {
   for (DeviceInfo& device : enumerate_devices())
     if (device.platform == wanted.platform && device.device == wanted.device && device.name == wanted.name) {
       device.sub_units = wanted.sub_units;
+      device.first_unit = wanted.first_unit;
       device.estimate = wanted.estimate;
       device.rank = wanted.rank;
       device.host = wanted.host;

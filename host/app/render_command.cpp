@@ -78,6 +78,21 @@ RenderOptions render_options(const RenderCommand& command) {
   return options;
 }
 
+/// What the parts of a frame must have in common besides the scene's file.
+std::map<std::string, std::string> settings_of(const RenderCommand& command, const CompiledScene& scene) {
+  std::map<std::string, std::string> settings;
+  for (const std::string& setting : command.overrides) {
+    const std::size_t equals = setting.find('=');
+    settings["--set " + setting.substr(0, equals)] = setting.substr(equals + 1);
+  }
+  for (const char* told_otherwise : {"/image/width", "/image/height", "/render/samples", "/render/max_depth"})
+    settings.erase(std::string("--set ") + told_otherwise);
+  settings["samples"] = fmt::format("{}", scene.info.samples);
+  settings["max_depth"] = fmt::format("{}", scene.info.max_depth);
+  if (command.frame) settings["frame"] = fmt::format("{}", *command.frame);
+  return settings;
+}
+
 /// Writes the image, whole or in part, and takes the checkpoint of a whole one away: not before it is safe.
 void save(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result,
           const std::string& checkpoint) {
@@ -86,7 +101,8 @@ void save(const RenderCommand& command, const CompiledScene& scene, const Render
   if (!command.part)
     save_image(picture, command.out);
   else if (result.complete)
-    write_part(command.out, {*command.part, picture.key, command.scene, command.aovs, result.film});
+    write_part(command.out, {*command.part, picture.key, command.scene, settings_of(command, scene),
+                             command.aovs, result.film});
   if (!result.checkpoint_error.empty()) throw IoError(result.checkpoint_error);
   if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint);
 }

@@ -42,6 +42,7 @@ json device_json(const DeviceReport& report) {
           {"rank", report.info.rank},
           {"host", report.info.host.empty() ? host_name() : report.info.host},
           {"sub_units", report.info.sub_units},
+          {"first_unit", report.info.first_unit},
           {"tiles", report.tiles},
           {"outrun", report.outrun},
           {"pixels", report.pixels},

@@ -94,7 +94,7 @@ std::vector<TuningFile> kept() {
   for (const fs::path& file : kept_files()) {
     try {
       all.push_back(tuning_from_json(json::parse(read_file(file), nullptr, false), file.string()));
-    } catch (const UsageError& error) {
+    } catch (const SceneError& error) {
       fmt::print(stderr, "sundog: warning: {}\n", error.what());
     }
   }
@@ -130,15 +130,21 @@ int forget(const TuneOptions& options) {
 
 int export_all(const std::string& path) {
   json list = json::array();
-  for (const TuningFile& file : kept()) list.push_back(to_json(file));
+  std::size_t entries = 0;
+  for (const TuningFile& file : kept()) {
+    list.push_back(to_json(file));
+    entries += file.entries.size();
+  }
   write_file(path, list.dump(2) + "\n");
+  fmt::print("{}: {} result{} of {} device{}\n", path, entries, entries == 1 ? "" : "s", list.size(),
+             list.size() == 1 ? "" : "s");
   return exit_done;
 }
 
 /// Only what is for a device of this machine, with the same driver, is of use: the others are told.
 int import_all(const std::string& path) {
   const json list = json::parse(read_file(path), nullptr, false);
-  if (!list.is_array()) throw UsageError(path + ": wanted what `sundog tune --export` writes, a list");
+  if (!list.is_array()) throw SceneError(path, "", "wanted what `sundog tune --export` writes, a list");
   std::vector<TuningFile> files;
   for (const json& value : list) files.push_back(tuning_from_json(value, path));
   const std::string kernels = kernels_hash();

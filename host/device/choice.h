@@ -12,11 +12,6 @@ namespace sundog {
 /// ray a lane (the "compact" one).
 bool wants_vectors(const DeviceInfo& device);
 
-/// A warning for each `!SPEC` that takes nothing away because no device matches it: likely a slip of the pen.
-/// Throws UsageError for a malformed SPEC.
-std::vector<std::string> idle_exclusions(std::span<const DeviceInfo> all,
-                                         const std::vector<std::string>& specs);
-
 /// "0:0 ... (estimate 48000), before 1:0 ... (600)": which device is the default, and by which estimates.
 std::string choice_text(std::span<const DeviceInfo> all, const DeviceInfo& chosen);
 

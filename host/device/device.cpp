@@ -25,7 +25,7 @@ std::size_t padded(std::size_t size, std::size_t local) {
   return local ? (size + local - 1) / local * local : size;
 }
 
-/// One part of `units` compute units; the other parts are released.
+/// The part of the device that was asked for; the other parts are released.
 cl::Device sub_device(cl::Device parent, const DeviceInfo& info) {
   // Asked first: a driver that cannot split may crash in clCreateSubDevices (rusticl 22.3.6 does).
   if (info.max_sub_devices == 0)
@@ -34,13 +34,19 @@ cl::Device sub_device(cl::Device parent, const DeviceInfo& info) {
   const auto kinds = parent.getInfo<CL_DEVICE_PARTITION_PROPERTIES>();
   const bool by_counts =
       std::ranges::count(kinds, cl_device_partition_property{CL_DEVICE_PARTITION_BY_COUNTS}) > 0;
-  const cl_device_partition_property counts[] = {CL_DEVICE_PARTITION_BY_COUNTS, units,
+  const auto before = static_cast<cl_device_partition_property>(info.first_unit);
+  const cl_device_partition_property counts[] = {CL_DEVICE_PARTITION_BY_COUNTS, before > 0 ? before : units,
+                                                 before > 0 ? units : CL_DEVICE_PARTITION_BY_COUNTS_LIST_END,
                                                  CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
   const cl_device_partition_property equally[] = {CL_DEVICE_PARTITION_EQUALLY, units, 0};
   std::vector<cl::Device> parts;
   check_cl(parent.createSubDevices(by_counts ? counts : equally, &parts), info,
            fmt::format("clCreateSubDevices for {} compute units", info.sub_units));
-  return parts.at(0);
+  const std::size_t index = by_counts ? before > 0 : info.first_unit / info.sub_units;
+  if (index >= parts.size() || (!by_counts && info.first_unit % info.sub_units != 0))
+    throw DeviceError(
+        fmt::format("{}: its driver splits it only into equal parts: give each the same /N", info.label()));
+  return parts[index];
 }
 
 /// PoCL's threads may still be at the last event of a queue whose work is done, and crash when its sub-device

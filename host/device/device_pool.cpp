@@ -10,7 +10,7 @@ std::unique_ptr<Device> DevicePool::take(const DeviceInfo& info) {
     const auto found = std::ranges::find_if(waiting_, [&](const auto& device) {
       const DeviceInfo& other = device->info();
       return other.platform == info.platform && other.device == info.device &&
-             other.sub_units == info.sub_units;
+             other.sub_units == info.sub_units && other.first_unit == info.first_unit;
     });
     if (found != waiting_.end()) {
       std::unique_ptr<Device> device = std::move(*found);

@@ -22,16 +22,18 @@ struct DeviceInfo {
   unsigned max_sub_devices = 0;
   bool little_endian = true, compiler_available = true, available = true, host_unified_memory = false;
   DeviceClass device_class = DeviceClass::cpu;
-  std::string problem;     // empty: usable
-  double estimate = 0;     // relative speed (estimate.cpp): for the default choice
-  unsigned sub_units = 0;  // not 0: a sub-device of that many compute units was asked for (/N)
+  std::string problem;      // empty: usable
+  double estimate = 0;      // relative speed (estimate.cpp): for the default choice
+  unsigned sub_units = 0;   // not 0: a sub-device of that many compute units was asked for (/N)
+  unsigned first_unit = 0;  // of a sub-device, where earlier ones of the same device take the units before
   std::string identity;  // the same in every process that sees it: its UUID or place on the bus; often empty
   int rank = 0;          // of the process that has it, in a job of several
   std::string host;      // that process's machine; empty: there is only this process
   void* handle = nullptr;  // cl_device_id
 
   bool usable() const { return problem.empty() && device >= 0; }
-  /// "0:1 Portable Computing Language / pthread-...", and behind it "(rank 1 on node7)" in a job of several.
+  /// "0:1 Portable Computing Language / pthread-...", with "/2" for a sub-device of two units, "/2@4" where
+  /// they begin with unit 4, and behind it "(rank 1 on node7)" in a job of several.
   std::string label() const;
 };
 
@@ -40,9 +42,11 @@ std::vector<DeviceInfo> enumerate_devices();
 
 /// The devices that `specs` mean, in the order first matched, without doubles. No specs: the usable device
 /// with the greatest estimate. Grammar: P:D | cpu | gpu | accelerator | all | part of "platform/device" (any
-/// case) | !SPEC, each with /N. Throws DeviceError with the list of candidates when nothing matches,
-/// UsageError for a malformed SPEC.
-std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all,
-                                       const std::vector<std::string>& specs);
+/// case), each with /N, or !SPEC. A /N takes the next units of each device that has them. Throws DeviceError
+/// with the list of candidates when nothing matches or no match can give a /N, UsageError for a malformed
+/// SPEC. `warnings` takes what else was likely meant otherwise: a !SPEC that matches nothing, a device
+/// without the units.
+std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all, const std::vector<std::string>& specs,
+                                       std::vector<std::string>* warnings = nullptr);
 
 }  // namespace sundog

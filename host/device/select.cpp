@@ -1,5 +1,6 @@
 // The --device grammar over rows of devices; knows no OpenCL.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -87,16 +88,32 @@ bool same_device(const DeviceInfo& a, const DeviceInfo& b) {
   return a.platform == b.platform && a.device == b.device;
 }
 
-DeviceInfo with_sub_units(DeviceInfo device, const Spec& spec) {
-  if (spec.sub_units == 0) return device;
-  const auto refuse = [&](const std::string& why) {
-    return DeviceError(fmt::format("--device {}: {} {}", spec.text, device.label(), why));
-  };
-  if (device.max_sub_devices == 0) throw refuse(fmt::format("cannot be split: drop the /{}", spec.sub_units));
-  if (spec.sub_units > device.compute_units)
-    throw refuse(fmt::format("has {} compute units", device.compute_units));
-  device.estimate *= static_cast<double>(spec.sub_units) / device.compute_units;
-  device.sub_units = spec.sub_units;
+/// Why a device cannot give the part that a /N asks for beside what is chosen of it; empty when it can.
+std::string refusal(const DeviceInfo& device, const Spec& spec, const std::vector<DeviceInfo>& chosen) {
+  unsigned taken = 0;
+  for (const DeviceInfo& other : chosen) {
+    if (!same_device(other, device)) continue;
+    if (other.sub_units == 0) return fmt::format("{} is already taken as a whole", device.label());
+    taken += other.sub_units;
+  }
+  const std::string units =
+      fmt::format("{} compute unit{}", device.compute_units, device.compute_units == 1 ? "" : "s");
+  if (spec.sub_units > device.compute_units) return fmt::format("{} has {}", device.label(), units);
+  if (taken + spec.sub_units > device.compute_units)
+    return fmt::format("{} has {}, of which {} {} already taken", device.label(), units, taken,
+                       taken == 1 ? "is" : "are");
+  if (device.max_sub_devices == 0 && spec.sub_units < device.compute_units)
+    return fmt::format("{} cannot be split: drop the /{}", device.label(), spec.sub_units);
+  return {};
+}
+
+/// The next units of the device. All of one that cannot be split, or has one unit, are the device itself.
+DeviceInfo part(DeviceInfo device, unsigned units, const std::vector<DeviceInfo>& chosen) {
+  if (units == device.compute_units && device.max_sub_devices < 2) return device;
+  for (const DeviceInfo& other : chosen)
+    if (same_device(other, device)) device.first_unit += other.sub_units;
+  device.estimate *= static_cast<double>(units) / device.compute_units;
+  device.sub_units = units;
   return device;
 }
 
@@ -104,10 +121,35 @@ DeviceInfo with_sub_units(DeviceInfo device, const Spec& spec) {
 std::vector<DeviceInfo> matching(std::span<const DeviceInfo> all, const Spec& spec) {
   std::vector<DeviceInfo> found;
   for (const DeviceInfo& device : all)
-    if (device.usable() && matches(spec, device)) found.push_back(with_sub_units(device, spec));
+    if (device.usable() && matches(spec, device)) found.push_back(device);
   if (found.empty())
     throw DeviceError(fmt::format("--device {}: no such device; {}", spec.text, candidates(all)));
   return found;
+}
+
+struct Selection {
+  std::vector<DeviceInfo> devices;
+  std::vector<std::string> warnings;
+};
+
+/// Adds what one SPEC means of `candidates`. Those that cannot give the part it asks for are warned of while
+/// another can.
+void add(Selection& selection, const Spec& spec, const std::vector<DeviceInfo>& candidates) {
+  std::vector<DeviceInfo>& chosen = selection.devices;
+  std::vector<std::string> refused;
+  for (const DeviceInfo& device : candidates) {
+    if (spec.sub_units == 0) {
+      if (std::ranges::none_of(chosen, [&](const DeviceInfo& other) { return same_device(other, device); }))
+        chosen.push_back(device);
+    } else if (const std::string why = refusal(device, spec, chosen); !why.empty()) {
+      refused.push_back(fmt::format("--device {}: {}", spec.text, why));
+    } else {
+      chosen.push_back(part(device, spec.sub_units, chosen));
+    }
+  }
+  if (!refused.empty() && refused.size() == candidates.size())
+    throw DeviceError(fmt::format("{}", fmt::join(refused, "; ")));
+  for (const std::string& why : refused) selection.warnings.push_back(why + "; it is left out");
 }
 
 DeviceInfo fastest(std::span<const DeviceInfo> all) {
@@ -122,45 +164,40 @@ DeviceInfo fastest(std::span<const DeviceInfo> all) {
 
 std::string DeviceInfo::label() const {
   if (device < 0) return fmt::format("{} {}", platform, platform_name);
-  const std::string part = sub_units > 0 ? fmt::format("/{}", sub_units) : "";
+  std::string part = sub_units > 0 ? fmt::format("/{}", sub_units) : "";
+  if (first_unit > 0) part += fmt::format("@{}", first_unit);
   const std::string where = host.empty() ? "" : fmt::format(" (rank {} on {})", rank, host);
   return fmt::format("{}:{}{} {} / {}{}", platform, device, part, platform_name, name, where);
 }
 
-std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all,
-                                       const std::vector<std::string>& specs) {
+std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all, const std::vector<std::string>& specs,
+                                       std::vector<std::string>* warnings) {
   if (specs.empty()) return {fastest(all)};
   std::vector<Spec> parsed;
   for (const std::string& spec : specs) parsed.push_back(parse_spec(spec));
   const bool only_exclusions = std::ranges::all_of(parsed, &Spec::exclude);
   if (only_exclusions) parsed.insert(parsed.begin(), parse_spec("all"));
-  std::vector<DeviceInfo> chosen;
+  const auto excluded = [&](const DeviceInfo& device) {
+    return std::ranges::any_of(parsed,
+                               [&](const Spec& spec) { return spec.exclude && matches(spec, device); });
+  };
+  Selection selection;
   for (const Spec& spec : parsed) {
     if (spec.exclude) continue;
-    for (const DeviceInfo& device : matching(all, spec))
-      if (std::ranges::none_of(chosen, [&](const DeviceInfo& other) { return same_device(other, device); }))
-        chosen.push_back(device);
+    std::vector<DeviceInfo> found = matching(all, spec);
+    std::erase_if(found, excluded);
+    add(selection, spec, found);
   }
-  for (const Spec& spec : parsed)
-    if (spec.exclude) std::erase_if(chosen, [&](const DeviceInfo& device) { return matches(spec, device); });
-  if (chosen.empty())
+  if (selection.devices.empty())
     throw DeviceError(fmt::format("--device: nothing is left after the exclusions; {}", candidates(all)));
-  return chosen;
-}
-
-std::vector<std::string> idle_exclusions(std::span<const DeviceInfo> all,
-                                         const std::vector<std::string>& specs) {
-  std::vector<std::string> warnings;
-  for (const std::string& text : specs) {
-    const Spec spec = parse_spec(text);
-    const auto is_meant = [&](const DeviceInfo& device) {
-      return device.device >= 0 && matches(spec, device);
-    };
-    if (spec.exclude && std::ranges::none_of(all, is_meant))
-      warnings.push_back(
-          fmt::format("--device '{}' takes nothing away: no device matches it; {}", text, candidates(all)));
-  }
-  return warnings;
+  for (const Spec& spec : parsed)
+    if (spec.exclude && std::ranges::none_of(all, [&](const DeviceInfo& device) {
+          return device.device >= 0 && matches(spec, device);
+        }))
+      selection.warnings.push_back(fmt::format("--device '{}' takes nothing away: no device matches it; {}",
+                                               spec.text, candidates(all)));
+  if (warnings) *warnings = selection.warnings;
+  return selection.devices;
 }
 
 std::string choice_text(std::span<const DeviceInfo> all, const DeviceInfo& chosen) {

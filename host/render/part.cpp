@@ -69,9 +69,9 @@ std::vector<RowRange> part_rows(int height, const PartOfFrame& part) {
 }
 
 void write_part(const std::filesystem::path& path, const PartFile& file) {
-  const json head = {{"format", format_name},    {"part", file.part.index},   {"parts", file.part.count},
-                     {"key", file.key},          {"scene", file.scene},       {"aovs", file.aovs},
-                     {"width", file.film.width}, {"height", file.film.height}};
+  const json head = {{"format", format_name},    {"part", file.part.index},    {"parts", file.part.count},
+                     {"key", file.key},          {"scene", file.scene},        {"aovs", file.aovs},
+                     {"width", file.film.width}, {"height", file.film.height}, {"settings", file.settings}};
   std::string bytes = head.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
   bytes.append(reinterpret_cast<const char*>(file.film.done.data()), file.film.done.size());
   append_done(bytes, file.film.sums, file.film.done);
@@ -98,6 +98,7 @@ PartFile read_part(const std::filesystem::path& path) {
     file.key = head.at("key").get<std::uint64_t>();
     file.scene = head.at("scene").get<std::string>();
     file.aovs = head.at("aovs").get<std::vector<std::string>>();
+    file.settings = head.at("settings").get<std::map<std::string, std::string>>();
     file.film = Film(head.at("width").get<int>(), head.at("height").get<int>(), !file.aovs.empty());
   } catch (const json::exception&) {
     throw refuse(damaged.c_str());
@@ -108,6 +109,23 @@ PartFile read_part(const std::filesystem::path& path) {
 
 namespace {
 
+/// "samples 16, the other samples 4": the settings that differ.
+std::string settings_difference(const PartFile& a, const PartFile& b) {
+  const auto text = [](const PartFile& part, const std::string& name) {
+    const auto found = part.settings.find(name);
+    return found == part.settings.end() ? "no " + name : name + " " + found->second;
+  };
+  std::map<std::string, std::string> names = a.settings;
+  names.insert(b.settings.begin(), b.settings.end());
+  std::vector<std::string> of_a, of_b;
+  for (const auto& [name, value] : names) {
+    if (text(a, name) == text(b, name)) continue;
+    of_a.push_back(text(a, name));
+    of_b.push_back(text(b, name));
+  }
+  return of_a.empty() ? "" : fmt::format("{}, the other {}", fmt::join(of_b, ", "), fmt::join(of_a, ", "));
+}
+
 /// Why two parts cannot belong to one frame; empty when they can.
 std::string difference(const PartFile& a, const PartFile& b) {
   if (a.part.count != b.part.count)
@@ -117,11 +135,12 @@ std::string difference(const PartFile& a, const PartFile& b) {
                        a.film.height);
   if (a.aovs != b.aovs)
     return fmt::format("AOVs [{}], the other [{}]", fmt::join(b.aovs, ", "), fmt::join(a.aovs, ", "));
-  if (a.key != b.key)
-    return fmt::format(
-        "of {} with digest {:016x}, the other of {} with digest {:016x}: the scene or its settings differ",
-        b.scene, b.key, a.scene, a.key);
-  return {};
+  if (a.key == b.key) return {};
+  if (const std::string settings = settings_difference(a, b); !settings.empty())
+    return fmt::format("rendered with {}", settings);
+  if (a.scene != b.scene) return fmt::format("of {}, the other of {}", b.scene, a.scene);
+  return fmt::format("of another state of {}, or of a file that it names (digest {:016x}, the other {:016x})",
+                     b.scene, b.key, a.key);
 }
 
 void check_complete(const std::string& path, const PartFile& file) {

@@ -1,6 +1,7 @@
 // A part of a frame as a file, for machines that share nothing but a folder; and the frame from its parts.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,10 +21,11 @@ std::vector<RowRange> part_rows(int height, const PartOfFrame& part);
 
 struct PartFile {
   PartOfFrame part;
-  std::uint64_t key = 0;          // hash_scene(): of the scene with its settings
-  std::string scene;              // the scene's file, for messages
-  std::vector<std::string> aovs;  // in the order they were asked for
-  Film film;                      // its pixels are done
+  std::uint64_t key = 0;                        // hash_scene(): of the scene with its settings
+  std::string scene;                            // the scene's file, for messages
+  std::map<std::string, std::string> settings;  // what was set and may differ, for messages
+  std::vector<std::string> aovs;                // in the order they were asked for
+  Film film;                                    // its pixels are done
 };
 
 /// Only pixels that are done take room. Throws IoError.

@@ -11,8 +11,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, platform, device, platform_name, 
                                    clock_mhz, native_vector_width, preferred_vector_width, global_memory,
                                    max_allocation, local_memory, cache, max_work_group, timer_resolution_ns,
                                    max_sub_devices, little_endian, compiler_available, available,
-                                   host_unified_memory, device_class, problem, estimate, sub_units, identity,
-                                   rank, host)
+                                   host_unified_memory, device_class, problem, estimate, sub_units,
+                                   first_unit, identity, rank, host)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Tile, x, y, width, height)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkGroup, kind, x, y)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RenderTimes, build_kernels, upload, render, readback, cached)

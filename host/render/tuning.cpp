@@ -25,7 +25,7 @@ WorkGroup work_group_from(const std::string& text, const std::string& where) {
   const int found = std::sscanf(text.c_str(), "%ux%u%c", &x, &y, &rest);
   const bool plain = found == 1 && text == std::to_string(x);
   if ((!plain && found != 2) || x == 0 || y == 0 || x > 65536 || y > 65536)
-    throw UsageError(fmt::format("{}: work_group: wanted a size such as 64 or 8x8, found {}", where, text));
+    throw SceneError(where, "work_group", fmt::format("wanted a size such as 64 or 8x8, found {}", text));
   return {fixed, x, y};
 }
 
@@ -58,7 +58,7 @@ TuningEntry entry_from(const json& entry, const std::string& where) {
   if (tuning.tile_w > 16 || tuning.tile_h > 16 || (tuning.tile_w == 0) != (tuning.tile_h == 0) ||
       tuning.packet_least > 64 || !(tuning.launch_ms >= 0 && tuning.launch_ms <= 10000) ||
       !(tuning.tile_ms >= 0 && tuning.tile_ms <= 10000))
-    throw UsageError(fmt::format("{}: {}: a value is out of its range", where, result.scene_class));
+    throw SceneError(where, result.scene_class, "a value is out of its range");
   return result;
 }
 
@@ -118,12 +118,13 @@ json to_json(const TuningFile& file) {
 
 TuningFile tuning_from_json(const json& value, const std::string& where) {
   try {
-    if (value.at("schema") != 1) throw UsageError(where + ": wanted schema 1");
+    if (value.at("schema") != 1)
+      throw SceneError(where, "schema", "wanted 1, which `sundog tune --export` writes");
     TuningFile file{value.at("platform"), value.at("device"), value.at("driver"), value.at("kernels"), {}};
     for (const json& entry : value.at("entries")) file.entries.push_back(entry_from(entry, where));
     return file;
   } catch (const json::exception& error) {
-    throw UsageError(fmt::format("{}: is no tuning result of sundog: {}", where, error.what()));
+    throw SceneError(where, "", fmt::format("is no tuning result of sundog: {}", error.what()));
   }
 }
 

@@ -55,7 +55,7 @@ std::filesystem::path tuning_path(const DeviceInfo& device);
 
 nlohmann::json to_json(const TuningFile& file);
 
-/// Throws UsageError that says what is wrong with it.
+/// Throws SceneError that says what is wrong with it.
 TuningFile tuning_from_json(const nlohmann::json& json, const std::string& where);
 
 /// The device's file; nothing when there is none, it is damaged, or it is of other kernels.

@@ -82,8 +82,8 @@ TEST_CASE("parts that do not make one frame are refused, with status 3 and the r
   for (const Case& c :
        {Case{{"1.part"}, "part 2 of 2 is missing"}, Case{{"third.part"}, "parts 1, 3 of 3 are missing"},
         Case{{"1.part", "2.part", "again.part"}, "is part 2 of 2, and so is "},
-        Case{{"1.part", "samples.part"}, "the scene or its settings differ"},
-        Case{{"1.part", "camera.part"}, "the scene or its settings differ"},
+        Case{{"1.part", "samples.part"}, "it is rendered with samples 3, the other samples 2"},
+        Case{{"1.part", "camera.part"}, "--set /camera/fov 41, the other no --set /camera/fov"},
         Case{{"1.part", "size.part"}, "it is 50x72 pixels, the other 50x70"},
         Case{{"1.part", "aov.part"}, "AOVs [depth], the other []"},
         Case{{"1.part", "third.part"}, "one of 3 parts, the other one of 2"},

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <numeric>
+#include <set>
 #include <sstream>
 
 #include "base/error.h"
@@ -122,25 +123,29 @@ std::map<std::string, double> thread_ticks() {
 }
 
 /// Threads that did at least a tenth of what all have done since `before`.
-int busy_threads(const std::map<std::string, double>& before) {
-  std::vector<double> used;
+std::set<std::string> busy_threads(const std::map<std::string, double>& before) {
+  std::map<std::string, double> used;
+  double total = 0;
   for (const auto& [thread, ticks] : thread_ticks())
-    used.push_back(ticks - (before.contains(thread) ? before.at(thread) : 0));
-  const double total = std::accumulate(used.begin(), used.end(), 0.0);
-  return static_cast<int>(std::ranges::count_if(used, [&](double ticks) { return ticks > 0.1 * total; }));
+    total += used[thread] = ticks - (before.contains(thread) ? before.at(thread) : 0);
+  std::set<std::string> busy;
+  for (const auto& [thread, ticks] : used)
+    if (ticks > 0.1 * total) busy.insert(thread);
+  return busy;
 }
 
-}  // namespace
-
-TEST_CASE("a sub-device keeps as many processors busy as it has units, whatever the device has") {
-  const std::string text = R"(
+constexpr const char* spinning = R"(
     __kernel void spin(__global float* out, uint rounds) {
       float x = (float)get_global_id(0);
       for (uint i = 0; i < rounds; ++i) x = sin(x) + 1.0f;
       out[get_global_id(0)] = x;
     })";
+
+}  // namespace
+
+TEST_CASE("a sub-device keeps as many processors busy as it has units, whatever the device has") {
   for (const DeviceInfo& whole : test_devices()) {
-    if (whole.max_sub_devices == 0) {
+    if (whole.max_sub_devices == 0 && whole.compute_units > 1) {
       CHECK_THROWS_WITH(select_devices(test_devices(), {whole.name + "/1"}),
                         ContainsSubstring("cannot be split"));
       continue;
@@ -149,7 +154,7 @@ TEST_CASE("a sub-device keeps as many processors busy as it has units, whatever 
       DYNAMIC_SECTION(whole.label() << ", units: " << units) {
         const std::string spec = whole.name + "/" + std::to_string(units);
         Device device(select_devices(test_devices(), {spec}).at(0));
-        auto spin = build_text(device, text).kernel<Buffer<float>, u32>("spin");
+        auto spin = build_text(device, spinning).kernel<Buffer<float>, u32>("spin");
         const auto out = device.make<float>(4096);
         device.run(spin, {.x = 4096}, out, 1u);  // compiles
         device.finish();
@@ -163,8 +168,31 @@ TEST_CASE("a sub-device keeps as many processors busy as it has units, whatever 
         const double busy = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC / seconds;
         INFO(seconds << " s");
         CHECK(busy < units + 0.2);  // less where others want the machine too
-        CHECK(busy_threads(before) == static_cast<int>(units));
+        CHECK(busy_threads(before).size() == units);
       }
+  }
+}
+
+TEST_CASE("the same /1 twice is two sub-devices, which run on threads of their own") {
+  for (const DeviceInfo& whole : test_devices()) {
+    if (whole.max_sub_devices < 2) continue;
+    const std::string spec = whole.name + "/1";
+    const auto parts = select_devices(test_devices(), {spec, spec});
+    REQUIRE(parts.size() == 2);
+    std::vector<std::set<std::string>> busy;
+    for (const DeviceInfo& part : parts) {
+      Device device(part);
+      auto spin = build_text(device, spinning).kernel<Buffer<float>, u32>("spin");
+      const auto out = device.make<float>(4096);
+      device.run(spin, {.x = 4096}, out, 1u);  // compiles
+      device.finish();
+      const auto before = thread_ticks();
+      device.run(spin, {.x = 4096}, out, 4000u);
+      device.finish();
+      busy.push_back(busy_threads(before));
+    }
+    CHECK(busy[0].size() == 1);
+    CHECK(busy[0] != busy[1]);
   }
 }
 

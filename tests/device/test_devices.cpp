@@ -110,6 +110,8 @@ TEST_CASE("all the devices of one driver are listed, and several drivers live to
   const json list = device_list("POCL_DEVICES='basic pthread' RUSTICL_ENABLE=llvmpipe");
   const auto pocl = rows_of(list, "Portable Computing Language");
   REQUIRE(pocl.size() == 2);
+  const Answer table = run_sundog("POCL_DEVICES='basic pthread'", "devices");
+  CHECK_THAT(table.text, !ContainsSubstring(" 1 sub-devices"));  // one unit is no part of anything
   CHECK(pocl[0].at("device") == 0);
   CHECK(pocl[1].at("device") == 1);
   CHECK((pocl[0].at("usable") == true && pocl[1].at("usable") == true));

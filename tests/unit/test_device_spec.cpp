@@ -67,6 +67,7 @@ TEST_CASE("SPECs add up in their order, without doubles") {
   CHECK(selected({"gpu", "cpu"}) == "2:0 0:0 0:1");
   CHECK(selected({"0:1", "cpu"}) == "0:1 0:0");
   CHECK(selected({"0:1", "0:1"}) == "0:1");
+  CHECK(selected({"0:1/2", "cpu"}) == "0:1/2 0:0");  // the first to name a device says how much of it
 }
 
 TEST_CASE("!SPEC takes away, wherever it stands; alone, from all") {
@@ -87,6 +88,36 @@ TEST_CASE("/N asks for a sub-device of N compute units, whose estimate shrinks w
   CHECK_THROWS_WITH(selected({"2:0/4"}), ContainsSubstring("cannot be split"));
   CHECK_THROWS_AS(selected({"0:1/0"}), UsageError);
   CHECK_THROWS_AS(selected({"!0:1/2"}), UsageError);
+}
+
+TEST_CASE("/N again takes the next units of the device while it has them") {
+  CHECK(selected({"0:1/3", "0:1/3"}) == "0:1/3 0:1/3@3");
+  const auto chosen = select_devices(machine(), {"0:1/1", "0:1/5", "0:1/2"});
+  REQUIRE(chosen.size() == 3);
+  CHECK(chosen[1].first_unit == 1);
+  CHECK(chosen[2].first_unit == 6);
+  CHECK_THROWS_WITH(selected({"0:1/5", "0:1/4"}), ContainsSubstring("of which 5 are already taken"));
+  CHECK_THROWS_WITH(selected({"0:1", "0:1/4"}), ContainsSubstring("already taken as a whole"));
+}
+
+TEST_CASE("/N takes the devices that can give N units, and warns of the others") {
+  std::vector<std::string> warnings;
+  const auto labels = [&](const std::vector<std::string>& specs) {
+    std::string text;
+    for (const DeviceInfo& device : select_devices(machine(), specs, &warnings))
+      text += device.label().substr(0, device.label().find(' ')) + " ";
+    return text;
+  };
+  CHECK(labels({"cpu/1"}) == "0:1/1 ");
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0], ContainsSubstring("--device cpu/1: 0:0 Portable") &&
+                              ContainsSubstring("cannot be split: drop the /1; it is left out"));
+  CHECK(labels({"cpu/1", "!basic"}) == "0:1/1 ");
+  CHECK(warnings.empty());
+  CHECK(labels({"cpu/8"}) == "0:0 0:1/8 ");  // all of what cannot be split is the device itself
+  CHECK(warnings.empty());
+  CHECK_THROWS_WITH(labels({"cpu/9"}), ContainsSubstring("0:0 Portable") && ContainsSubstring("; ") &&
+                                           ContainsSubstring("0:1 Portable"));
 }
 
 TEST_CASE("a SPEC that means nothing is refused with the candidates and what is wrong with them") {
@@ -139,8 +170,10 @@ TEST_CASE("a device is put in a class by its type and its vectors") {
 }
 
 TEST_CASE("an exclusion that takes nothing away is told, with what there is") {
-  CHECK(idle_exclusions(machine(), {"cpu", "!0:0", "!geforce"}).empty());
-  const auto warnings = idle_exclusions(machine(), {"all", "!radeon", "!7:0", "!broken"});
+  std::vector<std::string> warnings;
+  select_devices(machine(), {"cpu", "gpu", "!0:0", "!geforce"}, &warnings);
+  CHECK(warnings.empty());
+  select_devices(machine(), {"all", "!radeon", "!7:0", "!broken"}, &warnings);
   REQUIRE(warnings.size() == 2);
   CHECK_THAT(warnings[0], ContainsSubstring("--device '!radeon' takes nothing away: no device matches it"));
   CHECK_THAT(warnings[0], ContainsSubstring("2:0 NVIDIA CUDA / GeForce 4090/D"));
