@@ -37,6 +37,12 @@ unsigned tree_stack_size(const std::vector<Bvh8Node>& nodes, u32 root) {
   return most;
 }
 
+/// Shadow rays of one surface that wait at a time: a light each, as far as that is a moderate number, and
+/// rounded up, so that similar scenes share their kernels.
+unsigned light_room(const CompiledScene& scene) {
+  return std::clamp(std::bit_ceil(scene.info.light_count), 2u, 16u);
+}
+
 /// Rays that are marched together: all of a work-item's, as far as there are vectors for it.
 unsigned marched_lanes(unsigned batch) {
   for (const unsigned lanes : {16u, 8u, 4u})
@@ -88,9 +94,14 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   if (tuning.packet_least > 0) define("PACKET_LEAST", tuning.packet_least);
   // Depth first, `batch` rays at a time, at most that many wait on each level, and one batch of children
   // more. Beyond 32 levels the kernel counts what does not fit, and the frame reports it.
-  config.ray_stack =
+  const unsigned rays =
       scene.features.secondary_rays ? batch * (std::min(scene.info.max_depth, 32u) + 2u) : batch;
-  define("RAY_STACK", config.ray_stack);
+  define("RAY_STACK", rays);
+  config.ray_stack = rays;
+  if (batch == 1) {
+    define("LIGHT_ROOM", light_room(scene));
+    config.ray_stack += light_room(scene) + 1;
+  }
   // Rounded up, so that similar scenes share their kernels.
   define("BVH_STACK", (traversal_stack_size(scene) + 31u) / 32u * 32u);
   static constexpr const char* shape_names[SHAPE_SDF] = {"HAS_MESH", "HAS_SPHERE",   "HAS_PLANE",

@@ -112,8 +112,12 @@ LaunchSize TileRenderer::launch_size(std::size_t columns, std::size_t rows) cons
 unsigned TileRenderer::launch_samples(const Tile& tile, const StopFlags& flags) {
   const unsigned width = static_cast<unsigned>(tile.width), height = static_cast<unsigned>(tile.height);
   const unsigned samples = scene_.info.samples, item_pixels = config_.tile_w * config_.tile_h;
-  const unsigned columns = divide_up(width, config_.tile_w), rows = divide_up(height, config_.tile_h);
   const bool grid = work_group().kind == WorkGroup::Kind::fixed && work_group().y > 1;
+  // Rows of items: of tiles, or of blocks of 8x4 pixels (lane_pixel() in render_whitted.cl).
+  const bool blocks = item_pixels == 1 && !grid;
+  const unsigned row_height = blocks ? 4 : config_.tile_h;
+  const unsigned columns = blocks ? divide_up(width, 8) * 32 : divide_up(width, config_.tile_w);
+  const unsigned rows = divide_up(height, row_height);
   // A grid of groups takes whole rows of items; else each unit should have one.
   const unsigned step = grid ? columns : std::clamp(device_.info().compute_units, 1u, columns * rows);
   least_size_ = static_cast<std::size_t>(step) * item_pixels;
@@ -123,7 +127,7 @@ unsigned TileRenderer::launch_samples(const Tile& tile, const StopFlags& flags) 
         static_cast<unsigned>(std::clamp<std::size_t>(wanted, step, columns * rows - item));
     const std::size_t pixels = static_cast<std::size_t>(items) * item_pixels;
     for (unsigned sample = 0; sample < samples;) {
-      if (flags.set()) return item / columns * config_.tile_h;
+      if (flags.set()) return std::min(item / columns * row_height, height);
       const unsigned left = std::min(samples - sample, most_samples_);
       const unsigned count = static_cast<unsigned>(std::clamp<std::size_t>(next_size_ / pixels, 1, left));
       last_samples_ = std::max(last_samples_, count);

@@ -9,11 +9,21 @@
 typedef struct Job {
   u32 x0, y0, width, height;
   u32 first_sample, sample_count;
+  bool blocks;
 } Job;
 
 // Pixel of lane `lane` of work-item `item`, counted from the rectangle's corner. Neighbouring work-items take
-// neighbouring tiles.
+// neighbouring tiles. Those of one pixel go through blocks of 8x4 of them, each in quarters of 4x2, so that
+// the eight or thirty-two that a device runs together have ray trees that are alike; in a launch of two
+// dimensions the group has its own shape.
 static inline uint2 lane_pixel(const Job* job, u32 item, u32 lane) {
+#if BATCH == 1
+  if (job->blocks) {
+    const u32 columns = (job->width + 7u) / 8u, block = item / 32u;
+    return (uint2)(block % columns * 8u + (item >> 1 & 4u) + (item & 3u),
+                   block / columns * 4u + (item >> 3 & 2u) + (item >> 2 & 1u));
+  }
+#endif
   const u32 columns = (job->width + TILE_W - 1u) / TILE_W;
   return (uint2)(item % columns * TILE_W + lane % TILE_W, item / columns * TILE_H + lane / TILE_W);
 }
@@ -90,7 +100,7 @@ __kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const 
   // Items count through the rectangle row by row; a launch in two dimensions takes whole rows of them.
   const u32 item = first_item + get_global_id(1) * row_items + get_global_id(0);
   if (get_global_id(0) >= row_items || item >= last_item) return;
-  const Job job = {x0, y0, width, height, first_sample, sample_count};
+  const Job job = {x0, y0, width, height, first_sample, sample_count, get_work_dim() == 1u};
   render_item(TRACE_ARGUMENTS, SHADE_ARGUMENTS, (MediaStack)camera_media[1] << 32 | camera_media[0], &job,
               item, film, weights, counters);
 }

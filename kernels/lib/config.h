@@ -36,7 +36,7 @@
 #ifndef WIDE_VECTORS
 #define WIDE_VECTORS 1
 #endif
-#define HAS_SOLID                                                                                          \
+#define HAS_SOLID \
   (HAS_SPHERE || HAS_PLANE || HAS_BOX || HAS_CYLINDER || HAS_CONE || HAS_DISK || HAS_TORUS || HAS_ROUNDBOX)
 // Whether there is anything that rays are traced to, and not only fields that they march to.
 #define HAS_TRACED (HAS_MESH || HAS_SOLID)
@@ -50,6 +50,10 @@
 // Pending rays of a work-item: enough for a full binary tree of max_depth levels walked BATCH rays at a time.
 #ifndef RAY_STACK
 #define RAY_STACK (BATCH * 9)
+#endif
+// Shadow rays of a surface that wait at a time, where a work-item has one ray.
+#ifndef LIGHT_ROOM
+#define LIGHT_ROOM 16
 #endif
 // Nodes that wait during a traversal; the host computes what the scene needs.
 #ifndef BVH_STACK

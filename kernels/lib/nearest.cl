@@ -37,4 +37,20 @@ static inline MASK any_hits(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays,
   return occluded;
 }
 
+#if BATCH == 1
+// One ray of either kind, so that the lanes of a group that follow different kinds go on together: the
+// nearest hit, or of an opaque scene's shadow ray any.
+static inline void next_hits(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active, bool to_light,
+                             Hits* hits, u32* counts) {
+  const bool any = to_light && !HAS_SHADOW_FILTERS;
+  find_hits(TRACE_ARGUMENTS, &rays->o, &rays->d, &rays->t_min, rays->t_max, active, false, any, hits);
+  finish_triangles(TRACE_ARGUMENTS, hits);
+#if HAS_SDF
+  const u32 purpose = any ? MARCH_TO_BLOCK : to_light ? MARCH_TO_LIGHT : MARCH_TO_SEE;
+  if (any) active &= ~hit_anything(hits);
+  if (any_lane(active)) march_fields(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, purpose, hits, counts);
+#endif
+}
+#endif
+
 #endif

@@ -221,19 +221,4 @@ ALWAYS_INLINE u32 push_children(__global const BvhNode* node, u32 crossed, const
   return child_word(node, a & KEY_SLOT);
 }
 
-// Pushes all crossed children (at least one) but the last and returns that one's word: where any hit will do,
-// an order is not worth its price.
-ALWAYS_INLINE u32 push_children_unsorted(__global const BvhNode* node, u32 crossed, u32* stack, u32* top) {
-  u32 at = *top;
-  u32 word = child_word(node, lowest_bit(crossed));
-  crossed &= crossed - 1u;
-  while (crossed) {
-    stack[at++] = word;
-    word = child_word(node, lowest_bit(crossed));
-    crossed &= crossed - 1u;
-  }
-  *top = at;
-  return word;
-}
-
 #endif

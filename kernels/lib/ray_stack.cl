@@ -8,25 +8,32 @@
 typedef struct PathStates {
   REAL3 throughput;  // of a shadow ray: the light that it would bring
   MASK pixel;        // in the work-item's tile
-  MASK depth;        // the camera's ray has 1
+  MASK depth;        // the camera's ray has 1, a shadow ray 0
 } PathStates;
 
-#define CROSSING_MEMBERS 13u
+#define CROSSING_MEMBERS (12u + (BATCH > 1))
 #define MEDIA_MEMBERS (CROSSING_MEMBERS + RAYS_CROSS)
 #define SDF_MEMBERS (MEDIA_MEMBERS + 3u * HAS_MEDIA)
 #define STACK_MEMBERS (SDF_MEMBERS + 2u * HAS_SDF)
 
 // Arrays are BATCH longer than what may wait: see write_packed().
-typedef struct RayStack {
-  float members[STACK_MEMBERS * (RAY_STACK + BATCH)];
-  u32 count;
-} RayStack;
-// Fewer than a batch wait when another comes.
-#define SHADOW_STACK (2u * BATCH)
+#if BATCH > 1
+#define STACK_LENGTH (RAY_STACK + BATCH)
+#define SHADOW_LENGTH (3u * BATCH)  // fewer than a batch wait when another comes
 typedef struct ShadowStack {
-  float members[STACK_MEMBERS * (SHADOW_STACK + BATCH)];
+  float members[STACK_MEMBERS * SHADOW_LENGTH];
   u32 count;
 } ShadowStack;
+#else
+// Rays of both kinds wait together: children, then at most one ray that goes on later, then shadow rays.
+#define STACK_LENGTH (RAY_STACK + LIGHT_ROOM + 1)
+#define SHADOW_LENGTH STACK_LENGTH
+#define ShadowStack RayStack
+#endif
+typedef struct RayStack {
+  float members[STACK_MEMBERS * STACK_LENGTH];
+  u32 count;
+} RayStack;
 
 #define PUSH(member, lanes_value) write_packed(to + (member)*stride, lanes_value, lanes)
 // Writes the lanes of `lanes` one behind the other; member k goes to to[k * stride].
@@ -43,8 +50,10 @@ NEVER_INLINE void write_rays(float* to, u32 stride, const SceneRays* rays, const
   PUSH(8u, paths->throughput.x);
   PUSH(9u, paths->throughput.y);
   PUSH(10u, paths->throughput.z);
-  PUSH(11u, AS_REAL(paths->pixel));
-  PUSH(12u, AS_REAL(paths->depth));
+  PUSH(11u, AS_REAL(paths->depth));
+#if BATCH > 1
+  PUSH(12u, AS_REAL(paths->pixel));
+#endif
 #if RAYS_CROSS
   PUSH(CROSSING_MEMBERS, AS_REAL(rays->crossings));
 #endif
@@ -68,8 +77,11 @@ NEVER_INLINE void read_rays(const float* from, u32 stride, SceneRays* rays, Path
   rays->t_min = PULL(6u);
   rays->t_max = PULL(7u);
   paths->throughput = real3(PULL(8u), PULL(9u), PULL(10u));
-  paths->pixel = AS_MASK(PULL(11u));
-  paths->depth = AS_MASK(PULL(12u));
+  paths->depth = AS_MASK(PULL(11u));
+  paths->pixel = NO_LANES;
+#if BATCH > 1
+  paths->pixel = AS_MASK(PULL(12u));
+#endif
   rays->media_low = NO_LANES;
   rays->media_high = NO_LANES;
 #if RAYS_CROSS
@@ -92,12 +104,12 @@ NEVER_INLINE void read_rays(const float* from, u32 stride, SceneRays* rays, Path
 
 // The lanes of `lanes`; there must be room.
 static inline void push_rays(RayStack* stack, const SceneRays* rays, const PathStates* paths, MASK lanes) {
-  write_rays(stack->members + stack->count, RAY_STACK + BATCH, rays, paths, lanes);
+  write_rays(stack->members + stack->count, STACK_LENGTH, rays, paths, lanes);
   stack->count += lane_count(lanes);
 }
 static inline void push_shadows(ShadowStack* stack, const SceneRays* rays, const PathStates* paths,
                                 MASK lanes) {
-  write_rays(stack->members + stack->count, SHADOW_STACK + BATCH, rays, paths, lanes);
+  write_rays(stack->members + stack->count, SHADOW_LENGTH, rays, paths, lanes);
   stack->count += lane_count(lanes);
 }
 
@@ -105,13 +117,13 @@ static inline void push_shadows(ShadowStack* stack, const SceneRays* rays, const
 static inline MASK pop_rays(RayStack* stack, u32 most, SceneRays* rays, PathStates* paths) {
   const u32 count = min(stack->count, most);
   stack->count -= count;
-  read_rays(stack->members + stack->count, RAY_STACK + BATCH, rays, paths);
+  read_rays(stack->members + stack->count, STACK_LENGTH, rays, paths);
   return lanes_of((1u << count) - 1u);
 }
 static inline MASK pop_shadows(ShadowStack* stack, u32 most, SceneRays* rays, PathStates* paths) {
   const u32 count = min(stack->count, most);
   stack->count -= count;
-  read_rays(stack->members + stack->count, SHADOW_STACK + BATCH, rays, paths);
+  read_rays(stack->members + stack->count, SHADOW_LENGTH, rays, paths);
   return lanes_of((1u << count) - 1u);
 }
 

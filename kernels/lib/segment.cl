@@ -68,13 +68,11 @@ static inline MASK cross_unseen(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* r
 }
 #endif
 
-// Takes the lanes of `active` in (t_min, t_max] to their next interfaces. Returns those that cannot see them:
-// their rays are then what holds behind. The media of the others are those just before the surface. Crossed
-// interfaces do not move the origin, so what lies behind a vanished interface keeps its bits. `coherent`: the
-// rays run close together.
-static inline MASK next_interfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active,
-                                   bool coherent, Encounters* met, u32* counts) {
-  nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, coherent, false, &met->hit, counts);
+// The lanes of `active` at the interfaces met->hit. Returns those that cannot see them: their rays are then
+// what holds behind. The media of the others are those just before the surface. Crossed interfaces do not
+// move the origin, so what lies behind a vanished interface keeps its bits.
+static inline MASK reach_interfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active,
+                                    Encounters* met, u32* counts) {
   met->absorbed = all3((float3)(1.0f));
   met->before = NO_LANES;
   met->after = NO_LANES;
@@ -90,6 +88,13 @@ static inline MASK next_interfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays
       hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->d, &met->hit, active & hit_anything(&met->hit));
   return NO_LANES;
 #endif
+}
+
+// Takes the lanes of `active` in (t_min, t_max] there. `coherent`: the rays run close together.
+static inline MASK next_interfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active,
+                                   bool coherent, Encounters* met, u32* counts) {
+  nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, coherent, false, &met->hit, counts);
+  return reach_interfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, met, counts);
 }
 
 // The same to their next visible surfaces.

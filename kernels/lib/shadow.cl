@@ -72,25 +72,42 @@ static inline MASK pass_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* r
 }
 #endif
 
+// The shadow rays of `lanes` at what they met: what reaches the lights is added to the pixels. Returns those
+// that go on.
+static inline MASK reach_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, PathStates* paths,
+                                 const Hits* hits, MASK lanes, float4* radiance, u32* counts) {
+#if HAS_SHADOW_FILTERS
+  const MASK passing = pass_filters(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, hits, lanes, &paths->throughput);
+  const MASK too_many = passing & MASK_OF(rays->crossings >= MAX_FILTERS);
+  counts[COUNT_SHADOW_LIMIT] += lane_count(too_many);
+  add_to_pixels(paths->throughput, paths->pixel, lanes & ~passing, radiance);
+  return passing & ~too_many;
+#else
+  add_to_pixels(paths->throughput, paths->pixel, lanes & ~hit_anything(hits), radiance);
+  return NO_LANES;
+#endif
+}
+
+#if BATCH > 1
 // Takes the newest shadow rays, at most `most`, to the light or to their next filters, where those that pass
-// wait again. What reaches the lights is added to the pixels. `coherent`: the rays run close together.
+// wait again. `coherent`: the rays run close together.
 NEVER_INLINE void advance_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, ShadowStack* stack, u32 most,
                                   bool coherent, float4* radiance, u32* counts) {
   SceneRays rays;
   PathStates paths;
   const MASK lanes = pop_shadows(stack, most, &rays, &paths);
-#if HAS_SHADOW_FILTERS
   Hits hits;
+#if HAS_SHADOW_FILTERS
   nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lanes, coherent, true, &hits, counts);
-  const MASK passing = pass_filters(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, &hits, lanes, &paths.throughput);
-  const MASK too_many = passing & MASK_OF(rays.crossings >= MAX_FILTERS);
-  counts[COUNT_SHADOW_LIMIT] += lane_count(too_many);
-  push_shadows(stack, &rays, &paths, passing & ~too_many);
-  add_to_pixels(paths.throughput, paths.pixel, lanes & ~passing, radiance);
 #else
+  hits = no_hits(rays.t_max);
   const MASK occluded = any_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lanes, coherent, counts);
-  add_to_pixels(paths.throughput, paths.pixel, lanes & ~occluded, radiance);
+  hits.instance = select(hits.instance, NO_LANES, occluded);
 #endif
+  const MASK passing =
+      reach_filters(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, &paths, &hits, lanes, radiance, counts);
+  push_shadows(stack, &rays, &paths, passing);
 }
+#endif
 
 #endif

@@ -29,15 +29,14 @@ static inline void trace_mesh(TRACE_PARAMETERS, u32 root, const SlabRay* slab_ra
       u32 keys[8];
       const u32 crossed = cross_children(node_at(nodes, word), &slabs, t_min, hit.t, keys);
       if (crossed) {
-        word = any ? push_children_unsorted(node_at(nodes, word), crossed, stack, &top)
-                   : push_children(node_at(nodes, word), crossed, keys, stack, stack_t, &top);
+        word = push_children(node_at(nodes, word), crossed, keys, stack, stack_t, &top);
         continue;
       }
     }
     bool more = false;
     while (top) {
       --top;
-      if (any || !(stack_t[top] > hit.t)) {
+      if (!(stack_t[top] > hit.t)) {
         more = true;
         break;
       }

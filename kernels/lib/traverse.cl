@@ -110,10 +110,8 @@ static inline void find_hits(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, c
 #endif
 }
 
-// The nearest hits of the lanes of `active` in (t_min, t_max].
-static inline void trace_batch(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min,
-                               REAL t_max, MASK active, bool coherent, Hits* hits) {
-  find_hits(TRACE_ARGUMENTS, o, d, t_min, t_max, active, coherent, false, hits);
+// Indices and geometric normals of the triangles among the hits.
+static inline void finish_triangles(TRACE_PARAMETERS, Hits* hits) {
 #if HAS_MESH
   for (u32 bits = lane_bits(hit_anything(hits)); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
@@ -125,6 +123,13 @@ static inline void trace_batch(TRACE_PARAMETERS, const REAL3* o, const REAL3* d,
     set3(&hits->ng, i, (float3)(hit.ng_x, hit.ng_y, hit.ng_z));
   }
 #endif
+}
+
+// The nearest hits of the lanes of `active` in (t_min, t_max].
+static inline void trace_batch(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min,
+                               REAL t_max, MASK active, bool coherent, Hits* hits) {
+  find_hits(TRACE_ARGUMENTS, o, d, t_min, t_max, active, coherent, false, hits);
+  finish_triangles(TRACE_ARGUMENTS, hits);
 }
 
 // The lanes of `active` that hit anything in (t_min, t_max].

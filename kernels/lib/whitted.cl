@@ -1,147 +1,12 @@
-// Whitted's ray tree (Whitted 1980) walked with an explicit stack: the BATCH pixels of a work-item share it,
-// so that the newest BATCH rays are taken together, a ray a lane. What a pixel receives is added in an order
-// that depends on nothing but those pixels.
+// Whitted's ray tree (Whitted 1980) walked with an explicit stack, in two ways. Where a work-item has a batch
+// of pixels they share the stack, so that the newest BATCH rays are taken together, a ray a lane. Where it
+// has one pixel, one loop takes path and shadow rays alike. What a pixel receives is added in an order that
+// depends on nothing but the work-item's pixels.
 #ifndef SUNDOG_LIB_WHITTED_CL
 #define SUNDOG_LIB_WHITTED_CL
-#include "lib/camera.cl"
-#include "lib/lights.cl"
-#include "lib/ray_stack.cl"
-#include "lib/segment.cl"
-#include "lib/shadow.cl"
+#include "lib/children.cl"
 
-// Sends shadow rays from the surfaces of `lanes` to one light, with what it would do there: Ij (kd n.l +
-// ks (r.v)^b) Vj.
-static inline void cast_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, const SceneRays* rays,
-                                const PathStates* paths, MASK lanes, const Encounters* met, const Surfaces* s,
-                                ShadowStack* stack, u32* counts) {
-  const LightSamples light = sample_light(lights + index, s->p);
-  const MASK facing = lanes & MASK_OF(dot3(s->ns, light.wi) > 0.0f);
-  if (!any_lane(facing)) return;
-  const REAL3 possible =
-      multiply3(light.radiance, local_reflection(materials, &met->face, s, rays->d, light.wi, facing));
-  const MASK lit = facing & MASK_OF(greatest3(possible) > 0.0f);
-  if (!any_lane(lit)) return;
-  counts[COUNT_SHADOW] += lane_count(lit);
-  SceneRays to_light = *rays;
-  start_on_surfaces(info, &to_light, &met->hit, ~met->face.entering, lit);
-  to_light.o = along3(s->p, s->offset, s->ng);
-  to_light.d = light.wi;
-  to_light.t_min = (REAL)(0.0f);
-  to_light.t_max = light.distance;
-  PathStates weights = *paths;
-  weights.throughput = multiply3(paths->throughput, possible);
-#if HAS_SOFT_SHADOWS
-  weights.throughput =
-      scale3(weights.throughput, soft_shadows(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &to_light, lit, counts));
-#endif
-  push_shadows(stack, &to_light, &weights, lit);
-}
-
-#if HAS_SECONDARY
-// Puts children on the stack, those of `lanes` that are not too weak, nor too deep, nor without room; each
-// case is counted.
-NEVER_INLINE void spawn(__global const SceneInfo* restrict info, RayStack* stack, const SceneRays* rays,
-                        const PathStates* paths, MASK lanes, u32 kind, u32* counts) {
-  const REAL weight = greatest3(paths->throughput);
-  const MASK some = lanes & MASK_OF(weight > 0.0f);
-  const MASK deep = some & MASK_OF(paths->depth > (int)info->max_depth);
-  const MASK weak = some & ~deep & MASK_OF(weight < info->cutoff);
-  u32 bits = lane_bits(some & ~deep & ~weak);
-  counts[COUNT_DEPTH_LIMIT] += lane_count(deep);
-  counts[COUNT_CUT_OFF] += lane_count(weak);
-  while (stack->count + popcount(bits) > RAY_STACK) {
-    counts[COUNT_RAY_STACK_OVERFLOW] += 1u;
-    bits &= bits - 1u;
-  }
-  if (!bits) return;
-  counts[kind] += popcount(bits);
-  push_rays(stack, rays, paths, lanes_of(bits));
-}
-
-// kr and kt of surfaces.
-typedef struct Splits {
-  REAL3 kr, kt;
-  MASK branches, dielectric;  // branches: reflects or transmits at all
-} Splits;
-
-static inline Splits split_light(__global const Material* restrict materials, const Faces* faces,
-                                 MASK lanes) {
-  const REAL3 none = all3((float3)(0.0f));
-  Splits split = {none, none, NO_LANES, NO_LANES};
-  u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(faces->material, &lanes, &index);
-    __global const Material* material = materials + index;
-    if (!(material->flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS))) continue;
-    split.kr = select3(split.kr, all3(material->reflection.xyz), mine);
-    split.kt = select3(split.kt, all3(material->transmission.xyz), mine);
-    split.branches |= mine;
-    if (material->kind == MATERIAL_DIELECTRIC) split.dielectric |= mine;
-  }
-  return split;
-}
-
-// The refracted directions; a shading normal must not send them outside again.
-static inline REAL3 transmitted_direction(REAL3 d, const Surfaces* s, REAL cos_i, REAL cos_t, REAL eta) {
-  const REAL3 by_shading = refract_direction(d, s->ns, cos_i, cos_t, eta);
-  const MASK good = MASK_OF(dot3(by_shading, s->ng) < 0.0f), straight = MASK_OF(eta == 1.0f);
-  const REAL cos_g = real_clamp(-dot3(s->ng, d), (REAL)(0.0f), (REAL)(1.0f));
-  const REAL3 by_face = refract_direction(d, s->ng, cos_g, refracted_cosine(cos_g, eta), eta);
-  return select3(select3(by_face, by_shading, good), d, straight);
-}
-
-// The children of the surfaces of `lanes`: kr I(reflected) + kt I(transmitted).
-static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const Surfaces* s,
-                                  const Encounters* met, const SceneRays* rays, const PathStates* paths,
-                                  MASK lanes, RayStack* stack, u32* counts) {
-  const Faces* faces = &met->face;
-  Splits split = split_light(materials, faces, lanes);
-  if (!any_lane(split.branches)) return;
-  const MASK transmits = split.branches & MASK_OF((faces->flags & (int)MATERIAL_TRANSMITS) != 0);
-  const MASK bends = transmits & MASK_OF((faces->flags & (int)MATERIAL_THIN) == 0);
-  REAL eta = (REAL)(1.0f), cos_t = (REAL)(1.0f);
-  const REAL cos_i = real_clamp(-dot3(s->ns, rays->d), (REAL)(0.0f), (REAL)(1.0f));
-  if (any_lane(transmits | split.dielectric)) {
-    eta = relative_index(media, met, bends);
-    cos_t = refracted_cosine(cos_i, eta);
-    const REAL f = select((REAL)(0.0f), fresnel_reflectance(cos_i, cos_t, eta), bends);
-    // Total internal reflection turns everything into reflection.
-    const MASK total = transmits & ~split.dielectric & MASK_OF(cos_t <= 0.0f);
-    split.kr = select3(split.kr, add3(split.kr, split.kt), total);
-    split.kt = select3(split.kt, all3((float3)(0.0f)), total);
-    split.kr = select3(split.kr, scale3(split.kr, f), split.dielectric);
-    split.kt = select3(split.kt, scale3(split.kt, 1.0f - f), split.dielectric);
-  }
-  SceneRays child = *rays;
-  child.t_min = (REAL)(0.0f);
-  child.t_max = (REAL)(INFINITY);
-  PathStates state = *paths;
-  state.depth = paths->depth + 1;
-  start_on_surfaces(info, &child, &met->hit, ~faces->entering, split.branches);
-  child.d = reflect_direction(rays->d, s->ns);
-  // A shading normal must not send it inside.
-  child.d = select3(reflect_direction(rays->d, s->ng), child.d, MASK_OF(dot3(child.d, s->ng) > 0.0f));
-  child.o = along3(s->p, s->offset, s->ng);
-  state.throughput = multiply3(paths->throughput, split.kr);
-  spawn(info, stack, &child, &state, split.branches, COUNT_REFLECTION, counts);
-
-  if (!any_lane(transmits)) return;
-  child.d = transmitted_direction(rays->d, s, cos_i, cos_t, eta);
-  child.o = along3(s->p, -s->offset, s->ng);
-  state.throughput = multiply3(paths->throughput, split.kt);
-  start_on_hits(info, &child, &met->hit, faces->entering, transmits);
-#if HAS_MEDIA
-  for (u32 bits = lane_bits(bends); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
-    MediaStack crossed = get_media(rays, i);
-    cross_boundary(&crossed, (u32)MASK_LANE(faces->medium, i), MASK_LANE(faces->entering, i));
-    set_media(&child, i, crossed);
-  }
-#endif
-  spawn(info, stack, &child, &state, transmits, COUNT_REFRACTION, counts);
-}
-#endif
-
+#if BATCH > 1
 // Adds the lights that the surfaces of `lanes` see. `coherent`: the rays run close together, and so do those
 // to one light; else shadow rays wait until there are many, or with `last` until no others come.
 static inline void add_lights(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRays* rays,
@@ -173,40 +38,11 @@ NEVER_INLINE void follow_batch(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* ra
                                MASK lanes, bool coherent, RayStack* stack, ShadowStack* shadows,
                                float4* radiance, u32* counts) {
   Encounters met;
-  const MASK unseen = next_interfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, lanes, coherent, &met, counts);
-  REAL3 seen = all3((float3)(0.0f));
-#if HAS_GLOW
-  seen = multiply3(paths->throughput, rays->glow);
-#endif
-  paths->throughput = multiply3(paths->throughput, met.absorbed);
-#if HAS_MEDIA
-  if (any_lane(unseen)) push_rays(stack, rays, paths, unseen);
-#endif
-  const MASK ended = lanes & ~unseen, hit = ended & hit_anything(&met.hit);
-#if HAS_FOG
-  const MASK foggy = ended & MASK_OF(met.before == 0);
-  const REAL clear = select((REAL)(1.0f), real_exp(-info->fog.w * met.hit.t), foggy);
-  seen = add3(seen, multiply3(scale3(paths->throughput, 1.0f - clear), all3(info->fog.xyz)));
-  paths->throughput = scale3(paths->throughput, clear);
-#endif
-  const REAL3 background = multiply3(paths->throughput, background_along(info, rays->d));
-  seen = select3(seen, add3(seen, background), ended & ~hit);
   Surfaces s;
-  if (any_lane(hit)) {
-    interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->o, rays->d, &met.hit, &met.face, hit, &s);
-    REAL3 own = multiply3(s.ambient, all3(info->ambient.xyz));
-#if HAS_OCCLUSION
-    own = scale3(own, field_openness(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, &met.hit, hit));
-#endif
-    seen = select3(seen, add3(seen, multiply3(paths->throughput, own)), hit);
-#if HAS_SECONDARY
-    spawn_children(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &s, &met, rays, paths, hit, stack, counts);
-#endif
-    const MASK first = hit & MASK_OF(paths->depth == 1);
-    counts[COUNT_PRIMARY_HIT] += lane_count(first);
-    for (u32 bits = lane_bits(first); bits; bits &= bits - 1u)
-      radiance[MASK_LANE(paths->pixel, lowest_bit(bits))].w = 1.0f;
-  }
+  REAL3 seen;
+  const MASK unseen = next_interfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, lanes, coherent, &met, counts);
+  const MASK hit = look_around(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, paths, lanes, unseen, ALL_LANES, &met,
+                               &s, &seen, stack, radiance, counts);
   add_lights(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, paths, hit, coherent, stack->count == 0u, &met, &s,
              shadows, radiance, counts);
   add_to_pixels(seen, paths->pixel, lanes, radiance);
@@ -231,5 +67,60 @@ static inline void trace_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* 
     lanes = stack->count ? pop_rays(stack, BATCH, rays, &paths) : NO_LANES;
   } while (any_lane(lanes));
 }
+
+#else
+// The lanes of a group follow trees of their own, and are quick only where they trace at the same time: so a
+// surface's shadow rays wait on the stack, above its children, and each round takes a ray of whatever kind.
+//
+// A ray that met a surface with more lights than the stack has room for waits itself, to meet it once more:
+// its depth then holds the next light in the bits from here on.
+#define DEPTH_BITS 8u
+
+// Takes a ray to what it meets next. Returns whether it goes on.
+static inline MASK follow_ray(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, PathStates* paths,
+                              RayStack* stack, float4* radiance, u32* counts) {
+  Encounters met;
+  const bool to_light = paths->depth == 0;
+  next_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, ALL_LANES, to_light, &met.hit, counts);
+  if (to_light)
+    return reach_filters(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, paths, &met.hit, ALL_LANES, radiance,
+                         counts);
+  const MASK unseen = reach_interfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, ALL_LANES, &met, counts);
+  const PathStates whole = *paths;
+  u32 light = (u32)paths->depth >> DEPTH_BITS;
+  const MASK fresh = MASK_OF(light == 0u);
+  paths->depth &= (1 << DEPTH_BITS) - 1;
+  Surfaces s;
+  REAL3 seen;
+  const MASK hit = look_around(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, paths, ALL_LANES, unseen, fresh, &met,
+                               &s, &seen, stack, radiance, counts);
+  add_to_pixels(seen, paths->pixel, fresh, radiance);
+#if HAS_GLOW
+  rays->glow = all3((float3)(0.0f));
+#endif
+  if (!hit) return unseen;
+  const u32 last = min(info->light_count, light + LIGHT_ROOM);
+  if (last < info->light_count) {
+    PathStates again = whole;
+    again.depth = paths->depth | (int)(last << DEPTH_BITS);
+    push_rays(stack, rays, &again, ALL_LANES);
+  }
+  for (; light < last; ++light)
+    cast_shadows(TRACE_ARGUMENTS, SHADE_ARGUMENTS, light, rays, paths, hit, &met, &s, stack, counts);
+  return NO_LANES;
+}
+
+// The camera's ray in `rays`, with all that comes of it. radiance->xyz receives the light of the pixel, w
+// whether the ray hit anything.
+static inline void trace_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK lanes,
+                                 RayStack* stack, float4* radiance, u32* counts) {
+  PathStates paths = {all3((float3)(1.0f)), NO_LANES, (MASK)(1)};
+  stack->count = 0;
+  while (any_lane(lanes)) {
+    lanes = follow_ray(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, &paths, stack, radiance, counts);
+    if (!any_lane(lanes) && stack->count) lanes = pop_rays(stack, 1u, rays, &paths);
+  }
+}
+#endif
 
 #endif
