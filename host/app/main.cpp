@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <future>
 #include <string_view>
@@ -47,12 +48,27 @@ int run_command_line(int argc, char** argv) {
   return status;
 }
 
+volatile std::sig_atomic_t final_status = 0;
+
+/// Drivers' exit handlers wait for threads of theirs, which may compile or draw for minutes, or for ever.
+/// Everything is written by then: the process ends at the latest after a few seconds.
+void bound_the_end(int status) {
+  constexpr unsigned patience = 5;  // seconds
+  final_status = status;
+  std::fflush(nullptr);
+  std::signal(SIGALRM, [](int) { ::_exit(static_cast<int>(final_status)); });
+  ::alarm(patience);
+}
+
 }  // namespace
 }  // namespace sundog
 
 int main(int argc, char** argv) {
   const int status = sundog::exit_status_of([&] { return sundog::run_command_line(argc, argv); });
-  if (sundog::threads_left_behind() == 0) return status;
+  if (sundog::threads_left_behind() == 0) {
+    sundog::bound_the_end(status);
+    return status;
+  }
   // A driver that is still at work would find its own globals destroyed by a return.
   std::fflush(nullptr);
   ::_exit(status);

@@ -38,6 +38,17 @@ constexpr const char* pocl = "libpocl.so.2";
 
 }  // namespace
 
+TEST_CASE("a driver whose exit handler never comes back does not keep the program from its end") {
+  const TemporaryFolder vendors;
+  vendors.write("fake.icd", SUNDOG_FAKE_DRIVER "\n");
+  CommandOptions options;
+  options.environment = {{"OCL_ICD_VENDORS", vendors.path().string() + "/"}, {"FAKE_DRIVER_NEVER_ENDS", "1"}};
+  const CommandResult result = run_sundog({"devices"}, options);
+  CHECK_FALSE(result.timed_out);
+  CHECK(result.status == 0);
+  CHECK_THAT(result.out, ContainsSubstring("Fake crashing"));
+}
+
 TEST_CASE("check passes a sound device, and a driver that crashes is a line beside it") {
   int status = -1;
   const json report = check({pocl, SUNDOG_FAKE_DRIVER, "/nowhere/libmissing.so"}, status);

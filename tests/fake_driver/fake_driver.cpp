@@ -5,11 +5,15 @@
 //   "Fake old"       a device that speaks OpenCL C 1.1, and one that is big-endian
 //   "Fake empty"     no device
 //   "Fake crashing"  a device that looks usable, and crashes in the first call that uses it
+// With the variable FAKE_DRIVER_NEVER_ENDS its exit handler never comes back.
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <CL/cl_icd.h>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <string_view>
 
@@ -112,6 +116,12 @@ cl_int CL_API_CALL device_info(cl_device_id device, cl_device_info what, size_t 
       return CL_INVALID_VALUE;
   }
 }
+
+struct AtExit {
+  ~AtExit() {
+    while (std::getenv("FAKE_DRIVER_NEVER_ENDS")) ::pause();
+  }
+} at_exit;
 
 }  // namespace
 

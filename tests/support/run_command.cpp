@@ -81,10 +81,12 @@ class Watch {
     const double seconds = seconds_since(start_);
     const bool text_seen =
         !options_.signal_at.empty() && result.err.find(options_.signal_at) != std::string::npos;
-    const bool time_over = options_.signal_after >= 0 && seconds >= options_.signal_after;
-    if (!signalled_ && (text_seen || time_over)) {
+    std::error_code none;
+    const bool file_seen = !options_.signal_folder.empty() &&
+                           std::filesystem::exists(options_.signal_folder, none) &&
+                           !std::filesystem::is_empty(options_.signal_folder, none);
+    if (!signalled_ && (text_seen || file_seen)) {
       signalled_ = true;
-      signal_time_ = Clock::now();
       ::kill(child_, options_.signal);
     }
     if (seconds > options_.timeout && !result.timed_out) {
@@ -98,14 +100,13 @@ class Watch {
     ::waitpid(child_, &status, 0);
     result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     result.seconds = seconds_since(start_);
-    result.seconds_after_signal = signalled_ ? seconds_since(signal_time_) : 0;
   }
 
  private:
   pid_t child_;
   const CommandOptions& options_;
   bool signalled_ = false;
-  Clock::time_point start_ = Clock::now(), signal_time_;
+  Clock::time_point start_ = Clock::now();
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ struct CommandOptions {
   std::filesystem::path folder;  // to run in; empty: here
   bool terminal = false;         // stderr is a terminal (80 columns), else a pipe; stdin is always empty
   std::string signal_at;         // send `signal` when this text appears on stderr; empty: never
-  double signal_after = -1;      // ... or after so many seconds; negative: never
+  std::filesystem::path signal_folder;  // ... or when something is in this folder; empty: never
   int signal = SIGINT;
   std::size_t file_limit = 0;  // no file may grow larger (bytes); 0: no limit
   double timeout = 120;        // seconds until it is killed
@@ -22,8 +22,7 @@ struct CommandResult {
   int status = -1;  // exit status; 128 + N when signal N ended it
   bool timed_out = false;
   std::string out, err;
-  double seconds = 0;               // from start to end
-  double seconds_after_signal = 0;  // from the signal to the end
+  double seconds = 0;  // from start to end
 };
 
 /// `arguments[0]` is the program.
