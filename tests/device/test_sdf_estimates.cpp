@@ -5,60 +5,12 @@
 #include <random>
 
 #include "scene/formula/lower.h"
+#include "sdf_bound.h"
 #include "sdf_testing.h"
 
 using namespace sundog;
 
 namespace {
-
-// From random points towards the surface and to its sides, by steps of a seventh of the estimate: where
-// another estimate says that the surface is reached before the first one's length, that length was too long.
-// Writes the least ratio of the two.
-const char* const bound_kernel = R"(
-#include "lib/sdf/surface.cl"
-static inline float uniform01(u32 x) {
-  x ^= x >> 16; x *= 0x7feb352du; x ^= x >> 15; x *= 0x846ca68bu; x ^= x >> 16;
-  return (float)(x >> 8) * 0x1p-24f;
-}
-static inline REAL3 random_directions(REAL3 middle, float spread, u32 seed) {
-  REAL3 d = middle;
-  for (u32 i = 0; i < LANES; ++i) {
-    REAL_LANE(d.x, i) += spread * (2.0f * uniform01(seed + 16u * i) - 1.0f);
-    REAL_LANE(d.y, i) += spread * (2.0f * uniform01(seed + 16u * i + 1u) - 1.0f);
-    REAL_LANE(d.z, i) += spread * (2.0f * uniform01(seed + 16u * i + 2u) - 1.0f);
-  }
-  return unit3(d);
-}
-__kernel void bound(__global const SdfField* fields, __global const float* q, __global float* ratios, u32 field, u32 count) {
-  const u32 item = get_global_id(0);
-  if (item * LANES >= count) return;
-  __global const SdfField* f = fields + field;
-  REAL3 p;
-  for (u32 i = 0; i < LANES; ++i) {
-    const u32 s = (item * LANES + i) * 16u;
-    REAL_LANE(p.x, i) = mix(f->lower.x, f->upper.x, uniform01(s));
-    REAL_LANE(p.y, i) = mix(f->lower.y, f->upper.y, uniform01(s + 1u));
-    REAL_LANE(p.z, i) = mix(f->lower.z, f->upper.z, uniform01(s + 2u));
-  }
-  const REAL first = sdf_distance(field, p, ALL_LANES, q);
-  const REAL3 ahead = unit3(negate3(sdf_sample(field, p, q).gradient));
-  REAL ratio = (REAL)(1.0f);
-  for (u32 k = 0; k < 3u; ++k) {
-    const REAL3 d = k == 0u ? ahead : random_directions(ahead, k == 1u ? 0.7f : 2.0f, item * LANES * 16u + 3u * k);
-    REAL t = (REAL)(0.0f), here = first;
-    MASK active = MASK_OF(first > 1e-4f);
-    for (u32 i = 0; i < 64u && any_lane(active); ++i) {
-      t = select(t, t + fmax(0.15f * here, first * 0.01f), active);
-      active &= MASK_OF(t < first);
-      here = sdf_distance(field, along3(p, t, d), active, q);
-      const MASK reached = active & MASK_OF(here < 0.003f * first);
-      ratio = select(ratio, fmin(ratio, t / first), reached);
-      active &= ~reached;
-    }
-  }
-  for (u32 i = 0; i < LANES; ++i) ratios[item * LANES + i] = REAL_LANE(ratio, i);
-}
-)";
 
 const char* const values_kernel = R"(
 #include "lib/sdf/surface.cl"
@@ -151,22 +103,11 @@ TEST_CASE(
   for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
       if (!is_quick(info)) continue;
       Device device(info);
-      auto kernel = build_fields(device, bound_kernel, fields, 16)
-                        .kernel<Buffer<SdfField>, Buffer<float>, Buffer<float>, u32, u32>("bound");
-      const auto records = device.upload<SdfField>(fields.fields);
-      const auto q = device.upload<float>(fields.parameters);
-      const u32 count = 102400;
-      auto out = device.make<float>(count);
+      BoundTester tester(device, fields);
       for (u32 f = 0; f < descriptions.size(); ++f) {
-        device.run(kernel, {.x = count / 16, .local_x = 16}, records, q, out, f, count);
-        std::vector<float> ratios(count);
-        device.read(out, std::span<float>(ratios));
-        std::sort(ratios.begin(), ratios.end());
         const double exceptions = descriptions[f].root.formula.steps[0].definition.exceptions;
         INFO(descriptions[f].name);
-        // the walk's own grain is 1 %
-        CHECK(ratios[static_cast<std::size_t>(exceptions * count)] > 0.98f);
-        CHECK(ratios[static_cast<std::size_t>(0.1 * exceptions * count)] > (exceptions > 0 ? 0.6f : 0.98f));
+        check_bound(tester.ratios(f, 102400), exceptions);
       }
       device.finish();
     }

@@ -88,7 +88,7 @@ void list_places(const json& value, const std::string& pointer, std::vector<std:
 }
 
 bool takes(const json& document, const fs::path& folder) {
-  const JsonContext context{folder / "scene.json", nullptr, true};
+  const JsonContext context{folder / "scene.json", nullptr, true, nullptr, false};
   try {
     const SceneDescription scene = read_scene(JsonValue(document, context));
     for (const Object& object : scene.objects)

@@ -99,7 +99,8 @@ class FormulaJudge {
       safety = std::min(safety, 0.98 / found_.steepest.value);
     }
     const double reached = found_.reach.value * field_.safety;
-    if (found_.reach.value < 0.98 && safety > reached) safety = 0.9 * reached;
+    if (found_.reach.value < 0.98 && safety > reached)
+      safety = 0.75 * reached;  // worse points lie between those found
     return safety;
   }
 

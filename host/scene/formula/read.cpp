@@ -130,11 +130,17 @@ FormulaDefinition read_definition(JsonObject& object) {
                                 : FormulaKind::folded;
   d.estimate = object.choice("estimate", "logarithmic", estimates) == "linear" ? EscapeEstimate::linear
                                                                                : EscapeEstimate::logarithmic;
-  if (d.estimate == EscapeEstimate::linear) d.inside_radius = 1e9, d.inside_safety = 0.5;
+  if (d.estimate == EscapeEstimate::linear) {  // r / dr leaves out how large the set itself is
+    d.bailout = 1000;
+    d.inside_radius = 1e9;
+    d.inside_safety = 0.5;
+  }
   d.derivative = read_derivative(object, d.derivative);
   d.normalize = object.boolean("normalize", false);
   d.smooth = d.kind == FormulaKind::direct;
-  d.safety = d.kind == FormulaKind::direct ? 1 : 0.9;
+  d.safety = d.kind == FormulaKind::direct          ? (d.normalize ? 0.8 : 1)
+             : d.estimate == EscapeEstimate::linear ? 0.85
+                                                    : 0.9;
   if (const auto given = object.find("parameters"))
     for (const auto& [name, value] : given->members("parameters")) {
       if (d.parameters.size() == FormulaDefinition::max_parameters)
@@ -186,6 +192,24 @@ Leaf read_single(JsonObject& object, std::string_view type) {
   return read_leaf(object, type == "formula" ? read_definition(object) : read_listed(object));
 }
 
+/// A sequence with a power in it escapes as the power does: by its estimate and, so that no power of what is
+/// escaping overflows, within its bailout.
+double bailout_of(std::vector<FormulaStep>& steps) {
+  FormulaDefinition& last = steps.back().definition;
+  double bailout = last.bailout;
+  if (last.kind != FormulaKind::escape) return bailout;
+  for (const FormulaStep& step : steps) {
+    const FormulaDefinition& d = step.definition;
+    if (d.kind != FormulaKind::escape || d.estimate != EscapeEstimate::logarithmic || !find_formula(d.name))
+      continue;
+    last.estimate = EscapeEstimate::logarithmic;
+    last.inside_radius = std::min(last.inside_radius, d.inside_radius);
+    last.inside_safety = std::min(last.inside_safety, d.inside_safety);
+    bailout = std::min(bailout, d.bailout);
+  }
+  return bailout;
+}
+
 Leaf read_hybrid(JsonObject& object) {
   const JsonValue list = object.at("steps", "an array of formulas");
   Leaf all{};
@@ -200,16 +224,20 @@ Leaf read_hybrid(JsonObject& object) {
         item.fail(fmt::format("{} is no iteration and cannot be a step", d.name));
       if (!all.field.steps.empty() && d.quaternion != all.field.steps[0].definition.quaternion)
         item.fail("formulas of points and of quaternions cannot follow each other");
+      // Near its poles the radial derivative is too small; folds would bring the poles everywhere.
+      if (d.derivative == FormulaDerivative::radial && !item.json().contains("derivative"))
+        d.derivative = FormulaDerivative::running;
       const int times = step.integer("times", 1, 1, 100);
       if (all.field.steps.empty()) all.bounds = d.bounds;
       all.field.steps.push_back({d, default_values(d), times});
     });
   }
   if (all.field.steps.empty()) list.wanted("an array of one formula or more");
-  const FormulaDefinition& last = all.field.steps.back().definition;
+  FormulaDefinition& last = all.field.steps.back().definition;
+  const double bailout = bailout_of(all.field.steps);
   all.field.iterations = object.integer("iterations", last.iterations, 1, FormulaDefinition::max_iterations);
-  all.field.bailout = object.number("bailout", last.bailout,
-                                    {.low = last.kind == FormulaKind::escape ? 1e-3 : 0, .high = 1e9});
+  all.field.bailout =
+      object.number("bailout", bailout, {.low = last.kind == FormulaKind::escape ? 1e-3 : 0, .high = 1e9});
   all.field.safety = object.number("safety", 0.8, {.low = 1e-3, .high = 1});
   return all;
 }
@@ -356,7 +384,7 @@ void read_whole(JsonObject& object, SdfDescription& field, const JsonValue& root
   if (const auto coloring = object.find("coloring")) field.coloring = read_coloring(*coloring);
   read_light(object, field, size);
   try {
-    judge_field(field.root, root, field.lower, field.upper);
+    if (root.context().measures) judge_field(field.root, root, field.lower, field.upper);
   } catch (const FormulaError& error) {
     fail(root, error);
   }

@@ -34,6 +34,7 @@ struct JsonContext {
   std::map<std::string, std::set<std::string>, std::less<>>* asked = nullptr;
   bool native_code = false;                      // a scene may carry OpenCL C
   std::vector<std::string>* warnings = nullptr;  // when set, collects what the values were warned of
+  bool measures = true;  // formulas are tried out; who only checks keys and types need not
 };
 
 /// Keys or choices; pass a static array of them.
