@@ -41,7 +41,7 @@ NEVER_INLINE void picture_item(SDF_PARAMETERS, __global float* restrict shades, 
   REAL shade = (REAL)(0.0f);
   if (any_lane(hits.hit)) {
     const REAL3 p = along3(rays.origin, hits.t, rays.direction);
-    const SdfSurface s = sdf_surface(SDF_ARGUMENTS, 0, p, hits.threshold, hits.hit, NO_LANES, hits.cut);
+    const SdfSurface s = sdf_surface(SDF_ARGUMENTS, 0, p, hits.threshold, hits.hit, hits.cut);
     const REAL3 wi = real3((REAL)(light.x), (REAL)(light.y), (REAL)(light.z));
     const REAL cosine = fmax(dot3(s.normal, wi), 0.0f);
     const REAL3 above = along3(p, 2.0f * hits.threshold, s.normal);

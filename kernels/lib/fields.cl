@@ -133,7 +133,7 @@ static inline void shade_lanes(SDF_PARAMETERS, __global const Instance* restrict
   if (!any_lane(mine)) return;
   const REAL3 o = object_points(instances + index, lanes->o), d = object_vectors(instances + index, lanes->d);
   const SdfSurface surface = sdf_surface(SDF_ARGUMENTS, instances[index].root, along3(o, lanes->t_best, d),
-                                         lanes->threshold, mine, lanes->inside, lanes->cut);
+                                         lanes->threshold, mine, lanes->cut);
   // A normal must not contradict the side that the ray comes from: it is bent as far as the silhouette.
   const REAL speed = length3(d), towards = dot3(surface.normal, d) / speed;
   const MASK inside = lanes->inside;

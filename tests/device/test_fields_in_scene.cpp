@@ -103,6 +103,38 @@ TEST_CASE("light through a field is absorbed over the length inside, as far as t
     }
 }
 
+TEST_CASE("a glass fractal refracts as its exact solid does, and one of the air's own index cannot be seen") {
+  const auto with = [](const std::string& object, double ior) {
+    return scene_of_text(fmt::format(R"({{"image": {{"width": 96, "height": 96,
+        "background": {{"bottom": [0.55, 0.6, 0.66], "top": [0.16, 0.3, 0.55]}}}}, "render": {{"max_depth": 12}},
+      "camera": {{"position": [1.3, 1.5, 3.6], "target": [0, 0, 0], "fov": 40}},
+      "materials": {{"glass": {{"type": "dielectric", "ior": {}}}}}, "objects": [{}]}})",
+                                     ior, object));
+  };
+  const std::string julia = R"({"type": "fractal", "formula": "julia", "material": "glass", "iterations": )";
+  const std::string ball =
+      julia + R"(24, "parameters": {"seed": [0, 0, 0, 0]}})";  // the unit ball's boundary
+  const std::string folds = julia + R"(6, "parameters": {"seed": [-0.2, 0.6, 0.2, 0.2]}})";
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      if (!is_quick(device)) continue;
+      const RenderResult exact =
+          scenes::render_on(device, with(R"({"type": "sphere", "material": "glass"})", 1.5));
+      const RenderResult marched = scenes::render_on(device, with(ball, 1.5));
+      const ImageDifference difference = compare_images(exact.image, marched.image, 0.1);
+      CHECK(difference.mean < 3e-3);
+      CHECK(difference.over_tolerance < 60);  // of 9216: the outline, where all light comes from a thin rim
+      CHECK(marched.counts[COUNT_MARCH_LIMIT] == 0);
+      // Hardly refracting, what enters comes out again, but for cracks that are narrower than a pixel.
+      const RenderResult empty = scenes::render_on(device, with(R"({"type": "sphere", "radius": 1e-3,
+          "center": [9, 9, 9], "material": "glass"})",
+                                                                1));
+      const RenderResult hardly = scenes::render_on(device, with(folds, 1.0001));
+      CHECK(hardly.counts[COUNT_PRIMARY_HIT] > 3000);
+      CHECK(compare_images(empty.image, hardly.image, 0.02).over_tolerance < 100);
+      CHECK(same_bits(empty.image, scenes::render_on(device, with(folds, 1)).image));
+    }
+}
+
 TEST_CASE("a camera inside a field sees out through what is left of its medium") {
   SceneDescription scene = absorbing_ball(R"({"min": [-2, -2, -2], "max": [2, 2, 2]})");
   scene.camera.position = {0, 0, 0.5};

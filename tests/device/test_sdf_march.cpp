@@ -34,7 +34,7 @@ __kernel void march(__global const SdfField* fields, __global const float* q, __
   r.inside = (mode & 1u) ? ALL_LANES : NO_LANES;
   r.leaving = (mode & 2u) ? ALL_LANES : NO_LANES;
   MarchHits h = march_rays(fields, q, field, &r);
-  SdfSurface s = sdf_surface(fields, q, field, along3(r.origin, h.t, r.direction), h.threshold, h.hit, r.inside, h.cut);
+  SdfSurface s = sdf_surface(fields, q, field, along3(r.origin, h.t, r.direction), h.threshold, h.hit, h.cut);
   for (u32 i = 0; i < LANES; ++i) {
     Hit hit;
     hit.t = REAL_LANE(h.t, i);

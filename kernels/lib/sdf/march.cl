@@ -88,6 +88,21 @@ static inline REAL bisect_exit(SDF_PARAMETERS, u32 field, const MarchRays* rays,
   return t;
 }
 
+// On from where a ray has come out of an estimated surface to where that is about a threshold away: as far
+// off as a ray from outside arrives, so that either side's next ray starts clear of it and the normal is
+// taken where all estimates are from outside.
+static inline REAL clear_exit(SDF_PARAMETERS, u32 field, const MarchRays* rays, REAL t, REAL last,
+                              REAL inverse_speed, REAL threshold, MASK lanes) {
+  REAL clear = t;
+  for (int i = 0; i < 8 && any_lane(lanes); ++i) {
+    const REAL f =
+        called_estimate(field, along3(rays->origin, clear, rays->direction), lanes, NO_LANES, sdf_parameters);
+    lanes &= MASK_OF(f < 0.75f * threshold);
+    clear = select(clear, fma(real_max(f, 0.5f * threshold), inverse_speed, clear), lanes);
+  }
+  return select(t, clear, MASK_OF(clear < last));
+}
+
 static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* rays) {
   __global const SdfField* restrict field = sdf_fields + index;
   const REAL speed = length3(rays->direction), inverse_speed = 1.0f / speed;
@@ -106,6 +121,8 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   const bool smooth = field->flags & SDF_FLAGS & SDF_SMOOTH;
   const REAL wrong = select((REAL)(smooth ? -1.0f : 0.25f), (REAL)(-2.0f), rays->inside);
   const REAL pull = select(smooth ? (REAL)(0.0f) : -inverse_speed, (REAL)(0.0f), rays->inside);
+  // A ray inside an estimated surface goes on to where it comes out: depths are too rough to stop before it.
+  const MASK to_crossing = smooth ? NO_LANES : rays->inside;
 #if SDF_TWO_SIDED
   MASK overshot = NO_LANES;
   REAL inside_at = first;  // the last point that was still inside
@@ -127,7 +144,8 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
     hits.taken_back -= gap;
     const MASK forward = active & ~gap;
 
-    const MASK arrived = forward & select(MASK_OF(f < threshold), MASK_OF(f < wrong * threshold), leaving);
+    const REAL near = select(threshold, (REAL)(0.0f), to_crossing);
+    const MASK arrived = forward & select(MASK_OF(f < near), MASK_OF(f < wrong * threshold), leaving);
     leaving &= ~(forward & MASK_OF(f >= threshold));
     hits.hit |= arrived;
     // Back to where the surface is a threshold away, so that rays which start here are clear of it.
@@ -166,6 +184,11 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
 #if SDF_TWO_SIDED  // depths are no proven bound in every fractal (definition.h)
   if (any_lane(overshot))
     hits.t = select(hits.t, bisect_exit(SDF_ARGUMENTS, index, rays, inside_at, hits.t, overshot), overshot);
+  const MASK out = to_crossing & overshot;
+  if (any_lane(out))
+    hits.t =
+        select(hits.t,
+               clear_exit(SDF_ARGUMENTS, index, rays, hits.t, last, inverse_speed, hits.threshold, out), out);
 #endif
   if (smooth) {
     const MASK on_surface = hits.hit & ~hits.cut;

@@ -40,23 +40,20 @@ static inline REAL trap_value(u32 color_by, SdfSample s, REAL3 p) {
 
 // Differences of the estimate at the corners of a tetrahedron (I. Quilez, Normals for an SDF). As wide as the
 // threshold, it leaves out what is finer than the pixel: on fractals the derivative itself is speckled.
-static inline REAL3 difference_normal(SDF_PARAMETERS, u32 index, REAL3 p, REAL width, MASK active,
-                                      MASK inside) {
+static inline REAL3 difference_normal(SDF_PARAMETERS, u32 index, REAL3 p, REAL width, MASK active) {
   REAL3 sum = real3((REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f));
   for (u32 i = 0; i < 4u; ++i) {
     const REAL x = i == 0u || i == 3u ? width : -width, y = i >= 2u ? width : -width;
     const REAL z = i == 1u || i == 3u ? width : -width;
     const REAL ahead =
-        called_estimate(index, real3(p.x + x, p.y + y, p.z + z), active, inside, sdf_parameters);
-    const REAL d = select(ahead, -ahead, inside);
-    sum = along3(sum, d, real3(x, y, z));
+        called_estimate(index, real3(p.x + x, p.y + y, p.z + z), active, NO_LANES, sdf_parameters);
+    sum = along3(sum, ahead, real3(x, y, z));
   }
   return sum;
 }
 
-// At p, a hit of march_rays. `inside`: the ray comes from inside; `cut`: it lies on the interval's boundary.
-static inline SdfSurface sdf_surface(SDF_PARAMETERS, u32 index, REAL3 p, REAL threshold, MASK hit,
-                                     MASK inside, MASK cut) {
+// At p, a hit of march_rays. `cut`: it lies on the interval's boundary.
+static inline SdfSurface sdf_surface(SDF_PARAMETERS, u32 index, REAL3 p, REAL threshold, MASK hit, MASK cut) {
   __global const SdfField* restrict field = sdf_fields + index;
   const bool exact = field->flags & SDF_FLAGS & SDF_SMOOTH, colored = field->color_by != SDF_COLOR_NONE;
   SdfSurface surface;
@@ -71,8 +68,7 @@ static inline SdfSurface sdf_surface(SDF_PARAMETERS, u32 index, REAL3 p, REAL th
   const MASK lost = exact ? hit & MASK_OF(dot3(gradient, gradient) < 1e-20f) : hit;
   if (any_lane(lost))
     gradient = select3(
-        gradient, difference_normal(SDF_ARGUMENTS, index, p, threshold * field->normal_width, lost, inside),
-        lost);
+        gradient, difference_normal(SDF_ARGUMENTS, index, p, threshold * field->normal_width, lost), lost);
   surface.normal = unit3(gradient);
   if (any_lane(cut)) surface.normal = select3(surface.normal, cut_normal(field, p), cut);
   return surface;
