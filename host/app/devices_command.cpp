@@ -97,9 +97,9 @@ void print_details(const DeviceInfo& device) {
   const auto line = [](const char* what, const std::string& value) {
     fmt::print("      {:<12} {}\n", what, value);
   };
-  line("type", fmt::format("{}, {} compute units at {} MHz, vectors of {} floats (prefers {})", device.type,
-                           device.compute_units, device.clock_mhz, device.native_vector_width,
-                           device.preferred_vector_width));
+  line("type", fmt::format("{}, {} compute unit{} at {} MHz, vectors of {} floats (prefers {})", device.type,
+                           device.compute_units, device.compute_units == 1 ? "" : "s", device.clock_mhz,
+                           device.native_vector_width, device.preferred_vector_width));
   line("class", fmt::format("{}, tracer {} ({})", class_name(device.device_class), tracer_name(device),
                             wants_vectors(device) ? "many rays a work-item, in vectors" : "a ray a lane"));
   line("memory", fmt::format("{}, at most {} in one buffer, {} local", bytes_text(device.global_memory),

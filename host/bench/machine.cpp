@@ -68,7 +68,8 @@ std::string busy_note() {
 std::string compiler_text() { return fmt::format("{} ({})", SUNDOG_COMPILER, SUNDOG_COMPILER_OPTIONS); }
 
 std::string device_fact(const DeviceInfo& device) {
-  return fmt::format("{}, {} compute units, driver {}", device.label(), device.compute_units, device.driver);
+  return fmt::format("{}, {} compute unit{}, driver {}", device.label(), device.compute_units,
+                     device.compute_units == 1 ? "" : "s", device.driver);
 }
 
 }  // namespace sundog

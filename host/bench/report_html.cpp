@@ -19,7 +19,8 @@ constexpr const char* style = R"(
 @media print { :root { color-scheme: light;
   --paper: #ffffff; --ink: #000000; --soft: #444444; --line: #bbbbbb; --fill: #ffffff; --accent: #0072b2;
   --c0: #0072b2; --c1: #c04e00; --c2: #00805e; --c3: #a8467f; --c4: #8a6d00; --c5: #2f7ea8; --c6: #000000; --c7: #8b3a3a; }
-  body { font-size: 10pt; padding: 0; } .scroll { overflow-x: visible; } th, td { padding: 3px 6px; font-size: 8.5pt; } figure, table, tr, h2 { break-inside: avoid; } h2 { break-after: avoid; } }
+  body { font-size: 10pt; padding: 0; } .scroll { overflow-x: visible; } th, td { padding: 3px 6px; font-size: 8.5pt; } figure, tr, h2 { break-inside: avoid; } h2 { break-after: avoid; }
+  details:not([open]) { display: none; } }
 * { box-sizing: border-box; }
 body { margin: 0 auto; max-width: 860px; padding: 32px 24px 64px; background: var(--paper); color: var(--ink);
   font: 15px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }

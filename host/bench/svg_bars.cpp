@@ -79,10 +79,10 @@ std::string svg(const BarPlot& plot) {
     text += fmt::format(
         "<path class=\"whisker\" d=\"M{0:.1f} {2} v8 M{0:.1f} {3} H{1:.1f} M{1:.1f} {2} v8\"/></g>",
         x(bar.value.min), x(bar.value.max), y + 6, y + 10);
-    text +=
-        fmt::format("<text class=\"end\" x=\"{}\" y=\"{}\">{}</text><text x=\"{:.1f}\" y=\"{}\">{}</text>",
-                    left - 8, y + 15, escape_html(bar.label), x(bar.value.max) + 8, y + 15,
-                    escape_html(number_text(bar.value.median) + (bar.note.empty() ? "" : "  " + bar.note)));
+    text += fmt::format(
+        "<text class=\"end\" x=\"{}\" y=\"{}\">{}</text><text x=\"{:.1f}\" y=\"{}\">{}</text>", left - 8,
+        y + 15, escape_html(bar.label), x(bar.value.max) + 8, y + 15,
+        escape_html(number_text(bar.value.median) + (bar.note.empty() ? "" : " (" + bar.note + ")")));
     y += row;
   }
   return text + "</svg>";
