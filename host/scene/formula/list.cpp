@@ -76,7 +76,7 @@ SdfDescription default_field(const FormulaDefinition& d) {
 
 const std::vector<FieldOperation>& field_operations() {
   static const std::vector<FieldOperation> list{
-      {"hybrid", "steps, iterations, bailout", "formulas applied in turn, each \"times\" in a row"},
+      {"hybrid", "steps, iterations, bailout, safety", "formulas applied in turn, each \"times\" in a row"},
       {"union", "fields, smooth", "what lies in any; smooth: flowing together over that length"},
       {"intersection", "fields, smooth", "what lies in all"},
       {"difference", "fields, smooth", "the first without the others"},
@@ -99,7 +99,7 @@ std::string formula_list_text() {
       FormulaLimits::characters, FormulaDefinition::max_iterations, FormulaDefinition::max_parameters);
   text += "operations on fields\n";
   for (const FieldOperation& o : field_operations())
-    text += fmt::format("    {:13} {:32} {}\n", o.type, o.keys, o.meaning);
+    text += fmt::format("    {:13} {:34} {}\n", o.type, o.keys, o.meaning);
   text +=
       "\nfunctions of the language\n    operators + - * / ^ < <= > >= == != && || ! ?:, components v.x, "
       "v.zxy\n";
