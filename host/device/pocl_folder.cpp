@@ -47,17 +47,26 @@ void remove_left_over(const fs::path& root) {
   }
 }
 
+/// A new folder in the cache, or where that cannot be written, among the temporary files; empty: neither can.
+std::string make_folder() {
+  std::error_code error;
+  const fs::path cache = cache_directory(), root = cache / "pocl";
+  if (!cache.empty() && (fs::create_directories(root, error), fs::is_directory(root, error))) {
+    remove_left_over(root);
+    std::string folder = (root / "XXXXXX").string();
+    if (::mkdtemp(folder.data())) return folder;
+  }
+  std::string folder = (fs::temp_directory_path(error) / "sundog-pocl-XXXXXX").string();
+  return ::mkdtemp(folder.data()) ? folder : "";
+}
+
 }  // namespace
 
 void give_pocl_a_folder() noexcept {
   try {
-    const fs::path cache = cache_directory();
-    if (cache.empty() || std::getenv("POCL_CACHE_DIR")) return;
-    const fs::path root = cache / "pocl";
-    fs::create_directories(root);
-    remove_left_over(root);
-    std::string folder = (root / "XXXXXX").string();
-    if (!::mkdtemp(folder.data()) || lock_folder(folder, O_CREAT) < 0) return;
+    if (std::getenv("POCL_CACHE_DIR")) return;
+    const std::string folder = make_folder();
+    if (folder.empty() || lock_folder(folder, O_CREAT) < 0) return;
     own_folder() = folder;
     ::setenv("POCL_CACHE_DIR", folder.c_str(), 0);
     // After PoCL's own end, because it is said before PoCL is loaded.
@@ -66,7 +75,7 @@ void give_pocl_a_folder() noexcept {
       fs::remove_all(own_folder(), ignored);
     });
   } catch (const std::exception&) {
-    // PoCL's own folder does as well, as long as nothing damages it.
+    // PoCL's own folder does as well, as long as it can be written and nothing damages it.
   }
 }
 

@@ -6,8 +6,8 @@ namespace sundog {
 /// PoCL keeps compiled kernels in a folder that all its processes share, and aborts the process when a file
 /// there is damaged. Sundog's own cache holds the same binaries behind a checksum, so each process gives PoCL
 /// an empty folder, "pocl/*" in cache_directory(), which goes at its end; those of processes that were killed
-/// go too. A POCL_CACHE_DIR that the user set stays, and where no folder can be made PoCL has its way. To be
-/// called before the first OpenCL call; never throws.
+/// go too. Where the cache cannot be written it is one among the temporary files: PoCL has no device without a
+/// folder. A POCL_CACHE_DIR that the user set stays. To be called before the first OpenCL call; never throws.
 void give_pocl_a_folder() noexcept;
 
 }  // namespace sundog

@@ -233,6 +233,14 @@ TEST_CASE("a kernel cache that is corrupt or cannot be written costs time only")
     CHECK(result.err.empty());
     CHECK(contains(folder.stats()["devices"][0]["notes"].at(0), "no kernel cache: "));
   }
+  SECTION("a file where the folder should be that PoCL has no device without") {
+    folder.write("cache", "");
+    std::filesystem::create_directories(folder / "temporary");
+    folder.options.environment["POCL_CACHE_DIR"] = "";
+    folder.options.environment["TMPDIR"] = folder.file("temporary");
+    CHECK(folder.render("", one).status == 0);
+    CHECK(std::filesystem::is_empty(folder / "temporary"));
+  }
   CHECK(read_file(folder / "a.pfm") == plain);
 }
 
