@@ -99,14 +99,12 @@ static inline void trace_bounded(TRACE_PARAMETERS, u32 word, float3 o, float3 d,
   }
 }
 
-// All bounded instances.
+// All bounded instances. One alone is a leaf without a tree: there is a single place that traces instances,
+// of which some compilers make copies.
 static inline void trace_instances(TRACE_PARAMETERS, float3 o, float3 d, float t_min, bool any, Hit* hit) {
-  if (info->bounded_count == 1u) {
-    u32 stack[BVH_STACK];
-    float stack_t[BVH_STACK];
-    trace_instance(TRACE_ARGUMENTS, 0u, o, d, t_min, any, stack, stack_t, hit);
-  } else if (info->bounded_count > 0u)
-    trace_bounded(TRACE_ARGUMENTS, info->tlas_root, o, d, t_min, any, hit);
+  if (info->bounded_count == 0u) return;
+  trace_bounded(TRACE_ARGUMENTS, info->bounded_count == 1u ? BVH_LEAF : info->tlas_root, o, d, t_min, any,
+                hit);
 }
 
 #endif
