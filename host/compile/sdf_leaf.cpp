@@ -89,12 +89,16 @@ class LeafEmitter {
     std::string out = print.remaining_statements();
     const std::string distance = fmt::format("{} * q[{}]", print.text(s.distance), safety_slot);
     if (!sample) return out + "    return finite_distance(" + distance + ");\n";
+    // Of the distance that is returned; where it is divided by its gradient, to first order about the
+    // surface.
+    const std::string gradient = fmt::format("real3({}, {}, {})", print.text(s.gradient[0]),
+                                             print.text(s.gradient[1]), print.text(s.gradient[2]));
     out += fmt::format(
         "    const REAL r2 = square_length3(p.x, p.y, p.z);\n    SdfSample s = {{finite_distance({}), "
-        "real3({}, {}, {}),\n"
+        "scale3({}, (REAL)(q[{}])),\n"
         "        r2, real_min(fabs(p.x), real_min(fabs(p.y), fabs(p.z))), r2, (REAL)(0.0f)}};\n"
         "    s.point = real_sqrt(r2);\n    s.axis = axis_distance(p.x, p.y, p.z);\n    return s;\n",
-        distance, print.text(s.gradient[0]), print.text(s.gradient[1]), print.text(s.gradient[2]));
+        distance, last_->normalize ? "unit3(" + gradient + ")" : gradient, safety_slot);
     return out;
   }
 

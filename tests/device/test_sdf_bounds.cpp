@@ -3,6 +3,8 @@
 // would get.
 #include <fmt/format.h>
 
+#include <random>
+
 #include "scene/load.h"
 #include "sdf_bound.h"
 #include "temporary_folder.h"
@@ -48,7 +50,63 @@ void check_bounds(const std::vector<Case>& cases) {
     }
 }
 
+// The greatest difference of the gradient and central differences among random points, but for a hundredth of
+// them, which lie across a seam.
+const char* const gradient_kernel = R"(
+#include "lib/sdf/surface.cl"
+__kernel void gradients(__global const float* q, __global const float* points, __global float* errors, u32 field, u32 count) {
+  const u32 i = get_global_id(0);
+  if (i >= count) return;
+  const REAL3 p = real3((REAL)(points[3 * i]), (REAL)(points[3 * i + 1]), (REAL)(points[3 * i + 2]));
+  const float h = 2e-3f;
+  const REAL3 g = sdf_sample(field, p, q).gradient;
+  const REAL3 d = real3(
+    (sdf_signed(field, real3(p.x + h, p.y, p.z), ALL_LANES, q) - sdf_signed(field, real3(p.x - h, p.y, p.z), ALL_LANES, q)) / (2 * h),
+    (sdf_signed(field, real3(p.x, p.y + h, p.z), ALL_LANES, q) - sdf_signed(field, real3(p.x, p.y - h, p.z), ALL_LANES, q)) / (2 * h),
+    (sdf_signed(field, real3(p.x, p.y, p.z + h), ALL_LANES, q) - sdf_signed(field, real3(p.x, p.y, p.z - h), ALL_LANES, q)) / (2 * h));
+  errors[i] = length3(subtract3(g, d));
+}
+)";
+
+float gradient_error(Device& device, const CompiledFields& fields, u32 field) {
+  auto kernel = build_fields(device, gradient_kernel, fields, 1)
+                    .kernel<Buffer<float>, Buffer<float>, Buffer<float>, u32, u32>("gradients");
+  constexpr u32 count = 1024;
+  std::mt19937 random(field);
+  std::uniform_real_distribution<float> uniform(-1.4f, 1.4f);
+  std::vector<float> points(3 * count), errors(count);
+  for (float& x : points) x = uniform(random);
+  const auto q = device.upload<float>(fields.parameters), in = device.upload<float>(points);
+  auto out = device.make<float>(count);
+  device.run(kernel, {.x = count, .local_x = 16}, q, in, out, field, count);
+  device.read(out, std::span<float>(errors));
+  device.finish();
+  std::sort(errors.begin(), errors.end());
+  return errors[count - count / 100];
+}
+
 }  // namespace
+
+TEST_CASE("closed forms, a user's among them, and their smooth joints have the gradient of their distance") {
+  const std::vector<Case> cases{
+      {R"f("type": "formula", "distance": "10 * (length(p) - 0.8)")f"},
+      {R"f("type": "formula", "distance": "length(p) - 0.8 + 0.05 * sin(9 * p.x)")f"},
+      {R"f("type": "union", "smooth": 0.6, "fields": [{"type": "formula", "distance": "4 * (length(p) - 0.6)", "safety": 0.2}, {"type": "moved", "translate": [0.5, 0.4, 0], "rotate": {"axis": [1, 2, 3], "degrees": 40}, "scale": 0.8, "field": {"type": "formula", "distance": "p.x * p.x + p.y * p.y + 2 * p.z * p.z - 0.4", "safety": 0.2}}])f"},
+      {R"f("type": "difference", "smooth": 0.4, "fields": [{"type": "fractal", "formula": "sphere"}, {"type": "moved", "translate": [0.5, 0.4, 0], "field": {"type": "fractal", "formula": "torus"}}])f"},
+      {R"f("type": "shell", "amount": 0.1, "field": {"type": "intersection", "smooth": 0.3, "fields": [{"type": "fractal", "formula": "box"}, {"type": "fractal", "formula": "sphere"}]})f"},
+  };
+  const auto descriptions = read_fields(cases);
+  const CompiledFields fields = compile_fields(descriptions);
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      if (!is_quick(info)) continue;
+      Device device(info);
+      for (u32 f = 0; f < cases.size(); ++f) {
+        INFO(cases[f].json);
+        CHECK((fields.fields[f].flags & SDF_SMOOTH) != 0);
+        CHECK(gradient_error(device, fields, f) < 4e-3f);
+      }
+    }
+}
 
 TEST_CASE("estimates keep their bound with parameters at the ends of their ranges") {
   check_bounds({

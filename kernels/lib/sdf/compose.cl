@@ -63,13 +63,13 @@ static inline SdfSample negated_sample(SdfSample a) {
   a.gradient = negate3(a.gradient);
   return a;
 }
-// Gradients have any length, so they are made unit vectors before they are mixed.
+// Exact for closed forms, whose gradients are those of their distances; of fractals they are not used.
 static inline SdfSample unite_samples(SdfSample a, SdfSample b, float smooth) {
   SdfSample r = select_sample(a, b, MASK_OF(b.distance < a.distance));
   if (!(smooth > 0.0f)) return r;
   REAL share;
   r.distance = smooth_minimum(a.distance, b.distance, smooth, &share);
-  r.gradient = along3(scale3(unit3(a.gradient), 1.0f - share), share, unit3(b.gradient));
+  r.gradient = along3(scale3(a.gradient, 1.0f - share), share, b.gradient);
   return r;
 }
 static inline SdfSample intersect_samples(SdfSample a, SdfSample b, float smooth) {

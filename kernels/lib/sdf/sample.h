@@ -8,7 +8,7 @@
   __global const SdfField *restrict sdf_fields, __global const float *restrict sdf_parameters
 #define SDF_ARGUMENTS sdf_fields, sdf_parameters
 
-// A distance with its gradient (of any length: only its direction is meant) and the orbit's traps.
+// A distance with its gradient (of fractals only a direction, of any length) and the orbit's traps.
 typedef struct SdfSample {
   REAL distance;
   REAL3 gradient;
