@@ -191,7 +191,7 @@ TEST_CASE("a device that cannot be opened leaves the frame to the others") {
   broken.problem = "taken out by the test";
   const RenderResult result = render(compile(scene), {broken, device});
   CHECK(result.complete);
-  CHECK(result.devices[0].retired);
+  CHECK_FALSE(result.devices[0].ready);  // whether it is retired depends on whether it was heard of in time
   CHECK(result.devices[1].share == 1);
   CHECK_THROWS_AS(render(compile(scene), {broken, broken}), DeviceError);
 }
