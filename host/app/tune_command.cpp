@@ -55,7 +55,8 @@ std::vector<NamedScene> scenes_to_tune(const TuneOptions& options) {
 void print_outcome(const DeviceInfo& device, const TuneOutcome& outcome) {
   const TuningEntry& entry = outcome.entry;
   const bool faster = entry.tuned_ms < entry.default_ms;
-  fmt::print("{}, {} ({}): {}\n", device.label(), entry.scene_class, entry.scene, tuning_text(entry.tuning));
+  fmt::print("{}, {} ({}), {}: {}\n", device.label(), entry.scene_class, entry.scene, entry.kernel,
+             tuning_text(entry.tuning));
   fmt::print("  {} ms with the defaults, {} ms tuned: {}; {} tried, {} rejected\n",
              number_text(entry.default_ms), number_text(entry.tuned_ms),
              faster ? fmt::format("{:.1f} % gained", 100 * (1 - entry.tuned_ms / entry.default_ms))
@@ -70,12 +71,14 @@ int tune(const TuneOptions& options) {
       const auto on_step = [&](const std::string& step) {
         show_step(options.bench, fmt::format("{}, {}: {}", device.label(), named.name, step));
       };
-      const TuneOutcome outcome = tune_device(device, named.scene, named.name,
-                                              options.budget / static_cast<double>(scenes.size()), on_step);
+      const double budget = options.budget / static_cast<double>(scenes.size());
+      const auto outcomes = tune_device(device, named.scene, named.name, budget, on_step);
       on_step("");
       if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K");
-      keep_tuning(device, outcome.entry);
-      print_outcome(device, outcome);
+      for (const TuneOutcome& outcome : outcomes) {
+        keep_tuning(device, outcome.entry);
+        print_outcome(device, outcome);
+      }
     }
   return exit_done;
 }
@@ -109,7 +112,7 @@ int show() {
     fmt::print("{} / {}, driver {}{}\n", file.platform, file.device, file.driver,
                file.kernels == kernels ? "" : ": of other kernels, not used");
     for (const TuningEntry& entry : file.entries)
-      fmt::print("  {:<14} {}: {} ms, {} ms with the defaults ({})\n", entry.scene_class,
+      fmt::print("  {:<14} {}: {}: {} ms, {} ms with the defaults ({})\n", entry.scene_class, entry.kernel,
                  tuning_text(entry.tuning), number_text(entry.tuned_ms), number_text(entry.default_ms),
                  entry.scene);
   }

@@ -22,6 +22,7 @@ std::vector<Tile> FrameRunner::tiles() const {
 double FrameRunner::run() {
   const Stopwatch clock;
   counts_.fill(0);
+  device_.forget_times();
   WaitingTiles waiting(tiles());
   while (waiting.pixels() > 0) {
     const std::uint64_t wanted = guided_pixels(std::span(&speed_, 1), 0, waiting.pixels());
@@ -34,6 +35,12 @@ double FrameRunner::run() {
     for (std::size_t i = 0; i < COUNTERS; ++i) counts_[i] += result.counts[i];
   }
   return clock.seconds();
+}
+
+double FrameRunner::kernel_seconds(const std::string& kernel) const {
+  const auto found = device_.times().find(kernel);
+  if (found == device_.times().end()) return 0;
+  return 1e-3 * (found->second.device_ms > 0 ? found->second.device_ms : found->second.host_ms);
 }
 
 }  // namespace sundog

@@ -27,7 +27,10 @@ class FrameRunner {
   /// Keeps what the driver has compiled so far for other programs and the next start.
   void save_programs() { device_.save_programs(); }
 
-  /// Of the last run.
+  /// Of the last run: on the device, of all launches of a kernel; by the host's clock where the driver gives
+  /// no times.
+  double kernel_seconds(const std::string& kernel) const;
+  const Film& film() const { return film_; }
   Image image() const { return film_.develop(); }
   const RayCounts& counts() const { return counts_; }
 

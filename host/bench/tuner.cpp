@@ -2,6 +2,7 @@
 #include "bench/tuner.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "base/clock.h"
 #include "base/error.h"
@@ -17,27 +18,35 @@ using enum WorkGroup::Kind;
 
 constexpr int runs = 3, runs_at_the_end = 5;
 
+constexpr double budget_of_surfaces = 0.15;  // of the whole
+
 /// The values to choose from, neighbours beside each other; index 0 of each is the default.
 struct Choices {
+  std::string kernel = frame_kernel;
   std::vector<WorkGroup> groups{{}};
   std::vector<std::pair<unsigned, unsigned>> shapes{{0, 0}};
   std::vector<unsigned> packets{0};
-  std::vector<double> launches{0, 10, 25, 100, 200};
-  std::vector<double> tiles{0, 50, 100, 500, 1000};
+  std::vector<double> launches{0}, tiles{0};
 
   std::vector<std::size_t> sizes() const {
     return {groups.size(), shapes.size(), packets.size(), launches.size(), tiles.size()};
   }
   Tuning at(const TunePoint& point) const {
+    const WorkGroup& group = groups[point[0]];
+    if (kernel == surfaces_kernel) return {{}, group, 0, 0, 0, 0, 0};
     const auto [w, h] = shapes[point[1]];
-    return {groups[point[0]], w, h, packets[point[2]], launches[point[3]], tiles[point[4]]};
+    return {group, {}, w, h, packets[point[2]], launches[point[3]], tiles[point[4]]};
   }
 };
 
-Choices make_choices(const DeviceInfo& device, const CompiledScene& scene) {
+std::size_t group_limit(const DeviceInfo& device, const CompiledScene& scene) {
+  return std::min<std::size_t>(greatest_work_group(make_kernel_config(scene, device), device), 256);
+}
+
+Choices choices_of_frame(const DeviceInfo& device, const CompiledScene& scene) {
   Choices choices;
   const KernelConfig usual = make_kernel_config(scene, device);
-  const std::size_t limit = std::min<std::size_t>(greatest_work_group(usual, device), 256);
+  const std::size_t limit = group_limit(device, scene);
   for (std::size_t x = 1; x <= limit; x *= 2) choices.groups.push_back({fixed, x, 1});
   for (std::size_t edge = 2; edge * edge <= limit; edge *= 2) choices.groups.push_back({fixed, edge, edge});
   if (usual.tile_w * usual.tile_h > 1) {  // explicit vectors; on other devices a lane is a pixel
@@ -46,30 +55,57 @@ Choices make_choices(const DeviceInfo& device, const CompiledScene& scene) {
       choices.shapes.push_back(shape);
     choices.packets.insert(choices.packets.end(), {1, 3, 8, 12});
   }
+  choices.launches.insert(choices.launches.end(), {10, 25, 100, 200});
+  choices.tiles.insert(choices.tiles.end(), {50, 100, 500, 1000});
+  return choices;
+}
+
+// The rest of what the frame is tuned by is for frames: the AOVs take one launch a tile, a ray a pixel.
+Choices choices_of_surfaces(const DeviceInfo& device, const CompiledScene& scene) {
+  Choices choices;
+  choices.kernel = surfaces_kernel;
+  const std::size_t limit = group_limit(device, scene);
+  for (std::size_t x = 1; x <= limit; x *= 2) choices.groups.push_back({fixed, x, 1});
   return choices;
 }
 
 /// Frames with one tuning; nothing where the device refuses it.
 class Candidate {
  public:
-  Candidate(const DeviceInfo& device, const CompiledScene& scene, const Tuning& tuning) {
+  Candidate(const DeviceInfo& device, const CompiledScene& scene, const Choices& choices,
+            const TunePoint& point)
+      : kernel_(choices.kernel) {
     RenderOptions options;
-    options.tuning = [tuning](const DeviceInfo&) { return tuning; };
+    options.tuning = [tuning = choices.at(point)](const DeviceInfo&) { return tuning; };
+    if (kernel_ == surfaces_kernel) options.aovs = aov_names();
     frames_ = std::make_unique<FrameRunner>(device, scene, options);
     frames_->run();
     frames_->save_programs();
   }
-  double run() { return frames_->run(); }
+  /// Seconds: the frame's, or of the kernel that it is about, which takes too little to be seen in the frame.
+  double run() {
+    const double seconds = frames_->run();
+    return kernel_ == surfaces_kernel ? frames_->kernel_seconds(kernel_) : seconds;
+  }
   double median(int count) {
     std::vector<double> seconds;
     for (int i = 0; i < count; ++i) seconds.push_back(run());
     return spread(seconds).median;
   }
-  Image image() const { return frames_->image(); }
+  const Film& film() const { return frames_->film(); }
 
  private:
+  std::string kernel_;
   std::unique_ptr<FrameRunner> frames_;
 };
+
+/// To the bit.
+bool are_same(const Film& a, const Film& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;
+  };
+  return same(a.sums, b.sums) && same(a.weights, b.weights) && same(a.aovs, b.aovs);
+}
 
 /// The two in turn, so that what else the machine does falls on both.
 std::pair<double, double> duel(Candidate& a, Candidate& b, int count) {
@@ -81,25 +117,25 @@ std::pair<double, double> duel(Candidate& a, Candidate& b, int count) {
   return {spread(of_a).median, spread(of_b).median};
 }
 
-}  // namespace
+using OnStep = std::function<void(const std::string&)>;
 
-TuneOutcome tune_device(const DeviceInfo& device, const CompiledScene& scene, const std::string& scene_name,
-                        double budget, const std::function<void(const std::string&)>& on_step) {
+TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, const std::string& scene_name,
+                        const Choices& choices, double budget, const OnStep& on_step) {
   const Stopwatch clock;
-  const Choices choices = make_choices(device, scene);
-  on_step("the defaults");
-  Candidate usual(device, scene, {});
-  const Image expected = usual.image();
+  const auto tell = [&](const std::string& what) { on_step(choices.kernel + ": " + what); };
+  tell("the defaults");
   TuneProblem problem;
   problem.axes = choices.sizes();
   problem.start.assign(problem.axes.size(), 0);
+  Candidate usual(device, scene, choices, problem.start);
+  const Film expected = usual.film();
   const double default_seconds = usual.median(runs);
   problem.measure = [&](const TunePoint& point) -> std::optional<double> {
     if (point == problem.start) return default_seconds;
-    on_step(tuning_text(choices.at(point)));
+    tell(tuning_text(choices.at(point)));
     try {
-      Candidate candidate(device, scene, choices.at(point));
-      if (candidate.image().data != expected.data) return {};
+      Candidate candidate(device, scene, choices, point);
+      if (!are_same(candidate.film(), expected)) return {};
       // The default beside it: a machine that has become slower meanwhile slows both.
       const auto [own, beside] = duel(candidate, usual, runs);
       return default_seconds * own / beside;
@@ -110,16 +146,29 @@ TuneOutcome tune_device(const DeviceInfo& device, const CompiledScene& scene, co
     }
   };
   problem.measure_again = [&](const TunePoint&, const TunePoint& best) {
-    on_step("the winner against the defaults");
-    Candidate winner(device, scene, choices.at(best));
+    tell("the winner against the defaults");
+    Candidate winner(device, scene, choices, best);
     return duel(usual, winner, runs_at_the_end);
   };
   problem.out_of_time = [&] { return clock.seconds() > budget; };
   const TuneResult found = search_tuning(problem);
-  return {{scene_class(scene), scene_name, choices.at(found.best), 1e3 * found.default_seconds,
-           1e3 * found.best_seconds},
+  return {{choices.kernel, scene_class(scene), scene_name, choices.at(found.best),
+           1e3 * found.default_seconds, 1e3 * found.best_seconds},
           found.tried,
           found.rejected};
+}
+
+}  // namespace
+
+std::vector<TuneOutcome> tune_device(const DeviceInfo& device, const CompiledScene& scene,
+                                     const std::string& scene_name, double budget, const OnStep& on_step) {
+  std::vector<TuneOutcome> outcomes{tune_kernel(device, scene, scene_name, choices_of_frame(device, scene),
+                                                (1 - budget_of_surfaces) * budget, on_step)};
+  CompiledScene one_sample = scene;  // the AOVs are made once, however many samples the image has
+  one_sample.info.samples = 1;
+  outcomes.push_back(tune_kernel(device, one_sample, scene_name, choices_of_surfaces(device, scene),
+                                 budget_of_surfaces * budget, on_step));
+  return outcomes;
 }
 
 }  // namespace sundog

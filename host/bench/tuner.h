@@ -2,19 +2,22 @@
 #pragma once
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "render/tuning.h"
 
 namespace sundog {
 
 struct TuneOutcome {
-  TuningEntry entry;  // the defaults, with equal times, where nothing was faster
+  TuningEntry entry;  // of one kernel; the defaults, with equal times, where nothing was faster
   std::size_t tried = 0, rejected = 0;
 };
 
-/// Searches for about `budget` seconds. Throws DeviceError, BuildError when the defaults do not work.
+/// Searches for about `budget` seconds: most of it for the frame, the rest for the kernel of the AOVs. An
+/// outcome for each. Throws DeviceError, BuildError when the defaults do not work.
 /// `on_step` hears what is tried.
-TuneOutcome tune_device(const DeviceInfo& device, const CompiledScene& scene, const std::string& scene_name,
-                        double budget, const std::function<void(const std::string&)>& on_step);
+std::vector<TuneOutcome> tune_device(const DeviceInfo& device, const CompiledScene& scene,
+                                     const std::string& scene_name, double budget,
+                                     const std::function<void(const std::string&)>& on_step);
 
 }  // namespace sundog

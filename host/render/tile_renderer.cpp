@@ -49,6 +49,7 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
   // What was fastest for a scene of less depth may be too large for this one.
   const std::size_t most = greatest_work_group(config_, device.info());
   if (most > 0 && tuning_.work_group.x * tuning_.work_group.y > most) tuning_.work_group = {};
+  if (most > 0 && tuning_.surfaces_group.x > most) tuning_.surfaces_group = {};
   const Stopwatch building;
   times.cached = true;
   render_ = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32,
@@ -160,10 +161,12 @@ void TileRenderer::launch_aovs(const Tile& tile, std::vector<float4>& aovs) {
   if (aovs_.count < 3 * pixels) aovs_ = device_.make<float4>(3 * pixels);
   aovs.resize(3 * pixels);
   if (pixels == 0) return;
+  const bool tuned = tuning_.surfaces_group.kind == WorkGroup::Kind::fixed;
+  const std::size_t group = tuned ? tuning_.surfaces_group.x : 16;
   const WatchedLaunch watched(watch_, launch_limit(0, true));
   run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32>(
       device_, first_surfaces_,
-      {divide_up(static_cast<unsigned>(pixels), config_.tile_w * config_.tile_h), 1, 16, 1}, tables_,
+      {divide_up(static_cast<unsigned>(pixels), config_.tile_w * config_.tile_h), 1, group, 1}, tables_,
       tables_.camera_media, aovs_, counters_, static_cast<u32>(tile.x), static_cast<u32>(tile.y),
       static_cast<u32>(tile.width), static_cast<u32>(pixels));
   device_.finish();

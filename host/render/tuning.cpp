@@ -30,9 +30,11 @@ WorkGroup work_group_from(const std::string& text, const std::string& where) {
 }
 
 json entry_json(const TuningEntry& entry) {
-  return {{"class", entry.scene_class},
+  return {{"kernel", entry.kernel},
+          {"class", entry.scene_class},
           {"scene", entry.scene},
           {"work_group", work_group_text(entry.tuning.work_group)},
+          {"surfaces_group", work_group_text(entry.tuning.surfaces_group)},
           {"tile_w", entry.tuning.tile_w},
           {"tile_h", entry.tuning.tile_h},
           {"packet_least", entry.tuning.packet_least},
@@ -44,9 +46,11 @@ json entry_json(const TuningEntry& entry) {
 
 TuningEntry entry_from(const json& entry, const std::string& where) {
   TuningEntry result;
+  result.kernel = entry.at("kernel");
   result.scene_class = entry.at("class");
   result.scene = entry.at("scene");
   result.tuning.work_group = work_group_from(entry.at("work_group"), where);
+  result.tuning.surfaces_group = work_group_from(entry.at("surfaces_group"), where);
   result.tuning.tile_w = entry.at("tile_w");
   result.tuning.tile_h = entry.at("tile_h");
   result.tuning.packet_least = entry.at("packet_least");
@@ -55,6 +59,9 @@ TuningEntry entry_from(const json& entry, const std::string& where) {
   result.default_ms = entry.at("default_ms");
   result.tuned_ms = entry.at("tuned_ms");
   const Tuning& tuning = result.tuning;
+  if (result.kernel != frame_kernel && result.kernel != surfaces_kernel)
+    throw SceneError(where, "kernel",
+                     fmt::format("wanted {} or {}, found {}", frame_kernel, surfaces_kernel, result.kernel));
   if (tuning.tile_w > 16 || tuning.tile_h > 16 || (tuning.tile_w == 0) != (tuning.tile_h == 0) ||
       tuning.packet_least > 64 || !(tuning.launch_ms >= 0 && tuning.launch_ms <= 10000) ||
       !(tuning.tile_ms >= 0 && tuning.tile_ms <= 10000))
@@ -74,6 +81,8 @@ std::string tuning_text(const Tuning& tuning) {
   std::vector<std::string> parts;
   if (tuning.work_group.kind != automatic)
     parts.push_back("work-group " + work_group_text(tuning.work_group));
+  if (tuning.surfaces_group.kind != automatic)
+    parts.push_back("work-group " + work_group_text(tuning.surfaces_group));
   if (tuning.tile_w) parts.push_back(fmt::format("{}x{} pixels a work-item", tuning.tile_w, tuning.tile_h));
   if (tuning.packet_least) parts.push_back(fmt::format("packets of more than {}", tuning.packet_least));
   if (tuning.launch_ms > 0) parts.push_back(fmt::format("launches of {} ms", tuning.launch_ms));
@@ -144,7 +153,9 @@ void keep_tuning(const DeviceInfo& device, const TuningEntry& entry) {
   if (path.empty()) throw IoError("there is no cache folder to keep the result in: set XDG_CACHE_HOME");
   TuningFile file = load_tuning(device).value_or(
       TuningFile{device.platform_name, device.name, device.driver, kernels_hash(), {}});
-  std::erase_if(file.entries, [&](const TuningEntry& old) { return old.scene_class == entry.scene_class; });
+  std::erase_if(file.entries, [&](const TuningEntry& old) {
+    return old.kernel == entry.kernel && old.scene_class == entry.scene_class;
+  });
   file.entries.push_back(entry);
   std::error_code failed;
   std::filesystem::create_directories(path.parent_path(), failed);
@@ -154,9 +165,17 @@ void keep_tuning(const DeviceInfo& device, const TuningEntry& entry) {
 Tuning saved_tuning(const DeviceInfo& device, const CompiledScene& scene) {
   const std::optional<TuningFile> file = load_tuning(device);
   if (!file) return {};
-  for (const TuningEntry& entry : file->entries)
-    if (entry.scene_class == scene_class(scene)) return entry.tuning;
-  return {};
+  Tuning tuning;
+  WorkGroup surfaces_group;
+  for (const TuningEntry& entry : file->entries) {
+    if (entry.scene_class != scene_class(scene)) continue;
+    if (entry.kernel == surfaces_kernel)
+      surfaces_group = entry.tuning.surfaces_group;
+    else
+      tuning = entry.tuning;
+  }
+  tuning.surfaces_group = surfaces_group;
+  return tuning;
 }
 
 }  // namespace sundog

@@ -17,6 +17,7 @@ namespace sundog {
 /// defaults.
 struct Tuning {
   WorkGroup work_group;
+  WorkGroup surfaces_group;         // of the kernel that makes the AOVs
   unsigned tile_w = 0, tile_h = 0;  // pixels a work-item
   unsigned packet_least = 0;        // rays below which a packet is traced ray by ray
   double launch_ms = 0;             // the length of a launch: how many rays are in flight
@@ -29,17 +30,21 @@ std::string work_group_text(const WorkGroup& group);
 /// "group 8x2, 16x1 pixels a work-item, ..."; "the defaults".
 std::string tuning_text(const Tuning& tuning);
 
-/// A Tuning with what was measured: on which scene, and the frame's milliseconds with the defaults and with
-/// it.
+/// The kernels that are tuned, each by itself.
+constexpr const char* frame_kernel = "render_whitted";
+constexpr const char* surfaces_kernel = "first_surfaces";  // of the AOVs; its tuning is a surfaces_group
+
+/// A Tuning of one kernel with what was measured: on which scene, and the milliseconds of the whole frame
+/// (frame_kernel) or of the kernel with the defaults and with it.
 struct TuningEntry {
-  std::string scene_class, scene;
+  std::string kernel = frame_kernel, scene_class, scene;
   Tuning tuning;
   double default_ms = 0, tuned_ms = 0;
 };
 
 struct TuningFile {
   std::string platform, device, driver, kernels;  // kernels: hash of their sources
-  std::vector<TuningEntry> entries;               // one a class
+  std::vector<TuningEntry> entries;               // one a kernel and class
 };
 
 /// What scenes have in common that are tuned alike: "meshes", "solids", "fields", with "+rays" where there
@@ -61,7 +66,7 @@ TuningFile tuning_from_json(const nlohmann::json& json, const std::string& where
 /// The device's file; nothing when there is none, it is damaged, or it is of other kernels.
 std::optional<TuningFile> load_tuning(const DeviceInfo& device);
 
-/// Puts the entry into the device's file, in place of one of its class. Throws IoError.
+/// Puts the entry into the device's file, in place of one of its kernel and class. Throws IoError.
 void keep_tuning(const DeviceInfo& device, const TuningEntry& entry);
 
 /// What is kept for the device and the scene's class; the defaults where nothing is.

@@ -21,7 +21,8 @@ struct TuneFolder : CliFolder {
   CommandResult render(const std::string& name) const {
     CommandOptions options;
     options.environment["XDG_CACHE_HOME"] = (*this / "cache").string();
-    return run_sundog({"render", scene, "-o", file(name), "--device", "pthread", "--stats", file("s.json")},
+    return run_sundog({"render", scene, "-o", file(name), "--device", "pthread", "--stats", file("s.json"),
+                       "--aov", "depth"},
                       options);
   }
 };
@@ -30,31 +31,36 @@ struct TuneFolder : CliFolder {
 
 TEST_CASE("what tune finds is kept in one file a device, and a render with it gives the same bits") {
   const TuneFolder folder;
-  REQUIRE(folder.render("before.pfm").status == 0);
+  REQUIRE(folder.render("before.exr").status == 0);
   const CommandResult tuned = folder.run({folder.scene, "--device", "pthread", "--budget", "0.5"});
   CAPTURE(tuned.out, tuned.err);
   REQUIRE(tuned.status == 0);
   CHECK_THAT(tuned.out, ContainsSubstring("solids+rays (scene)") && ContainsSubstring("tried"));
   CHECK(folder.run({"--export", folder.file("kept.json")}).out ==
-        folder.file("kept.json") + ": 1 result of 1 device\n");
+        folder.file("kept.json") + ": 2 results of 1 device\n");
   json kept = json::parse(sundog::read_file(folder.file("kept.json")));
   REQUIRE(kept.size() == 1);
-  json& entry = kept[0].at("entries")[0];
-  CHECK(entry.at("tuned_ms") <= entry.at("default_ms"));  // the default is among the candidates
+  json &entry = kept[0].at("entries")[0], &surfaces = kept[0].at("entries")[1];
+  for (const json& one : {entry, surfaces})
+    CHECK(one.at("tuned_ms") <= one.at("default_ms"));  // the default is among the candidates
+  CHECK(entry.at("kernel") == "render_whitted");
+  CHECK(surfaces.at("kernel") == "first_surfaces");
 
   entry["work_group"] = "2x2";
   entry["launch_ms"] = 10;
   entry["tile_ms"] = 5;
+  surfaces["surfaces_group"] = "8";
   folder.write("kept.json", kept.dump());
   CHECK_THAT(folder.run({"--forget"}).out, ContainsSubstring("1 file removed"));
   CHECK_THAT(folder.run({"--show"}).out, ContainsSubstring("Nothing is kept"));
   CHECK_THAT(folder.run({"--import", folder.file("kept.json")}).out, ContainsSubstring("imported"));
   CHECK_THAT(folder.run({"--show"}).out,
              ContainsSubstring("work-group 2x2, launches of 10 ms, tiles of 5 ms"));
-  REQUIRE(folder.render("after.pfm").status == 0);
+  REQUIRE(folder.render("after.exr").status == 0);
   const json stats = json::parse(sundog::read_file(folder.file("s.json")));
   CHECK(stats["devices"][0]["kernels"]["render_whitted"]["work_group"] == json({2, 2}));
-  CHECK(sundog::read_file(folder.file("before.pfm")) == sundog::read_file(folder.file("after.pfm")));
+  CHECK(stats["devices"][0]["kernels"]["first_surfaces"]["work_group"] == json({8, 1}));
+  CHECK(sundog::read_file(folder.file("before.exr")) == sundog::read_file(folder.file("after.exr")));
 
   kept[0]["kernels"] = "of other sources";
   folder.write("kept.json", kept.dump());
