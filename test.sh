@@ -13,4 +13,4 @@ cd "$root"
 if [[ ! -e build/release/sundog_mpi.so ]]; then
   echo "sundog: built without Open MPI (libopenmpi-dev, openmpi-bin): the tests of mpirun are left out" >&2
 fi
-exec ctest --preset release "$@"
+exec ctest --preset release --parallel "$(nproc)" "$@"
