@@ -76,8 +76,8 @@ int tune(const TuneOptions& options) {
       on_step("");
       if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K");
       for (const TuneOutcome& outcome : outcomes) {
-        keep_tuning(device, outcome.entry);
         print_outcome(device, outcome);
+        keep_tuning(device, outcome.entry);
       }
     }
   return exit_done;
@@ -104,12 +104,17 @@ std::vector<TuningFile> kept() {
   return all;
 }
 
+std::string label(const TuningFile& file) {
+  const std::string units = file.units > 0 ? fmt::format("/{}", file.units) : "";
+  return fmt::format("{} / {}{}", file.platform, file.device, units);
+}
+
 int show() {
   const std::vector<TuningFile> files = kept();
   if (files.empty()) fmt::print("Nothing is kept in {}.\n", tuning_folder().string());
   const std::string kernels = kernels_hash();
   for (const TuningFile& file : files) {
-    fmt::print("{} / {}, driver {}{}\n", file.platform, file.device, file.driver,
+    fmt::print("{}, driver {}{}\n", label(file), file.driver,
                file.kernels == kernels ? "" : ": of other kernels, not used");
     for (const TuningEntry& entry : file.entries)
       fmt::print("  {:<14} {}: {}: {} ms, {} ms with the defaults ({})\n", entry.scene_class, entry.kernel,
@@ -160,9 +165,12 @@ int import_all(const std::string& path) {
     const std::string why = file.kernels != kernels ? "it is of other kernels"
                             : here == devices.end() ? "there is no such device here"
                                                     : "";
-    if (why.empty())
-      for (const TuningEntry& entry : file.entries) keep_tuning(*here, entry);
-    fmt::print("{} / {}: {}\n", file.platform, file.device, why.empty() ? "imported" : "left out: " + why);
+    if (why.empty()) {
+      DeviceInfo device = *here;
+      device.sub_units = file.units;
+      for (const TuningEntry& entry : file.entries) keep_tuning(device, entry);
+    }
+    fmt::print("{}: {}\n", label(file), why.empty() ? "imported" : "left out: " + why);
   }
   return exit_done;
 }

@@ -47,12 +47,21 @@ void remove_left_over(const fs::path& root) {
   }
 }
 
-/// A new folder in the cache, or where that cannot be written, among the temporary files; empty: neither can.
+/// PoCL ends the process when it cannot write what it compiles: some megabytes.
+bool has_room(const fs::path& folder) {
+  std::error_code error;
+  const fs::space_info space = fs::space(folder, error);
+  return !error && space.available >= std::uintmax_t{32} << 20;
+}
+
+/// A new folder in the cache, or where that cannot be written or is full, among the temporary files; empty:
+/// neither can.
 std::string make_folder() {
   std::error_code error;
   const fs::path cache = cache_directory(), root = cache / "pocl";
-  if (!cache.empty() && (fs::create_directories(root, error), fs::is_directory(root, error))) {
+  if (!cache.empty() && (fs::create_directories(root, error), fs::is_directory(root, error)))
     remove_left_over(root);
+  if (!cache.empty() && has_room(root)) {
     std::string folder = (root / "XXXXXX").string();
     if (::mkdtemp(folder.data())) return folder;
   }

@@ -122,14 +122,16 @@ json to_json(const TuningFile& file) {
   json entries = json::array();
   for (const TuningEntry& entry : file.entries) entries.push_back(entry_json(entry));
   return {{"schema", 1},           {"platform", file.platform}, {"device", file.device},
-          {"driver", file.driver}, {"kernels", file.kernels},   {"entries", entries}};
+          {"driver", file.driver}, {"kernels", file.kernels},   {"units", file.units},
+          {"entries", entries}};
 }
 
 TuningFile tuning_from_json(const json& value, const std::string& where) {
   try {
     if (value.at("schema") != 1)
       throw SceneError(where, "schema", "wanted 1, which `sundog tune --export` writes");
-    TuningFile file{value.at("platform"), value.at("device"), value.at("driver"), value.at("kernels"), {}};
+    TuningFile file{value.at("platform"), value.at("device"), value.at("driver"),
+                    value.at("kernels"),  value.at("units"),  {}};
     for (const json& entry : value.at("entries")) file.entries.push_back(entry_from(entry, where));
     return file;
   } catch (const json::exception& error) {
@@ -152,7 +154,7 @@ void keep_tuning(const DeviceInfo& device, const TuningEntry& entry) {
   const std::filesystem::path path = tuning_path(device);
   if (path.empty()) throw IoError("there is no cache folder to keep the result in: set XDG_CACHE_HOME");
   TuningFile file = load_tuning(device).value_or(
-      TuningFile{device.platform_name, device.name, device.driver, kernels_hash(), {}});
+      TuningFile{device.platform_name, device.name, device.driver, kernels_hash(), device.sub_units, {}});
   std::erase_if(file.entries, [&](const TuningEntry& old) {
     return old.kernel == entry.kernel && old.scene_class == entry.scene_class;
   });

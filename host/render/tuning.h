@@ -44,6 +44,7 @@ struct TuningEntry {
 
 struct TuningFile {
   std::string platform, device, driver, kernels;  // kernels: hash of their sources
+  unsigned units = 0;                             // of a sub-device; 0: the whole device
   std::vector<TuningEntry> entries;               // one a kernel and class
 };
 

@@ -62,6 +62,16 @@ TEST_CASE("what tune finds is kept in one file a device, and a render with it gi
   CHECK(stats["devices"][0]["kernels"]["first_surfaces"]["work_group"] == json({8, 1}));
   CHECK(sundog::read_file(folder.file("before.exr")) == sundog::read_file(folder.file("after.exr")));
 
+  // A device and a part of it are two.
+  kept.push_back(kept[0]);
+  kept[1]["units"] = 1;
+  kept[1]["entries"][0]["work_group"] = "8";
+  folder.write("kept.json", kept.dump());
+  CHECK(folder.run({"--import", folder.file("kept.json")}).status == 0);
+  CHECK_THAT(folder.run({"--show"}).out, ContainsSubstring("work-group 2x2") &&
+                                             ContainsSubstring("/1, driver") &&
+                                             ContainsSubstring("work-group 8,"));
+
   kept[0]["kernels"] = "of other sources";
   folder.write("kept.json", kept.dump());
   CHECK_THAT(folder.run({"--import", folder.file("kept.json")}).out,
