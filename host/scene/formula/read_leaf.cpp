@@ -1,0 +1,234 @@
+// See read_leaf.h.
+#include "scene/formula/read_leaf.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "scene/formula/list.h"
+#include "scene/formula/lower.h"
+#include "scene/formula/syntax.h"
+
+namespace sundog {
+
+void fail_formula(const JsonValue& value, const FormulaError& error) {
+  const std::string at = error.line > 0 ? fmt::format("line {}, column {}: ", error.line, error.column) : "";
+  if (!error.section.empty() && value.json().is_object() && value.json().contains(error.section))
+    value.member(error.section, "").fail(at + error.what());
+  value.fail("the formula " + at + error.what());
+}
+
+std::string read_text(JsonObject& object, std::string_view key) {
+  const auto value = object.find(key);
+  if (!value) return "";
+  if (value->json().is_string()) return value->text();
+  std::string text;
+  for (const JsonValue& line : value->items("lines")) text += line.text() + "\n";
+  return text;
+}
+
+namespace {
+
+/// A parameter's value: a number, or an array of as many as it has components.
+std::vector<double> read_components(const JsonValue& value, std::size_t size, const Range& range) {
+  if (size == 1) return {value.number(range)};
+  const auto items = value.items(fmt::format("{} numbers", size));
+  if (items.size() != size) value.wanted(fmt::format("an array of {} numbers", size));
+  std::vector<double> values;
+  for (const JsonValue& item : items) values.push_back(item.number(range));
+  return values;
+}
+
+void require_whole(const JsonValue& value, const std::vector<double>& values) {
+  for (const double v : values)
+    if (v != std::floor(v)) value.wanted("a whole number");
+}
+
+/// Sets the parameters of a listed formula.
+void read_arguments(JsonObject& object, FormulaDefinition& d) {
+  const auto given = object.find("parameters");
+  if (!given) return;
+  for (const auto& [name, value] : given->members("parameters")) {
+    const auto found = std::find_if(d.parameters.begin(), d.parameters.end(),
+                                    [&, key = name](const FormulaParameter& p) { return p.name == key; });
+    if (found == d.parameters.end()) {
+      std::string known;
+      for (const FormulaParameter& p : d.parameters) known += (known.empty() ? "" : ", ") + p.name;
+      value.fail(
+          fmt::format("{} has no parameter \"{}\"; it has {}", d.name, name, known.empty() ? "none" : known));
+    }
+    found->value =
+        read_components(value, found->value.size(), {.low = found->minimum, .high = found->maximum});
+    if (found->whole) require_whole(value, found->value);
+  }
+}
+
+std::size_t component_count(const JsonValue& value) {
+  if (!value.json().is_array()) return 1;
+  if (value.json().size() != 3 && value.json().size() != 4) value.wanted("a number, or an array of 3 or 4");
+  return value.json().size();
+}
+
+/// A parameter that a user's formula declares: its value, or {value, min, max, whole}.
+FormulaParameter read_declaration(const std::string& name, const JsonValue& value) {
+  FormulaParameter p;
+  p.name = name;
+  const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  if (name.empty() || name.size() > FormulaLimits::name_length ||
+      !std::all_of(name.begin(), name.end(), letter) || std::isdigit(static_cast<unsigned char>(name[0])))
+    value.fail(fmt::format("a parameter's name has up to {} letters, digits and _, found \"{}\"",
+                           FormulaLimits::name_length, name));
+  static constexpr std::array<std::string_view, 6> taken{"z", "c", "p", "r", "i", "dr"};
+  if (is_reserved_word(name) || std::find(taken.begin(), taken.end(), name) != taken.end())
+    value.fail(fmt::format("\"{}\" is a reserved word; choose another name", name));
+  if (!value.json().is_object()) {
+    p.value = read_components(value, component_count(value), {.low = p.minimum, .high = p.maximum});
+    return p;
+  }
+  value.object("formula_parameter", [&](JsonObject& object) {
+    const Range limits{.low = -1e6, .high = 1e6};
+    p.minimum = object.number("min", p.minimum, limits);
+    p.maximum = object.number("max", p.maximum, {.low = p.minimum, .high = 1e6});
+    const JsonValue given = object.at("value", "a number or an array of numbers");
+    p.value = read_components(given, component_count(given), {.low = p.minimum, .high = p.maximum});
+    p.whole = object.boolean("whole", false);
+    if (p.whole) require_whole(given, p.value);
+  });
+  return p;
+}
+
+FormulaDerivative read_derivative(JsonObject& object, FormulaDerivative fallback) {
+  static constexpr std::array<std::string_view, 4> names{"automatic", "running", "radial", "jacobian"};
+  const std::string name = object.choice("derivative", names[static_cast<std::size_t>(fallback)], names);
+  return static_cast<FormulaDerivative>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+/// A formula of the user's own.
+FormulaDefinition read_definition(JsonObject& object) {
+  FormulaDefinition d;
+  d.name = object.text("name", "formula");
+  static constexpr std::array<std::string_view, 2> spaces{"vec3", "quat"}, estimates{"logarithmic", "linear"};
+  d.quaternion = object.choice("space", "vec3", spaces) == "quat";
+  d.start = read_text(object, "start");
+  d.map = read_text(object, "map");
+  d.distance = read_text(object, "distance");
+  if (d.map.empty() && d.distance.empty())
+    object.value().fail(
+        "missing key: wanted \"map\" (statements that set z) or \"distance\" (an expression)");
+  d.kind = d.map.empty()        ? FormulaKind::direct
+           : d.distance.empty() ? FormulaKind::escape
+                                : FormulaKind::folded;
+  d.estimate = object.choice("estimate", "logarithmic", estimates) == "linear" ? EscapeEstimate::linear
+                                                                               : EscapeEstimate::logarithmic;
+  if (d.estimate == EscapeEstimate::linear) {  // r / dr leaves out how large the set itself is
+    d.bailout = 1000;
+    d.inside_radius = 1e9;
+    d.inside_safety = 0.5;
+  }
+  d.derivative = read_derivative(object, d.derivative);
+  d.normalize = object.boolean("normalize", false);
+  d.smooth = d.kind == FormulaKind::direct;
+  d.safety = d.kind == FormulaKind::direct          ? (d.normalize ? 0.8 : 1)
+             : d.estimate == EscapeEstimate::linear ? 0.85
+                                                    : 0.9;
+  if (const auto given = object.find("parameters"))
+    for (const auto& [name, value] : given->members("parameters")) {
+      if (d.parameters.size() == FormulaDefinition::max_parameters)
+        value.fail(fmt::format("a formula may have {} parameters", FormulaDefinition::max_parameters));
+      d.parameters.push_back(read_declaration(name, value));
+    }
+  return d;
+}
+
+FormulaDefinition read_listed(JsonObject& object) {
+  const JsonValue name =
+      object.at("formula", "the name of a surface of the list (sundog formulas prints it)");
+  const FormulaDefinition* listed = find_formula(name.text());
+  if (!listed) {
+    std::vector<std::string> names;
+    for (const FormulaDefinition& d : formula_list()) names.push_back(d.name);
+    const auto nearest = nearest_name(name.text(), names);
+    name.fail(fmt::format("no surface \"{}\" in the list; {}", name.text(),
+                          nearest ? fmt::format("is \"{}\" meant?", *nearest) : "sundog formulas prints it"));
+  }
+  FormulaDefinition d = *listed;
+  read_arguments(object, d);
+  d.derivative = read_derivative(object, d.derivative);
+  return d;
+}
+
+/// The keys that say how far orbits are followed; checks the formula by lowering it.
+FormulaLeaf read_leaf(JsonObject& object, FormulaDefinition d) {
+  FormulaLeaf leaf{{}, d.bounds};
+  leaf.field.iterations = object.integer("iterations", d.iterations, 1, FormulaDefinition::max_iterations);
+  leaf.field.bailout =
+      object.number("bailout", d.bailout, {.low = d.kind == FormulaKind::escape ? 1e-3 : 0, .high = 1e9});
+  leaf.field.safety = object.number("safety", d.safety, {.low = 1e-3, .high = 1});
+  leaf.field.steps.push_back({d, default_values(d), 1});
+  try {
+    lower(d, leaf.field.steps[0].values);
+  } catch (const FormulaError& error) {
+    fail_formula(object.value(), error);
+  }
+  return leaf;
+}
+
+/// A sequence with a power in it escapes as the power does: by its estimate and, so that no power of what is
+/// escaping overflows, within its bailout.
+double bailout_of(std::vector<FormulaStep>& steps) {
+  FormulaDefinition& last = steps.back().definition;
+  double bailout = last.bailout;
+  if (last.kind != FormulaKind::escape) return bailout;
+  for (const FormulaStep& step : steps) {
+    const FormulaDefinition& d = step.definition;
+    if (d.kind != FormulaKind::escape || d.estimate != EscapeEstimate::logarithmic || !find_formula(d.name))
+      continue;
+    last.estimate = EscapeEstimate::logarithmic;
+    last.inside_radius = std::min(last.inside_radius, d.inside_radius);
+    last.inside_safety = std::min(last.inside_safety, d.inside_safety);
+    bailout = std::min(bailout, d.bailout);
+  }
+  return bailout;
+}
+
+}  // namespace
+
+FormulaLeaf read_single(JsonObject& object, std::string_view type) {
+  return read_leaf(object, type == "formula" ? read_definition(object) : read_listed(object));
+}
+
+FormulaLeaf read_hybrid(JsonObject& object) {
+  const JsonValue list = object.at("steps", "an array of formulas");
+  FormulaLeaf all{};
+  for (const JsonValue& item : list.items("formulas")) {
+    if (all.field.steps.size() == 8) item.fail("a hybrid may have 8 formulas");
+    static constexpr std::array<std::string_view, 2> kinds{"fractal", "formula"};
+    const std::string type = item.member("type", list_names(kinds)).choice(kinds);
+    item.object(type + "_step", [&](JsonObject& step) {
+      step.at("type", "");
+      FormulaDefinition d = type == "formula" ? read_definition(step) : read_listed(step);
+      if (d.kind == FormulaKind::direct)
+        item.fail(fmt::format("{} is no iteration and cannot be a step", d.name));
+      if (!all.field.steps.empty() && d.quaternion != all.field.steps[0].definition.quaternion)
+        item.fail("formulas of points and of quaternions cannot follow each other");
+      // Near its poles the radial derivative is too small; folds would bring the poles everywhere.
+      if (d.derivative == FormulaDerivative::radial && !item.json().contains("derivative"))
+        d.derivative = FormulaDerivative::running;
+      const int times = step.integer("times", 1, 1, 100);
+      if (all.field.steps.empty()) all.bounds = d.bounds;
+      all.field.steps.push_back({d, default_values(d), times});
+    });
+  }
+  if (all.field.steps.empty()) list.wanted("an array of one formula or more");
+  FormulaDefinition& last = all.field.steps.back().definition;
+  const double bailout = bailout_of(all.field.steps);
+  all.field.iterations = object.integer("iterations", last.iterations, 1, FormulaDefinition::max_iterations);
+  all.field.bailout =
+      object.number("bailout", bailout, {.low = last.kind == FormulaKind::escape ? 1e-3 : 0, .high = 1e9});
+  all.field.safety = object.number("safety", 0.8, {.low = 1e-3, .high = 1});
+  return all;
+}
+
+}  // namespace sundog
