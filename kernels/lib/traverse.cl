@@ -110,17 +110,25 @@ static inline void find_hits(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, c
 #endif
 }
 
-// Indices and geometric normals of the triangles among the hits.
+// Indices and geometric normals of the triangles among the hits; once for the rays that met the same one.
 static inline void finish_triangles(TRACE_PARAMETERS, Hits* hits) {
 #if HAS_MESH
-  for (u32 bits = lane_bits(hit_anything(hits)); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
-    if (instances[MASK_LANE(hits->instance, i)].shape != SHAPE_MESH) continue;
-    Hit hit;
-    hit.prim = (u32)MASK_LANE(hits->prim, i);
-    finish_triangle(blocks, &hit);
-    MASK_LANE(hits->prim, i) = (int)hit.prim;
-    set3(&hits->ng, i, (float3)(hit.ng_x, hit.ng_y, hit.ng_z));
+  const MASK places = hits->prim;
+  MASK left = hit_anything(hits);
+  while (any_lane(left)) {
+    u32 instance, place;
+    MASK here = take_alike(hits->instance, &left, &instance);
+#if HAS_SOLID
+    if (instances[instance].shape != SHAPE_MESH) continue;
+#endif
+    while (any_lane(here)) {
+      const MASK alike = take_alike(places, &here, &place);
+      Hit hit;
+      hit.prim = place;
+      finish_triangle(blocks, &hit);
+      hits->prim = select(hits->prim, (MASK)((int)hit.prim), alike);
+      hits->ng = select3(hits->ng, all3((float3)(hit.ng_x, hit.ng_y, hit.ng_z)), alike);
+    }
   }
 #endif
 }
