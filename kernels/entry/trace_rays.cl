@@ -79,7 +79,7 @@ NEVER_INLINE void trace_rays_item(TRACE_PARAMETERS, __global const Ray* restrict
               &found);
 #if LANES == 16
   if (first + BATCH <= ray_count) {
-    float16 v[8] = {found.t,        found.u,    found.v,    as_float16(found.prim), as_float16(found.instance),
+    float16 v[8] = {found.t,    found.u,    found.v,   as_float16(found.prim), as_float16(found.instance),
                     found.ng.x, found.ng.y, found.ng.z};
     scatter_members(v);
 #pragma unroll

@@ -11,9 +11,12 @@
 #include "lib/tables.h"
 #include "lib/walk.cl"
 
-// This many rays or fewer in a node are faster alone.
+// This many rays or fewer are faster alone, in a node and in a leaf.
 #ifndef PACKET_LEAST
-#define PACKET_LEAST 3
+#define PACKET_LEAST 2
+#endif
+#ifndef LEAF_LEAST
+#define LEAF_LEAST 6
 #endif
 
 // Children that wait, each as the bits of its entry distance above its box, node * 8 + slot; nearest last.
@@ -90,6 +93,32 @@ NEVER_INLINE bool next_place(__global const u32* restrict nodes, const PacketRay
 }
 
 #if HAS_MESH
+// Where the rays see one coordinate of corners, relative to themselves: x = (ox - vx) - sx (oz - vz) in
+// bounds. Rounding keeps order, so the bounds hold to the bit.
+typedef struct Reach {
+  float8 least, most;
+} Reach;
+ALWAYS_INLINE void widen(Reach* span, float8 a, float8 b) {
+  span->least = least8(span->least, least8(a, b));
+  span->most = greatest8(span->most, greatest8(a, b));
+}
+
+// The triangles of a block that some ray may hit: those that do not lie on one side of all rays.
+ALWAYS_INLINE u32 triangles_in_packet(__global const TriangleBlock* block, const PacketRays* rays) {
+  if (!rays->one_origin) return lane_mask(vload8(0, block->prim) != NO_PRIM);
+  const u32 ax = rays->axis[0], ay = rays->axis[1], az = rays->axis[2];
+  Reach x = {(float8)(INFINITY), (float8)(-INFINITY)}, y = x;
+#pragma unroll
+  for (u32 corner = 0; corner < 3u; ++corner) {
+    __global const float* v = block->v0_x + corner * 24u;
+    const float8 vx = vload8(ax, v), vy = vload8(ay, v), vz = vload8(az, v);
+    const float8 dx = rays->origin[ax][0] - vx, dy = rays->origin[ay][0] - vy, dz = rays->origin[az][0] - vz;
+    widen(&x, fma(-(float8)(rays->slope_x[0]), dz, dx), fma(-(float8)(rays->slope_x[1]), dz, dx));
+    widen(&y, fma(-(float8)(rays->slope_y[0]), dz, dy), fma(-(float8)(rays->slope_y[1]), dz, dy));
+  }
+  return lane_mask((x.least <= 0.0f) & (x.most >= 0.0f) & (y.least <= 0.0f) & (y.most >= 0.0f));
+}
+
 // The triangle at `place` against all rays. Returns whether it is a hit of any.
 ALWAYS_INLINE bool packet_triangle(__global const TriangleBlock* blocks, u32 place, const PacketRays* rays,
                                    PacketHits* hits, u32 instance, bool any) {
@@ -139,6 +168,41 @@ NEVER_INLINE bool walk_lanes(TRACE_PARAMETERS, const PacketRays* rays, PacketHit
   return any_lane(nearer);
 }
 
+// The rays of `active` one after another through the blocks of a leaf. Returns whether any hits something
+// nearer.
+NEVER_INLINE bool lanes_in_blocks(__global const TriangleBlock* blocks, const PacketRays* rays,
+                                  PacketHits* hits, u32 active, u32 first, u32 last, u32 instance, bool any) {
+  const u32 ax = rays->axis[0], ay = rays->axis[1], az = rays->axis[2];
+  bool nearer = false;
+  for (; active; active &= active - 1u) {
+    const u32 i = lowest_bit(active);
+    const ShearRay ray = {ax * 8u,
+                          ay * 8u,
+                          az * 8u,
+                          get_lane(rays->o + ax, i),
+                          get_lane(rays->o + ay, i),
+                          get_lane(rays->o + az, i),
+                          get_lane(&rays->sx, i),
+                          get_lane(&rays->sy, i),
+                          get_lane(&rays->sz, i)};
+    Hit hit;
+    hit.t = get_lane(&hits->found.t, i);
+    hit.instance = (u32)MASK_LANE(hits->found.instance, i);
+    hit.prim = (u32)MASK_LANE(hits->found.prim, i);
+    const u32 before = hit.prim, was = hit.instance;
+    for (u32 index = first; index <= last; ++index)
+      closest_in_block(blocks, index, &ray, get_lane(&hits->t_min, i), instance, &hit);
+    if (hit.prim == before && hit.instance == was) continue;
+    nearer = true;
+    REAL_LANE(hits->found.t, i) = any ? -1.0f : hit.t;
+    REAL_LANE(hits->found.u, i) = hit.u;
+    REAL_LANE(hits->found.v, i) = hit.v;
+    MASK_LANE(hits->found.prim, i) = (int)hit.prim;
+    MASK_LANE(hits->found.instance, i) = (int)hit.instance;
+  }
+  return nearer;
+}
+
 NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 root,
                                  u32 instance, bool any) {
   PacketWalk walk;
@@ -147,14 +211,15 @@ NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, Packe
   u32 word, active;
   while (next_place(nodes, rays, hits, &walk, &word, &active)) {
     bool hit = false;
-    if (popcount(active) <= PACKET_LEAST) {
+    const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+    if (!(word & BVH_LEAF)) {
       hit = walk_lanes(TRACE_ARGUMENTS, rays, hits, active, word, instance, any);
+    } else if (popcount(active) <= LEAF_LEAST) {
+      hit = lanes_in_blocks(blocks, rays, hits, active, first, last, instance, any);
     } else {
-      const u32 first = word & BVH_FIRST_MASK,
-                last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
       for (u32 index = first; index <= last; ++index)
-        for (u32 i = 0; i < 8u && blocks[index].prim[i] != NO_PRIM; ++i)
-          hit |= packet_triangle(blocks, index * 8u + i, rays, hits, instance, any);
+        for (u32 bits = triangles_in_packet(blocks + index, rays); bits; bits &= bits - 1u)
+          hit |= packet_triangle(blocks, index * 8u + lowest_bit(bits), rays, hits, instance, any);
     }
     if (hit) hits->t_most = most_of(hits->found.t);
   }

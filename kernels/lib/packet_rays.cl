@@ -18,6 +18,9 @@ typedef struct PacketRays {
   float16 rcp_near[3], rcp_far[3], shift_near[3], shift_far[3], sx, sy, sz;
   // The interval: the least and the greatest reciprocal of an axis, each with the origin on the safe side.
   float near_rcp[3][2], near_shift[3][2], far_rcp[3][2], far_shift[3][2];
+  // The least and the greatest of: the origins, by axis; the slopes sx and sy.
+  float origin[3][2], slope_x[2], slope_y[2];
+  u32 one_origin;  // all rays start at the same point
   // What all rays share: float offsets into Bvh8Node, and the axes that a ShearRay permutes to x, y, z.
   u32 near[3], far[3], axis[3];
 } PacketRays;
@@ -60,7 +63,10 @@ static inline bool aim_axis(PacketRays* rays, u32 axis) {
   rays->shift_far[axis] = -(far - fabs(far) * 2.4e-7f);
   // (b - o) / d is least where b - o is least, for d > 0 that is the greatest o, and with either end of 1 /
   // d.
-  const float low = least_of(o), high = most_of(o), ends[2] = {least_of(rcp), most_of(rcp)};
+  const float low = least_of(o), high = most_of(o);
+  rays->origin[axis][0] = low;
+  rays->origin[axis][1] = high;
+  const float ends[2] = {least_of(rcp), most_of(rcp)};
   for (u32 end = 0; end < 2u; ++end) {
     const float r_near = ends[end] * 0.9999994f, r_far = ends[end] * 1.0000006f;
     const float o_near = (signs ? low : high) * r_near, o_far = (signs ? high : low) * r_far;
@@ -88,6 +94,12 @@ NEVER_INLINE bool aim_packet(PacketRays* rays) {
   rays->sx = rays->d[rays->axis[0]] * along;
   rays->sy = rays->d[rays->axis[1]] * along;
   rays->sz = -along;
+  rays->slope_x[0] = least_of(rays->sx);
+  rays->slope_x[1] = most_of(rays->sx);
+  rays->slope_y[0] = least_of(rays->sy);
+  rays->slope_y[1] = most_of(rays->sy);
+  rays->one_origin = rays->origin[0][0] == rays->origin[0][1] && rays->origin[1][0] == rays->origin[1][1] &&
+                     rays->origin[2][0] == rays->origin[2][1];
   return true;
 }
 
