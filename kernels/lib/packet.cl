@@ -19,27 +19,35 @@
 #define LEAF_LEAST 6
 #endif
 
-// Children that wait, each as the bits of its entry distance above its box, node * 8 + slot; nearest last.
+// Children that wait, each as the bits of its entry distance above its box, node * 8 + slot, perhaps with
+// ALL_CROSS: every ray crosses it. Nearest last.
+#define ALL_CROSS 0x80000000u
 typedef struct PacketWalk {
   ulong waiting[BVH_STACK + 1];
   u32 top;
 } PacketWalk;
 
-// Puts the children that the interval crosses onto the stack.
+// Puts the children that the interval crosses onto the stack; in no order with `any`, when sorting them costs
+// more than it saves.
 NEVER_INLINE void open_node(__global const u32* restrict nodes, u32 index, const PacketRays* rays,
-                            const PacketHits* hits, PacketWalk* walk) {
+                            const PacketHits* hits, PacketWalk* walk, bool any) {
   __global const BvhNode* node = node_at(nodes, index);
   __global const float* bounds = node->lower_x;
   int8 near = (int8)(as_int(hits->t_least)), far = (int8)(as_int(hits->t_most));
+  int8 all_near = near, all_far = far;
+#pragma unroll
   for (u32 axis = 0; axis < 3u; ++axis) {
     const float8 b = vload8(0, bounds + rays->near[axis]), c = vload8(0, bounds + rays->far[axis]);
-    const float8 near_0 = fma(b, (float8)(rays->near_rcp[axis][0]), (float8)(rays->near_shift[axis][0])),
-                 near_1 = fma(b, (float8)(rays->near_rcp[axis][1]), (float8)(rays->near_shift[axis][1]));
-    const float8 far_0 = fma(c, (float8)(rays->far_rcp[axis][0]), (float8)(rays->far_shift[axis][0])),
-                 far_1 = fma(c, (float8)(rays->far_rcp[axis][1]), (float8)(rays->far_shift[axis][1]));
+    const float8 near_0 = fma(b, (float8)(rays->near_rcp[0][axis]), (float8)(rays->near_shift[0][axis])),
+                 near_1 = fma(b, (float8)(rays->near_rcp[1][axis]), (float8)(rays->near_shift[1][axis]));
+    const float8 far_0 = fma(c, (float8)(rays->far_rcp[0][axis]), (float8)(rays->far_shift[0][axis])),
+                 far_1 = fma(c, (float8)(rays->far_rcp[1][axis]), (float8)(rays->far_shift[1][axis]));
     near = max(near, as_int8(least8(near_0, near_1)));
     far = min(far, as_int8(greatest8(far_0, far_1)));
+    all_near = max(all_near, as_int8(greatest8(near_0, near_1) + rays->spread[axis]));
+    all_far = min(all_far, as_int8(least8(far_0, far_1) - rays->spread[axis]));
   }
+  const u32 by_all = lane_mask(all_near <= all_far);
   u32 crossed = lane_mask(near <= far) & node->valid;
   u32 entry[8];
   vstore8(as_uint8(near), 0, entry);
@@ -47,11 +55,14 @@ NEVER_INLINE void open_node(__global const u32* restrict nodes, u32 index, const
   while (crossed) {
     const u32 slot = lowest_bit(crossed);
     crossed &= crossed - 1u;
-    const ulong box = (ulong)entry[slot] << 32 | (index * 8u + slot);
+    ulong box = (index * 8u + slot) | (by_all >> slot) << 31;
     u32 to = walk->top++;
-    while (to > base && walk->waiting[to - 1u] < box) {
-      walk->waiting[to] = walk->waiting[to - 1u];
-      --to;
+    if (!any) {
+      box |= (ulong)entry[slot] << 32;
+      while (to > base && walk->waiting[to - 1u] < box) {
+        walk->waiting[to] = walk->waiting[to - 1u];
+        --to;
+      }
     }
     walk->waiting[to] = box;
   }
@@ -77,17 +88,21 @@ ALWAYS_INLINE u32 rays_in_child(__global const Bvh8Node* node, u32 slot, const P
 // Goes on to the next place where something is to be done: a leaf, or a node that few rays cross. Writes its
 // word and the rays that cross it; returns false at the end.
 NEVER_INLINE bool next_place(__global const u32* restrict nodes, const PacketRays* rays,
-                             const PacketHits* hits, PacketWalk* walk, u32* word, u32* active) {
+                             const PacketHits* hits, PacketWalk* walk, bool any, u32* word, u32* active) {
   while (walk->top) {
     const ulong next = walk->waiting[--walk->top];
     if (as_float((u32)(next >> 32)) > hits->t_most) continue;
-    __global const BvhNode* node = node_at(nodes, (u32)next >> 3);
-    const u32 slot = (u32)next & 7u, crossing = rays_in_child(node, slot, rays, hits);
-    if (!crossing) continue;
+    __global const BvhNode* node = node_at(nodes, ((u32)next & ~ALL_CROSS) >> 3);
+    const u32 slot = (u32)next & 7u;
+    u32 crossing = hits->live;
+    if (!((u32)next & ALL_CROSS)) {
+      crossing = rays_in_child(node, slot, rays, hits);
+      if (!crossing) continue;
+    }
     *word = node->child[slot];
     *active = crossing;
     if ((*word & BVH_LEAF) || popcount(crossing) <= PACKET_LEAST) return true;
-    open_node(nodes, *word, rays, hits, walk);
+    open_node(nodes, *word, rays, hits, walk, any);
   }
   return false;
 }
@@ -112,9 +127,9 @@ ALWAYS_INLINE u32 triangles_in_packet(__global const TriangleBlock* block, const
   for (u32 corner = 0; corner < 3u; ++corner) {
     __global const float* v = block->v0_x + corner * 24u;
     const float8 vx = vload8(ax, v), vy = vload8(ay, v), vz = vload8(az, v);
-    const float8 dx = rays->origin[ax][0] - vx, dy = rays->origin[ay][0] - vy, dz = rays->origin[az][0] - vz;
-    widen(&x, fma(-(float8)(rays->slope_x[0]), dz, dx), fma(-(float8)(rays->slope_x[1]), dz, dx));
-    widen(&y, fma(-(float8)(rays->slope_y[0]), dz, dy), fma(-(float8)(rays->slope_y[1]), dz, dy));
+    const float8 dx = rays->least_o[ax] - vx, dy = rays->least_o[ay] - vy, dz = rays->least_o[az] - vz;
+    widen(&x, fma(-(float8)(rays->least_sx), dz, dx), fma(-(float8)(rays->most_sx), dz, dx));
+    widen(&y, fma(-(float8)(rays->least_sy), dz, dy), fma(-(float8)(rays->most_sy), dz, dy));
   }
   return lane_mask((x.least <= 0.0f) & (x.most >= 0.0f) & (y.least <= 0.0f) & (y.most >= 0.0f));
 }
@@ -207,9 +222,9 @@ NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, Packe
                                  u32 instance, bool any) {
   PacketWalk walk;
   walk.top = 0;
-  open_node(nodes, root, rays, hits, &walk);
+  open_node(nodes, root, rays, hits, &walk, any);
   u32 word, active;
-  while (next_place(nodes, rays, hits, &walk, &word, &active)) {
+  while (next_place(nodes, rays, hits, &walk, any, &word, &active)) {
     bool hit = false;
     const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
     if (!(word & BVH_LEAF)) {
@@ -221,7 +236,7 @@ NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, Packe
         for (u32 bits = triangles_in_packet(blocks + index, rays); bits; bits &= bits - 1u)
           hit |= packet_triangle(blocks, index * 8u + lowest_bit(bits), rays, hits, instance, any);
     }
-    if (hit) hits->t_most = most_of(hits->found.t);
+    if (hit) renew_bounds(hits);
   }
 }
 
@@ -254,6 +269,7 @@ NEVER_INLINE void packet_in_instance(TRACE_PARAMETERS, const PacketRays* rays, P
       const int16 lanes = lanes_of(active);
       const float16 t = hits->found.t;  // of the others, for afterwards
       hits->found.t = select((float16)(-1.0f), t, lanes);
+      renew_bounds(hits);
       packet_in_mesh(TRACE_ARGUMENTS, &object, hits, instance->root, index, any);
       hits->found.t = select(t, hits->found.t, lanes);
     } else
@@ -288,7 +304,7 @@ NEVER_INLINE void packet_in_leaf(TRACE_PARAMETERS, const PacketRays* rays, Packe
     if (any) active &= ~lane_bits(as_int16(hits->found.t));  // these have found something
     if (active) packet_in_instance(TRACE_ARGUMENTS, rays, hits, active, i, any);
   }
-  hits->t_most = most_of(hits->found.t);
+  renew_bounds(hits);
 }
 
 // The bounded instances; `rays` in world space and aimed.
@@ -301,14 +317,14 @@ NEVER_INLINE void packet_in_scene(TRACE_PARAMETERS, const PacketRays* rays, Pack
   } else {
     PacketWalk walk;
     walk.top = 0;
-    open_node(nodes, root, rays, hits, &walk);
+    open_node(nodes, root, rays, hits, &walk, any);
     u32 word, active;
-    while (next_place(nodes, rays, hits, &walk, &word, &active)) {
+    while (next_place(nodes, rays, hits, &walk, any, &word, &active)) {
       if (word & BVH_LEAF)
         packet_in_leaf(TRACE_ARGUMENTS, rays, hits, active, word, any);
       else
         bounded_alone(TRACE_ARGUMENTS, rays, hits, active, word, any);
-      hits->t_most = most_of(hits->found.t);
+      renew_bounds(hits);
     }
   }
 }

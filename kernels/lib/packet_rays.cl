@@ -16,13 +16,13 @@ typedef struct PacketRays {
   float16 o[3], d[3];
   // SlabRay and ShearRay, a lane a ray.
   float16 rcp_near[3], rcp_far[3], shift_near[3], shift_far[3], sx, sy, sz;
-  // The interval: the least and the greatest reciprocal of an axis, each with the origin on the safe side.
-  float near_rcp[3][2], near_shift[3][2], far_rcp[3][2], far_shift[3][2];
-  // The least and the greatest of: the origins, by axis; the slopes sx and sy.
-  float origin[3][2], slope_x[2], slope_y[2];
+  // The interval: with the least and the greatest reciprocal of each axis, the origin on the safe side.
+  float near_rcp[2][4], near_shift[2][4], far_rcp[2][4], far_shift[2][4];
+  float spread[4];  // by how much the origins alone move the distance to a plane
+  float least_o[4], least_sx, most_sx, least_sy, most_sy;
   u32 one_origin;  // all rays start at the same point
   // What all rays share: float offsets into Bvh8Node, and the axes that a ShearRay permutes to x, y, z.
-  u32 near[3], far[3], axis[3];
+  u32 near[4], far[4], axis[3];
 } PacketRays;
 
 // What the rays found so far. A lane without a ray, and with `any` one that has found something, has a t
@@ -31,6 +31,7 @@ typedef struct PacketHits {
   Hits found;  // prim of a triangle is its place (see finish_triangle)
   float16 t_min;
   float t_least, t_most;  // of t_min and t over the rays
+  u32 live;               // rays whose t is not below 0
 } PacketHits;
 
 static inline float get_lane(const float16* v, u32 i) { return ((const float*)v)[i]; }
@@ -43,39 +44,51 @@ static inline float least_of(float16 v) {
 }
 static inline float most_of(float16 v) { return -least_of(-v); }
 
+// What is known of all rays, after hits.
+static inline void renew_bounds(PacketHits* hits) {
+  hits->t_most = most_of(hits->found.t);
+  hits->live = ~lane_bits(as_int16(hits->found.t)) & ALL_RAYS;
+}
+
 static inline float16 safe_reciprocal16(float16 d) {
   const float16 tiny = as_float16((as_int16(d) & (int)0x80000000) | as_int(1e-18f));
   return 1.0f / select(d, tiny, fabs(d) < 1e-18f);
 }
 
-// One axis of aim_packet.
-static inline bool aim_axis(PacketRays* rays, u32 axis) {
-  const float16 o = rays->o[axis], rcp = safe_reciprocal16(rays->d[axis]);
-  const u32 signs = lane_bits(as_int16(rcp));
-  if (signs != 0u && signs != ALL_RAYS) return false;
-  rays->near[axis] = axis * 8u + (signs ? 24u : 0u);
-  rays->far[axis] = axis * 8u + (signs ? 0u : 24u);
-  const float16 rcp_near = rcp * 0.9999997f, rcp_far = rcp * 1.0000003f;
-  const float16 near = o * rcp_near, far = o * rcp_far;
-  rays->rcp_near[axis] = rcp_near;
-  rays->rcp_far[axis] = rcp_far;
-  rays->shift_near[axis] = -(near + fabs(near) * 2.4e-7f);
-  rays->shift_far[axis] = -(far - fabs(far) * 2.4e-7f);
+// Lane i of the result is the least of v[i]. Overwrites v.
+ALWAYS_INLINE float16 least_of_each(float16* v) {
+#pragma unroll
+  for (u32 count = 8; count > 0u; count >>= 1)
+#pragma unroll
+    for (u32 i = 0; i < count; ++i) {
+      const float16 a = (float16)(v[2u * i].even, v[2u * i + 1u].even),
+                    b = (float16)(v[2u * i].odd, v[2u * i + 1u].odd);
+      v[i] = select(b, a, a < b);
+    }
+  return v[0];
+}
+
+// The interval that the rays span, from the least and the greatest origins and reciprocals of directions.
+ALWAYS_INLINE void span_packet(PacketRays* rays, float4 least_o, float4 most_o, const float4* rcp,
+                               int4 negative) {
+  const int4 lower = (int4)(0, 8, 16, 0), upper = lower + 24;
+  vstore4(as_uint4(select(lower, upper, negative)), 0, rays->near);
+  vstore4(as_uint4(select(upper, lower, negative)), 0, rays->far);
   // (b - o) / d is least where b - o is least, for d > 0 that is the greatest o, and with either end of 1 /
   // d.
-  const float low = least_of(o), high = most_of(o);
-  rays->origin[axis][0] = low;
-  rays->origin[axis][1] = high;
-  const float ends[2] = {least_of(rcp), most_of(rcp)};
+  const float4 near_o = select(most_o, least_o, negative), far_o = select(least_o, most_o, negative);
+#pragma unroll
   for (u32 end = 0; end < 2u; ++end) {
-    const float r_near = ends[end] * 0.9999994f, r_far = ends[end] * 1.0000006f;
-    const float o_near = (signs ? low : high) * r_near, o_far = (signs ? high : low) * r_far;
-    rays->near_rcp[axis][end] = r_near;
-    rays->near_shift[axis][end] = -(o_near + fabs(o_near) * 4.8e-7f);
-    rays->far_rcp[axis][end] = r_far;
-    rays->far_shift[axis][end] = -(o_far - fabs(o_far) * 4.8e-7f);
+    const float4 r_near = rcp[end] * 0.9999994f, r_far = rcp[end] * 1.0000006f;
+    const float4 near = near_o * r_near, far = far_o * r_far;
+    vstore4(r_near, 0, rays->near_rcp[end]);
+    vstore4(-(near + fabs(near) * 4.8e-7f), 0, rays->near_shift[end]);
+    vstore4(r_far, 0, rays->far_rcp[end]);
+    vstore4(-(far - fabs(far) * 4.8e-7f), 0, rays->far_shift[end]);
   }
-  return true;
+  vstore4((most_o - least_o) * max(fabs(rcp[0]), fabs(rcp[1])), 0, rays->spread);
+  vstore4(least_o, 0, rays->least_o);
+  rays->one_origin = least_o.x == most_o.x && least_o.y == most_o.y && least_o.z == most_o.z;
 }
 
 // Prepares the rays for the tests, given o and d. Returns false when they cannot go as one: directions of
@@ -85,8 +98,6 @@ NEVER_INLINE bool aim_packet(PacketRays* rays) {
   const int16 along_x = (x >= y) & (x >= z);
   const u32 xs = lane_bits(along_x), ys = lane_bits(~along_x & (y >= z));
   if ((xs != 0u && xs != ALL_RAYS) || (ys != 0u && ys != ALL_RAYS)) return false;
-  for (u32 axis = 0; axis < 3u; ++axis)
-    if (!aim_axis(rays, axis)) return false;
   rays->axis[2] = xs ? 0u : ys ? 1u : 2u;
   rays->axis[0] = xs ? 1u : ys ? 2u : 0u;
   rays->axis[1] = xs ? 2u : ys ? 0u : 1u;
@@ -94,12 +105,34 @@ NEVER_INLINE bool aim_packet(PacketRays* rays) {
   rays->sx = rays->d[rays->axis[0]] * along;
   rays->sy = rays->d[rays->axis[1]] * along;
   rays->sz = -along;
-  rays->slope_x[0] = least_of(rays->sx);
-  rays->slope_x[1] = most_of(rays->sx);
-  rays->slope_y[0] = least_of(rays->sy);
-  rays->slope_y[1] = most_of(rays->sy);
-  rays->one_origin = rays->origin[0][0] == rays->origin[0][1] && rays->origin[1][0] == rays->origin[1][1] &&
-                     rays->origin[2][0] == rays->origin[2][1];
+  float16 ends[16];
+#pragma unroll
+  for (u32 axis = 0; axis < 3u; ++axis) {
+    const float16 o = rays->o[axis], rcp = safe_reciprocal16(rays->d[axis]);
+    const float16 rcp_near = rcp * 0.9999997f, rcp_far = rcp * 1.0000003f;
+    const float16 near = o * rcp_near, far = o * rcp_far;
+    rays->rcp_near[axis] = rcp_near;
+    rays->rcp_far[axis] = rcp_far;
+    rays->shift_near[axis] = -(near + fabs(near) * 2.4e-7f);
+    rays->shift_far[axis] = -(far - fabs(far) * 2.4e-7f);
+    ends[axis] = o;
+    ends[4u + axis] = -o;
+    ends[8u + axis] = rcp;
+    ends[12u + axis] = -rcp;
+  }
+  ends[3] = rays->sx;
+  ends[7] = -rays->sx;
+  ends[11] = rays->sy;
+  ends[15] = -rays->sy;
+  const float16 least = least_of_each(ends);
+  const float4 rcp[2] = {least.s89ab, -least.scdef};
+  const int4 negative = rcp[1] < 0.0f, apart = ~negative & (rcp[0] <= 0.0f);
+  if (apart.x | apart.y | apart.z) return false;
+  rays->least_sx = least.s3;
+  rays->most_sx = -least.s7;
+  rays->least_sy = least.sb;
+  rays->most_sy = -least.sf;
+  span_packet(rays, least.s0123, -least.s4567, rcp, negative);
   return true;
 }
 

@@ -49,7 +49,7 @@ NEVER_INLINE bool make_packet(const REAL3* o, const REAL3* d, const REAL* t_min,
   packet->found.t = select((REAL)(-1.0f), hits->t, active);
   packet->t_min = select((REAL)(REAL_LANE(*t_min, stand_in)), *t_min, active);
   packet->t_least = least_of(packet->t_min);
-  packet->t_most = most_of(packet->found.t);
+  renew_bounds(packet);
   return true;
 }
 #endif
