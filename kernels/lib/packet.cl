@@ -108,30 +108,22 @@ NEVER_INLINE bool next_place(__global const u32* restrict nodes, const PacketRay
 }
 
 #if HAS_MESH
-// Where the rays see one coordinate of corners, relative to themselves: x = (ox - vx) - sx (oz - vz) in
-// bounds. Rounding keeps order, so the bounds hold to the bit.
-typedef struct Reach {
-  float8 least, most;
-} Reach;
-ALWAYS_INLINE void widen(Reach* span, float8 a, float8 b) {
-  span->least = least8(span->least, least8(a, b));
-  span->most = greatest8(span->most, greatest8(a, b));
-}
-
-// The triangles of a block that some ray may hit: those that do not lie on one side of all rays.
+// The triangles of a block that some ray may hit: not those with all corners on one side of all rays. The
+// lower half of a vector holds the corners' least distance to the rays' right, the upper one to their left.
 ALWAYS_INLINE u32 triangles_in_packet(__global const TriangleBlock* block, const PacketRays* rays) {
-  if (!rays->one_origin) return lane_mask(vload8(0, block->prim) != NO_PRIM);
   const u32 ax = rays->axis[0], ay = rays->axis[1], az = rays->axis[2];
-  Reach x = {(float8)(INFINITY), (float8)(-INFINITY)}, y = x;
+  float16 x = (float16)(INFINITY), y = x;
 #pragma unroll
   for (u32 corner = 0; corner < 3u; ++corner) {
     __global const float* v = block->v0_x + corner * 24u;
     const float8 vx = vload8(ax, v), vy = vload8(ay, v), vz = vload8(az, v);
-    const float8 dx = rays->least_o[ax] - vx, dy = rays->least_o[ay] - vy, dz = rays->least_o[az] - vz;
-    widen(&x, fma(-(float8)(rays->least_sx), dz, dx), fma(-(float8)(rays->most_sx), dz, dx));
-    widen(&y, fma(-(float8)(rays->least_sy), dz, dy), fma(-(float8)(rays->most_sy), dz, dy));
+    const float16 dz = rays->depth - (float16)(vz, vz), dx = fma((float16)(vx, vx), SIDES, rays->sides_x),
+                  dy = fma((float16)(vy, vy), SIDES, rays->sides_y);
+    x = least16(x, least16(fma(rays->slopes_x[0], dz, dx), fma(rays->slopes_x[1], dz, dx)));
+    y = least16(y, least16(fma(rays->slopes_y[0], dz, dy), fma(rays->slopes_y[1], dz, dy)));
   }
-  return lane_mask((x.least <= 0.0f) & (x.most >= 0.0f) & (y.least <= 0.0f) & (y.most >= 0.0f));
+  const u32 near = lane_bits((x <= 0.0f) & (y <= 0.0f));
+  return near & near >> 8;
 }
 
 // The triangle at `place` against all rays. Returns whether it is a hit of any.

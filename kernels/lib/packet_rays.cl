@@ -19,8 +19,10 @@ typedef struct PacketRays {
   // The interval: with the least and the greatest reciprocal of each axis, the origin on the safe side.
   float near_rcp[2][4], near_shift[2][4], far_rcp[2][4], far_shift[2][4];
   float spread[4];  // by how much the origins alone move the distance to a plane
-  float least_o[4], least_sx, most_sx, least_sy, most_sy;
-  u32 one_origin;  // all rays start at the same point
+  // The same in the sheared space of triangles: the rays between two planes each for x and y, with either end
+  // of the slopes. See triangles_in_packet.
+  float16 sides_x, sides_y, slopes_x[2], slopes_y[2];
+  float depth;  // z where the rays cross sides_x and sides_y
   // What all rays share: float offsets into Bvh8Node, and the axes that a ShearRay permutes to x, y, z.
   u32 near[4], far[4], axis[3];
 } PacketRays;
@@ -55,17 +57,25 @@ static inline float16 safe_reciprocal16(float16 d) {
   return 1.0f / select(d, tiny, fabs(d) < 1e-18f);
 }
 
+static inline float16 least16(float16 a, float16 b) { return select(b, a, a < b); }
+
+// The lower half of the result is the least of neighbours in a, the upper one of those in b.
+ALWAYS_INLINE float16 least_of_pairs(float16 a, float16 b) {
+  return least16((float16)(a.even, b.even), (float16)(a.odd, b.odd));
+}
+
 // Lane i of the result is the least of v[i]. Overwrites v.
 ALWAYS_INLINE float16 least_of_each(float16* v) {
 #pragma unroll
   for (u32 count = 8; count > 0u; count >>= 1)
 #pragma unroll
-    for (u32 i = 0; i < count; ++i) {
-      const float16 a = (float16)(v[2u * i].even, v[2u * i + 1u].even),
-                    b = (float16)(v[2u * i].odd, v[2u * i + 1u].odd);
-      v[i] = select(b, a, a < b);
-    }
+    for (u32 i = 0; i < count; ++i) v[i] = least_of_pairs(v[2u * i], v[2u * i + 1u]);
   return v[0];
+}
+ALWAYS_INLINE float4 least_of_four(float16 a, float16 b, float16 c, float16 d) {
+  const float16 all = least_of_pairs(least_of_pairs(a, b), least_of_pairs(c, d));
+  const float8 pairs = least8(all.even, all.odd);
+  return select(pairs.odd, pairs.even, pairs.even < pairs.odd);
 }
 
 // The interval that the rays span, from the least and the greatest origins and reciprocals of directions.
@@ -87,8 +97,32 @@ ALWAYS_INLINE void span_packet(PacketRays* rays, float4 least_o, float4 most_o, 
     vstore4(-(far - fabs(far) * 4.8e-7f), 0, rays->far_shift[end]);
   }
   vstore4((most_o - least_o) * max(fabs(rcp[0]), fabs(rcp[1])), 0, rays->spread);
-  vstore4(least_o, 0, rays->least_o);
-  rays->one_origin = least_o.x == most_o.x && least_o.y == most_o.y && least_o.z == most_o.z;
+}
+
+// -1 for the lower half, 1 for the upper one: see triangles_in_packet.
+#define SIDES (float16)((float8)(-1.0f), (float8)(1.0f))
+
+// The rays between planes, for triangles_in_packet; `slopes` are the least of sx and sy and the greatest. All
+// is widened by more than rounding moves a corner, which is relative to how far it is from the rays' start.
+ALWAYS_INLINE void shear_packet(PacketRays* rays, float4 slopes, float4 o_spread) {
+  const u32 ax = rays->axis[0], ay = rays->axis[1], az = rays->axis[2];
+  const float depth = get_lane(rays->o + az, 0);
+  float4 sides = (float4)(get_lane(rays->o + ax, 0), get_lane(rays->o + ay, 0), 0.0f, 0.0f);
+  sides.zw = -sides.xy;
+  if (o_spread.x != 0.0f || o_spread.y != 0.0f || o_spread.z != 0.0f) {
+    const float16 dz = depth - rays->o[az];
+    const float16 x = fma(rays->sx, dz, rays->o[ax]), y = fma(rays->sy, dz, rays->o[ay]);
+    sides = least_of_four(x, y, -x, -y);
+  }
+  sides -= 1e-6f * (fabs(sides) + max(max(o_spread.x, o_spread.y), o_spread.z));
+  slopes += (float4)(-1e-6f, -1e-6f, 1e-6f, 1e-6f);
+  rays->depth = depth;
+  rays->sides_x = (float16)((float8)(sides.x), (float8)(sides.z));
+  rays->sides_y = (float16)((float8)(sides.y), (float8)(sides.w));
+  rays->slopes_x[0] = SIDES * slopes.x;
+  rays->slopes_x[1] = SIDES * slopes.z;
+  rays->slopes_y[0] = SIDES * slopes.y;
+  rays->slopes_y[1] = SIDES * slopes.w;
 }
 
 // Prepares the rays for the tests, given o and d. Returns false when they cannot go as one: directions of
@@ -128,11 +162,8 @@ NEVER_INLINE bool aim_packet(PacketRays* rays) {
   const float4 rcp[2] = {least.s89ab, -least.scdef};
   const int4 negative = rcp[1] < 0.0f, apart = ~negative & (rcp[0] <= 0.0f);
   if (apart.x | apart.y | apart.z) return false;
-  rays->least_sx = least.s3;
-  rays->most_sx = -least.s7;
-  rays->least_sy = least.sb;
-  rays->most_sy = -least.sf;
   span_packet(rays, least.s0123, -least.s4567, rcp, negative);
+  shear_packet(rays, (float4)(least.s3, least.sb, -least.s7, -least.sf), -least.s4567 - least.s0123);
   return true;
 }
 
