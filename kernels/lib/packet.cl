@@ -19,17 +19,21 @@
 #define LEAF_LEAST 6
 #endif
 
-// Children that wait, each as the bits of its entry distance above its box, node * 8 + slot, perhaps with
-// ALL_CROSS: every ray crosses it. Nearest last.
+// A child's box: node * 8 + slot, perhaps with ALL_CROSS: every ray crosses it.
 #define ALL_CROSS 0x80000000u
+#define NO_BOX 0xFFFFFFFFu
+#define NO_NODE 0xFFFFFFFFu
+
+// Boxes that wait, each below the bits of its entry distance; nearest last.
 typedef struct PacketWalk {
   ulong waiting[BVH_STACK + 1];
   u32 top;
+  u32 first;  // a node to begin with
 } PacketWalk;
 
-// Puts the children that the interval crosses onto the stack; in no order with `any`, when sorting them costs
-// more than it saves.
-NEVER_INLINE void open_node(__global const u32* restrict nodes, u32 index, const PacketRays* rays,
+// Returns the nearest child that the interval crosses, or NO_BOX, and puts the others onto the stack. With
+// `any` the order is that of the slots: sorting would cost more than it saves.
+ALWAYS_INLINE u32 open_node(__global const u32* restrict nodes, u32 index, const PacketRays* rays,
                             const PacketHits* hits, PacketWalk* walk, bool any) {
   __global const BvhNode* node = node_at(nodes, index);
   __global const float* bounds = node->lower_x;
@@ -49,16 +53,24 @@ NEVER_INLINE void open_node(__global const u32* restrict nodes, u32 index, const
   }
   const u32 by_all = lane_mask(all_near <= all_far);
   u32 crossed = lane_mask(near <= far) & node->valid;
-  u32 entry[8];
-  vstore8(as_uint8(near), 0, entry);
+  if (!crossed) return NO_BOX;
+  u32 slot = lowest_bit(crossed);
+  crossed &= crossed - 1u;
+  u32 nearest = (index * 8u + slot) | (by_all >> slot) << 31;
+  if (!crossed) return nearest;
+  float entry[8];
+  vstore8(as_float8(near), 0, entry);
+  ulong least = (ulong)as_uint(entry[slot]) << 32 | nearest;
   const u32 base = walk->top;
   while (crossed) {
-    const u32 slot = lowest_bit(crossed);
+    slot = lowest_bit(crossed);
     crossed &= crossed - 1u;
-    ulong box = (index * 8u + slot) | (by_all >> slot) << 31;
+    ulong box = (ulong)as_uint(entry[slot]) << 32 | (index * 8u + slot) | (by_all >> slot) << 31;
     u32 to = walk->top++;
+    const ulong nearer = any ? box : min(box, least);
+    box = any ? least : max(box, least);
+    least = nearer;
     if (!any) {
-      box |= (ulong)entry[slot] << 32;
       while (to > base && walk->waiting[to - 1u] < box) {
         walk->waiting[to] = walk->waiting[to - 1u];
         --to;
@@ -66,6 +78,7 @@ NEVER_INLINE void open_node(__global const u32* restrict nodes, u32 index, const
     }
     walk->waiting[to] = box;
   }
+  return (u32)least;
 }
 
 // The entry or the exit distances of the slabs of one axis for each ray.
@@ -89,41 +102,49 @@ ALWAYS_INLINE u32 rays_in_child(__global const Bvh8Node* node, u32 slot, const P
 // word and the rays that cross it; returns false at the end.
 NEVER_INLINE bool next_place(__global const u32* restrict nodes, const PacketRays* rays,
                              const PacketHits* hits, PacketWalk* walk, bool any, u32* word, u32* active) {
-  while (walk->top) {
-    const ulong next = walk->waiting[--walk->top];
-    if (as_float((u32)(next >> 32)) > hits->t_most) continue;
-    __global const BvhNode* node = node_at(nodes, ((u32)next & ~ALL_CROSS) >> 3);
-    const u32 slot = (u32)next & 7u;
-    u32 crossing = hits->live;
-    if (!((u32)next & ALL_CROSS)) {
-      crossing = rays_in_child(node, slot, rays, hits);
-      if (!crossing) continue;
+  u32 index = walk->first;
+  walk->first = NO_NODE;
+  while (true) {
+    u32 box;
+    if (index != NO_NODE) {
+      box = open_node(nodes, index, rays, hits, walk, any);
+      index = NO_NODE;
+      if (box == NO_BOX) continue;
+    } else {
+      if (!walk->top) return false;
+      const ulong next = walk->waiting[--walk->top];
+      if (as_float((u32)(next >> 32)) > hits->t_most) continue;
+      box = (u32)next;
     }
-    *word = node->child[slot];
+    __global const BvhNode* node = node_at(nodes, (box & ~ALL_CROSS) >> 3);
+    const u32 crossing = box & ALL_CROSS ? hits->live : rays_in_child(node, box & 7u, rays, hits);
+    if (!crossing) continue;
+    *word = node->child[box & 7u];
     *active = crossing;
     if ((*word & BVH_LEAF) || popcount(crossing) <= PACKET_LEAST) return true;
-    open_node(nodes, *word, rays, hits, walk, any);
+    index = *word;
   }
-  return false;
 }
 
 #if HAS_MESH
-// The triangles of a block that some ray may hit: not those with all corners on one side of all rays. The
-// lower half of a vector holds the corners' least distance to the rays' right, the upper one to their left.
+// The triangles of a block that some ray may hit: not those with all corners on one side of all rays.
 ALWAYS_INLINE u32 triangles_in_packet(__global const TriangleBlock* block, const PacketRays* rays) {
   const u32 ax = rays->axis[0], ay = rays->axis[1], az = rays->axis[2];
-  float16 x = (float16)(INFINITY), y = x;
+  float8 least_x = (float8)(INFINITY), least_y = least_x, most_x = -least_x, most_y = -least_x;
 #pragma unroll
   for (u32 corner = 0; corner < 3u; ++corner) {
     __global const float* v = block->v0_x + corner * 24u;
-    const float8 vx = vload8(ax, v), vy = vload8(ay, v), vz = vload8(az, v);
-    const float16 dz = rays->depth - (float16)(vz, vz), dx = fma((float16)(vx, vx), SIDES, rays->sides_x),
-                  dy = fma((float16)(vy, vy), SIDES, rays->sides_y);
-    x = least16(x, least16(fma(rays->slopes_x[0], dz, dx), fma(rays->slopes_x[1], dz, dx)));
-    y = least16(y, least16(fma(rays->slopes_y[0], dz, dy), fma(rays->slopes_y[1], dz, dy)));
+    const float8 dz = rays->beam_z - vload8(az, v), far = fabs(dz);
+    const float8 x = fma(-(float8)(rays->beam_sx), dz, rays->beam_x - vload8(ax, v)),
+                 y = fma(-(float8)(rays->beam_sy), dz, rays->beam_y - vload8(ay, v));
+    const float8 wide_x = fma((float8)(rays->spread_sx), far, (float8)(rays->spread_x)),
+                 wide_y = fma((float8)(rays->spread_sy), far, (float8)(rays->spread_y));
+    least_x = least8(least_x, x - wide_x);
+    most_x = greatest8(most_x, x + wide_x);
+    least_y = least8(least_y, y - wide_y);
+    most_y = greatest8(most_y, y + wide_y);
   }
-  const u32 near = lane_bits((x <= 0.0f) & (y <= 0.0f));
-  return near & near >> 8;
+  return lane_mask((least_x <= 0.0f) & (most_x >= 0.0f) & (least_y <= 0.0f) & (most_y >= 0.0f));
 }
 
 // The triangle at `place` against all rays. Returns whether it is a hit of any.
@@ -214,7 +235,7 @@ NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, Packe
                                  u32 instance, bool any) {
   PacketWalk walk;
   walk.top = 0;
-  open_node(nodes, root, rays, hits, &walk, any);
+  walk.first = root;
   u32 word, active;
   while (next_place(nodes, rays, hits, &walk, any, &word, &active)) {
     bool hit = false;
@@ -309,7 +330,7 @@ NEVER_INLINE void packet_in_scene(TRACE_PARAMETERS, const PacketRays* rays, Pack
   } else {
     PacketWalk walk;
     walk.top = 0;
-    open_node(nodes, root, rays, hits, &walk, any);
+    walk.first = root;
     u32 word, active;
     while (next_place(nodes, rays, hits, &walk, any, &word, &active)) {
       if (word & BVH_LEAF)

@@ -19,10 +19,9 @@ typedef struct PacketRays {
   // The interval: with the least and the greatest reciprocal of each axis, the origin on the safe side.
   float near_rcp[2][4], near_shift[2][4], far_rcp[2][4], far_shift[2][4];
   float spread[4];  // by how much the origins alone move the distance to a plane
-  // The same in the sheared space of triangles: the rays between two planes each for x and y, with either end
-  // of the slopes. See triangles_in_packet.
-  float16 sides_x, sides_y, slopes_x[2], slopes_y[2];
-  float depth;  // z where the rays cross sides_x and sides_y
+  // A beam that holds all rays, in the axes of a ShearRay: its middle at beam_z and its slopes, and how far
+  // it reaches on both sides. See triangles_in_packet.
+  float beam_x, beam_y, beam_z, beam_sx, beam_sy, spread_x, spread_y, spread_sx, spread_sy;
   // What all rays share: float offsets into Bvh8Node, and the axes that a ShearRay permutes to x, y, z.
   u32 near[4], far[4], axis[3];
 } PacketRays;
@@ -99,30 +98,31 @@ ALWAYS_INLINE void span_packet(PacketRays* rays, float4 least_o, float4 most_o, 
   vstore4((most_o - least_o) * max(fabs(rcp[0]), fabs(rcp[1])), 0, rays->spread);
 }
 
-// -1 for the lower half, 1 for the upper one: see triangles_in_packet.
-#define SIDES (float16)((float8)(-1.0f), (float8)(1.0f))
-
-// The rays between planes, for triangles_in_packet; `slopes` are the least of sx and sy and the greatest. All
-// is widened by more than rounding moves a corner, which is relative to how far it is from the rays' start.
-ALWAYS_INLINE void shear_packet(PacketRays* rays, float4 slopes, float4 o_spread) {
+// The beam; `slopes` are the least of sx and sy and their negative greatest. It is widened by more than
+// rounding moves a corner in packet_triangle, which is relative to how far that is from the rays' start.
+ALWAYS_INLINE void make_beam(PacketRays* rays, float4 slopes, float4 o_spread) {
   const u32 ax = rays->axis[0], ay = rays->axis[1], az = rays->axis[2];
-  const float depth = get_lane(rays->o + az, 0);
-  float4 sides = (float4)(get_lane(rays->o + ax, 0), get_lane(rays->o + ay, 0), 0.0f, 0.0f);
-  sides.zw = -sides.xy;
-  if (o_spread.x != 0.0f || o_spread.y != 0.0f || o_spread.z != 0.0f) {
-    const float16 dz = depth - rays->o[az];
+  const float z = get_lane(rays->o + az, 0);
+  float2 least = (float2)(get_lane(rays->o + ax, 0), get_lane(rays->o + ay, 0)), most = least;
+  const float apart = max(max(o_spread.x, o_spread.y), o_spread.z);
+  if (apart > 0.0f) {
+    const float16 dz = z - rays->o[az];
     const float16 x = fma(rays->sx, dz, rays->o[ax]), y = fma(rays->sy, dz, rays->o[ay]);
-    sides = least_of_four(x, y, -x, -y);
+    const float4 ends = least_of_four(x, y, -x, -y);
+    least = ends.xy;
+    most = -ends.zw;
   }
-  sides -= 1e-6f * (fabs(sides) + max(max(o_spread.x, o_spread.y), o_spread.z));
-  slopes += (float4)(-1e-6f, -1e-6f, 1e-6f, 1e-6f);
-  rays->depth = depth;
-  rays->sides_x = (float16)((float8)(sides.x), (float8)(sides.z));
-  rays->sides_y = (float16)((float8)(sides.y), (float8)(sides.w));
-  rays->slopes_x[0] = SIDES * slopes.x;
-  rays->slopes_x[1] = SIDES * slopes.z;
-  rays->slopes_y[0] = SIDES * slopes.y;
-  rays->slopes_y[1] = SIDES * slopes.w;
+  const float2 middle = 0.5f * (least + most), wide = 0.5f * (most - least) + 1e-6f * (fabs(middle) + apart);
+  const float2 slope = 0.5f * (slopes.xy - slopes.zw), turn = -0.5f * (slopes.xy + slopes.zw) + 1e-6f;
+  rays->beam_x = middle.x;
+  rays->beam_y = middle.y;
+  rays->beam_z = z;
+  rays->beam_sx = slope.x;
+  rays->beam_sy = slope.y;
+  rays->spread_x = wide.x;
+  rays->spread_y = wide.y;
+  rays->spread_sx = turn.x;
+  rays->spread_sy = turn.y;
 }
 
 // Prepares the rays for the tests, given o and d. Returns false when they cannot go as one: directions of
@@ -163,7 +163,7 @@ NEVER_INLINE bool aim_packet(PacketRays* rays) {
   const int4 negative = rcp[1] < 0.0f, apart = ~negative & (rcp[0] <= 0.0f);
   if (apart.x | apart.y | apart.z) return false;
   span_packet(rays, least.s0123, -least.s4567, rcp, negative);
-  shear_packet(rays, (float4)(least.s3, least.sb, -least.s7, -least.sf), -least.s4567 - least.s0123);
+  make_beam(rays, least.s3b7f, -least.s4567 - least.s0123);
   return true;
 }
 
