@@ -11,12 +11,19 @@
 #include "lib/tables.h"
 #include "lib/walk.cl"
 
-// This many rays or fewer are faster alone, in a node and in a leaf.
+// This many rays or fewer are faster alone: in a scene or a mesh; in a node of it; in a leaf when the nearest
+// hit is wanted, or any.
 #ifndef PACKET_LEAST
 #define PACKET_LEAST 2
 #endif
+#ifndef NODE_LEAST
+#define NODE_LEAST 1
+#endif
 #ifndef LEAF_LEAST
-#define LEAF_LEAST 6
+#define LEAF_LEAST 4
+#endif
+#ifndef ANY_LEAF_LEAST
+#define ANY_LEAF_LEAST 8
 #endif
 
 // A child's box: node * 8 + slot, perhaps with ALL_CROSS: every ray crosses it.
@@ -91,6 +98,7 @@ ALWAYS_INLINE u32 rays_in_child(__global const Bvh8Node* node, u32 slot, const P
                                 const PacketHits* hits) {
   __global const float* bounds = node->lower_x + slot;
   int16 near = as_int16(hits->t_min), far = as_int16(hits->found.t);
+#pragma unroll
   for (u32 axis = 0; axis < 3u; ++axis) {
     near = max(near, slab_distance(bounds[rays->near[axis]], rays->rcp_near[axis], rays->shift_near[axis]));
     far = min(far, slab_distance(bounds[rays->far[axis]], rays->rcp_far[axis], rays->shift_far[axis]));
@@ -121,7 +129,7 @@ NEVER_INLINE bool next_place(__global const u32* restrict nodes, const PacketRay
     if (!crossing) continue;
     *word = node->child[box & 7u];
     *active = crossing;
-    if ((*word & BVH_LEAF) || popcount(crossing) <= PACKET_LEAST) return true;
+    if ((*word & BVH_LEAF) || popcount(crossing) <= NODE_LEAST) return true;
     index = *word;
   }
 }
@@ -242,7 +250,7 @@ NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, Packe
     const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
     if (!(word & BVH_LEAF)) {
       hit = walk_lanes(TRACE_ARGUMENTS, rays, hits, active, word, instance, any);
-    } else if (popcount(active) <= LEAF_LEAST) {
+    } else if (popcount(active) <= (any ? ANY_LEAF_LEAST : LEAF_LEAST)) {
       hit = lanes_in_blocks(blocks, rays, hits, active, first, last, instance, any);
     } else {
       for (u32 index = first; index <= last; ++index)
