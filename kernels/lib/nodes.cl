@@ -126,6 +126,22 @@ ALWAYS_INLINE u32 push_crossed(__global const BvhNode* node, const SlabRay* ray,
   return popcount(lane_mask(crossed));
 }
 
+// The same for rays to which any hit will do: in the order of the slots where packing them is quicker than
+// sorting, for nearest first saves them no visits that are worth it. stack_t may stay as it is.
+ALWAYS_INLINE u32 push_in_any_order(__global const BvhNode* node, const SlabRay* ray, float t_min,
+                                    float t_max, u32* stack, float* stack_t) {
+#if defined(__AVX512VL__) && !defined(SUNDOG_PORTABLE)
+  int8 near, far;
+  slab_distances(node, ray, t_min, t_max, &near, &far);
+  const int8 words = as_int8(vload8(0, node->child));
+  const u32 crossed = lane_mask((near <= far) & (words != (int)BVH_EMPTY));
+  vstore8(as_uint8(__builtin_ia32_compresssi256_mask(words, words, (uchar)crossed)), 0, stack);
+  return popcount(crossed);
+#else
+  return push_crossed(node, ray, t_min, t_max, stack, stack_t);
+#endif
+}
+
 // The children crossed in [t_min, t_max]; writes their keys.
 ALWAYS_INLINE u32 cross_children(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,
                                  u32* keys) {

@@ -69,13 +69,20 @@ static inline void trace_bounded_batch(TRACE_PARAMETERS, const REAL3* o, const R
   }
 #endif
 #if WALKS_IN_TURN
-  const WalkRays walkers = {o, d, t_min, hits};
-  const bool lone_mesh = info->bounded_count == 1u && (instances->flags & INSTANCE_IDENTITY);
-  if (lone_mesh && instances->shape == SHAPE_MESH)
+  if (info->bounded_count == 1u && instances->shape == SHAPE_MESH) {
+    // A mesh alone needs no scene BVH, and takes all rays into its space at once.
+    REAL3 oo = *o, dd = *d;
+    if (!(instances->flags & INSTANCE_IDENTITY)) {
+      oo = object_points(instances, oo);
+      dd = object_vectors(instances, dd);
+    }
+    const WalkRays walkers = {&oo, &dd, t_min, hits};
     walk_rays(TRACE_ARGUMENTS, &walkers, lane_bits(active), instances->root, 0u, any);
-  else
+  } else {
+    const WalkRays walkers = {o, d, t_min, hits};
     walk_rays(TRACE_ARGUMENTS, &walkers, lane_bits(active),
               info->bounded_count == 1u ? BVH_LEAF : info->tlas_root, NO_INSTANCE, any);
+  }
 #else
   for (u32 bits = lane_bits(active); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);

@@ -105,22 +105,25 @@ ALWAYS_INLINE BlockTest test_block(__global const TriangleBlock* block, const Sh
   return test;
 }
 
-// Nearest hit of the block in (t_min, hit->t]; updates *hit, whose prim becomes the triangle's place (see
-// finish_triangle).
+// Takes the nearest of the lanes hit, of which there are some, when it goes before *hit, whose prim becomes
+// the triangle's place (see finish_triangle).
+ALWAYS_INLINE void nearest_of_block(__global const TriangleBlock* blocks, u32 index, const BlockTest* test,
+                                    u32 instance, Hit* hit) {
+  float t[8], u[8], v[8];
+  vstore8(test->t, 0, t);
+  vstore8(test->u, 0, u);
+  vstore8(test->v, 0, v);
+  for (u32 lanes = test->lanes; lanes; lanes &= lanes - 1u) {
+    const u32 i = lowest_bit(lanes);
+    offer_triangle(blocks, index * 8u + i, t[i], u[i], v[i], instance, hit);
+  }
+}
+
+// Nearest hit of the block in (t_min, hit->t].
 ALWAYS_INLINE void closest_in_block(__global const TriangleBlock* blocks, u32 index, const ShearRay* ray,
                                     float t_min, u32 instance, Hit* hit) {
   const BlockTest test = test_block(blocks + index, ray, t_min, hit->t);
-  u32 lanes = test.lanes;
-  if (!lanes) return;
-  float t[8], u[8], v[8];
-  vstore8(test.t, 0, t);
-  vstore8(test.u, 0, u);
-  vstore8(test.v, 0, v);
-  while (lanes) {
-    const u32 i = lowest_bit(lanes);
-    lanes &= lanes - 1u;
-    offer_triangle(blocks, index * 8u + i, t[i], u[i], v[i], instance, hit);
-  }
+  if (test.lanes) nearest_of_block(blocks, index, &test, instance, hit);
 }
 #else
 static inline float edge_function(float ax, float ay, float bx, float by) { return ax * by - ay * bx; }

@@ -1,11 +1,13 @@
-// Rays by themselves through the two-level BVH, a few of them in turn, a step each: while one waits for a
-// node, the others' arithmetic goes on. A step tests eight children or eight triangles an instruction and
-// takes as few branches as it can, for where an incoherent ray goes next cannot be foretold. In: rays and
-// where they begin. Out: their hits, which do not depend on the rays that go along.
+// Rays by themselves through the two-level BVH. Where an incoherent ray goes next cannot be foretold, so the
+// walks of a batch are listed by what comes next, a node or a leaf, and taken a list at a time: eight boxes
+// or eight triangles an instruction, hardly a branch that depends on a ray, and while one walk waits for
+// memory or for its own arithmetic, the next ones go on. In: rays and where they begin. Out: their hits,
+// which do not depend on the rays that go along.
 #ifndef SUNDOG_LIB_WALK_CL
 #define SUNDOG_LIB_WALK_CL
 #include "lib/config.h"
 #if WALKS_IN_TURN
+#include "lib/aimed_rays.cl"
 #include "lib/hits.cl"
 #include "lib/nodes.cl"
 #include "lib/solid_instance.cl"
@@ -13,29 +15,22 @@
 #include "lib/transform.cl"
 #include "lib/triangles.cl"
 
-// Rays that are walked in turn.
-#ifndef WALKS
-#define WALKS 4
-#endif
+// Words on a walk's stack that are no child: below all others, and below those of a mesh.
+#define WALK_END 0xFFFFFFFFu
+#define WALK_BACK 0xFFFFFFFEu
 
-// Room for the nodes that wait, for what else waits of a leaf, and for the eight places that push_crossed
-// overwrites.
-#define WALK_STACK (BVH_STACK + 9)
+// Room for the nodes that wait, for those two words, for what else waits of a leaf, and for the places behind
+// them that whole vectors read and overwrite.
+#define WALK_STACK (BVH_STACK + 3 + (LANES > 8 ? LANES : 8))
 
 typedef struct Walk {
-  SlabRay slabs;   // in the space of the BVH
-  ShearRay shear;  // in a mesh
-  Hit hit;         // a triangle's prim is its place (see finish_triangle)
-  float t_min;
-  u32 ray;        // NO_RAY: the walk rests
+  const AimedRays* rays;  // in the space of the BVH
+  u32 ray;
   u32 instance;   // in whose mesh the walk is; NO_INSTANCE: in the scene BVH
-  u32 word;       // what comes next
   u32 top, base;  // below base waits the scene BVH while the walk is in a mesh
   u32 stack[WALK_STACK];
-  float stack_t[WALK_STACK];
+  float stack_t[WALK_STACK];  // where the ray enters what waits, never behind its hit; not written for `any`
 } Walk;
-
-#define NO_RAY 0xFFFFFFFFu
 
 // Lanes of rays; hits->t is where they end.
 typedef struct WalkRays {
@@ -44,103 +39,144 @@ typedef struct WalkRays {
   Hits* hits;
 } WalkRays;
 
-static inline void start_walk(Walk* walk, const WalkRays* rays, u32 ray, u32 word, u32 instance) {
-  const float3 o = get3(rays->o, ray), d = get3(rays->d, ray);
-  walk->slabs = make_slab_ray(o, d);
-  if (instance != NO_INSTANCE) walk->shear = make_shear_ray(o, d);
-  walk->hit = get_hit(rays->hits, ray);
-  walk->t_min = REAL_LANE(*rays->t_min, ray);
+static inline void push_word(Walk* walk, u32 word) {
+  walk->stack[walk->top] = word;
+  walk->stack_t[walk->top++] = -INFINITY;
+}
+
+static inline void start_walk(Walk* walk, const AimedRays* rays, u32 ray, u32 word, u32 instance) {
+  walk->rays = rays;
   walk->ray = ray;
   walk->instance = instance;
-  walk->word = word;
   walk->top = walk->base = 0;
+  push_word(walk, WALK_END);
+  push_word(walk, word);
+}
+
+// Takes what lies behind t off the stack, from place `from` on.
+ALWAYS_INLINE void drop_behind(Walk* walk, u32 from, float t) {
+  u32 to = from;
+  for (u32 i = from; i < walk->top; i += LANES) {
+    const u32 count = min(walk->top - i, (u32)LANES);
+    const REAL words = read_lanes((const float*)(walk->stack + i)), entries = read_lanes(walk->stack_t + i);
+    const MASK kept = MASK_OF(entries <= t) & lanes_of((1u << count) - 1u);
+    write_packed((float*)(walk->stack + to), words, kept);
+    write_packed(walk->stack_t + to, entries, kept);
+    to += lane_count(kept);
+  }
+  walk->top = to;
 }
 
 // A leaf of the scene BVH: the first of its instances is tested, or entered when it is a mesh, and the others
-// wait. Returns whether walk->word is what comes next.
-NEVER_INLINE bool walk_instance(__global const Instance* restrict instances, Walk* walk, float3 o, float3 d) {
-  const u32 index = walk->word & BVH_FIRST_MASK;
-  if (walk->word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK) {
-    walk->stack[walk->top] = walk->word - (1u << BVH_LEAF_SHIFT) + 1u;
-    walk->stack_t[walk->top++] = -INFINITY;
-  }
+// wait.
+NEVER_INLINE void walk_instance(__global const Instance* restrict instances, const WalkRays* rays,
+                                AimedRays* turned, Walk* walk, u32 word) {
+  const u32 index = word & BVH_FIRST_MASK, ray = walk->ray;
+  if (word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK) push_word(walk, word - (1u << BVH_LEAF_SHIFT) + 1u);
   __global const Instance* instance = instances + index;
+  const float3 o = get3(rays->o, ray), d = get3(rays->d, ray);
   if (instance->shape != SHAPE_MESH) {
-    trace_solid(instances, index, o, d, walk->t_min, &walk->hit);
-    return false;
+    Hit hit = get_hit(rays->hits, ray);
+    trace_solid(instances, index, o, d, REAL_LANE(*rays->t_min, ray), &hit);
+    set_hit(rays->hits, ray, &hit);
+    drop_behind(walk, 1u, hit.t);
+    return;
   }
   if (!(instance->flags & INSTANCE_IDENTITY)) {
-    o = object_point(instance, o);
-    d = object_vector(instance, d);
-    walk->slabs = make_slab_ray(o, d);
+    aim_ray(turned, ray, object_point(instance, o), object_vector(instance, d));
+    walk->rays = turned;
   }
-  walk->shear = make_shear_ray(o, d);
   walk->instance = index;
   walk->base = walk->top;
-  walk->word = instance->root;
-  return true;
+  push_word(walk, WALK_BACK);
+  push_word(walk, instance->root);
 }
 
-ALWAYS_INLINE void walk_blocks(__global const TriangleBlock* blocks, Walk* walk) {
-  const u32 first = walk->word & BVH_FIRST_MASK,
-            last = first + (walk->word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK);
-  for (u32 i = first; i <= last; ++i)
-    closest_in_block(blocks, i, &walk->shear, walk->t_min, walk->instance, &walk->hit);
+// From a mesh back to the scene BVH.
+static inline void leave_mesh(Walk* walk, const AimedRays* world) {
+  walk->rays = world;
+  walk->instance = NO_INSTANCE;
+  walk->base = 0;
 }
 
-// Sets what comes next to the nearest that waits. Returns false when nothing does.
-ALWAYS_INLINE bool next_word(__global const Instance* restrict instances, Walk* walk, const WalkRays* rays) {
-  u32 top = walk->top;
-  do {
-    if (top == walk->base) {
-      if (!top) return false;
-      // Back from a mesh to the scene BVH.
-      if (!(instances[walk->instance].flags & INSTANCE_IDENTITY))
-        walk->slabs = make_slab_ray(get3(rays->o, walk->ray), get3(rays->d, walk->ray));
-      walk->instance = NO_INSTANCE;
-      walk->base = 0;
-    }
-    --top;
-  } while (walk->stack_t[top] > walk->hit.t);
-  walk->top = top;
-  walk->word = walk->stack[top];
-  return true;
+// The first block of a leaf; the others wait.
+ALWAYS_INLINE void walk_block(__global const TriangleBlock* blocks, const REAL* t_min, Hits* hits, Walk* walk,
+                              u32 word) {
+  const u32 index = word & BVH_FIRST_MASK, ray = walk->ray;
+  walk->stack[walk->top] = word - (1u << BVH_LEAF_SHIFT) + 1u;
+  walk->top += (word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK) != 0u;
+  const ShearRay shear = get_shear(walk->rays, ray);
+  const BlockTest test = test_block(blocks + index, &shear, REAL_LANE(*t_min, ray), REAL_LANE(hits->t, ray));
+  if (!test.lanes) return;
+  Hit hit = get_hit(hits, ray);
+  nearest_of_block(blocks, index, &test, walk->instance, &hit);
+  set_hit(hits, ray, &hit);
+  drop_behind(walk, walk->base, hit.t);
 }
 
-// One node or leaf. Returns false at the end.
-ALWAYS_INLINE bool step_walk(TRACE_PARAMETERS, Walk* walk, const WalkRays* rays, bool any) {
-  if (!(walk->word & BVH_LEAF)) {
-    walk->top += push_crossed(node_at(nodes, walk->word), &walk->slabs, walk->t_min, walk->hit.t,
-                              walk->stack + walk->top, walk->stack_t + walk->top);
-  } else {
-    if (walk->instance != NO_INSTANCE)
-      walk_blocks(blocks, walk);
-    else if (walk_instance(instances, walk, get3(rays->o, walk->ray), get3(rays->d, walk->ray)))
-      return true;
-    if (any && walk->hit.instance != NO_INSTANCE) return false;
-  }
-  return next_word(instances, walk, rays);
+// Puts a walk on the list where its next word belongs; one that has ended goes on none. No branch, and the
+// counts stay in registers: a list that is found by its index would be written and read too close together.
+ALWAYS_INLINE void list_walk(Walk* walk, Walk** at_node, u32* node_words, u32* node_count, Walk** at_leaf,
+                             u32* leaf_count) {
+  const u32 word = walk->stack[walk->top - 1u], leaf = word >> 31;
+  at_node[*node_count] = walk;
+  node_words[*node_count] = word;
+  at_leaf[*leaf_count] = walk;
+  *node_count += 1u - leaf;
+  *leaf_count += leaf - (word == WALK_END ? 1u : 0u);
 }
+#define LIST_WALK(walk) list_walk(walk, at_node, node_words, &node_count, at_leaf, &leaf_count)
 
 // The nearest hits, or with `any` whichever come first, of the lanes of `bits`, from `word` of the scene BVH
 // on; or, rays in object space, of the mesh BVH of `instance`.
 NEVER_INLINE void walk_rays(TRACE_PARAMETERS, const WalkRays* rays, u32 bits, u32 word, u32 instance,
                             bool any) {
-  Walk walks[WALKS];
-  for (u32 k = 0; k < WALKS; ++k) walks[k].ray = NO_RAY;
-  u32 left = popcount(bits);
-  while (left) {
-    for (u32 k = 0; k < WALKS; ++k) {
-      Walk* walk = &walks[k];
-      if (walk->ray == NO_RAY) {
-        if (!bits) continue;
-        start_walk(walk, rays, lowest_bit(bits), word, instance);
-        bits &= bits - 1u;
+  const REAL* t_min = rays->t_min;
+  Hits* hits = rays->hits;
+  AimedRays world, turned;
+  aim_rays(&world, rays->o, rays->d);
+  Walk walks[LANES];
+  Walk *at_node[LANES + 1], *at_leaf[LANES + 1];
+  u32 node_words[LANES + 1], node_count = 0, leaf_count = 0;
+  for (; bits; bits &= bits - 1u) {
+    const u32 ray = lowest_bit(bits);
+    start_walk(&walks[ray], &world, ray, word, instance);
+    LIST_WALK(&walks[ray]);
+  }
+  while (node_count | leaf_count) {
+    // The longer list, so that there is always much to overlap.
+    if (node_count > leaf_count) {
+      const u32 count = node_count;
+      for (u32 k = 0; k < count; ++k) {
+        Walk* walk = at_node[k];
+        const u32 ray = walk->ray, top = walk->top - 1u;
+        const SlabRay slabs = get_slabs(walk->rays, ray);
+        __global const BvhNode* node = node_at(nodes, node_words[k]);
+        const float from = REAL_LANE(*t_min, ray), to = REAL_LANE(hits->t, ray);
+        walk->top =
+            top + (any ? push_in_any_order(node, &slabs, from, to, walk->stack + top, walk->stack_t + top)
+                       : push_crossed(node, &slabs, from, to, walk->stack + top, walk->stack_t + top));
       }
-      if (step_walk(TRACE_ARGUMENTS, walk, rays, any)) continue;
-      set_hit(rays->hits, walk->ray, &walk->hit);
-      walk->ray = NO_RAY;
-      --left;
+      // Only now, when what was pushed has arrived, is it looked at.
+      node_count = 0;
+      for (u32 k = 0; k < count; ++k) LIST_WALK(at_node[k]);
+    } else {
+      const u32 count = leaf_count;
+      leaf_count = 0;
+      for (u32 k = 0; k < count; ++k) {
+        Walk* walk = at_leaf[k];
+        const u32 word = walk->stack[--walk->top], ray = walk->ray;
+        if (word == WALK_BACK) {
+          leave_mesh(walk, &world);
+          if (!any) drop_behind(walk, 1u, REAL_LANE(hits->t, ray));
+        } else if (walk->instance != NO_INSTANCE) {
+          walk_block(blocks, t_min, hits, walk, word);
+        } else {
+          walk_instance(instances, rays, &turned, walk, word);
+        }
+        if (any && MASK_LANE(hits->instance, ray) != (int)NO_INSTANCE) continue;
+        LIST_WALK(walk);
+      }
     }
   }
 }

@@ -1,0 +1,108 @@
+// The rays of a batch prepared for the tests of boxes and triangles, a ray a lane: SlabRay and ShearRay of
+// each, to the bit.
+#ifndef SUNDOG_LIB_AIMED_RAYS_CL
+#define SUNDOG_LIB_AIMED_RAYS_CL
+#include "lib/config.h"
+#include "lib/lanes.h"
+#include "lib/nodes.cl"
+#include "lib/triangles.cl"
+
+typedef struct AimedRays {
+  REAL3 rcp_near, rcp_far, shift_near, shift_far;
+  MASK near_x, near_y, near_z, far_x, far_y, far_z;
+  REAL ox, oy, oz, sx, sy, sz;
+  MASK x, y, z;
+} AimedRays;
+
+// One axis of make_slab_ray.
+static inline void aim_axis_of(REAL o, REAL d, int offset, REAL* rcp_near, REAL* rcp_far, REAL* shift_near,
+                               REAL* shift_far, MASK* near, MASK* far) {
+  const REAL rcp = 1.0f / select(d, copysign((REAL)(1e-18f), d), MASK_OF(fabs(d) < 1e-18f));
+  *rcp_near = rcp * 0.9999997f;
+  *rcp_far = rcp * 1.0000003f;
+  const REAL from = o * *rcp_near, to = o * *rcp_far;
+  *shift_near = -(from + fabs(from) * 2.4e-7f);
+  *shift_far = -(to - fabs(to) * 2.4e-7f);
+  *near = offset + (MASK_OF(rcp < 0.0f) & 24);
+  *far = offset * 2 + 24 - *near;
+}
+
+static inline void aim_rays(AimedRays* rays, const REAL3* o, const REAL3* d) {
+  aim_axis_of(o->x, d->x, 0, &rays->rcp_near.x, &rays->rcp_far.x, &rays->shift_near.x, &rays->shift_far.x,
+              &rays->near_x, &rays->far_x);
+  aim_axis_of(o->y, d->y, 8, &rays->rcp_near.y, &rays->rcp_far.y, &rays->shift_near.y, &rays->shift_far.y,
+              &rays->near_y, &rays->far_y);
+  aim_axis_of(o->z, d->z, 16, &rays->rcp_near.z, &rays->rcp_far.z, &rays->shift_near.z, &rays->shift_far.z,
+              &rays->near_z, &rays->far_z);
+  const REAL size_x = fabs(d->x), size_y = fabs(d->y), size_z = fabs(d->z);
+  const MASK along_x = MASK_OF(size_x >= size_y) & MASK_OF(size_x >= size_z),
+             along_y = MASK_OF(size_x < size_y) & MASK_OF(size_y >= size_z);
+  rays->z = select(select((MASK)(16), (MASK)(8), along_y), (MASK)(0), along_x);
+  rays->x = select(select((MASK)(0), (MASK)(16), along_y), (MASK)(8), along_x);
+  rays->y = 24 - rays->x - rays->z;
+  rays->ox = select(select(o->x, o->z, along_y), o->y, along_x);
+  rays->oy = select(select(o->y, o->x, along_y), o->z, along_x);
+  rays->oz = select(select(o->z, o->y, along_y), o->x, along_x);
+  const REAL dx = select(select(d->x, d->z, along_y), d->y, along_x);
+  const REAL dy = select(select(d->y, d->x, along_y), d->z, along_x);
+  const REAL along = 1.0f / select(select(d->z, d->y, along_y), d->x, along_x);
+  rays->sx = dx * along;
+  rays->sy = dy * along;
+  rays->sz = -along;
+}
+
+// Ray i; the others stay.
+static inline void aim_ray(AimedRays* rays, u32 i, float3 o, float3 d) {
+  const SlabRay slabs = make_slab_ray(o, d);
+  set3(&rays->rcp_near, i, slabs.rcp_near);
+  set3(&rays->rcp_far, i, slabs.rcp_far);
+  set3(&rays->shift_near, i, slabs.shift_near);
+  set3(&rays->shift_far, i, slabs.shift_far);
+  MASK_LANE(rays->near_x, i) = (int)slabs.near_x;
+  MASK_LANE(rays->far_x, i) = (int)slabs.far_x;
+  MASK_LANE(rays->near_y, i) = (int)slabs.near_y;
+  MASK_LANE(rays->far_y, i) = (int)slabs.far_y;
+  MASK_LANE(rays->near_z, i) = (int)slabs.near_z;
+  MASK_LANE(rays->far_z, i) = (int)slabs.far_z;
+  const ShearRay shear = make_shear_ray(o, d);
+  MASK_LANE(rays->x, i) = (int)shear.x;
+  MASK_LANE(rays->y, i) = (int)shear.y;
+  MASK_LANE(rays->z, i) = (int)shear.z;
+  REAL_LANE(rays->ox, i) = shear.ox;
+  REAL_LANE(rays->oy, i) = shear.oy;
+  REAL_LANE(rays->oz, i) = shear.oz;
+  REAL_LANE(rays->sx, i) = shear.sx;
+  REAL_LANE(rays->sy, i) = shear.sy;
+  REAL_LANE(rays->sz, i) = shear.sz;
+}
+
+ALWAYS_INLINE SlabRay get_slabs(const AimedRays* rays, u32 i) {
+  SlabRay ray;
+  ray.rcp_near = get3(&rays->rcp_near, i);
+  ray.rcp_far = get3(&rays->rcp_far, i);
+  ray.shift_near = get3(&rays->shift_near, i);
+  ray.shift_far = get3(&rays->shift_far, i);
+  ray.near_x = (u32)MASK_LANE(rays->near_x, i);
+  ray.near_y = (u32)MASK_LANE(rays->near_y, i);
+  ray.near_z = (u32)MASK_LANE(rays->near_z, i);
+  ray.far_x = (u32)MASK_LANE(rays->far_x, i);
+  ray.far_y = (u32)MASK_LANE(rays->far_y, i);
+  ray.far_z = (u32)MASK_LANE(rays->far_z, i);
+  return ray;
+}
+
+ALWAYS_INLINE ShearRay get_shear(const AimedRays* rays, u32 i) {
+  ShearRay ray;
+  ray.x = (u32)MASK_LANE(rays->x, i);
+  ray.y = (u32)MASK_LANE(rays->y, i);
+  ray.z = (u32)MASK_LANE(rays->z, i);
+  ray.ox = REAL_LANE(rays->ox, i);
+  ray.oy = REAL_LANE(rays->oy, i);
+  ray.oz = REAL_LANE(rays->oz, i);
+  ray.sx = REAL_LANE(rays->sx, i);
+  ray.sy = REAL_LANE(rays->sy, i);
+  ray.sz = REAL_LANE(rays->sz, i);
+  return ray;
+}
+
+#endif
