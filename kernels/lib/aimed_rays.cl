@@ -1,8 +1,10 @@
-// The rays of a batch prepared for the tests of boxes and triangles, a ray a lane: SlabRay and ShearRay of
-// each, to the bit.
+// The rays of a batch prepared for the tests of boxes and triangles: the members of SlabRay and ShearRay, to
+// the bit, a ray a lane. A test takes its ray out of the arrays, which costs it no more than a structure of
+// that ray alone would.
 #ifndef SUNDOG_LIB_AIMED_RAYS_CL
 #define SUNDOG_LIB_AIMED_RAYS_CL
 #include "lib/config.h"
+#if WALKS_IN_TURN
 #include "lib/lanes.h"
 #include "lib/nodes.cl"
 #include "lib/triangles.cl"
@@ -14,9 +16,9 @@ typedef struct AimedRays {
   MASK x, y, z;
 } AimedRays;
 
-// One axis of make_slab_ray.
-static inline void aim_axis_of(REAL o, REAL d, int offset, REAL* rcp_near, REAL* rcp_far, REAL* shift_near,
-                               REAL* shift_far, MASK* near, MASK* far) {
+// One axis of make_slab_ray; `offset` is that of its lower planes.
+static inline void aim_slabs(REAL o, REAL d, int offset, REAL* rcp_near, REAL* rcp_far, REAL* shift_near,
+                             REAL* shift_far, MASK* near, MASK* far) {
   const REAL rcp = 1.0f / select(d, copysign((REAL)(1e-18f), d), MASK_OF(fabs(d) < 1e-18f));
   *rcp_near = rcp * 0.9999997f;
   *rcp_far = rcp * 1.0000003f;
@@ -27,13 +29,14 @@ static inline void aim_axis_of(REAL o, REAL d, int offset, REAL* rcp_near, REAL*
   *far = offset * 2 + 24 - *near;
 }
 
+// make_slab_ray and make_shear_ray of all lanes.
 static inline void aim_rays(AimedRays* rays, const REAL3* o, const REAL3* d) {
-  aim_axis_of(o->x, d->x, 0, &rays->rcp_near.x, &rays->rcp_far.x, &rays->shift_near.x, &rays->shift_far.x,
-              &rays->near_x, &rays->far_x);
-  aim_axis_of(o->y, d->y, 8, &rays->rcp_near.y, &rays->rcp_far.y, &rays->shift_near.y, &rays->shift_far.y,
-              &rays->near_y, &rays->far_y);
-  aim_axis_of(o->z, d->z, 16, &rays->rcp_near.z, &rays->rcp_far.z, &rays->shift_near.z, &rays->shift_far.z,
-              &rays->near_z, &rays->far_z);
+  aim_slabs(o->x, d->x, 0, &rays->rcp_near.x, &rays->rcp_far.x, &rays->shift_near.x, &rays->shift_far.x,
+            &rays->near_x, &rays->far_x);
+  aim_slabs(o->y, d->y, 8, &rays->rcp_near.y, &rays->rcp_far.y, &rays->shift_near.y, &rays->shift_far.y,
+            &rays->near_y, &rays->far_y);
+  aim_slabs(o->z, d->z, 16, &rays->rcp_near.z, &rays->rcp_far.z, &rays->shift_near.z, &rays->shift_far.z,
+            &rays->near_z, &rays->far_z);
   const REAL size_x = fabs(d->x), size_y = fabs(d->y), size_z = fabs(d->z);
   const MASK along_x = MASK_OF(size_x >= size_y) & MASK_OF(size_x >= size_z),
              along_y = MASK_OF(size_x < size_y) & MASK_OF(size_y >= size_z);
@@ -51,7 +54,7 @@ static inline void aim_rays(AimedRays* rays, const REAL3* o, const REAL3* d) {
   rays->sz = -along;
 }
 
-// Ray i; the others stay.
+// The same of ray i; the others stay as they are.
 static inline void aim_ray(AimedRays* rays, u32 i, float3 o, float3 d) {
   const SlabRay slabs = make_slab_ray(o, d);
   set3(&rays->rcp_near, i, slabs.rcp_near);
@@ -104,5 +107,7 @@ ALWAYS_INLINE ShearRay get_shear(const AimedRays* rays, u32 i) {
   ray.sz = REAL_LANE(rays->sz, i);
   return ray;
 }
+
+#endif
 
 #endif

@@ -114,6 +114,19 @@ ALWAYS_INLINE void walk_block(__global const TriangleBlock* blocks, const REAL* 
   drop_behind(walk, walk->base, hit.t);
 }
 
+// The next word of a walk, a node.
+ALWAYS_INLINE void walk_node(__global const u32* nodes, const REAL* t_min, const Hits* hits, Walk* walk,
+                             u32 word, bool any) {
+  const u32 ray = walk->ray, top = walk->top - 1u;
+  const SlabRay slabs = get_slabs(walk->rays, ray);
+  __global const BvhNode* node = node_at(nodes, word);
+  const float from = REAL_LANE(*t_min, ray), to = REAL_LANE(hits->t, ray);
+  u32* stack = walk->stack + top;
+  float* stack_t = walk->stack_t + top;
+  walk->top = top + (any ? push_in_any_order(node, &slabs, from, to, stack, stack_t)
+                         : push_crossed(node, &slabs, from, to, stack, stack_t));
+}
+
 // Puts a walk on the list where its next word belongs; one that has ended goes on none. No branch, and the
 // counts stay in registers: a list that is found by its index would be written and read too close together.
 ALWAYS_INLINE void list_walk(Walk* walk, Walk** at_node, u32* node_words, u32* node_count, Walk** at_leaf,
@@ -127,14 +140,18 @@ ALWAYS_INLINE void list_walk(Walk* walk, Walk** at_node, u32* node_words, u32* n
 }
 #define LIST_WALK(walk) list_walk(walk, at_node, node_words, &node_count, at_leaf, &leaf_count)
 
-// The nearest hits, or with `any` whichever come first, of the lanes of `bits`, from `word` of the scene BVH
-// on; or, rays in object space, of the mesh BVH of `instance`.
+// The nearest hits, or with `any` whichever come first, of the lanes of `bits`, which is not 0, from `word`
+// of the scene BVH on; or, rays in object space, of the mesh BVH of `instance`.
 NEVER_INLINE void walk_rays(TRACE_PARAMETERS, const WalkRays* rays, u32 bits, u32 word, u32 instance,
                             bool any) {
   const REAL* t_min = rays->t_min;
   Hits* hits = rays->hits;
   AimedRays world, turned;
-  aim_rays(&world, rays->o, rays->d);
+  const u32 first = lowest_bit(bits);
+  if (bits == 1u << first)
+    aim_ray(&world, first, get3(rays->o, first), get3(rays->d, first));
+  else
+    aim_rays(&world, rays->o, rays->d);
   Walk walks[LANES];
   Walk *at_node[LANES + 1], *at_leaf[LANES + 1];
   u32 node_words[LANES + 1], node_count = 0, leaf_count = 0;
@@ -147,16 +164,7 @@ NEVER_INLINE void walk_rays(TRACE_PARAMETERS, const WalkRays* rays, u32 bits, u3
     // The longer list, so that there is always much to overlap.
     if (node_count > leaf_count) {
       const u32 count = node_count;
-      for (u32 k = 0; k < count; ++k) {
-        Walk* walk = at_node[k];
-        const u32 ray = walk->ray, top = walk->top - 1u;
-        const SlabRay slabs = get_slabs(walk->rays, ray);
-        __global const BvhNode* node = node_at(nodes, node_words[k]);
-        const float from = REAL_LANE(*t_min, ray), to = REAL_LANE(hits->t, ray);
-        walk->top =
-            top + (any ? push_in_any_order(node, &slabs, from, to, walk->stack + top, walk->stack_t + top)
-                       : push_crossed(node, &slabs, from, to, walk->stack + top, walk->stack_t + top));
-      }
+      for (u32 k = 0; k < count; ++k) walk_node(nodes, t_min, hits, at_node[k], node_words[k], any);
       // Only now, when what was pushed has arrived, is it looked at.
       node_count = 0;
       for (u32 k = 0; k < count; ++k) LIST_WALK(at_node[k]);
