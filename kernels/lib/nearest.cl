@@ -44,7 +44,7 @@ static inline void next_hits(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays
                              Hits* hits, u32* counts) {
   const bool any = to_light && !HAS_SHADOW_FILTERS;
   find_hits(TRACE_ARGUMENTS, &rays->o, &rays->d, &rays->t_min, rays->t_max, active, false, any, hits);
-  finish_triangles(TRACE_ARGUMENTS, hits);
+  finish_triangles(TRACE_ARGUMENTS, false, hits);
 #if HAS_SDF
   const u32 purpose = any ? MARCH_TO_BLOCK : to_light ? MARCH_TO_LIGHT : MARCH_TO_SEE;
   if (any) active &= ~hit_anything(hits);

@@ -117,24 +117,30 @@ static inline void find_hits(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, c
 #endif
 }
 
-// Indices and geometric normals of the triangles among the hits; once for the rays that met the same one.
-static inline void finish_triangles(TRACE_PARAMETERS, Hits* hits) {
+// Indices and geometric normals of the triangles among the hits. `coherent`: several rays meet the same one.
+static inline void finish_triangles(TRACE_PARAMETERS, bool coherent, Hits* hits) {
 #if HAS_MESH
   const MASK places = hits->prim;
-  MASK left = hit_anything(hits);
-  while (any_lane(left)) {
-    u32 instance, place;
-    MASK here = take_alike(hits->instance, &left, &instance);
+  u32 bits = lane_bits(hit_anything(hits));
+  while (bits) {
+    const u32 i = lowest_bit(bits);
+    bits &= bits - 1u;
+    const int instance = MASK_LANE(hits->instance, i), place = MASK_LANE(places, i);
 #if HAS_SOLID
     if (instances[instance].shape != SHAPE_MESH) continue;
 #endif
-    while (any_lane(here)) {
-      const MASK alike = take_alike(places, &here, &place);
-      Hit hit;
-      hit.prim = place;
-      finish_triangle(blocks, &hit);
+    Hit hit;
+    hit.prim = (u32)place;
+    finish_triangle(blocks, &hit);
+    const float3 ng = (float3)(hit.ng_x, hit.ng_y, hit.ng_z);
+    if (coherent) {
+      const MASK alike = MASK_OF(places == place) & MASK_OF(hits->instance == instance);
+      bits &= ~lane_bits(alike);
       hits->prim = select(hits->prim, (MASK)((int)hit.prim), alike);
-      hits->ng = select3(hits->ng, all3((float3)(hit.ng_x, hit.ng_y, hit.ng_z)), alike);
+      hits->ng = select3(hits->ng, all3(ng), alike);
+    } else {
+      MASK_LANE(hits->prim, i) = (int)hit.prim;
+      set3(&hits->ng, i, ng);
     }
   }
 #endif
@@ -144,7 +150,7 @@ static inline void finish_triangles(TRACE_PARAMETERS, Hits* hits) {
 static inline void trace_batch(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min,
                                REAL t_max, MASK active, bool coherent, Hits* hits) {
   find_hits(TRACE_ARGUMENTS, o, d, t_min, t_max, active, coherent, false, hits);
-  finish_triangles(TRACE_ARGUMENTS, hits);
+  finish_triangles(TRACE_ARGUMENTS, coherent, hits);
 }
 
 // The lanes of `active` that hit anything in (t_min, t_max].
