@@ -1,4 +1,5 @@
-// Every constant a kernel is specialised by, with its default. The host's KernelConfig writes the -D options.
+// Every constant that a scene or a device specialises a kernel by, with its default: the host's KernelConfig
+// writes the -D options. Thresholds of a method stand where the method does.
 #ifndef SUNDOG_LIB_CONFIG_H
 #define SUNDOG_LIB_CONFIG_H
 
