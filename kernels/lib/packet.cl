@@ -97,7 +97,7 @@ ALWAYS_INLINE int16 slab_distance(float bound, float16 rcp, float16 shift) {
 ALWAYS_INLINE u32 rays_in_child(__global const Bvh8Node* node, u32 slot, const PacketRays* rays,
                                 const PacketHits* hits) {
   __global const float* bounds = node->lower_x + slot;
-  int16 near = as_int16(hits->t_min), far = as_int16(hits->found.t);
+  int16 near = as_int16(hits->t_min), far = as_int16(hits->found->t);
 #pragma unroll
   for (u32 axis = 0; axis < 3u; ++axis) {
     near = max(near, slab_distance(bounds[rays->near[axis]], rays->rcp_near[axis], rays->shift_near[axis]));
@@ -174,20 +174,20 @@ ALWAYS_INLINE bool packet_triangle(__global const TriangleBlock* blocks, u32 pla
   const float16 scale = 1.0f / (e0 + e1 + e2);
   const float16 w0 = e0 * scale, u = e1 * scale, v = e2 * scale;
   const float16 t = fma(w0, z0, fma(u, z1, v * z2)) * rays->sz;
-  hit &= (t > hits->t_min) & (t <= hits->found.t);
+  hit &= (t > hits->t_min) & (t <= hits->found->t);
   if (!lane_bits(hit)) return false;
-  u32 ties = lane_bits(hit & (t == hits->found.t));
+  u32 ties = lane_bits(hit & (t == hits->found->t));
   while (ties) {
     const u32 i = lowest_bit(ties);
     ties &= ties - 1u;
-    const Hit other = get_hit(&hits->found, i);
+    const Hit other = get_hit(hits->found, i);
     if (!wins_tie(blocks, instance, place, &other)) hit &= ~lanes_of(1u << i);
   }
-  hits->found.t = select(hits->found.t, any ? (float16)(-1.0f) : t, hit);
-  hits->found.u = select(hits->found.u, u, hit);
-  hits->found.v = select(hits->found.v, v, hit);
-  hits->found.prim = select(hits->found.prim, (int16)((int)place), hit);
-  hits->found.instance = select(hits->found.instance, (int16)((int)instance), hit);
+  hits->found->t = select(hits->found->t, any ? (float16)(-1.0f) : t, hit);
+  hits->found->u = select(hits->found->u, u, hit);
+  hits->found->v = select(hits->found->v, v, hit);
+  hits->found->prim = select(hits->found->prim, (int16)((int)place), hit);
+  hits->found->instance = select(hits->found->instance, (int16)((int)instance), hit);
   return true;
 }
 
@@ -196,10 +196,10 @@ ALWAYS_INLINE bool packet_triangle(__global const TriangleBlock* blocks, u32 pla
 NEVER_INLINE bool walk_lanes(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active, u32 word,
                              u32 instance, bool any) {
   const REAL3 o = real3(rays->o[0], rays->o[1], rays->o[2]), d = real3(rays->d[0], rays->d[1], rays->d[2]);
-  const REAL before = hits->found.t;
-  const WalkRays walkers = {&o, &d, &hits->t_min, &hits->found};
+  const REAL before = hits->found->t;
+  const WalkRays walkers = {&o, &d, &hits->t_min, hits->found};
   walk_rays(TRACE_ARGUMENTS, &walkers, active, word, instance, any);
-  const MASK nearer = MASK_OF(hits->found.t < before);
+  const MASK nearer = MASK_OF(hits->found->t < before);
   if (any) end_lanes(hits, lanes_of(active));
   return any_lane(nearer);
 }
@@ -222,19 +222,19 @@ NEVER_INLINE bool lanes_in_blocks(__global const TriangleBlock* blocks, const Pa
                           get_lane(&rays->sy, i),
                           get_lane(&rays->sz, i)};
     Hit hit;
-    hit.t = get_lane(&hits->found.t, i);
-    hit.instance = (u32)MASK_LANE(hits->found.instance, i);
-    hit.prim = (u32)MASK_LANE(hits->found.prim, i);
+    hit.t = get_lane(&hits->found->t, i);
+    hit.instance = (u32)MASK_LANE(hits->found->instance, i);
+    hit.prim = (u32)MASK_LANE(hits->found->prim, i);
     const u32 before = hit.prim, was = hit.instance;
     for (u32 index = first; index <= last; ++index)
       closest_in_block(blocks, index, &ray, get_lane(&hits->t_min, i), instance, &hit);
     if (hit.prim == before && hit.instance == was) continue;
     nearer = true;
-    REAL_LANE(hits->found.t, i) = any ? -1.0f : hit.t;
-    REAL_LANE(hits->found.u, i) = hit.u;
-    REAL_LANE(hits->found.v, i) = hit.v;
-    MASK_LANE(hits->found.prim, i) = (int)hit.prim;
-    MASK_LANE(hits->found.instance, i) = (int)hit.instance;
+    REAL_LANE(hits->found->t, i) = any ? -1.0f : hit.t;
+    REAL_LANE(hits->found->u, i) = hit.u;
+    REAL_LANE(hits->found->v, i) = hit.v;
+    MASK_LANE(hits->found->prim, i) = (int)hit.prim;
+    MASK_LANE(hits->found->instance, i) = (int)hit.instance;
   }
   return nearer;
 }
@@ -266,7 +266,7 @@ NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, Packe
 static inline void packet_in_solid(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,
                                    u32 index, bool any) {
   const REAL3 o = real3(rays->o[0], rays->o[1], rays->o[2]), d = real3(rays->d[0], rays->d[1], rays->d[2]);
-  hit_solid(instances, index, &o, &d, &hits->t_min, lanes_of(active), &hits->found);
+  hit_solid(instances, index, &o, &d, &hits->t_min, lanes_of(active), hits->found);
   if (any) end_lanes(hits, lanes_of(active));
 }
 
@@ -288,11 +288,11 @@ NEVER_INLINE void packet_in_instance(TRACE_PARAMETERS, const PacketRays* rays, P
     packet_in_object(instance, rays, active, &object);
     if (aim_packet(&object)) {
       const int16 lanes = lanes_of(active);
-      const float16 t = hits->found.t;  // of the others, for afterwards
-      hits->found.t = select((float16)(-1.0f), t, lanes);
+      const float16 t = hits->found->t;  // of the others, for afterwards
+      hits->found->t = select((float16)(-1.0f), t, lanes);
       renew_bounds(hits);
       packet_in_mesh(TRACE_ARGUMENTS, &object, hits, instance->root, index, any);
-      hits->found.t = select(t, hits->found.t, lanes);
+      hits->found->t = select(t, hits->found->t, lanes);
     } else
       walk_lanes(TRACE_ARGUMENTS, rays, hits, active, BVH_LEAF | index, NO_INSTANCE, any);
     return;
@@ -309,10 +309,10 @@ static inline void bounded_alone(TRACE_PARAMETERS, const PacketRays* rays, Packe
 #else
   for (u32 bits = active; bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    Hit hit = get_hit(&hits->found, i);
+    Hit hit = get_hit(hits->found, i);
     trace_bounded(TRACE_ARGUMENTS, word, packet_origin(rays, i), packet_direction(rays, i),
                   get_lane(&hits->t_min, i), any, &hit);
-    set_hit(&hits->found, i, &hit);
+    set_hit(hits->found, i, &hit);
   }
   if (any) end_lanes(hits, lanes_of(active));
 #endif
@@ -322,7 +322,7 @@ NEVER_INLINE void packet_in_leaf(TRACE_PARAMETERS, const PacketRays* rays, Packe
                                  u32 word, bool any) {
   const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
   for (u32 i = first; i <= last; ++i) {
-    if (any) active &= ~lane_bits(as_int16(hits->found.t));  // these have found something
+    if (any) active &= ~lane_bits(as_int16(hits->found->t));  // these have found something
     if (active) packet_in_instance(TRACE_ARGUMENTS, rays, hits, active, i, any);
   }
   renew_bounds(hits);
@@ -330,7 +330,7 @@ NEVER_INLINE void packet_in_leaf(TRACE_PARAMETERS, const PacketRays* rays, Packe
 
 // The bounded instances; `rays` in world space and aimed.
 NEVER_INLINE void packet_in_scene(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, bool any) {
-  const u32 live = ALL_RAYS & ~lane_bits(as_int16(hits->found.t)), root = info->tlas_root;
+  const u32 live = ALL_RAYS & ~lane_bits(as_int16(hits->found->t)), root = info->tlas_root;
   if (info->bounded_count == 1u) {
     packet_in_instance(TRACE_ARGUMENTS, rays, hits, live, 0u, any);
   } else if (root & BVH_LEAF) {

@@ -29,7 +29,7 @@ typedef struct PacketRays {
 // What the rays found so far. A lane without a ray, and with `any` one that has found something, has a t
 // below 0: it crosses nothing.
 typedef struct PacketHits {
-  Hits found;  // prim of a triangle is its place (see finish_triangle)
+  Hits* found;  // prim of a triangle is its place (see finish_triangle)
   float16 t_min;
   float t_least, t_most;  // of t_min and t over the rays
   u32 live;               // rays whose t is not below 0
@@ -47,8 +47,8 @@ static inline float most_of(float16 v) { return -least_of(-v); }
 
 // What is known of all rays, after hits.
 static inline void renew_bounds(PacketHits* hits) {
-  hits->t_most = most_of(hits->found.t);
-  hits->live = ~lane_bits(as_int16(hits->found.t)) & ALL_RAYS;
+  hits->t_most = most_of(hits->found->t);
+  hits->live = ~lane_bits(as_int16(hits->found->t)) & ALL_RAYS;
 }
 
 static inline float16 safe_reciprocal16(float16 d) {
@@ -194,7 +194,7 @@ static inline float3 packet_direction(const PacketRays* rays, u32 i) {
 
 // Lanes that have found something are switched off.
 static inline void end_lanes(PacketHits* hits, MASK lanes) {
-  hits->found.t = select(hits->found.t, (REAL)(-1.0f), lanes & hit_anything(&hits->found));
+  hits->found->t = select(hits->found->t, (REAL)(-1.0f), lanes & hit_anything(hits->found));
 }
 
 #endif

@@ -37,16 +37,16 @@ static inline void hit_solids(__global const Instance* restrict instances, u32 f
 #if PACKETS
 // Rays become a packet; a lane that is not active stands in as a copy of another and is switched off. Returns
 // false when the rays do not go as one.
-NEVER_INLINE bool make_packet(const REAL3* o, const REAL3* d, const REAL* t_min, MASK active,
-                              const Hits* hits, PacketRays* rays, PacketHits* packet) {
+NEVER_INLINE bool make_packet(const REAL3* o, const REAL3* d, const REAL* t_min, MASK active, Hits* hits,
+                              PacketRays* rays, PacketHits* packet) {
   const u32 stand_in = lowest_bit(lane_bits(active));
   const REAL3 oo = select3(all3(get3(o, stand_in)), *o, active),
               dd = select3(all3(get3(d, stand_in)), *d, active);
   rays->o[0] = oo.x, rays->o[1] = oo.y, rays->o[2] = oo.z;
   rays->d[0] = dd.x, rays->d[1] = dd.y, rays->d[2] = dd.z;
   if (!aim_packet(rays)) return false;
-  packet->found = *hits;
-  packet->found.t = select((REAL)(-1.0f), hits->t, active);
+  packet->found = hits;
+  hits->t = select((REAL)(-1.0f), hits->t, active);
   packet->t_min = select((REAL)(REAL_LANE(*t_min, stand_in)), *t_min, active);
   packet->t_least = least_of(packet->t_min);
   renew_bounds(packet);
@@ -61,10 +61,11 @@ static inline void trace_bounded_batch(TRACE_PARAMETERS, const REAL3* o, const R
 #if PACKETS
   PacketRays rays;
   PacketHits packet;
+  const REAL t = hits->t;
   if (coherent && lane_count(active) > PACKET_LEAST &&
       make_packet(o, d, t_min, active, hits, &rays, &packet)) {
     packet_in_scene(TRACE_ARGUMENTS, &rays, &packet, any);
-    *hits = select_hits(hits, &packet.found, active);
+    hits->t = select(t, hits->t, active);
     return;
   }
 #endif
