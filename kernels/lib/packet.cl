@@ -38,6 +38,10 @@ typedef struct PacketWalk {
   u32 first;  // a node to begin with
 } PacketWalk;
 
+ALWAYS_INLINE int8 crossing_at(float8 planes, const Crossing* crossing, u32 axis) {
+  return as_int8(fma(planes, (float8)(crossing->rcp[axis]), (float8)(crossing->shift[axis])));
+}
+
 // Returns the nearest child that the interval crosses, or NO_BOX, and puts the others onto the stack. With
 // `any` the order is that of the slots: sorting would cost more than it saves.
 ALWAYS_INLINE u32 open_node(__global const u32* restrict nodes, u32 index, const PacketRays* rays,
@@ -45,20 +49,16 @@ ALWAYS_INLINE u32 open_node(__global const u32* restrict nodes, u32 index, const
   __global const BvhNode* node = node_at(nodes, index);
   __global const float* bounds = node->lower_x;
   int8 near = (int8)(as_int(hits->t_least)), far = (int8)(as_int(hits->t_most));
-  int8 all_near = near, all_far = far;
+  int8 last_in = near, first_out = far;
 #pragma unroll
   for (u32 axis = 0; axis < 3u; ++axis) {
     const float8 b = vload8(0, bounds + rays->near[axis]), c = vload8(0, bounds + rays->far[axis]);
-    const float8 near_0 = fma(b, (float8)(rays->near_rcp[0][axis]), (float8)(rays->near_shift[0][axis])),
-                 near_1 = fma(b, (float8)(rays->near_rcp[1][axis]), (float8)(rays->near_shift[1][axis]));
-    const float8 far_0 = fma(c, (float8)(rays->far_rcp[0][axis]), (float8)(rays->far_shift[0][axis])),
-                 far_1 = fma(c, (float8)(rays->far_rcp[1][axis]), (float8)(rays->far_shift[1][axis]));
-    near = max(near, as_int8(least8(near_0, near_1)));
-    far = min(far, as_int8(greatest8(far_0, far_1)));
-    all_near = max(all_near, as_int8(greatest8(near_0, near_1) + rays->spread[axis]));
-    all_far = min(all_far, as_int8(least8(far_0, far_1) - rays->spread[axis]));
+    near = max(near, crossing_at(b, &rays->first_in, axis));
+    far = min(far, crossing_at(c, &rays->last_out, axis));
+    last_in = max(last_in, crossing_at(b, &rays->last_in, axis));
+    first_out = min(first_out, crossing_at(c, &rays->first_out, axis));
   }
-  const u32 by_all = lane_mask(all_near <= all_far);
+  const u32 by_all = lane_mask(last_in <= first_out);
   u32 crossed = lane_mask(near <= far) & node->valid;
   if (!crossed) return NO_BOX;
   u32 slot = lowest_bit(crossed);

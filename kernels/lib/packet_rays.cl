@@ -11,14 +11,18 @@
 #if PACKETS
 #define ALL_RAYS 0xFFFFu
 
+// A plane at b across an axis lies at fma(b, rcp, shift).
+typedef struct Crossing {
+  float rcp[4], shift[4];
+} Crossing;
+
 // The rays in world or object space; arrays are by axis.
 typedef struct PacketRays {
   float16 o[3], d[3];
   // SlabRay and ShearRay, a lane a ray.
   float16 rcp_near[3], rcp_far[3], shift_near[3], shift_far[3], sx, sy, sz;
-  // The interval: with the least and the greatest reciprocal of each axis, the origin on the safe side.
-  float near_rcp[2][4], near_shift[2][4], far_rcp[2][4], far_shift[2][4];
-  float spread[4];  // by how much the origins alone move the distance to a plane
+  // The interval: where some ray may enter and leave, where all have entered and still none has left.
+  Crossing first_in, last_out, last_in, first_out;
   // A beam that holds all rays, in the axes of a ShearRay: its middle at beam_z and its slopes, and how far
   // it reaches on both sides. See triangles_in_packet.
   float beam_x, beam_y, beam_z, beam_sx, beam_sy, spread_x, spread_y, spread_sx, spread_sy;
@@ -77,25 +81,26 @@ ALWAYS_INLINE float4 least_of_four(float16 a, float16 b, float16 c, float16 d) {
   return select(pairs.odd, pairs.even, pairs.even < pairs.odd);
 }
 
-// The interval that the rays span, from the least and the greatest origins and reciprocals of directions.
-ALWAYS_INLINE void span_packet(PacketRays* rays, float4 least_o, float4 most_o, const float4* rcp,
-                               int4 negative) {
+ALWAYS_INLINE void set_crossing(Crossing* crossing, float4 o, float4 rcp, float wider) {
+  const float4 at = o * rcp;
+  vstore4(rcp, 0, crossing->rcp);
+  vstore4(-(at + fabs(at) * wider), 0, crossing->shift);
+}
+
+// The interval that the rays span, from the least and the greatest origins and reciprocals of directions. A
+// ray enters first with the origin that is farthest on and with the smallest reciprocal: that a plane behind
+// the origin is then not the first does not matter, for no ray starts before 0.
+ALWAYS_INLINE void span_packet(PacketRays* rays, float4 least_o, float4 most_o, float4 least_rcp,
+                               float4 most_rcp, int4 negative) {
   const int4 lower = (int4)(0, 8, 16, 0), upper = lower + 24;
   vstore4(as_uint4(select(lower, upper, negative)), 0, rays->near);
   vstore4(as_uint4(select(upper, lower, negative)), 0, rays->far);
-  // (b - o) / d is least where b - o is least, for d > 0 that is the greatest o, and with either end of 1 /
-  // d.
-  const float4 near_o = select(most_o, least_o, negative), far_o = select(least_o, most_o, negative);
-#pragma unroll
-  for (u32 end = 0; end < 2u; ++end) {
-    const float4 r_near = rcp[end] * 0.9999994f, r_far = rcp[end] * 1.0000006f;
-    const float4 near = near_o * r_near, far = far_o * r_far;
-    vstore4(r_near, 0, rays->near_rcp[end]);
-    vstore4(-(near + fabs(near) * 4.8e-7f), 0, rays->near_shift[end]);
-    vstore4(r_far, 0, rays->far_rcp[end]);
-    vstore4(-(far - fabs(far) * 4.8e-7f), 0, rays->far_shift[end]);
-  }
-  vstore4((most_o - least_o) * max(fabs(rcp[0]), fabs(rcp[1])), 0, rays->spread);
+  const float4 ahead = select(most_o, least_o, negative), behind = select(least_o, most_o, negative);
+  const float4 small = select(least_rcp, most_rcp, negative), large = select(most_rcp, least_rcp, negative);
+  set_crossing(&rays->first_in, ahead, small * 0.9999994f, 4.8e-7f);
+  set_crossing(&rays->last_out, behind, large * 1.0000006f, -4.8e-7f);
+  set_crossing(&rays->last_in, behind, large, 0.0f);
+  set_crossing(&rays->first_out, ahead, small, 0.0f);
 }
 
 // The beam; `slopes` are the least of sx and sy and their negative greatest. It is widened by more than
@@ -159,10 +164,10 @@ NEVER_INLINE bool aim_packet(PacketRays* rays) {
   ends[11] = rays->sy;
   ends[15] = -rays->sy;
   const float16 least = least_of_each(ends);
-  const float4 rcp[2] = {least.s89ab, -least.scdef};
-  const int4 negative = rcp[1] < 0.0f, apart = ~negative & (rcp[0] <= 0.0f);
+  const float4 least_rcp = least.s89ab, most_rcp = -least.scdef;
+  const int4 negative = most_rcp < 0.0f, apart = ~negative & (least_rcp <= 0.0f);
   if (apart.x | apart.y | apart.z) return false;
-  span_packet(rays, least.s0123, -least.s4567, rcp, negative);
+  span_packet(rays, least.s0123, -least.s4567, least_rcp, most_rcp, negative);
   make_beam(rays, least.s3b7f, -least.s4567 - least.s0123);
   return true;
 }
