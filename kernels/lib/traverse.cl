@@ -56,39 +56,44 @@ NEVER_INLINE bool make_packet(const REAL3* o, const REAL3* d, const REAL* t_min,
 
 #if HAS_BVH
 // The bounded instances for the lanes of `active`.
-static inline void trace_bounded_batch(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min,
-                                       MASK active, bool coherent, bool any, Hits* hits) {
+static inline void trace_bounded_batch(TRACE_PARAMETERS, const REAL3* world_o, const REAL3* world_d,
+                                       const REAL* t_min, MASK active, bool coherent, bool any, Hits* hits) {
+  REAL3 o = *world_o, d = *world_d;
+  // A mesh alone needs no scene BVH, and takes all rays into its space at once.
+  const bool lone_mesh = HAS_MESH && info->bounded_count == 1u && instances->shape == SHAPE_MESH;
+  if (WIDE_VECTORS && lone_mesh && !(instances->flags & INSTANCE_IDENTITY)) {
+    o = object_points(instances, o);
+    d = object_vectors(instances, d);
+  }
 #if PACKETS
   PacketRays rays;
   PacketHits packet;
   const REAL t = hits->t;
   if (coherent && lane_count(active) > PACKET_LEAST &&
-      make_packet(o, d, t_min, active, hits, &rays, &packet)) {
-    packet_in_scene(TRACE_ARGUMENTS, &rays, &packet, any);
+      make_packet(&o, &d, t_min, active, hits, &rays, &packet)) {
+#if HAS_MESH
+    if (lone_mesh)
+      packet_in_mesh(TRACE_ARGUMENTS, &rays, &packet, instances->root, 0u, any);
+    else
+#endif
+      packet_in_scene(TRACE_ARGUMENTS, &rays, &packet, any);
     hits->t = select(t, hits->t, active);
     return;
   }
 #endif
 #if WALKS_IN_TURN
-  if (info->bounded_count == 1u && instances->shape == SHAPE_MESH) {
-    // A mesh alone needs no scene BVH, and takes all rays into its space at once.
-    REAL3 oo = *o, dd = *d;
-    if (!(instances->flags & INSTANCE_IDENTITY)) {
-      oo = object_points(instances, oo);
-      dd = object_vectors(instances, dd);
-    }
-    const WalkRays walkers = {&oo, &dd, t_min, hits};
-    walk_rays(TRACE_ARGUMENTS, &walkers, lane_bits(active), instances->root, 0u, any);
-  } else {
-    const WalkRays walkers = {o, d, t_min, hits};
-    walk_rays(TRACE_ARGUMENTS, &walkers, lane_bits(active),
-              info->bounded_count == 1u ? BVH_LEAF : info->tlas_root, NO_INSTANCE, any);
-  }
+  const WalkRays walkers = {&o, &d, t_min, hits};
+  const u32 bits = lane_bits(active);
+  if (lone_mesh)
+    walk_rays(TRACE_ARGUMENTS, &walkers, bits, instances->root, 0u, any);
+  else
+    walk_rays(TRACE_ARGUMENTS, &walkers, bits, info->bounded_count == 1u ? BVH_LEAF : info->tlas_root,
+              NO_INSTANCE, any);
 #else
   for (u32 bits = lane_bits(active); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     Hit hit = get_hit(hits, i);
-    trace_instances(TRACE_ARGUMENTS, get3(o, i), get3(d, i), REAL_LANE(*t_min, i), any, &hit);
+    trace_instances(TRACE_ARGUMENTS, get3(&o, i), get3(&d, i), REAL_LANE(*t_min, i), any, &hit);
     set_hit(hits, i, &hit);
   }
 #endif
