@@ -29,32 +29,7 @@ static inline void aim_slabs(REAL o, REAL d, int offset, REAL* rcp_near, REAL* r
   *far = offset * 2 + 24 - *near;
 }
 
-// make_slab_ray and make_shear_ray of all lanes.
-static inline void aim_rays(AimedRays* rays, const REAL3* o, const REAL3* d) {
-  aim_slabs(o->x, d->x, 0, &rays->rcp_near.x, &rays->rcp_far.x, &rays->shift_near.x, &rays->shift_far.x,
-            &rays->near_x, &rays->far_x);
-  aim_slabs(o->y, d->y, 8, &rays->rcp_near.y, &rays->rcp_far.y, &rays->shift_near.y, &rays->shift_far.y,
-            &rays->near_y, &rays->far_y);
-  aim_slabs(o->z, d->z, 16, &rays->rcp_near.z, &rays->rcp_far.z, &rays->shift_near.z, &rays->shift_far.z,
-            &rays->near_z, &rays->far_z);
-  const REAL size_x = fabs(d->x), size_y = fabs(d->y), size_z = fabs(d->z);
-  const MASK along_x = MASK_OF(size_x >= size_y) & MASK_OF(size_x >= size_z),
-             along_y = MASK_OF(size_x < size_y) & MASK_OF(size_y >= size_z);
-  rays->z = select(select((MASK)(16), (MASK)(8), along_y), (MASK)(0), along_x);
-  rays->x = select(select((MASK)(0), (MASK)(16), along_y), (MASK)(8), along_x);
-  rays->y = 24 - rays->x - rays->z;
-  rays->ox = select(select(o->x, o->z, along_y), o->y, along_x);
-  rays->oy = select(select(o->y, o->x, along_y), o->z, along_x);
-  rays->oz = select(select(o->z, o->y, along_y), o->x, along_x);
-  const REAL dx = select(select(d->x, d->z, along_y), d->y, along_x);
-  const REAL dy = select(select(d->y, d->x, along_y), d->z, along_x);
-  const REAL along = 1.0f / select(select(d->z, d->y, along_y), d->x, along_x);
-  rays->sx = dx * along;
-  rays->sy = dy * along;
-  rays->sz = -along;
-}
-
-// The same of ray i; the others stay as they are.
+// Ray i; the others stay as they are.
 static inline void aim_ray(AimedRays* rays, u32 i, float3 o, float3 d) {
   const SlabRay slabs = make_slab_ray(o, d);
   set3(&rays->rcp_near, i, slabs.rcp_near);
@@ -77,6 +52,64 @@ static inline void aim_ray(AimedRays* rays, u32 i, float3 o, float3 d) {
   REAL_LANE(rays->sx, i) = shear.sx;
   REAL_LANE(rays->sy, i) = shear.sy;
   REAL_LANE(rays->sz, i) = shear.sz;
+}
+
+// All lanes.
+static inline AimedRays aimed(const REAL3* o, const REAL3* d) {
+  AimedRays rays;
+  aim_slabs(o->x, d->x, 0, &rays.rcp_near.x, &rays.rcp_far.x, &rays.shift_near.x, &rays.shift_far.x,
+            &rays.near_x, &rays.far_x);
+  aim_slabs(o->y, d->y, 8, &rays.rcp_near.y, &rays.rcp_far.y, &rays.shift_near.y, &rays.shift_far.y,
+            &rays.near_y, &rays.far_y);
+  aim_slabs(o->z, d->z, 16, &rays.rcp_near.z, &rays.rcp_far.z, &rays.shift_near.z, &rays.shift_far.z,
+            &rays.near_z, &rays.far_z);
+  const REAL size_x = fabs(d->x), size_y = fabs(d->y), size_z = fabs(d->z);
+  const MASK along_x = MASK_OF(size_x >= size_y) & MASK_OF(size_x >= size_z),
+             along_y = MASK_OF(size_x < size_y) & MASK_OF(size_y >= size_z);
+  rays.z = select(select((MASK)(16), (MASK)(8), along_y), (MASK)(0), along_x);
+  rays.x = select(select((MASK)(0), (MASK)(16), along_y), (MASK)(8), along_x);
+  rays.y = 24 - rays.x - rays.z;
+  rays.ox = select(select(o->x, o->z, along_y), o->y, along_x);
+  rays.oy = select(select(o->y, o->x, along_y), o->z, along_x);
+  rays.oz = select(select(o->z, o->y, along_y), o->x, along_x);
+  const REAL dx = select(select(d->x, d->z, along_y), d->y, along_x);
+  const REAL dy = select(select(d->y, d->x, along_y), d->z, along_x);
+  const REAL along = 1.0f / select(select(d->z, d->y, along_y), d->x, along_x);
+  rays.sx = dx * along;
+  rays.sy = dy * along;
+  rays.sz = -along;
+  return rays;
+}
+
+static inline void blend3(REAL3* a, const REAL3* b, MASK lanes) { *a = select3(*a, *b, lanes); }
+
+// Sets the lanes of `bits`, as make_slab_ray and make_shear_ray would; the others stay as they are.
+NEVER_INLINE void aim_rays(AimedRays* rays, const REAL3* o, const REAL3* d, u32 bits) {
+  if (!(bits & (bits - 1u))) {
+    aim_ray(rays, lowest_bit(bits), get3(o, lowest_bit(bits)), get3(d, lowest_bit(bits)));
+    return;
+  }
+  const AimedRays all = aimed(o, d);
+  const MASK lanes = lanes_of(bits);
+  blend3(&rays->rcp_near, &all.rcp_near, lanes);
+  blend3(&rays->rcp_far, &all.rcp_far, lanes);
+  blend3(&rays->shift_near, &all.shift_near, lanes);
+  blend3(&rays->shift_far, &all.shift_far, lanes);
+  rays->near_x = select(rays->near_x, all.near_x, lanes);
+  rays->near_y = select(rays->near_y, all.near_y, lanes);
+  rays->near_z = select(rays->near_z, all.near_z, lanes);
+  rays->far_x = select(rays->far_x, all.far_x, lanes);
+  rays->far_y = select(rays->far_y, all.far_y, lanes);
+  rays->far_z = select(rays->far_z, all.far_z, lanes);
+  rays->ox = select(rays->ox, all.ox, lanes);
+  rays->oy = select(rays->oy, all.oy, lanes);
+  rays->oz = select(rays->oz, all.oz, lanes);
+  rays->sx = select(rays->sx, all.sx, lanes);
+  rays->sy = select(rays->sy, all.sy, lanes);
+  rays->sz = select(rays->sz, all.sz, lanes);
+  rays->x = select(rays->x, all.x, lanes);
+  rays->y = select(rays->y, all.y, lanes);
+  rays->z = select(rays->z, all.z, lanes);
 }
 
 ALWAYS_INLINE SlabRay get_slabs(const AimedRays* rays, u32 i) {

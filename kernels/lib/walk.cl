@@ -68,28 +68,42 @@ ALWAYS_INLINE void drop_behind(Walk* walk, u32 from, float t) {
 }
 
 // A leaf of the scene BVH: the first of its instances is tested, or entered when it is a mesh, and the others
-// wait.
-NEVER_INLINE void walk_instance(__global const Instance* restrict instances, const WalkRays* rays,
-                                AimedRays* turned, Walk* walk, u32 word) {
+// wait. Returns whether the ray is to be aimed anew in the mesh's space.
+NEVER_INLINE bool walk_instance(__global const Instance* restrict instances, const WalkRays* rays, Walk* walk,
+                                u32 word) {
   const u32 index = word & BVH_FIRST_MASK, ray = walk->ray;
   if (word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK) push_word(walk, word - (1u << BVH_LEAF_SHIFT) + 1u);
   __global const Instance* instance = instances + index;
-  const float3 o = get3(rays->o, ray), d = get3(rays->d, ray);
   if (instance->shape != SHAPE_MESH) {
     Hit hit = get_hit(rays->hits, ray);
-    trace_solid(instances, index, o, d, REAL_LANE(*rays->t_min, ray), &hit);
+    trace_solid(instances, index, get3(rays->o, ray), get3(rays->d, ray), REAL_LANE(*rays->t_min, ray), &hit);
     set_hit(rays->hits, ray, &hit);
     drop_behind(walk, 1u, hit.t);
-    return;
-  }
-  if (!(instance->flags & INSTANCE_IDENTITY)) {
-    aim_ray(turned, ray, object_point(instance, o), object_vector(instance, d));
-    walk->rays = turned;
+    return false;
   }
   walk->instance = index;
   walk->base = walk->top;
   push_word(walk, WALK_BACK);
   push_word(walk, instance->root);
+  return !(instance->flags & INSTANCE_IDENTITY);
+}
+
+// Aims the rays of `entering` in the spaces of the meshes that they have entered, those of one mesh at once.
+NEVER_INLINE void aim_in_meshes(__global const Instance* restrict instances, const WalkRays* rays,
+                                AimedRays* turned, Walk* walks, u32 entering) {
+  while (entering) {
+    const u32 index = walks[lowest_bit(entering)].instance;
+    u32 alike = 0;
+    for (u32 bits = entering; bits; bits &= bits - 1u) {
+      const u32 ray = lowest_bit(bits);
+      if (walks[ray].instance == index) alike |= 1u << ray;
+      walks[ray].rays = turned;
+    }
+    entering &= ~alike;
+    const REAL3 o = object_points(instances + index, *rays->o),
+                d = object_vectors(instances + index, *rays->d);
+    aim_rays(turned, &o, &d, alike);
+  }
 }
 
 // From a mesh back to the scene BVH.
@@ -147,11 +161,7 @@ NEVER_INLINE void walk_rays(TRACE_PARAMETERS, const WalkRays* rays, u32 bits, u3
   const REAL* t_min = rays->t_min;
   Hits* hits = rays->hits;
   AimedRays world, turned;
-  const u32 first = lowest_bit(bits);
-  if (bits == 1u << first)
-    aim_ray(&world, first, get3(rays->o, first), get3(rays->d, first));
-  else
-    aim_rays(&world, rays->o, rays->d);
+  aim_rays(&world, rays->o, rays->d, bits);
   Walk walks[LANES];
   Walk *at_node[LANES + 1], *at_leaf[LANES + 1];
   u32 node_words[LANES + 1], node_count = 0, leaf_count = 0;
@@ -170,6 +180,7 @@ NEVER_INLINE void walk_rays(TRACE_PARAMETERS, const WalkRays* rays, u32 bits, u3
       for (u32 k = 0; k < count; ++k) LIST_WALK(at_node[k]);
     } else {
       const u32 count = leaf_count;
+      u32 entering = 0;
       leaf_count = 0;
       for (u32 k = 0; k < count; ++k) {
         Walk* walk = at_leaf[k];
@@ -180,11 +191,12 @@ NEVER_INLINE void walk_rays(TRACE_PARAMETERS, const WalkRays* rays, u32 bits, u3
         } else if (walk->instance != NO_INSTANCE) {
           walk_block(blocks, t_min, hits, walk, word);
         } else {
-          walk_instance(instances, rays, &turned, walk, word);
+          entering |= (walk_instance(instances, rays, walk, word) ? 1u : 0u) << ray;
         }
         if (any && MASK_LANE(hits->instance, ray) != (int)NO_INSTANCE) continue;
         LIST_WALK(walk);
       }
+      if (entering) aim_in_meshes(instances, rays, &turned, walks, entering);
     }
   }
 }
