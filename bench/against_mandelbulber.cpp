@@ -4,7 +4,6 @@
 // from the equator, which makes it another set of the same kind: there outlines differ.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -14,15 +13,11 @@
 #include "base/image_io.h"
 #include "bench/samples.h"
 #include "run_program.h"
+#include "whole_runs.h"
 
 using namespace sundog;
 
 namespace {
-
-struct Options {
-  int size = 640, repeats = 3;
-  std::string json, folder = "against_mandelbulber", device = "cpu/1";
-};
 
 struct Surface {
   const char *name, *camera;    // the camera's place, on which it looks at the origin
@@ -86,9 +81,8 @@ double outline_difference(const std::string& a, const std::string& b) {
   return static_cast<double>(different) / (static_cast<double>(ours.width) * ours.height);
 }
 
-nlohmann::json measure(const Surface& s, const Options& options) {
-  const std::filesystem::path base =
-      std::filesystem::absolute(std::filesystem::path(options.folder) / s.name);
+nlohmann::json measure(const Surface& s, const WholeRuns& options) {
+  const std::filesystem::path base = std::filesystem::path(options.folder) / s.name;
   const auto file = [&](const char* end) { return base.string() + end; };
   write_file(file(".json"), our_scene(s, options.size));
   write_file(file(".fract"), their_settings(s, options.size));
@@ -131,25 +125,16 @@ nlohmann::json measure(const Surface& s, const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Options options;
-  CLI::App app("Whole runs of sundog and of Mandelbulber 2 in turn, each on one thread of the processor.");
-  app.add_option("--size", options.size, "pixels a side")->check(CLI::Range(16, 4096));
-  app.add_option("--repeats", options.repeats)->check(CLI::Range(1, 100));
-  app.add_option("--device", options.device, "sundog's OpenCL device");
-  app.add_option("--folder", options.folder, "for scenes and pictures");
-  app.add_option("--json", options.json, "file for the figures");
-  CLI11_PARSE(app, argc, argv);
+  WholeRuns options{.size = 640, .repeats = 3, .device = "cpu/1", .folder = "against_mandelbulber"};
   setenv("QT_QPA_PLATFORM", "offscreen", 0);
-  try {
-    std::filesystem::create_directories(options.folder);
+  const auto measure_all = [&] {
     fmt::print("{0}x{0}, one thread, {1} runs in turn\n{2:12} {3:>10} {4:>10} {5:>9} {6:>9} {7:>11}\n",
                options.size, options.repeats, "", "sundog", "Mandelb.", "x wall", "x cpu", "outlines");
     nlohmann::json report{{"size", options.size}, {"repeats", options.repeats}};
     for (const Surface& s : surfaces) report["surfaces"].push_back(measure(s, options));
-    if (!options.json.empty()) write_file(options.json, report.dump(2) + "\n");
-    return 0;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "against_mandelbulber: {}\n", error.what());
-    return 1;
-  }
+    return report;
+  };
+  return run_whole_runs(
+      "Whole runs of sundog and of Mandelbulber 2 in turn, each on one thread of the processor.", argc, argv,
+      options, measure_all);
 }

@@ -3,23 +3,18 @@
 // A picture of 64x64 pixels is one tile, so its end is the first that anyone can see of it.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "base/file.h"
 #include "bench/samples.h"
 #include "run_program.h"
+#include "whole_runs.h"
 
 using namespace sundog;
 namespace fs = std::filesystem;
 
 namespace {
-
-struct Options {
-  int size = 64, repeats = 5;
-  std::string json, folder = "start_up", device = "cpu";
-};
 
 struct Start {
   std::string name, what;
@@ -37,7 +32,7 @@ void write_edited(const fs::path& file) {
   write_file(file, text.replace(at, line.size(), "\"z = abs(z + shift) - 2 * shift\""));
 }
 
-void time_start(const Options& options, const std::string& scene, const fs::path& caches, Start& start) {
+void time_start(const WholeRuns& options, const std::string& scene, const fs::path& caches, Start& start) {
   const fs::path folder = options.folder;
   const std::vector<std::string> command{
       SUNDOG_BINARY, "render",       scene,     "--size", fmt::format("{0}x{0}", options.size),
@@ -51,7 +46,7 @@ void time_start(const Options& options, const std::string& scene, const fs::path
 }
 
 /// One run of each, so that a machine's moods touch all alike.
-void time_round(const Options& options, std::vector<Start>& starts) {
+void time_round(const WholeRuns& options, std::vector<Start>& starts) {
   const fs::path folder = options.folder, edited = folder / "edited.json";
   const fs::path of_spheres = folder / "caches_spheres", of_formula = folder / "caches_formula";
   fs::remove_all(of_spheres);
@@ -64,7 +59,7 @@ void time_round(const Options& options, std::vector<Start>& starts) {
   time_start(options, edited.string(), of_formula, starts[4]);
 }
 
-void report(const Options& options, const std::vector<Start>& starts) {
+nlohmann::json report(const WholeRuns& options, const std::vector<Start>& starts) {
   nlohmann::json json{{"size", options.size}, {"repeats", options.repeats}, {"device", options.device}};
   fmt::print("{:16} {:>9} {:>17} {:>11}\n", "", "wall [s]", "range", "processor");
   for (const Start& start : starts) {
@@ -76,33 +71,22 @@ void report(const Options& options, const std::vector<Start>& starts) {
                               {"wall_seconds", to_json(wall)},
                               {"processor_seconds", to_json(processor)}});
   }
-  if (!options.json.empty()) write_file(options.json, json.dump(2) + "\n");
+  return json;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  Options options;
-  CLI::App app("Times from the command to a small picture: with and without cached kernels.");
-  app.add_option("--size", options.size, "pixels a side")->check(CLI::Range(16, 4096));
-  app.add_option("--repeats", options.repeats)->check(CLI::Range(1, 100));
-  app.add_option("--device", options.device, "sundog's OpenCL device");
-  app.add_option("--folder", options.folder, "for caches, scenes and pictures");
-  app.add_option("--json", options.json, "file for the figures");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    options.folder = fs::absolute(options.folder).string();
-    fs::create_directories(options.folder);
+  WholeRuns options{.folder = "start_up"};
+  const auto measure = [&] {
     std::vector<Start> starts{{"spheres_cold", "scenes/spheres.json, no kernel in any cache", {}, {}},
                               {"spheres_warm", "its kernels cached", {}, {}},
                               {"formula_cold", "scenes/formula.json, no kernel in any cache", {}, {}},
                               {"formula_warm", "its kernels cached", {}, {}},
                               {"formula_edited", "another map in it, all else cached", {}, {}}};
     for (int i = 0; i < options.repeats; ++i) time_round(options, starts);
-    report(options, starts);
-    return 0;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "start_up: {}\n", error.what());
-    return 1;
-  }
+    return report(options, starts);
+  };
+  return run_whole_runs("Times from the command to a small picture: with and without cached kernels.", argc,
+                        argv, options, measure);
 }

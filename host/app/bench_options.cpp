@@ -12,6 +12,7 @@
 #include "app/commands.h"
 #include "app/option_helpers.h"
 #include "app/option_values.h"
+#include "app/output_files.h"
 #include "app/pick_devices.h"
 #include "app/warnings.h"
 #include "base/error.h"
@@ -36,6 +37,7 @@ void add_bench_options(CLI::App* app, BenchOptions& options) {
 }
 
 Report new_report(const std::string& name, const std::string& title, const BenchOptions& options) {
+  check_output_files({options.json, options.csv, options.html}, options.scenes);
   for (const std::string& file : {options.json, options.csv, options.html})
     if (!file.empty()) check_writable(file);
   for (const std::string& setting : options.overrides) check_override(setting);

@@ -1,42 +1,85 @@
 #include "app/interrupt.h"
 
+#include <fmt/format.h>
 #include <signal.h>
 #include <unistd.h>
+
+#include <mutex>
+#include <thread>
+
+#include "app/commands.h"
 
 namespace sundog {
 namespace {
 
-std::atomic<bool> stop_asked = false,
-                  was_continued = false;  // what a signal handler may touch is lock-free and static
-static_assert(std::atomic<bool>::is_always_lock_free);
+enum class Answer { ask, end, end_silently };
 
-constexpr int signals[] = {SIGINT, SIGTERM, SIGCONT};
-constexpr int count = 3;
-struct sigaction previous[count];
+/// Lives as long as the process does, and so does the thread that waits for signals.
+struct Waiting {
+  std::atomic<bool> stop_asked = false, was_continued = false;
+  std::mutex mutex;  // for what follows
+  Answer answer = Answer::ask;
+  std::string why;
+};
 
-extern "C" void on_signal(int signal) {
-  if (signal == SIGCONT)
-    was_continued = true;
-  else if (stop_asked.exchange(true))
-    ::_exit(130);
+Waiting& waiting() {
+  static auto* const one = new Waiting;
+  return *one;
+}
+
+sigset_t set_of(std::initializer_list<int> signals) {
+  sigset_t set;
+  ::sigemptyset(&set);
+  for (const int signal : signals) ::sigaddset(&set, signal);
+  return set;
+}
+
+void answer_stop(Waiting& state) {
+  const std::lock_guard lock(state.mutex);
+  if (state.answer == Answer::end) fmt::print(stderr, "sundog: interrupted: {}\n", state.why);
+  if (state.answer != Answer::ask || state.stop_asked.exchange(true)) ::_exit(exit_interrupted);
+}
+
+void wait_for_signals(Waiting& state) {
+  const sigset_t set = set_of({SIGINT, SIGTERM, SIGCONT});
+  for (int signal = 0; ::sigwait(&set, &signal) == 0;) {
+    if (signal == SIGCONT)
+      state.was_continued = true;
+    else
+      answer_stop(state);
+  }
+}
+
+void set_answer(Answer answer, const std::string& why = "") {
+  Waiting& state = waiting();
+  const std::lock_guard lock(state.mutex);
+  state.answer = answer;
+  state.why = why;
 }
 
 }  // namespace
 
+void hold_back(std::initializer_list<int> signals) {
+  const sigset_t set = set_of(signals);
+  ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
 StopOnSignal::StopOnSignal() {
-  stop_asked = was_continued = false;
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART;
-  for (int i = 0; i < count; ++i) ::sigaction(signals[i], &action, &previous[i]);
+  hold_back({SIGINT, SIGTERM, SIGCONT});
+  waiting().stop_asked = waiting().was_continued = false;
+  asks();
+  static std::once_flag begun;
+  std::call_once(begun, [] { std::thread([] { wait_for_signals(waiting()); }).detach(); });
 }
 
-StopOnSignal::~StopOnSignal() {
-  for (int i = 0; i < count; ++i) ::sigaction(signals[i], &previous[i], nullptr);
-}
+StopOnSignal::~StopOnSignal() { set_answer(Answer::end_silently); }
 
-const std::atomic<bool>& StopOnSignal::flag() const { return stop_asked; }
+void StopOnSignal::asks() const { set_answer(Answer::ask); }
 
-std::atomic<bool>& StopOnSignal::continued() const { return was_continued; }
+void StopOnSignal::ends_all(const std::string& why) const { set_answer(Answer::end, why); }
+
+const std::atomic<bool>& StopOnSignal::flag() const { return waiting().stop_asked; }
+
+std::atomic<bool>& StopOnSignal::continued() const { return waiting().was_continued; }
 
 }  // namespace sundog

@@ -3,7 +3,6 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <sched.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -82,9 +81,6 @@ std::unique_ptr<Mailbox> join_job() {
   if (rank < 0) return nullptr;
   OpenTransport* open = load_transport();
   undo_default_binding();
-  // An interrupt reaches every process of the job; rank 0 decides.
-  if (rank > 0)
-    for (const int each : {SIGINT, SIGTERM}) ::signal(each, SIG_IGN);
   auto job =
       std::make_unique<Mailbox>([open] { return std::unique_ptr<Transport>(open()); }, silence_limit());
   if (const int size = job_size(); size > 0 && size != job->size())

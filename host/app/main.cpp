@@ -1,5 +1,6 @@
 // sundog's command line: the command does its work; what goes wrong becomes one line and an exit status here.
 #include <fmt/format.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -51,13 +52,14 @@ int run_command_line(int argc, char** argv) {
 volatile std::sig_atomic_t final_status = 0;
 
 /// Drivers' exit handlers wait for threads of theirs, which may compile or draw for minutes, or for ever.
-/// Everything is written by then: the process ends at the latest after a few seconds.
+/// Everything is written by then: the process ends at the latest after a few seconds, an interrupted one
+/// soon.
 void bound_the_end(int status) {
-  constexpr unsigned patience = 5;  // seconds
+  const itimerval patience{{}, status == exit_interrupted ? timeval{0, 100'000} : timeval{5, 0}};
   final_status = status;
   std::fflush(nullptr);
   std::signal(SIGALRM, [](int) { ::_exit(static_cast<int>(final_status)); });
-  ::alarm(patience);
+  ::setitimer(ITIMER_REAL, &patience, nullptr);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/commands.h"
+#include "app/output_files.h"
 #include "app/save_image.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -15,6 +16,7 @@ int merge_command(const MergeCommand& command) {
   if (command.full_floats && drops_alpha(command.out))
     throw UsageError(fmt::format("{}: --float is for .exr files", command.out));
   check_image_path(command.out, false);
+  check_output_files({command.out}, command.parts);
   check_writable(command.out);
   const PartFile whole = merge_parts({command.parts.begin(), command.parts.end()});
   check_image_path(command.out, !whole.aovs.empty());

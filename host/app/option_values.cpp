@@ -63,7 +63,8 @@ PartOfFrame parse_part(const std::string& text) {
     const std::optional<int> index = number(all.substr(0, slash), 1, count.value_or(0));
     if (index) return {*index, *count};
   }
-  throw UsageError(fmt::format("--tiles {}: wanted i/N, part i from 1 to N, such as 2/8", text));
+  throw UsageError(fmt::format("--tiles {}: wanted I/N, N parts from 1 to {} and I from 1 to N, such as 2/8",
+                               text, greatest_size));
 }
 
 Split parse_split(const std::string& text) {

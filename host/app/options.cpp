@@ -139,14 +139,18 @@ void add_merge(CLI::App& root, Command& chosen) {
   app->callback([command, &chosen] { chosen = *command; });
 }
 
-/// The library's own message about an unknown command only asks for one.
-void check_command_name(const CLI::App& root, int argc, const char* const* argv) {
+/// The library's own message about an unknown command only asks for one. `at`: where its name stands.
+void check_command_name(const CLI::App& parent, int argc, const char* const* argv, int at = 1) {
   std::vector<std::string> names;
-  for (const CLI::App* command : root.get_subcommands(nullptr)) names.push_back(command->get_name());
-  const std::string wanted = argc > 1 ? argv[1] : "";
-  if (!wanted.starts_with('-') && std::ranges::count(names, wanted) == 0)
-    throw UsageError(fmt::format("wanted a command ({}), found {} {}", fmt::join(names, ", "),
-                                 wanted.empty() ? "none" : "'" + wanted + "'", more_help));
+  const std::string wanted = argc > at ? argv[at] : "";
+  for (const CLI::App* command : parent.get_subcommands(nullptr)) {
+    names.push_back(command->get_name());
+    if (names.back() == wanted) return check_command_name(*command, argc, argv, at + 1);
+  }
+  if (!names.empty() && !wanted.starts_with('-'))
+    throw UsageError(fmt::format("wanted a {} ({}), found {} {}", at > 1 ? "benchmark" : "command",
+                                 fmt::join(names, ", "), wanted.empty() ? "none" : "'" + wanted + "'",
+                                 more_help));
 }
 
 /// The library takes whatever follows an option for its value: with a forgotten value, that is the next

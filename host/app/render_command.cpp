@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include "app/frames.h"
 #include "app/interrupt.h"
 #include "app/job.h"
+#include "app/output_files.h"
 #include "app/pick_devices.h"
 #include "app/progress.h"
 #include "app/rank_watch.h"
@@ -47,6 +49,7 @@ void check_outputs(const RenderCommand& command) {
   if (!command.part) check_image_path(command.out, !command.aovs.empty());
   if (command.full_floats && !command.part && drops_alpha(command.out))
     throw UsageError(fmt::format("{}: --float is for .exr files", command.out));
+  check_output_files({command.out, command.stats, command.resume}, {command.scene});
   check_writable(command.out);
   for (const std::string& file : {command.stats, command.resume})
     if (!file.empty()) check_writable(file);
@@ -158,7 +161,7 @@ int conclude(const RenderCommand& command, const RenderResult& result, bool told
 
 /// What the frames of one run share: the devices stay open, with their kernels.
 struct Setup {
-  const StopOnSignal stop;
+  const StopOnSignal& stop;
   Mailbox* job = nullptr;  // the other processes that mpirun has started
   std::vector<DeviceInfo> devices;
   std::shared_ptr<DevicePool> pool;
@@ -167,6 +170,12 @@ struct Setup {
 /// In a job there always is one: mpirun kills all ranks when one dies.
 std::string checkpoint_file(const RenderCommand& command, const Setup& setup) {
   return setup.job && command.resume.empty() ? command.out + ".checkpoint" : command.resume;
+}
+
+/// Until the frame begins there is nothing to save. (In a job the other ranks want to be told.)
+void stop_loses_nothing(const RenderCommand& command, const Setup& setup) {
+  if (!setup.job)
+    setup.stop.ends_all(fmt::format("the frame was not yet begun; {} is not written", command.out));
 }
 
 /// A scene as it is read, flattened and recognised.
@@ -195,6 +204,7 @@ std::vector<ServerPlan> plan_servers(const RenderCommand& command, const LoadedS
 
 int render_one(const RenderCommand& command, const LoadedScene& scene, const Setup& setup,
                const Stopwatch& clock, TimeLedger& times) {
+  setup.stop.asks();
   ProgressBar bar(!command.quiet);
   RenderOptions options = render_options(command);
   const std::string checkpoint = checkpoint_file(command, setup);
@@ -241,6 +251,7 @@ int render_frames(const RenderCommand& command, const Setup& setup) {
     const Stopwatch clock;
     TimeLedger times;
     const RenderCommand one = frame_command(command, frame);
+    stop_loses_nothing(one, setup);
     const LoadedScene scene = load_and_compile(one, times);
     if (frame == command.frames->first) print_warnings(scene.description.warnings);
     const std::uint64_t hash = hash_scene(*scene.flat);
@@ -259,17 +270,17 @@ std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* jo
 }
 
 /// Of this process, or of rank 0 of a job.
-int render_here(const RenderCommand& command, Mailbox* job) {
+int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox* job) {
   const Stopwatch clock;
+  Setup setup{stop, job, {}, {}};
   check_outputs(command.frames ? frame_command(command, command.frames->first) : command);
   TimeLedger times;
-  Setup setup;
   std::optional<LoadedScene> scene;
   if (!command.frames) {
+    stop_loses_nothing(command, setup);
     scene = load_and_compile(command, times);
     print_warnings(scene->description.warnings);
   }
-  setup.job = job;
   setup.devices = choose_devices(command, job);
   if (scene) return render_one(command, *scene, setup, clock, times);
   setup.pool = std::make_shared<DevicePool>();
@@ -279,7 +290,13 @@ int render_here(const RenderCommand& command, Mailbox* job) {
 }  // namespace
 
 int render_command(const RenderCommand& command) {
-  if (job_rank() < 0) return render_here(command, nullptr);
+  // An interrupt reaches every process of a job; rank 0 decides.
+  std::optional<StopOnSignal> stop;
+  if (job_rank() > 0)
+    hold_back({SIGINT, SIGTERM});
+  else
+    stop.emplace();
+  if (job_rank() < 0) return render_here(command, *stop, nullptr);
   std::unique_ptr<Mailbox> job;
   const auto join = [&] {
     job = join_job();
@@ -287,7 +304,7 @@ int render_command(const RenderCommand& command) {
   };
   if (const int status = exit_status_of(join, job_rank() == 0)) return status;
   if (job->rank() > 0) serve_job(std::move(job));
-  const int status = exit_status_of([&] { return render_here(command, job.get()); });
+  const int status = exit_status_of([&] { return render_here(command, *stop, job.get()); });
   std::fflush(nullptr);
   job->leave(status);
   return status;

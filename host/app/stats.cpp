@@ -28,13 +28,18 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
+/// [x, y], or "driver" where the driver chose.
+json work_group_json(const KernelTimes& times) {
+  return times.local_x > 0 ? json{times.local_x, times.local_y} : json("driver");
+}
+
 json device_json(const DeviceReport& report) {
   json kernels = json::object();
   for (const auto& [name, times] : report.kernels)
     kernels[name] = {{"launches", times.launches},
                      {"device_ms", times.device_ms},
                      {"host_ms", times.host_ms},
-                     {"work_group", {times.local_x, times.local_y}}};
+                     {"work_group", work_group_json(times)}};
   return {{"index", fmt::format("{}:{}", report.info.platform, report.info.device)},
           {"platform", report.info.platform_name},
           {"name", report.info.name},
@@ -164,6 +169,10 @@ std::vector<std::string> failures_text(const DeviceReport& report) {
 
 namespace {
 
+std::string work_group_text(const KernelTimes& times) {
+  return times.local_x > 0 ? fmt::format("{}x{}", times.local_x, times.local_y) : "chosen by the driver";
+}
+
 std::string device_text(const DeviceReport& report) {
   std::string text = fmt::format("  {}: {:.1f} % of the pixels, {} tiles in {:.3f} s", report.info.label(),
                                  100 * report.share, report.tiles, report.busy_seconds);
@@ -176,9 +185,8 @@ std::string device_text(const DeviceReport& report) {
   text += "\n";
   for (const std::string& note : report.notes) text += fmt::format("    {}\n", note);
   for (const auto& [name, kernel] : report.kernels)
-    text +=
-        fmt::format("    {:<20} {:6} launches {:10.1f} ms  work-group {}x{}\n", name, kernel.launches,
-                    kernel.device_ms > 0 ? kernel.device_ms : kernel.host_ms, kernel.local_x, kernel.local_y);
+    text += fmt::format("    {:<20} {:6} launches {:10.1f} ms  work-group {}\n", name, kernel.launches,
+                        kernel.device_ms > 0 ? kernel.device_ms : kernel.host_ms, work_group_text(kernel));
   return text;
 }
 

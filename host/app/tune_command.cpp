@@ -16,6 +16,7 @@
 #include "bench/self_check.h"
 #include "bench/tuner.h"
 #include "render/tuning.h"
+#include "scene/json/parse.h"
 
 namespace sundog {
 namespace {
@@ -96,7 +97,7 @@ std::vector<TuningFile> kept() {
   std::vector<TuningFile> all;
   for (const fs::path& file : kept_files()) {
     try {
-      all.push_back(tuning_from_json(json::parse(read_file(file), nullptr, false), file.string()));
+      all.push_back(read_tuning_file(file));
     } catch (const SceneError& error) {
       fmt::print(stderr, "sundog: warning: {}\n", error.what());
     }
@@ -151,10 +152,11 @@ int export_all(const std::string& path) {
 
 /// Only what is for a device of this machine, with the same driver, is of use: the others are told.
 int import_all(const std::string& path) {
-  const json list = json::parse(read_file(path), nullptr, false);
-  if (!list.is_array()) throw SceneError(path, "", "wanted what `sundog tune --export` writes, a list");
+  const JsonContext context{.file = path};
+  const json list = read_json_file(path);
   std::vector<TuningFile> files;
-  for (const json& value : list) files.push_back(tuning_from_json(value, path));
+  for (const JsonValue& value : JsonValue(list, context).items("what `sundog tune --export` writes"))
+    files.push_back(read_tuning(value));
   const std::string kernels = kernels_hash();
   const std::vector<DeviceInfo> devices = enumerate_devices();
   for (const TuningFile& file : files) {
@@ -176,6 +178,8 @@ int import_all(const std::string& path) {
 }
 
 int run_tune(const TuneOptions& options) {
+  if (!(options.budget >= 0 && options.budget <= 1e6))
+    throw UsageError(fmt::format("--budget {}: wanted seconds, from 0 to 1000000", options.budget));
   if (!options.import_from.empty()) import_all(options.import_from);
   if (!options.export_to.empty()) return export_all(options.export_to);
   if (options.forget) return forget(options);
@@ -192,9 +196,7 @@ void add_tune(CLI::App& root, Command& chosen) {
         std::string(scene_help) + " (default: two that are built in)");
   values(app, "--device", "SPEC", options->bench.devices, device_help);
   values(app, "--set", "POINTER=VALUE", options->bench.overrides, "change the scenes, as in /camera/fov=30");
-  app->add_option("--budget", options->budget, "seconds for a device (default 60)")
-      ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, 1e6));
+  app->add_option("--budget", options->budget, "seconds for a device (default 60)")->type_name("SECONDS");
   app->add_flag("--show", options->show, "print what is kept");
   app->add_flag("--forget", options->forget, "remove what is kept, of the --device or of all");
   value(app, "--export", "FILE", options->export_to, "write what is kept to this file");

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "app/commands.h"
+#include "app/interrupt.h"
 #include "app/remote_devices.h"
 #include "base/error.h"
 #include "render/hang_watch.h"
@@ -17,7 +18,7 @@ int worker_command(int argc, const char* const* argv) {
   const int descriptor = argc > 2 ? std::atoi(argv[2]) : -1;
   if (descriptor < 3) throw UsageError("worker is not a command for people: --isolate starts it");
   // Ctrl-C goes to all of a terminal's processes; the one that has the frame decides.
-  ::signal(SIGINT, SIG_IGN);
+  hold_back({SIGINT});
   SocketChannel channel(descriptor);
   Orders orders(channel, [] { ::_exit(exit_failure); });
   const auto on_hang = [&](const std::string& what) {

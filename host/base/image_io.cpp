@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/image_codecs.h"
+#include "base/input.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -22,14 +23,6 @@ std::string lower_extension(const fs::path& path) {
   std::ranges::transform(extension, extension.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
-}
-
-std::string read_input(const fs::path& path) {
-  try {
-    return read_file(path);
-  } catch (const IoError& error) {  // its message opens with the path, as SceneError's does
-    throw SceneError(path.string(), "", std::string(error.what()).substr(path.string().size() + 2));
-  }
 }
 
 bool is_exr(std::string_view bytes) { return bytes.starts_with("\x76\x2f\x31\x01"); }

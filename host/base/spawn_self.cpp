@@ -2,6 +2,7 @@
 #include "base/spawn_self.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -47,9 +48,17 @@ pid_t spawn_self(std::vector<std::string> arguments, std::vector<HandedDown> des
       ::posix_spawn_file_actions_addopen(&actions, one.there, "/dev/null", O_RDWR, 0);
     else
       ::posix_spawn_file_actions_adddup2(&actions, one.here, one.there);
+  // Signals that this process holds back are not held back by the new one.
+  posix_spawnattr_t attributes;
+  ::posix_spawnattr_init(&attributes);
+  sigset_t none;
+  ::sigemptyset(&none);
+  ::posix_spawnattr_setsigmask(&attributes, &none);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
   pid_t process = 0;
-  const int failed = ::posix_spawn(&process, "/proc/self/exe", &actions, nullptr, pointers(arguments).data(),
-                                   pointers(environment).data());
+  const int failed = ::posix_spawn(&process, "/proc/self/exe", &actions, &attributes,
+                                   pointers(arguments).data(), pointers(environment).data());
+  ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) throw IoError(std::string("sundog cannot start itself: ") + std::strerror(failed));
   return process;

@@ -60,6 +60,8 @@ Axes make_axes(const CurvePlot& plot) {
   if (!values.empty()) {
     axes.low = std::log2(*values.begin());
     axes.high = std::log2(*values.rbegin());
+    // The whole of y = x where it does not press the curves into less than half of the plot.
+    if (plot.ideal && *values.rbegin() <= 2 * most) most = std::max(most, *values.rbegin());
   }
   axes.most = axis_ticks(most > 0 ? most : 1).back();
   return axes;
@@ -81,12 +83,13 @@ std::string frame(const CurvePlot& plot, const Axes& axes) {
                             top + plot_height / 2, escape_html(plot.y_label));
 }
 
-/// y = x over a logarithmic axis bends, so it is drawn in short pieces, as far as the plot goes.
+/// y = x over a logarithmic axis bends, so it is drawn in short pieces, to the right or the upper border.
 std::string ideal_line(const Axes& axes) {
   std::string points;
-  for (int i = 0; i <= 64; ++i) {
-    const double value = std::exp2(axes.low + (axes.high - axes.low) * i / 64);
-    if (value <= axes.most) points += fmt::format("{:.1f},{:.1f} ", axes.x(value), axes.y(value));
+  const double high = std::min(axes.high, std::log2(axes.most));
+  for (int i = 0; i <= 64 && high >= axes.low; ++i) {
+    const double value = std::exp2(axes.low + (high - axes.low) * i / 64);
+    points += fmt::format("{:.1f},{:.1f} ", axes.x(value), axes.y(value));
   }
   return fmt::format("<polyline class=\"ideal\" points=\"{}\"/>", points);
 }

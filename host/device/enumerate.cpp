@@ -192,6 +192,7 @@ void prepare_drivers() {
     // PoCL compiles a kernel for each local size and again for grids below 65536, and once more to give its
     // binary out. One version for all was as fast in every kernel measured, so each kernel is compiled once.
     setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
+    setenv("PATH", "/usr/local/bin:/usr/bin:/bin", 0);  // PoCL ends a process in which it finds no linker
     give_pocl_a_folder();
     enlarge_thread_stacks();
   });

@@ -122,8 +122,11 @@ std::vector<DeviceInfo> matching(std::span<const DeviceInfo> all, const Spec& sp
   std::vector<DeviceInfo> found;
   for (const DeviceInfo& device : all)
     if (device.usable() && matches(spec, device)) found.push_back(device);
+  const char* several = spec.text.find(',') == std::string::npos
+                            ? ""
+                            : "several are chosen by several --device (commas are for SUNDOG_DEVICE); ";
   if (found.empty())
-    throw DeviceError(fmt::format("--device {}: no such device; {}", spec.text, candidates(all)));
+    throw DeviceError(fmt::format("--device {}: no such device; {}{}", spec.text, several, candidates(all)));
   return found;
 }
 

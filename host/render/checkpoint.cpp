@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/input.h"
 #include "render/film.h"
 #include "render/hash.h"
 
@@ -53,17 +54,17 @@ void write_checkpoint(const std::filesystem::path& path, const Film& film, std::
 }
 
 void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_t key) {
-  const std::string bytes = read_file(path);
+  const std::string bytes = read_input(path);
   Header header{};
   std::uint64_t checksum = 0;
-  const std::string damaged =
-      path.string() + ": is no sundog checkpoint, or is damaged; remove it to start anew";
-  if (bytes.size() < sizeof header + sizeof checksum) throw IoError(damaged);
+  const SceneError damaged(path.string(), "",
+                           "is no sundog checkpoint, or is damaged; remove it to start anew");
+  if (bytes.size() < sizeof header + sizeof checksum) throw damaged;
   std::memcpy(&header, bytes.data(), sizeof header);
   const std::size_t body = bytes.size() - sizeof checksum;
   std::memcpy(&checksum, bytes.data() + body, sizeof checksum);
   if (std::memcmp(header.magic, magic, sizeof magic) != 0 || checksum != hash_bytes(bytes.data(), body))
-    throw IoError(damaged);
+    throw damaged;
   const std::size_t expected = sizeof header + film.sums.size() * sizeof(float4) +
                                film.weights.size() * sizeof(float) + film.aovs.size() * sizeof(float4) +
                                film.done.size();

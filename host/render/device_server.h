@@ -20,6 +20,7 @@ class DeviceServer : public TileServer {
   ServerFigures figures() const override;
   void close() override;
   double overdue() const override { return watch_.overdue(); }
+  bool compiles() const override { return watch_.compiles(); }
   /// For the calling thread, and those that the driver starts from it.
   void be_nice() override;
 
@@ -30,7 +31,7 @@ class DeviceServer : public TileServer {
   LaunchWatch watch_;
   std::unique_ptr<Device> device_;
   std::optional<TileRenderer> renderer_;
-  bool works_ = false;  // nothing has failed since it was opened: fit for the pool
+  bool works_ = false;    // nothing has failed since it was opened: fit for the pool
   ServerFigures closed_;  // of what was opened before
 };
 

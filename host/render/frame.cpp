@@ -14,7 +14,7 @@ namespace {
 using Phase = Frame::Phase;
 
 // A launch in flight may take this long after the frame's end before its thread is left behind; keeping the
-// compiled kernels for the next time may take longer.
+// compiled kernels for the next time may take longer, unless someone waits for the program to stop.
 constexpr double launch_grace = 0.15, stop_grace = 0.5, closing_grace = 10;
 constexpr double look_again = 0.02;
 
@@ -82,6 +82,18 @@ bool note_failure(Frame& frame, std::size_t i, const char* what) {
   return ++report.failures < frame.servers[i].server->failures_allowed();
 }
 
+/// Opens the server; an OpenCL call that fails meanwhile is a failure like a later one. What no second time
+/// would mend is thrown at once: kernels that do not build, a process that is gone.
+RenderTimes open(Frame& frame, std::size_t i) {
+  while (true) {
+    try {
+      return frame.servers[i].server->open();
+    } catch (const DeviceError& error) {
+      if (error.status == 0 || frame.stop || !note_failure(frame, i, error.what())) throw;
+    }
+  }
+}
+
 /// Makes one tile; throws what the server throws.
 void make_tile(Frame& frame, std::size_t i, const TileJob& job) {
   const StopFlags flags{&frame.stop, &frame.queue.cancelled(i)};
@@ -96,7 +108,6 @@ void make_tile(Frame& frame, std::size_t i, const TileJob& job) {
 
 /// Takes tiles until there are none, the frame is stopped, or the server has failed too often (which throws).
 void work(Frame& frame, std::size_t i) {
-  TileServer& server = *frame.servers[i].server;
   while (const std::optional<TileJob> job = frame.queue.take(i)) {
     try {
       make_tile(frame, i, *job);
@@ -106,7 +117,7 @@ void work(Frame& frame, std::size_t i) {
       frame.queue.failed(i, *job);
       if (frame.stop) return;
       if (!too_large && !note_failure(frame, i, error.what())) throw;
-      server.open();  // a driver that has failed once may have lost more than the launch
+      open(frame, i);  // a driver that has failed once may have lost more than the launch
     }
   }
 }
@@ -156,7 +167,7 @@ void serve(const std::shared_ptr<Frame>& frame, std::size_t i) {
   try {
     be_nice(*frame, i);
     if (frame->queue.wait_until_needed(i)) {
-      const RenderTimes times = server.open();
+      const RenderTimes times = open(*frame, i);
       begin_work(*frame, i, times);
       frame->queue.ready(i);
       work(*frame, i);
@@ -193,15 +204,16 @@ void watch(Frame& frame) {
 void wait_for_threads(Frame& frame, bool stopped) {
   const bool in_haste = stopped && frame.options.in_haste;
   std::unique_lock lock(frame.mutex);
-  const auto wait = [&](double seconds, auto... phases) {
+  const auto wait = [&](double seconds, Phase phase) {
     frame.changed.wait_for(lock, std::chrono::duration<double>(seconds), [&] {
       return std::ranges::none_of(frame.servers, [&](const Frame::Server& server) {
-        return !server.failed && ((server.phase == phases) || ...);
+        return !server.failed && server.phase == phase &&
+               !(phase == Phase::working && server.server->compiles());
       });
     });
   };
   wait(stopped && !in_haste ? stop_grace : launch_grace, Phase::working);
-  if (!in_haste) wait(closing_grace, Phase::closing);
+  if (!in_haste) wait(stopped ? stop_grace : closing_grace, Phase::closing);
 }
 
 }  // namespace

@@ -20,8 +20,9 @@ double launch_limit(double expected_seconds, bool first) {
   return first ? compiling : std::max(least, patience * expected_seconds);
 }
 
-void LaunchWatch::begin(double limit_seconds) {
+void LaunchWatch::begin(double limit_seconds, bool first) {
   limit_ = limit_seconds;
+  first_ = first;
   started_ = now();
 }
 

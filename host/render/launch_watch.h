@@ -10,19 +10,25 @@ double launch_limit(double expected_seconds, bool first);
 
 class LaunchWatch {
  public:
-  void begin(double limit_seconds);
+  /// `first`: of its kernel, in which a driver may compile.
+  void begin(double limit_seconds, bool first);
   void end();
   /// Seconds that the launch has taken when it is over its limit, else 0. Any thread may ask.
   double overdue() const;
+  /// Whether the launch in hand is a kernel's first.
+  bool compiles() const { return started_ >= 0 && first_; }
 
  private:
   std::atomic<double> started_{-1}, limit_{0};  // seconds of the steady clock; negative: no launch
+  std::atomic<bool> first_{false};
 };
 
 /// While it lives, a launch runs.
 class WatchedLaunch {
  public:
-  WatchedLaunch(LaunchWatch& watch, double limit_seconds) : watch_(watch) { watch_.begin(limit_seconds); }
+  WatchedLaunch(LaunchWatch& watch, double expected_seconds, bool first) : watch_(watch) {
+    watch_.begin(launch_limit(expected_seconds, first), first);
+  }
   ~WatchedLaunch() { watch_.end(); }
   WatchedLaunch(const WatchedLaunch&) = delete;
   WatchedLaunch& operator=(const WatchedLaunch&) = delete;

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/input.h"
 #include "render/hash.h"
 
 namespace sundog {
@@ -81,7 +82,7 @@ void write_part(const std::filesystem::path& path, const PartFile& file) {
 }
 
 PartFile read_part(const std::filesystem::path& path) {
-  std::string bytes = read_file(path);
+  std::string bytes = read_input(path);
   const auto refuse = [&](const char* why) { return SceneError(path.string(), "", why); };
   if (!bytes.starts_with('{') || bytes.find(format_name) == std::string::npos)
     throw refuse("is no part of a frame: `sundog render --tiles` writes them");
@@ -156,9 +157,13 @@ void check_all_there(const std::map<int, std::string>& found, int count) {
   for (int i = 1; i <= count; ++i)
     if (!found.contains(i)) missing.push_back(i);
   if (!missing.empty())
-    throw SceneError(found.begin()->second, "",
-                     fmt::format("part{} {} of {} {} missing", missing.size() > 1 ? "s" : "",
-                                 fmt::join(missing, ", "), count, missing.size() > 1 ? "are" : "is"));
+    throw SceneError(
+        found.begin()->second, "",
+        fmt::format("part{0} {1} of {2} {3} missing: render {4} with --tiles {5}/{2} and the options of the "
+                    "others",
+                    missing.size() > 1 ? "s" : "", fmt::join(missing, ", "), count,
+                    missing.size() > 1 ? "are" : "is", missing.size() > 1 ? "each" : "it",
+                    missing.size() > 1 ? "I" : std::to_string(missing.front())));
 }
 
 /// Copies the pixels that are done.

@@ -26,9 +26,10 @@ void check_shares(const Split& split, const std::vector<ServerPlan>& devices) {
   if (split.shares.empty() || split.shares.size() == devices.size()) return;
   std::vector<std::string> labels;
   for (const ServerPlan& device : devices) labels.push_back(device.info.label());
-  throw UsageError(fmt::format("--split {}: {} shares for {} devices ({}): give one share a device",
-                               fmt::join(split.shares, ","), split.shares.size(), devices.size(),
-                               fmt::join(labels, "; ")));
+  throw UsageError(fmt::format("--split {}: {} share{} for {} device{} ({}): give one share a device",
+                               fmt::join(split.shares, ","), split.shares.size(),
+                               split.shares.size() == 1 ? "" : "s", devices.size(),
+                               devices.size() == 1 ? "" : "s", fmt::join(labels, "; ")));
 }
 
 /// The rows that each list of tiles covers: all of them, or a device's part of a fixed split.

@@ -107,7 +107,7 @@ ServerPlan plan_local(std::shared_ptr<const CompiledScene> scene, const DeviceIn
 const std::vector<std::string>& aov_names();
 
 /// Renders on all `devices` at once and waits for each of them to let go. Throws DeviceError when every
-/// device failed, BuildError when the kernels build on none, IoError for an unreadable checkpoint, UsageError
+/// device failed, BuildError when the kernels build on none, SceneError for a damaged checkpoint, UsageError
 /// for a checkpoint of another scene, unknown AOVs, or shares that do not fit the devices.
 RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options = {});

@@ -135,8 +135,8 @@ unsigned TileRenderer::launch_samples(const Tile& tile, const StopFlags& flags) 
       const LaunchSize size = grid ? launch_size(columns, items / columns) : launch_size(items, 1);
       last_size_ = pixels * count;
       const Stopwatch clock;
-      const WatchedLaunch watched(
-          watch_, launch_limit(pixel_seconds_ * static_cast<double>(last_size_), pixel_seconds_ <= 0));
+      const WatchedLaunch watched(watch_, pixel_seconds_ * static_cast<double>(last_size_),
+                                  pixel_seconds_ <= 0);
       run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32, u32,
                        u32, u32, u32>(device_, render_, size, tables_, tables_.camera_media, film_, weights_,
                                       counters_, static_cast<u32>(tile.x), static_cast<u32>(tile.y), width,
@@ -163,7 +163,7 @@ void TileRenderer::launch_aovs(const Tile& tile, std::vector<float4>& aovs) {
   if (pixels == 0) return;
   const bool tuned = tuning_.surfaces_group.kind == WorkGroup::Kind::fixed;
   const std::size_t group = tuned ? tuning_.surfaces_group.x : 16;
-  const WatchedLaunch watched(watch_, launch_limit(0, true));
+  const WatchedLaunch watched(watch_, 0, true);
   run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32>(
       device_, first_surfaces_,
       {divide_up(static_cast<unsigned>(pixels), config_.tile_w * config_.tile_h), 1, group, 1}, tables_,
@@ -200,14 +200,13 @@ bool TileRenderer::ask_less(const std::string& why) {
 // Whether every sample was traced to its end: a driver may end a kernel's loops early without an error.
 void TileRenderer::check_finished(const Tile& asked, const TileResult& made) {
   const auto primary = static_cast<u32>(made.counts[COUNT_PRIMARY]);  // the device's sums are modulo 2^32
-  const auto finished = static_cast<u32>(made.counts[COUNT_FINISHED]);
+  auto finished = static_cast<u32>(made.counts[COUNT_FINISHED]);
   const auto wanted = static_cast<u32>(pixel_count(made.tile) * scene_.info.samples);
   const auto aovs = options_.aovs.empty() ? 0u : static_cast<u32>(pixel_count(made.tile));
-  const bool cut =
-      fault("cut", fmt::format("{}:{}", device_.info().platform, device_.info().device), last_samples_)
-          .has_value();
+  if (fault("cut", fmt::format("{}:{}", device_.info().platform, device_.info().device), last_samples_))
+    finished = 0;
   // A tile that was stopped may have samples of rows that are not finished.
-  if (!cut && finished == 2 * (primary + aovs) && (primary == wanted || made.tile != asked)) return;
+  if (finished == 2 * (primary + aovs) && (primary == wanted || made.tile != asked)) return;
   throw LoopsCutShort(
       fmt::format("{}: the driver ends the kernel's loops too early ({} of {} samples were traced to "
                   "their end)",

@@ -34,7 +34,7 @@ struct ServerFigures {
   std::vector<std::string> notes;  // what did not stop it: smaller launches, a cache that could not be used
 };
 
-/// Used by one thread, overdue() by any.
+/// Used by one thread, overdue() and compiles() by any.
 class TileServer {
  public:
   virtual ~TileServer() = default;
@@ -49,6 +49,8 @@ class TileServer {
   virtual void close() = 0;
   /// Seconds that a launch has run when it has passed its limit, else 0: the driver hangs.
   virtual double overdue() const { return 0; }
+  /// Whether a kernel's first launch is in hand, in which its driver may compile for long.
+  virtual bool compiles() const { return false; }
   /// Asked before open(): to use only time that nobody else wants.
   virtual void be_nice() {}
   /// After so many failures it is not tried again.

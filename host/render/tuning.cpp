@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cstdio>
-
 #include "base/error.h"
 #include "base/file.h"
 #include "device/embedded_kernels.h"
@@ -16,18 +14,6 @@ namespace {
 
 using nlohmann::json;
 using enum WorkGroup::Kind;
-
-WorkGroup work_group_from(const std::string& text, const std::string& where) {
-  if (text == "default") return {};
-  if (text == "driver") return {driver, 0, 0};
-  unsigned x = 0, y = 1;
-  char rest = 0;
-  const int found = std::sscanf(text.c_str(), "%ux%u%c", &x, &y, &rest);
-  const bool plain = found == 1 && text == std::to_string(x);
-  if ((!plain && found != 2) || x == 0 || y == 0 || x > 65536 || y > 65536)
-    throw SceneError(where, "work_group", fmt::format("wanted a size such as 64 or 8x8, found {}", text));
-  return {fixed, x, y};
-}
 
 json entry_json(const TuningEntry& entry) {
   return {{"kernel", entry.kernel},
@@ -42,31 +28,6 @@ json entry_json(const TuningEntry& entry) {
           {"tile_ms", entry.tuning.tile_ms},
           {"default_ms", entry.default_ms},
           {"tuned_ms", entry.tuned_ms}};
-}
-
-TuningEntry entry_from(const json& entry, const std::string& where) {
-  TuningEntry result;
-  result.kernel = entry.at("kernel");
-  result.scene_class = entry.at("class");
-  result.scene = entry.at("scene");
-  result.tuning.work_group = work_group_from(entry.at("work_group"), where);
-  result.tuning.surfaces_group = work_group_from(entry.at("surfaces_group"), where);
-  result.tuning.tile_w = entry.at("tile_w");
-  result.tuning.tile_h = entry.at("tile_h");
-  result.tuning.packet_least = entry.at("packet_least");
-  result.tuning.launch_ms = entry.at("launch_ms");
-  result.tuning.tile_ms = entry.at("tile_ms");
-  result.default_ms = entry.at("default_ms");
-  result.tuned_ms = entry.at("tuned_ms");
-  const Tuning& tuning = result.tuning;
-  if (result.kernel != frame_kernel && result.kernel != surfaces_kernel)
-    throw SceneError(where, "kernel",
-                     fmt::format("wanted {} or {}, found {}", frame_kernel, surfaces_kernel, result.kernel));
-  if (tuning.tile_w > 16 || tuning.tile_h > 16 || (tuning.tile_w == 0) != (tuning.tile_h == 0) ||
-      tuning.packet_least > 64 || !(tuning.launch_ms >= 0 && tuning.launch_ms <= 10000) ||
-      !(tuning.tile_ms >= 0 && tuning.tile_ms <= 10000))
-    throw SceneError(where, result.scene_class, "a value is out of its range");
-  return result;
 }
 
 }  // namespace
@@ -126,24 +87,11 @@ json to_json(const TuningFile& file) {
           {"entries", entries}};
 }
 
-TuningFile tuning_from_json(const json& value, const std::string& where) {
-  try {
-    if (value.at("schema") != 1)
-      throw SceneError(where, "schema", "wanted 1, which `sundog tune --export` writes");
-    TuningFile file{value.at("platform"), value.at("device"), value.at("driver"),
-                    value.at("kernels"),  value.at("units"),  {}};
-    for (const json& entry : value.at("entries")) file.entries.push_back(entry_from(entry, where));
-    return file;
-  } catch (const json::exception& error) {
-    throw SceneError(where, "", fmt::format("is no tuning result of sundog: {}", error.what()));
-  }
-}
-
 std::optional<TuningFile> load_tuning(const DeviceInfo& device) {
   const std::filesystem::path path = tuning_path(device);
   if (path.empty() || !std::filesystem::exists(path)) return {};
   try {
-    TuningFile file = tuning_from_json(json::parse(read_file(path), nullptr, false), path.string());
+    TuningFile file = read_tuning_file(path);
     if (file.kernels == kernels_hash()) return file;
   } catch (const std::runtime_error&) {  // damaged: as if it were not there
   }

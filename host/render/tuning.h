@@ -10,6 +10,7 @@
 #include "compile/compiled_scene.h"
 #include "device/devices.h"
 #include "render/work_group.h"
+#include "scene/json/value.h"
 
 namespace sundog {
 
@@ -61,8 +62,11 @@ std::filesystem::path tuning_path(const DeviceInfo& device);
 
 nlohmann::json to_json(const TuningFile& file);
 
-/// Throws SceneError that says what is wrong with it.
-TuningFile tuning_from_json(const nlohmann::json& json, const std::string& where);
+/// Throws SceneError that says what is wrong with it, and where.
+TuningFile read_tuning(const JsonValue& value);
+
+/// read_tuning() of a file that holds one. Throws SceneError.
+TuningFile read_tuning_file(const std::filesystem::path& file);
 
 /// The device's file; nothing when there is none, it is damaged, or it is of other kernels.
 std::optional<TuningFile> load_tuning(const DeviceInfo& device);

@@ -18,7 +18,9 @@ static inline void cast_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, c
   if (!any_lane(facing)) return;
   const REAL3 possible =
       multiply3(light.radiance, local_reflection(materials, &met->face, s, rays->d, light.wi, facing));
-  const MASK lit = facing & MASK_OF(greatest3(possible) > 0.0f);
+  // A high power of (r.v) may leave less than the least normal float, which some devices take for zero: not
+  // worth a ray.
+  const MASK lit = facing & MASK_OF(greatest3(possible) >= FLT_MIN);
   if (!any_lane(lit)) return;
   counts[COUNT_SHADOW] += lane_count(lit);
   SceneRays to_light = *rays;

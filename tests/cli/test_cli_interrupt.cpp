@@ -69,6 +69,42 @@ TEST_CASE("an interrupt in the middle of the first tile leaves a file too") {
   CHECK(read_image(folder / "a.exr").width == 4096);
 }
 
+// The shell goes on when someone reads the scene: sundog, which would wait for its text for ever.
+TEST_CASE("an interrupt while the scene is loaded ends the program at once, and says so") {
+  const std::string signal = GENERATE("INT", "TERM");
+  const CliFolder folder;
+  CommandOptions options;
+  options.folder = folder.path();
+  const CommandResult result = run_command(
+      {"sh", "-c",
+       "mkfifo slow.json && { \"$0\" render slow.json -o a.png & } && exec 3>slow.json && kill -$1 $! && "
+       "wait $!",
+       SUNDOG_BINARY, signal},
+      options);
+  CHECK(result.status == 130);
+  CHECK(result.err == "sundog: interrupted: the frame was not yet begun; a.png is not written\n");
+  CHECK_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
+TEST_CASE("a driver that has signal handlers of its own does not get to see an interrupt") {
+  const int signal = GENERATE(SIGINT, SIGTERM);
+  const CliFolder folder;
+  folder.write("vendors/pocl.icd", "libpocl.so.2\n");
+  folder.write("vendors/fake.icd", SUNDOG_FAKE_DRIVER "\n");
+  CommandOptions options;
+  options.environment = {{"OCL_ICD_VENDORS", folder.file("vendors") + "/"},
+                         {"FAKE_DRIVER_TAKES_SIGNALS", "1"},
+                         {"SUNDOG_DUMP_KERNELS", folder.file("kernels")}};
+  options.signal_folder = folder / "kernels";
+  options.signal = signal;
+  const CommandResult result =
+      run_sundog({"render", folder.scene, "-o", folder.file("a.exr"), "--device", "portable", "--samples",
+                  "65536", "--size", "4096x64", "--tile", "4096"},
+                 options);
+  CHECK(result.status == 130);
+  CHECK(result.err == "sundog: interrupted: 0 % of the pixels are in " + folder.file("a.exr") + "\n");
+}
+
 TEST_CASE("an interrupted render goes on from its checkpoint to the same image") {
   const CliFolder folder;
   const std::vector<std::string> end = {"--size", "128x96", "--samples", "4000", "--tile", "16", "--quiet"};

@@ -45,9 +45,13 @@ TEST_CASE("the driver may choose a work-group of any size without overflowing a 
     options.environment["POCL_DEVICES"] = device;
     const CommandResult result =
         run_sundog({"render", folder.scene, "-o", folder.file("a.pfm"), "--device", device, "--size",
-                    "256x256", "--tile", "256", "--max-depth", "20", "--work-group", "driver"},
+                    "256x256", "--tile", "256", "--max-depth", "20", "--work-group", "driver", "--verbose",
+                    "--stats", folder.file("s.json")},
                    options);
     CAPTURE(device, result.err);
     CHECK(result.status == 0);
+    CHECK(result.out.find("work-group chosen by the driver") != std::string::npos);
+    const json stats = json::parse(read_file(folder / "s.json"));
+    CHECK(stats["devices"][0]["kernels"]["render_whitted"]["work_group"] == "driver");
   }
 }

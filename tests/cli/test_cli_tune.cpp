@@ -78,6 +78,39 @@ TEST_CASE("what tune finds is kept in one file a device, and a render with it gi
              ContainsSubstring("left out: it is of other kernels"));
 }
 
+TEST_CASE(
+    "a tuning result with a wrong value is refused with its place, what was wanted and what was found") {
+  const TuneFolder folder;
+  const json good = json::parse(R"([{"schema": 1, "platform": "P", "device": "D", "driver": "1", "units": 0,
+    "kernels": "of other sources", "entries": [{"kernel": "render_whitted", "class": "solids+wide+rays",
+    "scene": "s", "work_group": "64", "surfaces_group": "default", "tile_w": 0, "tile_h": 0, "packet_least": 0,
+    "launch_ms": 0, "tile_ms": 0, "default_ms": 2, "tuned_ms": 1}]}])");
+  folder.write("good.json", good.dump());
+  CHECK(folder.run({"--import", folder.file("good.json")}).status == 0);
+  struct Case {
+    const char *place, *value, *says;
+  };
+  for (const Case& c :
+       {Case{"/0/entries/0/class", "\"solids+fast\"", "wanted a class of scenes: solids"},
+        Case{"/0/entries/0/kernel", "\"k\"", "wanted \"render_whitted\" or"},
+        Case{"/0/entries/0/work_group", "\"8x\"", "wanted a size such as"},
+        Case{"/0/entries/0/tile_w", "\"two\"", "wanted an integer from 0 to 16, found"},
+        Case{"/0/entries/0/launch_ms", "-1", "wanted a number"},
+        Case{"/0/entries/0/gamma", "1", "unknown key"}, Case{"/0/entries", "3", "wanted an array"},
+        Case{"/0/driver", "null", "wanted"}, Case{"/0", "[]", "wanted an object"}}) {
+    json bad = good;
+    bad[json::json_pointer(c.place)] = json::parse(c.value);
+    folder.write("bad.json", bad.dump());
+    const CommandResult result = folder.run({"--import", folder.file("bad.json")});
+    CAPTURE(c.place, result.err);
+    CHECK(result.status == 3);
+    CHECK(is_one_error_line(result.err));
+    CHECK_THAT(result.err,
+               ContainsSubstring("bad.json: " + std::string(c.place)) && ContainsSubstring(c.says));
+    CHECK_THAT(result.err, !ContainsSubstring("json.exception"));
+  }
+}
+
 TEST_CASE("tuning results that are none are refused, and a damaged file is as none") {
   const TuneFolder folder;
   for (const char* text : {"", "{}", "[{}]", "[{\"schema\": 2}]", "[1]"}) {
@@ -87,6 +120,6 @@ TEST_CASE("tuning results that are none are refused, and a damaged file is as no
     CHECK(result.status == 3);
     CHECK(is_one_error_line(result.err));
   }
-  CHECK(folder.run({"--import", folder.file("missing.json")}).status == 1);
+  CHECK(folder.run({"--import", folder.file("missing.json")}).status == 3);
   CHECK(folder.run({folder.scene, "--device", "nowhere"}).status == 4);
 }

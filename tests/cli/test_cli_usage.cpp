@@ -1,4 +1,5 @@
 // Bad command lines: exit status 2, one line on stderr that says what was wanted, nothing on stdout, no file.
+#include <base/file.h>
 #include <fmt/format.h>
 
 #include "catch.h"
@@ -20,7 +21,8 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
       {{}, "wanted a command (render, devices, "},
       {{""}, "found none"},
       {{"frobnicate"}, "found 'frobnicate'"},
-      {{"bench"}, "subcommand is required"},
+      {{"bench"}, "wanted a benchmark (workgroup, threads, rays, samples, devices), found none"},
+      {{"bench", "speed"}, "found 'speed'"},
       {{"bench", "threads"}, "SCENE is required"},
       {{"bench", "workgroup", scene, "--kernel", "magic"}, "--kernel magic: wanted one of render_whitted"},
       {{"bench", "threads", scene, "--counts", "0"}, "--counts 0: wanted a whole number from 1"},
@@ -37,7 +39,7 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
       {{"render", scene, "-o", out, "--split", "halves"}, "--split halves"},
       {{"render", scene, "-o", out, "--split", "1,-1"}, "--split 1,-1"},
       {{"render", scene, "-o", out, "--split", "0,0"}, "--split 0,0"},
-      {{"render", scene, "-o", out, "--split", "1,2,3,4,5,6,7,8,9"}, "9 shares for 1 devices"},
+      {{"render", scene, "-o", out, "--split", "1,2,3,4,5,6,7,8,9"}, "9 shares for "},
       {{"render", scene, "-o", folder.file("out")}, "no extension"},
       {{"render", scene, "-o", folder.file("out.jpg")}, "found .jpg"},
       {{"render", scene, "-o", out, "--aov", "depth"}, "only .exr files hold AOVs"},
@@ -146,4 +148,38 @@ TEST_CASE("OpenCL C in a scene is refused unless it is allowed, and its errors n
       run_sundog({"render", scene("return radius;"), "-o", out, "--allow-native-code"});
   CHECK(wrong.status == 5);
   CHECK(wrong.err.find("native code 0 of the scene") != std::string::npos);
+}
+
+TEST_CASE(
+    "outputs that would write over an input or each other are refused before anything is read or written") {
+  const CliFolder folder;
+  const std::string text = sundog::read_file(folder.scene), out = folder.file("a.png");
+  const std::string same = folder.path().string() + "/./a.png";
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"render", folder.scene, "-o", out, "--stats", folder.scene},
+        {"render", folder.scene, "-o", out, "--resume", folder.scene},
+        {"render", folder.scene, "-o", out, "--stats", same},
+        {"render", folder.scene, "-o", out, "--resume", same},
+        {"bench", "samples", folder.scene, "--json", folder.scene},
+        {"merge", out, folder.scene, "-o", same}}) {
+    const CommandResult result = run_sundog(command);
+    CAPTURE(command, result.err);
+    CHECK(result.status == 2);
+    CHECK(is_one_error_line(result.err));
+    CHECK(result.err.find("another name") + result.err.find("two outputs") != 2 * std::string::npos);
+  }
+  CHECK(sundog::read_file(folder.scene) == text);
+  CHECK(folder.entries() == 1);
+}
+
+// PoCL looks for its linker there, and ends the process where it finds none.
+TEST_CASE("an environment without PATH costs nothing") {
+  const CliFolder folder;
+  CommandOptions options;
+  options.environment = {{"PATH", ""}, {"XDG_CACHE_HOME", folder.file("cache")}, {"POCL_CACHE_DIR", ""}};
+  const CommandResult result =
+      run_sundog({"render", folder.scene, "-o", folder.file("a.png"), "--device", "portable"}, options);
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+  CHECK(result.err.empty());
 }

@@ -126,7 +126,7 @@ TEST_CASE("an interrupted frame is resumed to the same bits") {
   }
   SECTION("and a damaged checkpoint is refused") {
     std::filesystem::resize_file(options.resume, std::filesystem::file_size(options.resume) - 5);
-    CHECK_THROWS_AS(scenes::render_on(device, scene, options), IoError);
+    CHECK_THROWS_AS(scenes::render_on(device, scene, options), SceneError);
   }
 }
 

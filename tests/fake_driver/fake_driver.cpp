@@ -5,7 +5,8 @@
 //   "Fake old"       a device that speaks OpenCL C 1.1, and one that is big-endian
 //   "Fake empty"     no device
 //   "Fake crashing"  a device that looks usable, and crashes in the first call that uses it
-// With the variable FAKE_DRIVER_NEVER_ENDS its exit handler never comes back.
+// With the variable FAKE_DRIVER_NEVER_ENDS its exit handler never comes back; with FAKE_DRIVER_TAKES_SIGNALS
+// it answers Ctrl-C itself.
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <CL/cl_icd.h>
@@ -13,6 +14,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
@@ -122,6 +124,18 @@ struct AtExit {
     while (std::getenv("FAKE_DRIVER_NEVER_ENDS")) ::pause();
   }
 } at_exit;
+
+/// As LLVM's compiler does, in the place of the program's own handlers.
+struct AtStart {
+  AtStart() {
+    if (!std::getenv("FAKE_DRIVER_TAKES_SIGNALS")) return;
+    for (const int signal : {SIGINT, SIGTERM})
+      std::signal(signal, [](int) {
+        constexpr std::string_view complaint = "1 error generated.\n";
+        if (::write(STDERR_FILENO, complaint.data(), complaint.size()) < 0) ::_exit(1);
+      });
+  }
+} at_start;
 
 }  // namespace
 

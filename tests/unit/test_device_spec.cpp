@@ -129,6 +129,8 @@ TEST_CASE("a SPEC that means nothing is refused with the candidates and what is 
   CHECK_THROWS_AS(selected({"1:0"}), DeviceError);
   CHECK_THROWS_WITH(selected({"radeon"}), ContainsSubstring("radeon") && ContainsSubstring("0:1 Portable") &&
                                               ContainsSubstring("no compiler"));
+  CHECK_THROWS_WITH(selected({"0:0,0:1"}), ContainsSubstring("several are chosen by several --device"));
+  CHECK_THROWS_WITH(selected({"radeon"}), !ContainsSubstring("several"));
   CHECK_THROWS_AS(selected({"2:1"}), DeviceError);            // found, but of no use
   CHECK_THROWS_AS(selected({"cpu", "radeon"}), DeviceError);  // one of several
   CHECK_THROWS_WITH(select_devices({}, {}), ContainsSubstring("no OpenCL platform"));

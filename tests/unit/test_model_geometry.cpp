@@ -206,6 +206,10 @@ TEST_CASE("gzipped models load, and broken gzip data is named with its byte", "[
   CHECK_THAT(load_error("a.obj.gz", packed.substr(0, packed.size() - 9)), ContainsSubstring("it ends early"));
   CHECK_THAT(load_error("a.obj.gz", text), ContainsSubstring("byte 2") && ContainsSubstring("gzip"));
   CHECK_THAT(load_error("a.obj.gz", ""), ContainsSubstring("gzip"));
+  // Many spaces are no bomb; what would fill the memory is refused long before it does.
+  CHECK(load_text("a.obj.gz", gzipped(text + std::string(1 << 20, ' '))).meshes.size() == 1);
+  CHECK_THAT(load_error("a.obj.gz", gzipped(std::string(100 << 20, '\n'))),
+             ContainsSubstring("unpack to more than 64 MiB") && ContainsSubstring("gunzip"));
   CHECK_THAT(load_error(std::filesystem::path("/nowhere/a.obj")),
              ContainsSubstring("cannot be read: No such file"));
 }

@@ -114,6 +114,22 @@ TEST_CASE("plots of nothing, of one point and of zeros are drawn without a numbe
   }
 }
 
+TEST_CASE(
+    "the line of ideal speed-up goes to the border of its plot, all of it where the curves are not far "
+    "below") {
+  // Where the line ends: x from 64 (1 thread) to 560 (8 threads), y from 16 (the top).
+  const auto end = [](double measured) {
+    const std::string text =
+        svg(CurvePlot{"", "", "", {{"a", {{1, {1, 1, 1}}, {8, {measured, 1, measured}}}}}, true});
+    const std::size_t start = text.find("class=\"ideal\" points=\""), last = text.find(" \"/>", start);
+    const std::size_t space = text.rfind(' ', last - 1) + 1;
+    return text.substr(space, last - space);
+  };
+  CHECK(end(8) == "560.0,16.0");
+  CHECK(end(5) == "560.0,16.0");
+  CHECK(end(2) == "229.3,16.0");
+}
+
 TEST_CASE("an axis has round ticks from 0 that cover what is shown") {
   for (const double most : {0.0031, 0.7, 1.0, 9.99, 16.0, 1234.0}) {
     CAPTURE(most);

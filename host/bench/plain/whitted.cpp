@@ -139,7 +139,7 @@ vec3 direct_light(const World& world, const Path& path, const Surface& s) {
     const LightSample sample = sample_light(light, s.p);
     if (!(glm::dot(s.ns, sample.wi) > 0)) continue;
     const vec3 possible = sample.radiance * local_reflection(s, path.ray.d, sample.wi);
-    if (!(greatest(possible) > 0)) continue;
+    if (!(greatest(possible) >= std::numeric_limits<float>::min())) continue;
     sum += possible * visibility(world, {s.p + s.offset * s.ng, sample.wi, 0, sample.distance}, path.media);
   }
   return sum;

@@ -17,6 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t{1} << 31;
+// Text of vertices packs to a tenth or a third; gzip can pack nothing at all to a thousandth.
+constexpr std::size_t most_growth = 100, grows_freely = std::size_t{64} << 20;
 
 std::string lower_extension(const fs::path& path) {
   std::string extension = path.extension().string();
@@ -32,7 +34,8 @@ std::string read_bytes(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   const auto size = fs::file_size(path, status);
   if (!in || status)
-    throw SceneError(path.string(), "", fmt::format("cannot be read: {}", std::strerror(errno)));
+    throw SceneError(path.string(), "",
+                     fmt::format("cannot be read: {}", in ? status.message() : std::strerror(errno)));
   std::string bytes(size, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(size));
   bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
@@ -56,6 +59,7 @@ class Inflater {
     if (packed.size() > most_bytes) throw broken("more than 2 GiB");
     stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // zlib reads it only
     stream_.avail_in = static_cast<uInt>(packed.size());
+    const std::size_t bound = std::max(grows_freely, most_growth * packed.size());
     std::string out;
     for (int status = Z_OK;;) {
       if (status == Z_STREAM_END) {
@@ -70,6 +74,12 @@ class Inflater {
       stream_.avail_out = static_cast<uInt>(step);
       status = inflate(&stream_, Z_NO_FLUSH);
       out.resize(done + step - stream_.avail_out);
+      if (out.size() > bound)
+        throw SceneError(
+            path.string(), "",
+            fmt::format("its {} bytes unpack to more than {} MiB, over {} times as much, which no "
+                        "model does; where one should, unpack it with gunzip",
+                        packed.size(), bound >> 20, most_growth));
       if (status == Z_BUF_ERROR || (status == Z_OK && stream_.avail_in == 0 && stream_.avail_out > 0))
         throw broken("it ends early");
       if (status != Z_OK && status != Z_STREAM_END) throw broken(stream_.msg ? stream_.msg : "not gzip data");

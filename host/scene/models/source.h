@@ -11,7 +11,7 @@ struct Source {
   std::string bytes;  // after gunzip
 };
 
-/// The file's bytes; a name that ends in .gz is unpacked (zlib), to 2 GiB at most. Throws SceneError.
+/// The file's bytes; a name that ends in .gz is unpacked (zlib), within a bound. Throws SceneError.
 Source read_source(const std::filesystem::path& path);
 
 /// The extension in lower case, without a final .gz: ".obj" for "Box.OBJ.gz".
