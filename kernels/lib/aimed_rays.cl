@@ -23,8 +23,9 @@ static inline void aim_slabs(REAL o, REAL d, int offset, REAL* rcp_near, REAL* r
   *rcp_near = rcp * 0.9999997f;
   *rcp_far = rcp * 1.0000003f;
   const REAL from = o * *rcp_near, to = o * *rcp_far;
-  *shift_near = -(from + fabs(from) * 2.4e-7f);
-  *shift_far = -(to - fabs(to) * 2.4e-7f);
+  const REAL slack = along_face(rcp);
+  *shift_near = -(from + fma(fabs(from), (REAL)(2.4e-7f), slack));
+  *shift_far = -(to - fma(fabs(to), (REAL)(2.4e-7f), slack));
   *near = offset + (MASK_OF(rcp < 0.0f) & 24);
   *far = offset * 2 + 24 - *near;
 }

@@ -38,6 +38,10 @@ static inline float3 safe_reciprocal(float3 d) {
   return 1.0f / select(d, copysign((float3)(1e-18f), d), fabs(d) < 1e-18f);
 }
 
+// Distances that matter only to rays along an axis: they may run in a face, or in the plane through 0, where
+// widening by parts of a coordinate is nothing.
+#define along_face(rcp) ((rcp) * (rcp)*1e-25f)
+
 static inline SlabRay make_slab_ray(float3 o, float3 d) {
   SlabRay ray;
 #if !WIDE_VECTORS
@@ -47,8 +51,9 @@ static inline SlabRay make_slab_ray(float3 o, float3 d) {
   ray.rcp_near = rcp * 0.9999997f;
   ray.rcp_far = rcp * 1.0000003f;
   const float3 near = o * ray.rcp_near, far = o * ray.rcp_far;
-  ray.shift_near = -(near + fabs(near) * 2.4e-7f);
-  ray.shift_far = -(far - fabs(far) * 2.4e-7f);
+  const float3 slack = along_face(rcp);
+  ray.shift_near = -(near + fma(fabs(near), (float3)(2.4e-7f), slack));
+  ray.shift_far = -(far - fma(fabs(far), (float3)(2.4e-7f), slack));
   // By the sign of the reciprocal: a component of -0 has a negative one.
   ray.near_x = rcp.x < 0.0f ? 24u : 0u;
   ray.near_y = rcp.y < 0.0f ? 32u : 8u;

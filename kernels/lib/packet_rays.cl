@@ -81,10 +81,9 @@ ALWAYS_INLINE float4 least_of_four(float16 a, float16 b, float16 c, float16 d) {
   return select(pairs.odd, pairs.even, pairs.even < pairs.odd);
 }
 
-ALWAYS_INLINE void set_crossing(Crossing* crossing, float4 o, float4 rcp, float wider) {
-  const float4 at = o * rcp;
+ALWAYS_INLINE void set_crossing(Crossing* crossing, float4 rcp, float4 shift) {
   vstore4(rcp, 0, crossing->rcp);
-  vstore4(-(at + fabs(at) * wider), 0, crossing->shift);
+  vstore4(shift, 0, crossing->shift);
 }
 
 // The interval that the rays span, from the least and the greatest origins and reciprocals of directions. A
@@ -97,10 +96,12 @@ ALWAYS_INLINE void span_packet(PacketRays* rays, float4 least_o, float4 most_o, 
   vstore4(as_uint4(select(upper, lower, negative)), 0, rays->far);
   const float4 ahead = select(most_o, least_o, negative), behind = select(least_o, most_o, negative);
   const float4 small = select(least_rcp, most_rcp, negative), large = select(most_rcp, least_rcp, negative);
-  set_crossing(&rays->first_in, ahead, small * 0.9999994f, 4.8e-7f);
-  set_crossing(&rays->last_out, behind, large * 1.0000006f, -4.8e-7f);
-  set_crossing(&rays->last_in, behind, large, 0.0f);
-  set_crossing(&rays->first_out, ahead, small, 0.0f);
+  const float4 first = small * 0.9999994f, last = large * 1.0000006f;
+  const float4 in = ahead * first, out = behind * last, slack = along_face(large);
+  set_crossing(&rays->first_in, first, -(in + fma(fabs(in), (float4)(4.8e-7f), slack)));
+  set_crossing(&rays->last_out, last, -(out - fma(fabs(out), (float4)(4.8e-7f), slack)));
+  set_crossing(&rays->last_in, large, -behind * large);
+  set_crossing(&rays->first_out, small, -ahead * small);
 }
 
 // The beam; `slopes` are the least of sx and sy and their negative greatest. It is widened by more than
@@ -152,8 +153,9 @@ NEVER_INLINE bool aim_packet(PacketRays* rays) {
     const float16 near = o * rcp_near, far = o * rcp_far;
     rays->rcp_near[axis] = rcp_near;
     rays->rcp_far[axis] = rcp_far;
-    rays->shift_near[axis] = -(near + fabs(near) * 2.4e-7f);
-    rays->shift_far[axis] = -(far - fabs(far) * 2.4e-7f);
+    const float16 slack = along_face(rcp);
+    rays->shift_near[axis] = -(near + fma(fabs(near), (float16)(2.4e-7f), slack));
+    rays->shift_far[axis] = -(far - fma(fabs(far), (float16)(2.4e-7f), slack));
     ends[axis] = o;
     ends[4u + axis] = -o;
     ends[8u + axis] = rcp;

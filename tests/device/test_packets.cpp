@@ -95,12 +95,51 @@ std::vector<Ray> bundles(std::size_t count) {
   return rays;
 }
 
-void compare_together_and_alone(const SceneDescription& scene) {
+constexpr int lattice = 40;
+float lattice_line(int i) { return 0.1f * static_cast<float>(i); }
+
+/// Steps over a lattice: the corners lie on its lines, and so do the faces of many boxes of the BVH.
+SceneDescription lattice_steps() {
+  Mesh mesh;
+  for (int i = 0; i <= lattice; ++i)
+    for (int j = 0; j <= lattice; ++j)
+      mesh.positions.emplace_back(lattice_line(i), lattice_line(j), 0.3f * static_cast<float>(i * j % 3));
+  const auto index = [](int i, int j) { return static_cast<unsigned>(i * (lattice + 1) + j); };
+  for (int i = 0; i < lattice; ++i)
+    for (int j = 0; j < lattice; ++j) {
+      mesh.triangles.emplace_back(index(i, j), index(i + 1, j), index(i, j + 1));
+      mesh.triangles.emplace_back(index(i + 1, j), index(i + 1, j + 1), index(i, j + 1));
+    }
+  return scene_of(std::move(mesh));
+}
+
+/// Sixteens of rays that run exactly along the lattice's lines, or between two of them.
+std::vector<Ray> lattice_rays(std::size_t count) {
+  std::mt19937 random(5);
+  std::vector<Ray> rays;
+  const auto line = [&] { return static_cast<int>(random() % (lattice + 12)) - 6; };
+  int x = 0, y = 0;
+  float up = 1, zero = 0, between = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % 16 == 0) {
+      x = line(), y = line();
+      up = random() % 2 ? 1.0f : -1.0f;
+      zero = random() % 2 ? 0.0f : -0.0f;
+      between = random() % 4 ? 0.0f : 0.05f;
+    }
+    const int u = x + static_cast<int>(i % 4), v = y + static_cast<int>(i / 4 % 4);
+    rays.push_back({lattice_line(u) + between, lattice_line(v), -3 * up, 0, zero, zero, up, infinity});
+  }
+  return rays;
+}
+
+void compare_together_and_alone(const SceneDescription& scene,
+                                std::vector<Ray> (*make_rays)(std::size_t) = bundles) {
   const CompiledScene flat = compile(scene);
   for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
       Device device(info);
       RayTracer tracer(device, flat);
-      const std::vector<Ray> rays = bundles(info.native_vector_width > 1 ? 200'009 : 2'009);
+      const std::vector<Ray> rays = make_rays(info.native_vector_width > 1 ? 200'009 : 2'009);
       const std::vector<Hit> together = tracer.trace(rays, true), alone = tracer.trace(rays, false);
       const std::vector<u32> occluded = tracer.occlusion(rays, true);
       std::size_t hits = 0, differ = 0, any_differs = 0;
@@ -143,6 +182,9 @@ void compare_wide_and_compact(SceneDescription scene) {
 TEST_CASE("rays together find what each finds alone: one mesh") { compare_together_and_alone(lone_mesh()); }
 TEST_CASE("rays together find what each finds alone: instances, solids and a plane") {
   compare_together_and_alone(mixed_scene());
+}
+TEST_CASE("rays together find what each finds alone: along the faces of boxes") {
+  compare_together_and_alone(lattice_steps(), lattice_rays);
 }
 
 TEST_CASE("the compact tracer finds what the wide one finds: one mesh") {
