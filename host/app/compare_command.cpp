@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/output_files.h"
 #include "base/file.h"
 #include "base/image_compare.h"
 #include "base/image_io.h"
@@ -68,6 +69,7 @@ int report_sizes(const CompareCommand& command, const Image& a, const Image& b) 
 }  // namespace
 
 int compare_command(const CompareCommand& command) {
+  check_output_files({command.diff}, {command.a, command.b});
   if (!command.diff.empty()) {
     check_image_path(command.diff, false);
     check_writable(command.diff);

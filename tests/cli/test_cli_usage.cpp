@@ -161,6 +161,7 @@ TEST_CASE(
         {"render", folder.scene, "-o", out, "--stats", same},
         {"render", folder.scene, "-o", out, "--resume", same},
         {"bench", "samples", folder.scene, "--json", folder.scene},
+        {"compare", folder.scene, out, "--diff", same},
         {"merge", out, folder.scene, "-o", same}}) {
     const CommandResult result = run_sundog(command);
     CAPTURE(command, result.err);
