@@ -82,14 +82,15 @@ class Placer {
   Placed place(const Object& object, u32 index) {
     Placed placed;
     Instance& instance = placed.instance;
-    const UnitShape unit = unit_shape(scene_, object);
+    UnitShape unit = unit_shape(scene_, object);
     instance.shape = unit.shape;
     instance.parameters = unit.parameters;
     instance.object = index;
-    instance.pattern_scale = {static_cast<float>(unit.scale.x), static_cast<float>(unit.scale.y),
-                              static_cast<float>(unit.scale.z), 0};
     const auto* shape = std::get_if<MeshShape>(&object.shape);
     const PlacedMesh* mesh = shape ? &meshes_[static_cast<std::size_t>(shape->mesh)] : nullptr;
+    if (mesh) unit.scale = dvec3(mesh->unit);
+    instance.pattern_scale = {static_cast<float>(unit.scale.x), static_cast<float>(unit.scale.y),
+                              static_cast<float>(unit.scale.z), 0};
     if (mesh) {
       instance.root = mesh->root;
       placed.cost = mesh->cost;
@@ -189,16 +190,24 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
   });
 }
 
-/// Beside meshes a few solids stay out of the scene BVH: testing each for a whole batch of rays is quicker than
-/// taking every ray to it through the tree, and a lone mesh is then walked without one. Takes them out.
-std::vector<Placed> take_few_solids(std::vector<Placed>& bounded) {
+/// Beside meshes a few solids that many rays meet stay out of the scene BVH: testing one for a whole batch of
+/// rays is then quicker than taking every ray to it through the tree, and where no other is left a lone mesh
+/// is walked without one. How many meet a solid is, as for SAH, its box's area as a part of `scene`'s; a
+/// small one costs each ray more than it gives. Takes them out.
+std::vector<Placed> take_large_solids(std::vector<Placed>& bounded, const Bounds& scene) {
+  constexpr float share = 0.05f;
   constexpr std::ptrdiff_t few = 16;
-  const auto solids = std::stable_partition(bounded.begin(), bounded.end(), [](const Placed& placed) {
-    return placed.instance.shape == SHAPE_MESH;
+  const auto is_mesh = [](const Placed& placed) { return placed.instance.shape == SHAPE_MESH; };
+  if (std::none_of(bounded.begin(), bounded.end(), is_mesh)) return {};
+  const Lanes edges = scene.upper - scene.lower;
+  const float scale = 1 / std::max({edges[0], edges[1], edges[2], 1e-30f});
+  const float least = share * half_area(scene, scale);
+  const auto large = std::stable_partition(bounded.begin(), bounded.end(), [&](const Placed& placed) {
+    return is_mesh(placed) || half_area(placed.box, scale) < least;
   });
-  if (solids == bounded.begin() || bounded.end() - solids > few) return {};
-  std::vector<Placed> taken(solids, bounded.end());
-  bounded.erase(solids, bounded.end());
+  if (bounded.end() - large > few) return {};
+  std::vector<Placed> taken(large, bounded.end());
+  bounded.erase(large, bounded.end());
   return taken;
 }
 
@@ -223,10 +232,10 @@ void add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>&
   }
   for (const Placed& placed : bounded) out.figures.box.extend(placed.box);
   out.info.scene_center = bounded.empty() ? float4{} : sphere_around(out.figures.box);
-  const std::vector<Placed> few = take_few_solids(bounded);
+  const std::vector<Placed> large = take_large_solids(bounded, out.figures.box);
   add_scene_bvh(bounded, out, mesh_stack);
   for (const Placed& placed : bounded) out.instances.push_back(placed.instance);
-  for (const Placed& placed : few) out.instances.push_back(placed.instance);
+  for (const Placed& placed : large) out.instances.push_back(placed.instance);
   for (const Placed& placed : unbounded) out.instances.push_back(placed.instance);
   out.info.instance_count = static_cast<u32>(out.instances.size());
   for (const Placed& placed : fields) out.instances.push_back(placed.instance);

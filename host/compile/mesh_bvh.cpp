@@ -5,6 +5,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <atomic>
@@ -79,9 +80,33 @@ Bounds triangle_box(const Mesh& mesh, const glm::uvec3& triangle) {
   return box;
 }
 
-WideBvh build_mesh(const SceneDescription& scene, std::size_t index) {
+/// The power of two that PlacedMesh::unit is.
+double table_unit(const Mesh& mesh) {
+  constexpr int far = 36;  // 2^36 is 7e10
+  const auto greatest = [&](const tbb::blocked_range<std::size_t>& range, float most) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const glm::vec3 size = glm::abs(mesh.positions[i]);
+      most = std::max({most, size.x, size.y, size.z});
+    }
+    return most;
+  };
+  const float most = tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, mesh.positions.size(), 4096),
+                                          0.0f, greatest, [](float a, float b) { return std::max(a, b); });
+  if (!(most > 0 && most <= farthest)) return 1;
+  const int exponent = std::clamp(std::ilogb(most), -126, 126);  // its inverse is a float too
+  return std::abs(exponent) <= far ? 1 : std::ldexp(1.0, exponent);
+}
+
+/// The mesh in units of the tables.
+Mesh resized(const Mesh& mesh, double unit) {
+  Mesh result = mesh;
+  const double scale = 1 / unit;  // of a power of two: nothing is rounded but what vanishes beside the rest
+  for (glm::vec3& p : result.positions) p = glm::vec3(glm::dvec3(p) * scale);
+  return result;
+}
+
+WideBvh build_mesh(const SceneDescription& scene, std::size_t index, const Mesh& mesh) {
   check_attributes(scene, index);
-  const Mesh& mesh = scene.meshes[index];
   const auto fill = [&](std::span<Ref> refs) {
     std::atomic<bool> bad{false};
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, refs.size(), 4096), [&](const auto& range) {
@@ -226,13 +251,20 @@ std::vector<PlacedMesh> add_meshes(const SceneDescription& scene, u32 default_ma
     if (const auto* shape = std::get_if<MeshShape>(&object.shape))
       placed[std::size_t(shape->mesh)].used = true;
   std::vector<WideBvh> trees(placed.size());  // of a mesh that is not used: without nodes
+  std::vector<Mesh> copies(placed.size());    // of those that the tables hold in another unit
+  const auto mesh = [&](std::size_t i) -> const Mesh& {
+    return placed[i].unit != 1 ? copies[i] : scene.meshes[i];
+  };
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
-    if (placed[i].used) trees[i] = build_mesh(scene, i);
+    if (!placed[i].used) return;
+    placed[i].unit = table_unit(scene.meshes[i]);
+    if (placed[i].unit != 1) copies[i] = resized(scene.meshes[i], placed[i].unit);
+    trees[i] = build_mesh(scene, i, mesh(i));
   });
   const std::vector<Rows> first = lay_out(scene, trees);
   resize_tables(first.back(), out);
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
-    if (placed[i].used) fill_tables(scene.meshes[i], trees[i], first[i], default_material, out, placed[i]);
+    if (placed[i].used) fill_tables(mesh(i), trees[i], first[i], default_material, out, placed[i]);
   });
   out.figures.mean_block_fill = mean_fill(trees);
   return placed;

@@ -10,6 +10,7 @@ namespace sundog {
 /// A mesh in the tables, and what its instances need to know of it.
 struct PlacedMesh {
   bool used = false;  // some object places it
+  double unit = 1;    // of the tables' coordinates, in the mesh's: a power of two
   u32 root = 0;       // its first node
   u32 triangle_count = 0;
   double cost = 0;             // expected cost of a ray that crosses its box
@@ -20,7 +21,9 @@ struct PlacedMesh {
 
 /// Appends the meshes that `scene`'s objects use to nodes, blocks, triangles and vertices of `out`; one
 /// PlacedMesh a mesh. `default_material` is for triangles that neither the mesh nor an object gives one.
-/// Throws SceneError for a vertex that is not finite or too far out, and for an index out of range.
+/// A mesh whose greatest coordinate is beyond 1e11 or below 1e-11 is brought to about 1, since products of
+/// its edges and transforms would leave a float's range. Throws SceneError for a vertex that is not finite or
+/// too far out, and for an index out of range.
 std::vector<PlacedMesh> add_meshes(const SceneDescription& scene, u32 default_material, CompiledScene& out);
 
 }  // namespace sundog

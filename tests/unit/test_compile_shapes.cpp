@@ -2,9 +2,9 @@
 #include <random>
 
 #include "base/error.h"
+#include "bench/exact_tracer.h"
 #include "catch.h"
 #include "compile/wide_bvh.h"
-#include "host_tracer.h"
 #include "test_meshes.h"
 
 using namespace sundog;
@@ -172,6 +172,44 @@ TEST_CASE("planes stand behind the bounded instances") {
   CHECK(flat.features.unbounded);
 }
 
+/// A mesh of radius 1 and `count` spheres of `radius` around it.
+SceneDescription mesh_and_spheres(int count, double radius) {
+  SceneDescription scene = scene_of(bumpy_sphere(10));
+  for (int i = 0; i < count; ++i) {
+    Object sphere = scene.objects[0];
+    sphere.shape = SphereShape{radius};
+    sphere.world_from_object[3] = {std::cos(i), 0.1 * i - 0.8, std::sin(i), 1};
+    scene.objects.push_back(sphere);
+  }
+  return scene;
+}
+
+TEST_CASE("small solids beside a mesh are in the scene's BVH, however few they are") {
+  for (const int count : {1, 2, 16, 17}) {
+    const CompiledScene flat = compile(mesh_and_spheres(count, 0.01));
+    CHECK(flat.info.bounded_count == static_cast<u32>(count) + 1);
+    CHECK(flat.info.instance_count == flat.info.bounded_count);
+  }
+}
+
+TEST_CASE("solids beside a mesh that many rays meet are offered to each batch, up to a few") {
+  CompiledScene flat = compile(mesh_and_spheres(2, 0.9));
+  CHECK(flat.info.bounded_count == 1);
+  CHECK(flat.instances[0].shape == SHAPE_MESH);
+  CHECK(flat.info.instance_count == 3);
+
+  SceneDescription mixed = mesh_and_spheres(6, 0.01);
+  mixed.objects[3].shape = SphereShape{0.9};
+  flat = compile(mixed);
+  CHECK(flat.info.bounded_count == 6);
+  CHECK(flat.info.instance_count == 7);
+  CHECK(flat.instances[6].object == 3);
+
+  CHECK(compile(mesh_and_spheres(40, 0.9)).info.bounded_count == 41);
+  flat = compile(scene_with(SphereShape{}));
+  CHECK(flat.info.bounded_count == 1);  // no mesh: nothing is taken out
+}
+
 TEST_CASE("sizes that make no solid are errors at the object's place") {
   dmat4 singular(1);
   singular[1][1] = 0;
@@ -187,5 +225,27 @@ TEST_CASE("sizes that make no solid are errors at the object's place") {
     } catch (const SceneError& error) {
       CHECK(error.place == "/objects/0");
     }
+  }
+}
+
+TEST_CASE("a mesh of extreme coordinates is held in another unit, which its instance undoes") {
+  const HostRay ray{{0.3, 0.2, 5}, {0.01, 0.02, -1}};
+  const auto expected = trace_host(compile(scene_of(bumpy_sphere(12))), ray);
+  REQUIRE(expected);
+  for (const double unit : {1e-36, 1e-16, 1e-8, 1e8, 1e14, 1e35}) {
+    SceneDescription scene = scene_of(bumpy_sphere(12));
+    for (glm::vec3& p : scene.meshes[0].positions) p = glm::vec3(dvec3(p) * unit);
+    scene.objects[0].world_from_object = dmat4(glm::dmat3(1 / unit));
+    CAPTURE(unit);
+    const CompiledScene flat = compile(scene);
+    float greatest = 0;
+    for (const TriangleBlock& block : flat.blocks)
+      for (const float y : block.v1_y) greatest = std::max(greatest, std::abs(y));
+    CHECK((greatest > 1e-11f && greatest < 1e11f));
+    CHECK(flat.instances[0].pattern_scale.x * flat.instances[0].object_from_world[0].x == Approx(unit));
+    const auto hit = trace_host(flat, ray);
+    REQUIRE(hit);
+    CHECK(hit->t == Approx(expected->t).epsilon(1e-6));
+    CHECK(flat.figures.box.upper[1] == Approx(1).epsilon(0.2));
   }
 }
