@@ -4,55 +4,50 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <sstream>
 
 #include "app/bench_options.h"
 #include "app/option_helpers.h"
 #include "app/option_values.h"
 #include "base/clock.h"
 #include "base/error.h"
-#include "bench/plain/tracer.h"
+#include "bench/check_hits.h"
 #include "bench/ray_sets.h"
 #include "bench/ray_tracer.h"
 
 namespace sundog {
 namespace {
 
-constexpr std::size_t checked_rays = 4096;  // of each kind, against the host
-constexpr double allowed_differences = 1e-3;
-
 struct RaysOptions : BenchOptions {
-  std::string size = "1024";
+  std::string size = "1024", kinds;
 };
 
 /// One kind of rays of one scene on one device.
 struct RayTimes {
   std::string kind;
-  std::size_t rays = 0, hits = 0, checked = 0, differ = 0;
+  std::size_t rays = 0;
+  HitCheck check;
   Spread mrays;
 };
 
-plain::Ray plain_ray(const Ray& ray) {
-  return {{ray.ox, ray.oy, ray.oz}, {ray.dx, ray.dy, ray.dz}, ray.t_min, ray.t_max};
+/// The answers of the tracer's last run.
+Answers answers_of(RayTracer& tracer, const RaySet& set) {
+  return set.any ? Answers{{}, tracer.occluded()} : Answers{tracer.hits(), {}};
 }
 
-/// Looks some rays up with the host's own tracer. Rays past silhouettes and along edges may fall to either
-/// side.
-void check_hits(const CompiledScene& scene, const RaySet& set, RayTracer& tracer, RayTimes& times) {
-  const std::vector<Hit> hits = set.any ? std::vector<Hit>{} : tracer.hits();
-  const std::vector<u32> occluded = set.any ? tracer.occluded() : std::vector<u32>{};
-  const auto hit = [&](std::size_t i) {
-    return set.any ? occluded[i] != 0 : hits[i].instance != NO_INSTANCE;
-  };
-  for (std::size_t i = 0; i < set.rays.size(); ++i) times.hits += hit(i);
-  const std::size_t stride = std::max<std::size_t>(1, set.rays.size() / checked_rays);
-  for (std::size_t i = 0; i < set.rays.size(); i += stride) {
-    plain::Hit expected;
-    const bool found = plain::closest_hit(scene, plain_ray(set.rays[i]), expected);
-    const bool same = hit(i) == found &&
-                      (set.any || !found || std::abs(hits[i].t - expected.t) <= 1e-4f * std::abs(expected.t));
-    ++times.checked;
-    times.differ += !same;
+/// "primary,shadow": of which kinds; empty: of all. Throws UsageError.
+std::vector<std::string> parse_kinds(const std::string& text) {
+  static const std::vector<std::string> known = {"primary",  "shadow",     "bounce",
+                                                 "shuffled", "reflection", "glass"};
+  std::vector<std::string> kinds;
+  std::istringstream in(text);
+  for (std::string kind; std::getline(in, kind, ',');) {
+    if (std::ranges::count(known, kind) == 0)
+      throw UsageError(
+          fmt::format("--kinds '{}': wanted some of {} with commas between", text, fmt::join(known, ", ")));
+    kinds.push_back(kind);
   }
+  return kinds;
 }
 
 RayTimes time_rays(const CompiledScene& scene, const RaySet& set, RayTracer& tracer, int repeat) {
@@ -61,10 +56,10 @@ RayTimes time_rays(const CompiledScene& scene, const RaySet& set, RayTracer& tra
   times.rays = set.rays.size();
   tracer.upload(set.rays);
   tracer.run({set.any, set.coherent});
-  check_hits(scene, set, tracer, times);
-  if (static_cast<double>(times.differ) > allowed_differences * static_cast<double>(times.checked) + 1)
-    throw DeviceError(fmt::format("{} of {} {} rays that the host traced too differ: no time counts",
-                                  times.differ, times.checked, set.kind));
+  times.check = check_hits(scene, set, answers_of(tracer, set));
+  if (times.check.differ > 0)
+    throw DeviceError(fmt::format("{} of {} {} rays have wrong answers: no time counts", times.check.differ,
+                                  times.check.checked, set.kind));
   std::vector<double> rates;
   for (int i = 0; i < repeat; ++i) {
     const Stopwatch clock;
@@ -80,13 +75,18 @@ std::vector<RayTimes> time_scene(const CompiledScene& scene, Device& device, con
   RayTracer tracer(device, scene);
   const TraceFunction trace = [&](std::span<const Ray> rays) { return tracer.trace(rays); };
   const Viewpoint view = scene_viewpoint(scene);
+  const std::vector<std::string> kinds = parse_kinds(options.kinds);
+  const auto wanted = [&](const std::string& kind) {
+    return kinds.empty() || std::ranges::count(kinds, kind) > 0;
+  };
   std::vector<RaySet> sets{
       primary_rays(view, static_cast<unsigned>(parse_number("--size", options.size, 1, 16384)))};
-  for (RaySet& set : secondary_rays(scene, view, sets[0], trace)) sets.push_back(std::move(set));
+  if (kinds != std::vector<std::string>{"primary"})
+    for (RaySet& set : secondary_rays(scene, view, sets[0], trace, kinds)) sets.push_back(std::move(set));
   std::vector<RayTimes> times;
   for (const RaySet& set : sets) {
     show_step(options, fmt::format("{}: {} rays", name, set.kind));
-    if (!set.rays.empty()) times.push_back(time_rays(scene, set, tracer, options.repeat));
+    if (!set.rays.empty() && wanted(set.kind)) times.push_back(time_rays(scene, set, tracer, options.repeat));
   }
   return times;
 }
@@ -94,17 +94,18 @@ std::vector<RayTimes> time_scene(const CompiledScene& scene, Device& device, con
 void add_rows(Report& report, const std::string& scene, const DeviceInfo& device,
               const std::vector<RayTimes>& times) {
   Table table{fmt::format("{} on {}", scene, device.label()),
-              {{"kind", ""}, {"rays", ""}, {"hits", "%"}, {"rate", "Mrays/s"}, {"differ", ""}},
+              {{"kind", ""}, {"rays", ""}, {"hits", "%"}, {"rate", "Mrays/s"}, {"checked", ""}},
               {}};
   BarPlot bars{table.title, "Mrays/s", {}};
   for (const RayTimes& t : times) {
-    const double hits = 100.0 * static_cast<double>(t.hits) / static_cast<double>(t.rays);
-    const std::string differ = fmt::format("{} of {}", t.differ, t.checked);
-    table.rows.push_back({t.kind, static_cast<double>(t.rays), hits, t.mrays, differ});
+    const double hits = 100.0 * static_cast<double>(t.check.hits) / static_cast<double>(t.rays);
+    const std::string checked = fmt::format("{}, {} by rounding", t.check.checked, t.check.rounded);
+    table.rows.push_back({t.kind, static_cast<double>(t.rays), hits, t.mrays, checked});
     bars.bars.push_back({t.kind, t.mrays, fmt::format("{} rays", t.rays)});
-    report.measurements.rows.push_back({scene, device.label(), t.kind, static_cast<double>(t.rays),
-                                        static_cast<double>(t.hits), static_cast<double>(t.checked),
-                                        static_cast<double>(t.differ), t.mrays});
+    const auto number = [](std::size_t n) { return static_cast<double>(n); };
+    report.measurements.rows.push_back({scene, device.label(), t.kind, number(t.rays), number(t.check.hits),
+                                        number(t.check.checked), number(t.check.rounded),
+                                        number(t.check.differ), t.mrays});
   }
   report.parts.emplace_back(std::move(table));
   report.parts.emplace_back(std::move(bars));
@@ -124,8 +125,9 @@ std::string describe(const CompiledScene& scene) {
 
 int bench_rays(const RaysOptions& options) {
   Report report = new_report("rays", "Rays a second by kind", options);
-  report.measurements.columns = {{"scene", ""}, {"device", ""},  {"kind", ""},   {"rays", ""},
-                                 {"hits", ""},  {"checked", ""}, {"differ", ""}, {"rate", "Mrays/s"}};
+  report.measurements.columns = {{"scene", ""},   {"device", ""}, {"kind", ""},
+                                 {"rays", ""},    {"hits", ""},   {"checked", ""},
+                                 {"rounded", ""}, {"differ", ""}, {"rate", "Mrays/s"}};
   const std::vector<DeviceInfo> devices = bench_devices(options);
   for (const DeviceInfo& info : devices)
     report.facts.emplace_back("device", info.label() + ", " + info.driver);
@@ -143,8 +145,9 @@ int bench_rays(const RaysOptions& options) {
       "Median of {} launches by the wall clock, each waited for. Shadow rays ask for any hit, the others for "
       "the nearest. Distance fields are marched, not traced, and left out: `bench threads` and `bench "
       "devices` "
-      "time their frames. `differ`: of the rays that the "
-      "host traced too, those with another answer.",
+      "time their frames. Every answer is checked by the host's own tracer, and in double precision where "
+      "the "
+      "two differ; `by rounding`: those that are right both ways.",
       options.repeat));
   return publish(report, options);
 }
@@ -157,6 +160,8 @@ void add_bench_rays(CLI::App& bench, Command& chosen) {
       bench.add_subcommand("rays", "Rays a second by kind: camera, shadow, bounce, reflection, glass");
   add_bench_options(app, *options);
   value(app, "--size", "N", options->size, "pixels a side of the camera's rays (default 1024)");
+  value(app, "--kinds", "NAMES", options->kinds,
+        "some of primary,shadow,bounce,shuffled,reflection,glass (default all)");
   app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_rays(*options); }}; });
 }
 

@@ -37,10 +37,10 @@ typedef struct Batch {
 
 // The BATCH rays from `first` on, in the form that the tracer takes; lanes without a ray have the last one.
 // They are put together in registers: read back from memory, they would wait for sixteen writes.
-ALWAYS_INLINE Batch load_batch(__global const Ray* restrict rays, u32 ray_count, u32 first) {
-  Batch batch;
+// (Not a result: Oclgrind cannot run what is inlined and returns a structure, or takes a restrict pointer.)
+ALWAYS_INLINE void load_batch(__global const Ray* rays, u32 ray_count, u32 first, Batch* batch) {
   const u32 count = min((u32)BATCH, ray_count - first);
-  batch.lanes = lanes_of((1u << count) - 1u);
+  batch->lanes = lanes_of((1u << count) - 1u);
 #if LANES == 16
   float16 v[8];
   if (count == BATCH)
@@ -52,28 +52,28 @@ ALWAYS_INLINE Batch load_batch(__global const Ray* restrict rays, u32 ray_count,
       v[i] = (float16)(vload8(first + min(2u * i, count - 1u), &rays->ox),
                        vload8(first + min(2u * i + 1u, count - 1u), &rays->ox));
   gather_members(v);
-  batch.o = real3(v[0], v[1], v[2]);
-  batch.d = real3(v[4], v[5], v[6]);
-  batch.t_min = v[3];
-  batch.t_max = v[7];
+  batch->o = real3(v[0], v[1], v[2]);
+  batch->d = real3(v[4], v[5], v[6]);
+  batch->t_min = v[3];
+  batch->t_max = v[7];
 #else
 #pragma unroll
   for (u32 i = 0; i < BATCH; ++i) {
     const float8 ray = vload8(first + min(i, count - 1u), &rays->ox);
-    set3(&batch.o, i, ray.s012);
-    set3(&batch.d, i, ray.s456);
-    REAL_LANE(batch.t_min, i) = ray.s3;
-    REAL_LANE(batch.t_max, i) = ray.s7;
+    set3(&batch->o, i, ray.s012);
+    set3(&batch->d, i, ray.s456);
+    REAL_LANE(batch->t_min, i) = ray.s3;
+    REAL_LANE(batch->t_max, i) = ray.s7;
   }
 #endif
-  return batch;
 }
 
 NEVER_INLINE void trace_rays_item(TRACE_PARAMETERS, __global const Ray* restrict rays,
                                   __global Hit* restrict hits, u32 ray_count, u32 coherent, u32 item) {
   const u32 first = item * BATCH;
   if (first >= ray_count) return;
-  const Batch batch = load_batch(rays, ray_count, first);
+  Batch batch;
+  load_batch(rays, ray_count, first, &batch);
   Hits found;
   trace_batch(TRACE_ARGUMENTS, &batch.o, &batch.d, &batch.t_min, batch.t_max, batch.lanes, coherent != 0u,
               &found);
@@ -93,7 +93,8 @@ NEVER_INLINE void occluded_rays_item(TRACE_PARAMETERS, __global const Ray* restr
                                      __global u32* restrict occluded, u32 ray_count, u32 coherent, u32 item) {
   const u32 first = item * BATCH;
   if (first >= ray_count) return;
-  const Batch batch = load_batch(rays, ray_count, first);
+  Batch batch;
+  load_batch(rays, ray_count, first, &batch);
   const MASK found = occluded_batch(TRACE_ARGUMENTS, &batch.o, &batch.d, &batch.t_min, batch.t_max,
                                     batch.lanes, coherent != 0u);
 #if LANES == 16

@@ -96,10 +96,53 @@ TEST_CASE("bench rays times every kind of ray and checks the hits") {
     kinds.push_back(row.at("kind"));
     CHECK(row.at("rate_Mrays/s").at("median") > 0);
     CHECK(row.at("hits") > 0);
-    CHECK(row.at("checked") > 0);
+    CHECK(row.at("checked") == row.at("rays"));  // each
+    CHECK(row.at("rounded") <= 0.01 * row.at("rays").get<double>());
     CHECK(row.at("differ") == 0);
   }
   CHECK(kinds == std::vector<std::string>{"primary", "shadow", "bounce", "shuffled", "reflection", "glass"});
+}
+
+TEST_CASE("bench rays takes the kinds that are asked for") {
+  const CliFolder folder;
+  const std::string scene = SUNDOG_SOURCE_DIR "/tests/support/mesh_and_solids.json";
+  for (const char* tracer : {"wide", "compact"}) {
+    const CommandResult result = run_sundog(
+        {"bench", "rays", scene, "--device", "pthread", "--size", "16", "--repeat", "1", "--kinds",
+         "glass,primary", "--set", std::string("/render/tracer=") + tracer, "--json", folder.file("k.json")});
+    CAPTURE(result.out, result.err);
+    REQUIRE(result.status == 0);
+    const json rows = json::parse(sundog::read_file(folder.file("k.json"))).at("measurements");
+    REQUIRE(rows.size() == 2);
+    CHECK(rows[0].at("kind") == "primary");
+    CHECK(rows[1].at("kind") == "glass");
+  }
+  const CommandResult wrong = run_sundog({"bench", "rays", scene, "--kinds", "primary,glas"});
+  CHECK(wrong.status == 2);
+  CHECK(is_one_error_line(wrong.err));
+  CHECK_THAT(wrong.err, ContainsSubstring("shuffled"));
+}
+
+TEST_CASE("bench rays fails where a kernel tells wrong distances") {
+  const CliFolder folder;
+  const std::filesystem::path kernels = folder / "kernels";
+  std::filesystem::copy(SUNDOG_SOURCE_DIR "/kernels", kernels, std::filesystem::copy_options::recursive);
+  const std::filesystem::path file = kernels / "entry" / "trace_rays.cl";
+  std::string text = sundog::read_file(file);
+  const std::string call = "batch.lanes, coherent != 0u,\n              &found);";
+  REQUIRE(text.find(call) != std::string::npos);
+  text.replace(text.find(call), call.size(), call + "\n  found.t *= 1.01f;");
+  sundog::write_file(file, text);
+  CommandOptions options;
+  options.environment["SUNDOG_KERNEL_DIR"] = kernels.string();
+  const CommandResult result =
+      run_sundog({"bench", "rays", SUNDOG_SOURCE_DIR "/tests/support/mesh_and_solids.json", "--device",
+                  "pthread", "--size", "32", "--repeat", "1"},
+                 options);
+  CAPTURE(result.out, result.err);
+  CHECK(result.status == 4);
+  CHECK_THAT(result.err, ContainsSubstring("wrong answers"));
+  CHECK(is_one_error_line(result.err));
 }
 
 TEST_CASE("bench rays says that it leaves distance fields out, and times nothing where nothing else is") {

@@ -1,16 +1,21 @@
 // The builder's promises: every triangle once, boxes that hold what is below them, the same bytes at any
 // number of threads.
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
+#include <atomic>
+#include <chrono>
 #include <cstring>
 #include <limits>
 #include <set>
+#include <thread>
 
 #include "base/error.h"
+#include "bench/exact_tracer.h"
 #include "catch.h"
 #include "compile/compiled_scene.h"
 #include "compile/wide_bvh.h"
-#include "host_tracer.h"
 #include "test_meshes.h"
 
 using namespace sundog;
@@ -77,6 +82,20 @@ CompiledScene checked(const Mesh& mesh) {
   return scene;
 }
 
+/// Compiles with `threads` threads, more than the machine has cores too: an arena takes so many slots, and
+/// the workers for them come from the control.
+CompiledScene compiled_on(int threads, const SceneDescription& scene) {
+  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
+  CompiledScene result;
+  arena.execute([&] {
+    REQUIRE(tbb::this_task_arena::max_concurrency() == threads);
+    result = compile(scene);
+  });
+  return result;
+}
+
 Mesh repeated(const Mesh& one, std::size_t times) {
   Mesh mesh = one;
   for (std::size_t i = 1; i < times; ++i) mesh.triangles.push_back(one.triangles[0]);
@@ -94,19 +113,32 @@ TEST_CASE("every triangle is in the tree once, inside each box above it") {
   checked(bumpy_sphere(100));
 }
 
+TEST_CASE("an arena of more threads than cores has so many workers") {
+  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);
+  tbb::task_arena arena(8);
+  std::atomic<int> inside{0};
+  arena.execute([&] {  // each waits for the seven others
+    tbb::parallel_for(
+        0, 8,
+        [&](int) {
+          const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+          for (++inside; inside < 8 && std::chrono::steady_clock::now() < end;) std::this_thread::yield();
+        },
+        tbb::simple_partitioner());
+  });
+  CHECK(inside == 8);
+}
+
 TEST_CASE("the tree is the same bytes for any number of threads") {
   const SceneDescription scene = scene_of(random_triangles(200000, 0.01f));
-  std::vector<CompiledScene> results;
-  for (const std::size_t threads : {1u, 2u, 8u}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    results.push_back(compile(scene));
-  }
-  for (const CompiledScene& other : {results[1], results[2]}) {
-    CHECK(same_bytes(results[0].nodes, other.nodes));
-    CHECK(same_bytes(results[0].blocks, other.blocks));
-    CHECK(same_bytes(results[0].triangles, other.triangles));
-    CHECK(same_bytes(results[0].vertices, other.vertices));
-    CHECK(same_bytes(results[0].instances, other.instances));
+  const CompiledScene one = compiled_on(1, scene);
+  for (const int threads : {2, 3, 8}) {
+    const CompiledScene other = compiled_on(threads, scene);
+    CHECK(same_bytes(one.nodes, other.nodes));
+    CHECK(same_bytes(one.blocks, other.blocks));
+    CHECK(same_bytes(one.triangles, other.triangles));
+    CHECK(same_bytes(one.vertices, other.vertices));
+    CHECK(same_bytes(one.instances, other.instances));
   }
 }
 
@@ -219,12 +251,11 @@ TEST_CASE("cut triangles make long thin ones cheaper, within their room, the sam
   const CompiledScene whole = compile(scene);
   scene.render.spatial_splits = true;
   std::vector<CompiledScene> cut;
-  for (const std::size_t threads : {1u, 8u}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    cut.push_back(compile(scene));
+  for (const int threads : {1, 2, 3, 8}) {
+    cut.push_back(compiled_on(threads, scene));
+    CHECK(same_bytes(cut[0].nodes, cut.back().nodes));
+    CHECK(same_bytes(cut[0].blocks, cut.back().blocks));
   }
-  CHECK(same_bytes(cut[0].nodes, cut[1].nodes));
-  CHECK(same_bytes(cut[0].blocks, cut[1].blocks));
   CHECK(cut[0].figures.sah_cost < 0.9 * whole.figures.sah_cost);
   std::set<u32> prims;
   std::size_t entries = 0;

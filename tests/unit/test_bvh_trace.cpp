@@ -1,8 +1,8 @@
 // Rays through the flattened tables find what a search without the BVH finds.
 #include <random>
 
+#include "bench/exact_tracer.h"
 #include "catch.h"
-#include "host_tracer.h"
 #include "test_meshes.h"
 
 using namespace sundog;

@@ -1,4 +1,4 @@
-// A slow, plain tracer of the compiled tables in double precision: what kernels and the BVH are held against.
+// A slow tracer of the compiled tables in double precision: what kernels and the BVH are held against.
 #pragma once
 #include <glm/glm.hpp>
 #include <limits>
@@ -29,6 +29,9 @@ std::optional<HostHit> trace_brute_force(const CompiledScene& scene, const HostR
 
 /// Every crossing of one instance's surface, nearest first, t in (t_min, t_max).
 std::vector<HostHit> crossings(const CompiledScene& scene, u32 instance, const HostRay& ray);
+
+/// The nearest crossing of one instance's surface, through its BVH.
+std::optional<HostHit> trace_instance(const CompiledScene& scene, u32 instance, const HostRay& ray);
 
 /// The ray in an instance's object space (t unchanged).
 HostRay object_ray(const Instance& instance, const HostRay& ray);

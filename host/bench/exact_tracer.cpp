@@ -1,10 +1,10 @@
-// See host_tracer.h.
-#include "host_tracer.h"
+// See exact_tracer.h.
+#include "bench/exact_tracer.h"
 
 #include <algorithm>
 #include <functional>
 
-#include "host_solids.h"
+#include "bench/exact_solids.h"
 
 namespace sundog {
 namespace {
@@ -124,6 +124,12 @@ std::optional<HostHit> trace_brute_force(const CompiledScene& scene, const HostR
 
 std::vector<HostHit> crossings(const CompiledScene& scene, u32 instance, const HostRay& ray) {
   return cross_instance(scene, instance, ray, true);
+}
+
+std::optional<HostHit> trace_instance(const CompiledScene& scene, u32 instance, const HostRay& ray) {
+  Nearest nearest;
+  nearest.offer(cross_instance(scene, instance, ray, false));
+  return nearest.hit;
 }
 
 std::vector<u32> leaf_items(const CompiledScene& scene, u32 word) {

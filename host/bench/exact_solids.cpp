@@ -1,5 +1,5 @@
-// See host_solids.h.
-#include "host_solids.h"
+// See exact_solids.h.
+#include "bench/exact_solids.h"
 
 #include <algorithm>
 #include <cmath>
