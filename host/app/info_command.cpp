@@ -4,8 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/option_values.h"
 #include "app/scene_figures.h"
 #include "app/warnings.h"
+#include "base/error.h"
+#include "scene/json/override.h"
 #include "scene/load.h"
 
 namespace sundog {
@@ -36,11 +39,11 @@ void print_text(const json& figures) {
   fmt::print("instances  {}\n", number("instances"));
   fmt::print("lights     {}\n", counts_text(figures["lights"]));
   fmt::print("materials  {}, media {}\n", number("materials"), number("media"));
-  fmt::print(
-      "BVH        {} nodes, {} blocks of 8 triangles ({:.2f} filled), cost {:.2f}, built in {:.0f} ms\n",
-      bvh["nodes"].get<std::uint64_t>(), bvh["blocks"].get<std::uint64_t>(),
-      bvh["mean_block_fill"].get<double>(), bvh["sah_cost"].get<double>(),
-      1000 * bvh["build_seconds"].get<double>());
+  fmt::print("BVH        {} nodes, {} blocks of 8 triangles ({:.2f} filled), built in {:.0f} ms\n",
+             bvh["nodes"].get<std::uint64_t>(), bvh["blocks"].get<std::uint64_t>(),
+             bvh["mean_block_fill"].get<double>(), 1000 * bvh["build_seconds"].get<double>());
+  fmt::print("SAH cost   {:.2f}: {}\n", bvh["sah_cost"].get<double>(),
+             bvh["sah_cost_unit"].get<std::string>());
   fmt::print("memory     {:.2f} MiB: BVH {:.2f}, shading {:.2f}, tables {:.2f}\n", mebibytes("total"),
              mebibytes("bvh"), mebibytes("shading"), mebibytes("tables"));
   if (const json& bounds = figures["bounds"]; bounds.is_null())
@@ -49,12 +52,24 @@ void print_text(const json& figures) {
     fmt::print("bounds     {} to {}\n", point_text(bounds["min"]), point_text(bounds["max"]));
 }
 
+/// An error at a place that an option changed is the command line's.
+CompiledScene compile_overridden(const SceneDescription& scene, const InfoCommand& command) {
+  try {
+    return compile(scene);
+  } catch (const SceneError& error) {
+    for (const std::string& setting : command.overrides)
+      if (error.file == command.scene && concerns(setting, error.place)) throw UsageError(error.what());
+    throw;
+  }
+}
+
 }  // namespace
 
 int info_command(const InfoCommand& command) {
-  const SceneDescription scene = load_scene(command.scene);
+  for (const std::string& setting : command.overrides) check_override(setting);
+  const SceneDescription scene = load_scene(command.scene, command.overrides);
   print_warnings(scene.warnings);
-  const CompiledScene flat = compile(scene);
+  const CompiledScene flat = compile_overridden(scene, command);
   json figures = scene_figures(scene, flat);
   figures["schema"] = 1;
   if (command.json)

@@ -108,6 +108,8 @@ void add_info(CLI::App& root, Command& chosen) {
   const auto command = std::make_shared<InfoCommand>();
   CLI::App* app = root.add_subcommand("info", "What a scene holds: triangles, lights, BVH figures, bytes");
   value(app, "SCENE", "FILE", command->scene, scene_help)->required();
+  values(app, "--set", "POINTER=VALUE", command->overrides,
+         "change the scene, as in /render/spatial_splits=true");
   app->add_flag("--json", command->json, "as JSON");
   app->callback([command, &chosen] { chosen = *command; });
 }

@@ -32,6 +32,7 @@ struct RenderCommand {
 
 struct InfoCommand {
   std::string scene;
+  std::vector<std::string> overrides;  // "JSON_POINTER=VALUE"
   bool json = false;
 };
 

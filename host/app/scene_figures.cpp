@@ -86,7 +86,10 @@ json scene_figures(const SceneDescription& scene, const CompiledScene& flat) {
             {"blocks", flat.figures.blocks},
             {"mean_block_fill", flat.figures.mean_block_fill},
             {"sah_cost", flat.figures.sah_cost},
-            {"build_seconds", flat.figures.build_seconds}}},
+            {"sah_cost_unit",
+             "nodes and blocks (or solids) that a ray through the scene's box visits, by surface area"},
+            {"build_seconds", flat.figures.build_seconds},
+            {"build_seconds_unit", "seconds on the wall's clock, of the whole compiled scene"}}},
           {"bytes", table_bytes(flat)},
           {"bounds", bounds(flat)}};
 }

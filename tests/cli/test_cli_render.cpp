@@ -1,7 +1,9 @@
 // `sundog render`: every exit status, what is written and what is said.
 #include <base/file.h>
 #include <base/image_io.h>
+#include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
@@ -243,4 +245,30 @@ TEST_CASE("info counts what the scene holds") {
   const CommandResult text = run_sundog({"info", folder.scene});
   CHECK(text.status == 0);
   CHECK(text.out.find("1 plane, 1 sphere") != std::string::npos);
+}
+
+TEST_CASE("info shows the scene as --set changes it, and says what its BVH figures are") {
+  const CliFolder folder;
+  std::string triangles;  // small ones, and needles through the scene, which are cheaper when they are cut
+  for (int i = 1; i <= 2000; ++i) {
+    const double x = std::sin(12.9 * i), y = std::sin(78.2 * i), z = std::sin(37.7 * i);
+    const int k = i % 40 == 0 ? -1 : 1;
+    triangles += fmt::format("v {} {} {}\nv {} {} {}\nv {} {} {}\nf {} {} {}\n", x, y, z, x + 0.01, y, z,
+                             k * x, k * y + 0.01, k * z, 3 * i - 2, 3 * i - 1, 3 * i);
+  }
+  const std::string model = folder.write("needles.obj", triangles).string();
+  const json whole = json::parse(run_sundog({"info", model, "--json"}).out).at("bvh");
+  const json cut =
+      json::parse(run_sundog({"info", model, "--set", "/render/spatial_splits=true", "--json"}).out)
+          .at("bvh");
+  CHECK(cut.at("sah_cost") < whole.at("sah_cost"));
+  CHECK_THAT(cut.at("sah_cost_unit").get<std::string>(), ContainsSubstring("visits"));
+  CHECK_THAT(cut.at("build_seconds_unit").get<std::string>(), ContainsSubstring("seconds"));
+  const CommandResult text = run_sundog({"info", folder.scene, "--set", "/objects/1/type=\"box\""});
+  CHECK(text.status == 0);
+  CHECK_THAT(text.out, ContainsSubstring("1 box, 1 plane") && ContainsSubstring("SAH cost") &&
+                           ContainsSubstring("visits") && ContainsSubstring("built in"));
+  const CommandResult wrong = run_sundog({"info", folder.scene, "--set", "camera"});
+  CHECK(wrong.status == 2);
+  CHECK(is_one_error_line(wrong.err));
 }
