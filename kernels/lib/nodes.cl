@@ -106,6 +106,15 @@ ALWAYS_INLINE uint8 sort_descending(uint8 v) {
   return select(min(v, w), max(v, w), (int8)(-1, 0, -1, 0, -1, 0, -1, 0));
 }
 
+ALWAYS_INLINE uint4 sort_descending4(uint4 v) {
+  uint4 w = v.s1032;
+  v = select(min(v, w), max(v, w), (int4)(-1, 0, 0, -1));
+  w = v.s2301;
+  v = select(min(v, w), max(v, w), (int4)(-1, -1, 0, 0));
+  w = v.s1032;
+  return select(min(v, w), max(v, w), (int4)(-1, 0, -1, 0));
+}
+
 // Lane i of the result is v's lane order[i] & 7.
 ALWAYS_INLINE uint8 permute(uint8 v, uint8 order) {
 #if defined(__AVX2__) && !defined(SUNDOG_PORTABLE)
@@ -115,32 +124,53 @@ ALWAYS_INLINE uint8 permute(uint8 v, uint8 order) {
 #endif
 }
 
+// The lanes of v that are set in `lanes`, in a row from the first; then zeros. Where there is no instruction
+// for it, whatever comes of packing is not worth having.
+#if defined(__AVX512VL__) && !defined(SUNDOG_PORTABLE)
+#define HAS_PACKING 1
+ALWAYS_INLINE uint8 packed(uint8 v, u32 lanes) {
+  return as_uint8(__builtin_ia32_compresssi256_mask(as_int8(v), (int8)(0), (uchar)lanes));
+}
+#else
+#define HAS_PACKING 0
+#endif
+
 // Writes the children crossed in [t_min, t_max] and their entry distances, farthest first, and returns their
 // number. Overwrites eight places of the stack however many there are: without a branch, since how many
-// children a ray crosses cannot be foretold.
+// children a ray crosses cannot be foretold, but for that it is mostly four or fewer, which when packed take
+// half the network.
 ALWAYS_INLINE u32 push_crossed(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,
                                u32* stack, float* stack_t) {
   int8 near, far;
   slab_distances(node, ray, t_min, t_max, &near, &far);
   const uint8 words = vload8(0, node->child);
   const int8 crossed = (near <= far) & (words != BVH_EMPTY);
-  const uint8 keys = ((as_uint8(near) & ~KEY_SLOT) | (uint8)(0, 1, 2, 3, 4, 5, 6, 7)) & as_uint8(crossed);
-  const uint8 order = sort_descending(keys);
+  const u32 lanes = lane_mask(crossed), count = popcount(lanes);
+  const uint8 keys = (as_uint8(near) & ~KEY_SLOT) | (uint8)(0, 1, 2, 3, 4, 5, 6, 7);
+#if HAS_PACKING
+  if (count <= 4u) {
+    const uint4 order = sort_descending4(packed(keys, lanes).lo);
+    vstore4(permute(words, (uint8)(order, order)).lo, 0, stack);
+    vstore4(as_float4(order & ~KEY_SLOT), 0, stack_t);
+    return count;
+  }
+#endif
+  const uint8 order = sort_descending(keys & as_uint8(crossed));
   vstore8(permute(words, order), 0, stack);
   vstore8(as_float8(order & ~KEY_SLOT), 0, stack_t);
-  return popcount(lane_mask(crossed));
+  return count;
 }
 
 // The same for rays to which any hit will do: in the order of the slots where packing them is quicker than
 // sorting, for nearest first saves them no visits that are worth it. stack_t may stay as it is.
 ALWAYS_INLINE u32 push_in_any_order(__global const BvhNode* node, const SlabRay* ray, float t_min,
                                     float t_max, u32* stack, float* stack_t) {
-#if defined(__AVX512VL__) && !defined(SUNDOG_PORTABLE)
+#if HAS_PACKING
   int8 near, far;
   slab_distances(node, ray, t_min, t_max, &near, &far);
-  const int8 words = as_int8(vload8(0, node->child));
-  const u32 crossed = lane_mask((near <= far) & (words != (int)BVH_EMPTY));
-  vstore8(as_uint8(__builtin_ia32_compresssi256_mask(words, words, (uchar)crossed)), 0, stack);
+  const uint8 words = vload8(0, node->child);
+  const u32 crossed = lane_mask((near <= far) & (words != BVH_EMPTY));
+  vstore8(packed(words, crossed), 0, stack);
   return popcount(crossed);
 #else
   return push_crossed(node, ray, t_min, t_max, stack, stack_t);
