@@ -9,14 +9,15 @@
 #include "devices.h"
 #include "scenes.h"
 #include "temporary_folder.h"
+#include "test_meshes.h"
 
 using namespace sundog;
 using glm::dvec3;
 
 namespace {
 
-// Meshless, but with every secondary effect: glass with liquid in it, a mirror, shadows through filters,
-// several samples.
+// Without a mesh, but with every secondary effect: glass with liquid in it, a mirror, shadows through
+// filters, several samples.
 SceneDescription busy_scene() {
   SceneDescription scene = scenes::line_of_sight({0.6, 2.4, 6}, {0, 0.1, 0});
   scene.camera.fov = 35;
@@ -40,6 +41,20 @@ SceneDescription busy_scene() {
   return scene;
 }
 
+// The same with a mesh of glass in it, smaller: the compact tracer is slow on processors.
+SceneDescription busy_mesh_scene() {
+  SceneDescription scene = busy_scene();
+  scene.image.width = 21;
+  scene.image.height = 17;
+  scene.render.samples = 2;
+  scene.meshes = {bumpy_sphere(12)};
+  scenes::place(scene, MeshShape{0}, scenes::add_dielectric(scene, 1.5, {0.3, 0.1, 0.2}, 5),
+                glm::scale(glm::translate(glm::dmat4(1), dvec3(-1.7, -0.2, 0.9)), dvec3(0.6)));
+  scenes::place(scene, MeshShape{0}, scenes::add_white(scene),
+                glm::rotate(glm::translate(glm::dmat4(1), dvec3(0.4, 0.3, -2.2)), 0.8, dvec3(1, 1, 0)));
+  return scene;
+}
+
 // Equal to the bit, NaNs included.
 bool same_bits(const Image& a, const Image& b) {
   return a.data.size() == b.data.size() &&
@@ -58,24 +73,40 @@ RenderOptions with_tile(int tile) {
   return options;
 }
 
+void check_work_groups(const DeviceInfo& device, const SceneDescription& scene) {
+  const RenderResult reference = scenes::render_on(device, scene);
+  REQUIRE(reference.complete);
+  REQUIRE(reference.counts[COUNT_REFRACTION] > 0);
+  CHECK(same_bits(scenes::render_on(device, scene).image, reference.image));
+  CHECK(same_bits(scenes::render_on(device, scene, with_group(WorkGroup::Kind::driver, 0)).image,
+                  reference.image));
+  for (const std::size_t size : {1u, 3u, 8u, 64u})
+    CHECK(same_bits(scenes::render_on(device, scene, with_group(WorkGroup::Kind::fixed, size)).image,
+                    reference.image));
+  for (const int tile : {4, 12, 33, 64}) {
+    const RenderResult tiled = scenes::render_on(device, scene, with_tile(tile));
+    CHECK(same_bits(tiled.image, reference.image));
+    CHECK(tiled.counts == reference.counts);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("the image has the same bits for every work-group size, tile size and run") {
-  const SceneDescription scene = busy_scene();
   for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      const RenderResult reference = scenes::render_on(device, scene);
-      REQUIRE(reference.complete);
-      REQUIRE(reference.counts[COUNT_REFRACTION] > 0);
-      CHECK(same_bits(scenes::render_on(device, scene).image, reference.image));
-      CHECK(same_bits(scenes::render_on(device, scene, with_group(WorkGroup::Kind::driver, 0)).image,
-                      reference.image));
-      for (const std::size_t size : {1u, 3u, 8u, 64u})
-        CHECK(same_bits(scenes::render_on(device, scene, with_group(WorkGroup::Kind::fixed, size)).image,
-                        reference.image));
-      for (const int tile : {4, 12, 33, 64}) {
-        const RenderResult tiled = scenes::render_on(device, scene, with_tile(tile));
-        CHECK(same_bits(tiled.image, reference.image));
-        CHECK(tiled.counts == reference.counts);
+      check_work_groups(device, busy_scene());
+    }
+}
+
+TEST_CASE(
+    "the image of a mesh has the same bits for every work-group size, tile size and run, by each tracer") {
+  SceneDescription scene = busy_mesh_scene();
+  for (const DeviceInfo& device : test_devices())
+    for (const Tracer tracer : {Tracer::automatic, Tracer::compact}) {
+      if (tracer == Tracer::compact && device.native_vector_width <= 1) continue;  // is the automatic one
+      DYNAMIC_SECTION(device.label() << (tracer == Tracer::compact ? ", compact" : "")) {
+        scene.render.tracer = tracer;
+        check_work_groups(device, scene);
       }
     }
 }

@@ -36,16 +36,22 @@ Image clamped(Image image) {
   return image;
 }
 
-Pictures render_both(const std::string& scene_name, const std::string& name,
-                     std::vector<std::string> overrides) {
+SceneDescription load(const std::string& scene_name, std::vector<std::string> overrides) {
   for (const char* common : {"/image/width=320", "/image/height=240", "/render/samples=1", "/render/cutoff=0",
                              "/render/max_depth=7"})
     overrides.emplace_back(common);
-  const std::filesystem::path file =
-      std::filesystem::path(SUNDOG_SOURCE_DIR) / "scenes" / (scene_name + ".json");
-  const SceneDescription scene = load_scene(file, overrides);
+  return load_scene(std::filesystem::path(SUNDOG_SOURCE_DIR) / "scenes" / (scene_name + ".json"), overrides);
+}
+
+Image our_picture(const SceneDescription& scene) {
+  return clamped(render(compile(scene), select_devices(enumerate_devices(), {})).image);
+}
+
+Pictures render_both(const std::string& scene_name, const std::string& name,
+                     const std::vector<std::string>& overrides) {
+  const SceneDescription scene = load(scene_name, overrides);
   const std::string text = povray::from_scene(scene, povray::Absorption::media);
-  return {name, clamped(render(compile(scene), select_devices(enumerate_devices(), {})).image),
+  return {name, our_picture(scene),
           povray::run(text, scene.image.width, scene.image.height, 2, folder, name).image};
 }
 
@@ -86,12 +92,19 @@ bool povray_missing() {
   return true;
 }
 
-void check_scene(const std::string& scene, const std::vector<std::string>& opaque_shadows) {
-  const Pictures opaque = render_both(scene, scene, opaque_shadows);
-  const ImageDifference d = report(opaque);
+void check_same(const Pictures& pictures) {
+  const ImageDifference d = report(pictures);
   CHECK(d.mean < 0.0003);
   CHECK(d.percentile_99 < 0.002);
   CHECK(static_cast<double>(d.over_tolerance) < 0.002 * static_cast<double>(d.pixels));
+}
+
+void check_scene(const std::string& scene, const std::vector<std::string>& opaque_shadows) {
+  const Pictures opaque = render_both(scene, scene, opaque_shadows);
+  check_same(opaque);
+  SceneDescription compact = load(scene, opaque_shadows);
+  compact.render.tracer = Tracer::compact;
+  check_same({scene + "_compact", our_picture(compact), opaque.theirs});
 
   const Pictures filtering = render_both(scene, scene + "_filtering_shadows", {});
   report(filtering);
@@ -122,7 +135,7 @@ TEST_CASE("a quaternion Julia set is POV-Ray's julia_fractal: the same outlines 
       file,
       {"/image/width=240", "/image/height=240", "/objects/0/detail=0.1", "/objects/0/least_threshold=1e-6"});
   const Pictures pictures{
-      "julia", clamped(render(compile(scene), select_devices(enumerate_devices(), {})).image),
+      "julia", our_picture(scene),
       povray::run(povray::from_scene(scene, povray::Absorption::media), 240, 240, 2, folder, "julia").image};
   const ImageDifference d = report(pictures);
   const glm::dvec3 sky = scene.image.background_top;

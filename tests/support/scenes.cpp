@@ -1,5 +1,7 @@
 #include "scenes.h"
 
+#include "catch.h"
+
 namespace scenes {
 
 using namespace sundog;
@@ -76,8 +78,18 @@ RenderResult render_on(const DeviceInfo& device, const SceneDescription& scene,
 }
 
 glm::dvec3 pixel_on(const DeviceInfo& device, const SceneDescription& scene) {
-  const RenderResult result = render_on(device, scene);
-  return {result.image.data.at(0), result.image.data.at(1), result.image.data.at(2)};
+  const auto pixel = [&](const SceneDescription& of) {
+    const RenderResult result = render_on(device, of);
+    return glm::dvec3(result.image.data.at(0), result.image.data.at(1), result.image.data.at(2));
+  };
+  const glm::dvec3 color = pixel(scene);
+  if (device.native_vector_width > 1) {  // others run the compact tracer anyway
+    SceneDescription compact = scene;
+    compact.render.tracer = Tracer::compact;
+    const glm::dvec3 other = pixel(compact);
+    for (int c = 0; c < 3; ++c) REQUIRE(other[c] == Approx(color[c]).epsilon(1e-5).margin(1e-6));
+  }
+  return color;
 }
 
 }  // namespace scenes

@@ -30,11 +30,10 @@ void place(sundog::SceneDescription& scene, sundog::Shape shape, int material,
            const glm::dmat4& world_from_object = glm::dmat4(1));
 
 /// Renders on one device.
-/// each.
 sundog::RenderResult render_on(const sundog::DeviceInfo& device, const sundog::SceneDescription& scene,
                                const sundog::RenderOptions& options = {});
 
-/// The one pixel of a line_of_sight scene, RGB.
+/// The one pixel of a line_of_sight scene, RGB. Fails where the compact tracer's is another but for rounding.
 glm::dvec3 pixel_on(const sundog::DeviceInfo& device, const sundog::SceneDescription& scene);
 
 }  // namespace scenes
