@@ -77,8 +77,8 @@ NEVER_INLINE bool walk_instance(__global const Instance* restrict instances, con
   if (instance->shape != SHAPE_MESH) {
     Hit hit = get_hit(rays->hits, ray);
     trace_solid(instances, index, get3(rays->o, ray), get3(rays->d, ray), REAL_LANE(*rays->t_min, ray), &hit);
+    if (hit.t < REAL_LANE(rays->hits->t, ray)) drop_behind(walk, 1u, hit.t);
     set_hit(rays->hits, ray, &hit);
-    drop_behind(walk, 1u, hit.t);
     return false;
   }
   walk->instance = index;
