@@ -203,8 +203,9 @@ ALWAYS_INLINE u32 cross_children(__global const BvhNode* node, const SlabRay* ra
   const float3 step = grid_step(node->scale), step_near = step * ray->rcp_near,
                step_far = step * ray->rcp_far;
   float3 near_from = away * ray->rcp_near, far_from = away * ray->rcp_far;
-  near_from -= fabs(near_from) * 3.6e-7f;
-  far_from += fabs(far_from) * 3.6e-7f;
+  const float3 slack = along_face(ray->rcp_near);
+  near_from -= fma(fabs(near_from), (float3)(3.6e-7f), slack);
+  far_from += fma(fabs(far_from), (float3)(3.6e-7f), slack);
   const u32 count = node->scale >> 24;
   u32 crossed = 0;
 #pragma unroll 1

@@ -156,11 +156,11 @@ void compare_together_and_alone(const SceneDescription& scene,
     }
 }
 
-void compare_wide_and_compact(SceneDescription scene) {
+void compare_wide_and_compact(SceneDescription scene, std::vector<Ray> (*make_rays)(std::size_t) = bundles) {
   for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
       if (info.native_vector_width <= 1) continue;  // runs the compact tracer anyway
       Device device(info);
-      const std::vector<Ray> rays = bundles(50'003);
+      const std::vector<Ray> rays = make_rays(50'003);
       scene.render.tracer = Tracer::wide;
       RayTracer wide(device, compile(scene));
       scene.render.tracer = Tracer::compact;
@@ -194,6 +194,9 @@ TEST_CASE("the compact tracer finds what the wide one finds: instances, solids a
   compare_wide_and_compact(mixed_scene());
 }
 
+TEST_CASE("the compact tracer finds what the wide one finds: along the faces of boxes") {
+  compare_wide_and_compact(lattice_steps(), lattice_rays);
+}
 TEST_CASE("both tracers draw the same picture") {
   for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
       if (info.native_vector_width <= 1) continue;
