@@ -144,7 +144,8 @@ nlohmann::json compare_model(const Options& options, const std::string& path) {
   const SceneDescription description = scene_of_model(path, options.spatial_splits);
   const CompiledScene scene = compile(description);
   DeviceInfo info = select_devices(enumerate_devices(), {options.device}).at(0);
-  info.sub_units = options.threads < info.compute_units ? options.threads : 0;
+  // A GPU is compared as a whole.
+  info.sub_units = info.type == "cpu" && options.threads < info.compute_units ? options.threads : 0;
   Device device(info);
   RayTracer tracer(device, scene, kernel_defines(options.defines));
   const EmbreePeer embree(description, options.embree);

@@ -18,6 +18,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "bench/machine.h"
+#include "device/build_options.h"
 #include "scene/json/override.h"
 #include "scene/load.h"
 
@@ -46,6 +47,10 @@ Report new_report(const std::string& name, const std::string& title, const Bench
   report.title = title;
   report.facts = machine_facts();
   report.facts.insert(report.facts.begin(), {"sundog", SUNDOG_VERSION});
+  if (!options.overrides.empty())
+    report.facts.emplace_back("--set", fmt::format("{}", fmt::join(options.overrides, " ")));
+  if (const std::string more = user_build_options(); !more.empty())
+    report.facts.emplace_back("SUNDOG_BUILD_OPTIONS", more);
   if (const std::string note = busy_note(); !note.empty()) report.notes.push_back(note);
   return report;
 }
@@ -105,6 +110,7 @@ void add_bench(CLI::App& root, Command& chosen) {
   add_bench_rays(*bench, chosen);
   add_bench_samples(*bench, chosen);
   add_bench_devices(*bench, chosen);
+  add_bench_kernels(*bench, chosen);
 }
 
 }  // namespace sundog

@@ -56,6 +56,7 @@ std::vector<int> parse_list(const char* option, const std::string& text, int low
 void add_bench(CLI::App& root, Command& chosen);
 void add_bench_threads(CLI::App& bench, Command& chosen);
 void add_bench_devices(CLI::App& bench, Command& chosen);
+void add_bench_kernels(CLI::App& bench, Command& chosen);
 void add_bench_workgroup(CLI::App& bench, Command& chosen);
 void add_bench_rays(CLI::App& bench, Command& chosen);
 void add_bench_samples(CLI::App& bench, Command& chosen);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include "app/bench_options.h"
@@ -14,6 +15,7 @@
 #include "bench/check_hits.h"
 #include "bench/ray_sets.h"
 #include "bench/ray_tracer.h"
+#include "render/kernel_config.h"
 
 namespace sundog {
 namespace {
@@ -28,6 +30,7 @@ struct RayTimes {
   std::size_t rays = 0;
   HitCheck check;
   Spread mrays;
+  std::optional<Spread> kernel_mrays;  // by the device's events, where the driver gives times
 };
 
 /// The answers of the tracer's last run.
@@ -60,13 +63,16 @@ RayTimes time_rays(const CompiledScene& scene, const RaySet& set, RayTracer& tra
   if (times.check.differ > 0)
     throw DeviceError(fmt::format("{} of {} {} rays have wrong answers: no time counts", times.check.differ,
                                   times.check.checked, set.kind));
-  std::vector<double> rates;
+  const double millions = 1e-6 * static_cast<double>(set.rays.size());
+  std::vector<double> rates, kernel_rates;
   for (int i = 0; i < repeat; ++i) {
     const Stopwatch clock;
-    tracer.run({set.any, set.coherent});
-    rates.push_back(static_cast<double>(set.rays.size()) / clock.seconds() * 1e-6);
+    const double kernel_seconds = tracer.run({set.any, set.coherent});
+    rates.push_back(millions / clock.seconds());
+    if (kernel_seconds > 0) kernel_rates.push_back(millions / kernel_seconds);
   }
   times.mrays = spread(rates);
+  if (kernel_rates.size() == rates.size()) times.kernel_mrays = spread(kernel_rates);
   return times;
 }
 
@@ -91,21 +97,27 @@ std::vector<RayTimes> time_scene(const CompiledScene& scene, Device& device, con
   return times;
 }
 
-void add_rows(Report& report, const std::string& scene, const DeviceInfo& device,
+void add_rows(Report& report, const std::string& scene, const DeviceInfo& device, const std::string& tracer,
               const std::vector<RayTimes>& times) {
-  Table table{fmt::format("{} on {}", scene, device.label()),
-              {{"kind", ""}, {"rays", ""}, {"hits", "%"}, {"rate", "Mrays/s"}, {"checked", ""}},
+  Table table{fmt::format("{} on {}, {} tracer", scene, device.label(), tracer),
+              {{"kind", ""},
+               {"rays", ""},
+               {"hits", "%"},
+               {"rate", "Mrays/s"},
+               {"kernel", "Mrays/s"},
+               {"checked", ""}},
               {}};
   BarPlot bars{table.title, "Mrays/s", {}};
   for (const RayTimes& t : times) {
     const double hits = 100.0 * static_cast<double>(t.check.hits) / static_cast<double>(t.rays);
+    const Cell kernel = t.kernel_mrays ? Cell(*t.kernel_mrays) : Cell();
     const std::string checked = fmt::format("{}, {} by rounding", t.check.checked, t.check.rounded);
-    table.rows.push_back({t.kind, static_cast<double>(t.rays), hits, t.mrays, checked});
+    table.rows.push_back({t.kind, static_cast<double>(t.rays), hits, t.mrays, kernel, checked});
     bars.bars.push_back({t.kind, t.mrays, fmt::format("{} rays", t.rays)});
     const auto number = [](std::size_t n) { return static_cast<double>(n); };
     report.measurements.rows.push_back({scene, device.label(), t.kind, number(t.rays), number(t.check.hits),
                                         number(t.check.checked), number(t.check.rounded),
-                                        number(t.check.differ), t.mrays});
+                                        number(t.check.differ), t.mrays, tracer, kernel});
   }
   report.parts.emplace_back(std::move(table));
   report.parts.emplace_back(std::move(bars));
@@ -125,9 +137,9 @@ std::string describe(const CompiledScene& scene) {
 
 int bench_rays(const RaysOptions& options) {
   Report report = new_report("rays", "Rays a second by kind", options);
-  report.measurements.columns = {{"scene", ""},   {"device", ""}, {"kind", ""},
-                                 {"rays", ""},    {"hits", ""},   {"checked", ""},
-                                 {"rounded", ""}, {"differ", ""}, {"rate", "Mrays/s"}};
+  report.measurements.columns = {{"scene", ""},       {"device", ""},  {"kind", ""},         {"rays", ""},
+                                 {"hits", ""},        {"checked", ""}, {"rounded", ""},      {"differ", ""},
+                                 {"rate", "Mrays/s"}, {"tracer", ""},  {"kernel", "Mrays/s"}};
   const std::vector<DeviceInfo> devices = bench_devices(options);
   for (const DeviceInfo& info : devices)
     report.facts.emplace_back("device", info.label() + ", " + info.driver);
@@ -138,11 +150,13 @@ int bench_rays(const RaysOptions& options) {
     if (scene.info.instance_count == 0) continue;
     for (const DeviceInfo& info : devices) {
       Device device(info);
-      add_rows(report, name, info, time_scene(scene, device, options, name));
+      const char* tracer = traces_compact(scene, info) ? "compact" : "wide";
+      add_rows(report, name, info, tracer, time_scene(scene, device, options, name));
     }
   }
   report.notes.push_back(fmt::format(
-      "Median of {} launches by the wall clock, each waited for. Shadow rays ask for any hit, the others for "
+      "Median of {} launches by the wall clock, each waited for; `kernel`: by the device's events, where "
+      "its driver gives times. Shadow rays ask for any hit, the others for "
       "the nearest. Distance fields are marched, not traced, and left out: `bench threads` and `bench "
       "devices` "
       "time their frames. Every answer is checked by the host's own tracer, and in double precision where "

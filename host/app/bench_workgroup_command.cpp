@@ -16,7 +16,6 @@
 #include "bench/ray_tracer.h"
 #include "bench/work_groups.h"
 #include "render/hash.h"
-#include "render/kernel_config.h"
 
 namespace sundog {
 namespace {
@@ -37,8 +36,8 @@ std::uint64_t hash_of(const std::vector<T>& values) {
 TimedKernel time_frames(const DeviceInfo& device, const CompiledScene& scene) {
   TimedKernel kernel;
   kernel.two_dimensions = true;
-  kernel.limit = greatest_work_group(make_kernel_config(scene, device), device);
   const auto frames = std::make_shared<FrameRunner>(device, scene);
+  kernel.limit = frames->greatest_group();
   kernel.build_seconds = frames->times().build_kernels;
   kernel.cached = frames->times().cached;
   kernel.run = [frames](const WorkGroup& group) {
@@ -57,10 +56,10 @@ TimedKernel time_rays(const DeviceInfo& info, const CompiledScene& scene, bool a
     Setup(const DeviceInfo& info_, const CompiledScene& scene_) : device(info_), tracer(device, scene_) {}
   };
   TimedKernel kernel;
-  kernel.limit = greatest_work_group(make_kernel_config(scene, info), info);
   const Stopwatch clock;
   const auto setup = std::make_shared<Setup>(info, scene);
   kernel.build_seconds = clock.seconds();
+  kernel.limit = setup->tracer.greatest_group(any);
   setup->tracer.upload(primary_rays(scene_viewpoint(scene), size).rays);
   kernel.run = [setup, any](const WorkGroup& group) {
     const Stopwatch running;

@@ -13,6 +13,8 @@ namespace sundog {
 ///     compile@P:D         the process that compiles for the device ends without a result
 ///     alloc=STATUS@P:D    a buffer of more than SIZE bytes gives the OpenCL status
 ///     launch=STATUS@P:D   a launch of more than SIZE work-items gives the OpenCL status
+///     group=STATUS@P:D    a launch in groups of more than SIZE work-items gives the OpenCL status
+///     limit=MOST@P:D      the driver gives no kernel's groups more than MOST work-items
 ///     hang@P:D            a launch never comes back
 ///     cut@P:D             the loops of launches of more than SIZE samples are ended early, without an error
 ///     crash@P:D           a launch ends the process

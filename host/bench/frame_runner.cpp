@@ -1,7 +1,10 @@
 // See frame_runner.h.
 #include "bench/frame_runner.h"
 
+#include <fmt/format.h>
+
 #include "base/clock.h"
+#include "base/error.h"
 #include "render/tiles.h"
 
 namespace sundog {
@@ -34,7 +37,13 @@ double FrameRunner::run() {
     film_.put(result.tile, result.sums, result.weights, result.aovs);
     for (std::size_t i = 0; i < COUNTERS; ++i) counts_[i] += result.counts[i];
   }
-  return clock.seconds();
+  const double seconds = clock.seconds();
+  // A group that the driver refused was made smaller: the time is not that of what was asked for.
+  const WorkGroup& group = options_.work_group;
+  const std::size_t most = greatest_group();
+  if (group.kind == WorkGroup::Kind::fixed && most > 0 && group.x * group.y > most)
+    throw DeviceError(fmt::format("the driver takes groups of at most {} here", most));
+  return seconds;
 }
 
 double FrameRunner::kernel_seconds(const std::string& kernel) const {

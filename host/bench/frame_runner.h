@@ -24,6 +24,9 @@ class FrameRunner {
   /// For the runs from now on. The size must be one that render() would take.
   void use(const WorkGroup& group) { options_.work_group = group; }
 
+  /// Most work-items that a group of its kernels may have; 0: nobody says.
+  std::size_t greatest_group() const { return renderer_->greatest_group(); }
+
   /// Keeps what the driver has compiled so far for other programs and the next start.
   void save_programs() { device_.save_programs(); }
 

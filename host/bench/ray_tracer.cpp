@@ -18,11 +18,12 @@ RayTracer::RayTracer(Device& device, const CompiledScene& scene, const KernelDef
   for (const auto& [name, value] : extra) config.defines[name] = value;
   batch_ = static_cast<unsigned>(std::stoul(config.defines.at("TILE_W")) *
                                  std::stoul(config.defines.at("TILE_H")));
+  stack_limit_ = greatest_work_group(config, device.info());
   const Program program = device.build("entry/trace_rays.cl", config.defines);
   trace_rays_ = program.kernel<Buffer<SceneInfo>, Buffer<u32>, Buffer<TriangleBlock>, Buffer<Instance>,
                                Buffer<Ray>, Buffer<Hit>, u32, u32>("trace_rays");
-  occluded_rays_ = program.kernel<Buffer<SceneInfo>, Buffer<u32>, Buffer<TriangleBlock>,
-                                  Buffer<Instance>, Buffer<Ray>, Buffer<u32>, u32, u32>("occluded_rays");
+  occluded_rays_ = program.kernel<Buffer<SceneInfo>, Buffer<u32>, Buffer<TriangleBlock>, Buffer<Instance>,
+                                  Buffer<Ray>, Buffer<u32>, u32, u32>("occluded_rays");
 }
 
 void RayTracer::upload(std::span<const Ray> rays) {
@@ -31,9 +32,9 @@ void RayTracer::upload(std::span<const Ray> rays) {
   occluded_ = device_.make<u32>(rays.size());
 }
 
-void RayTracer::run(const RayQuery& query, const WorkGroup& group) {
+double RayTracer::run(const RayQuery& query, const WorkGroup& group) {
   std::size_t local = std::min<std::size_t>(device_.info().device_class == DeviceClass::cpu ? 16 : 64,
-                                            device_.info().max_work_group);
+                                            std::max<std::size_t>(1, greatest_group(query.any)));
   if (group.kind != WorkGroup::Kind::automatic) local = group.kind == WorkGroup::Kind::driver ? 0 : group.x;
   const LaunchSize size{divide_up(rays_.count, batch_), 1, local, 1};
   const auto count = static_cast<u32>(rays_.count);
@@ -44,7 +45,19 @@ void RayTracer::run(const RayQuery& query, const WorkGroup& group) {
   else
     device_.run(trace_rays_, size, tables_.info, tables_.nodes, tables_.blocks, tables_.instances, rays_,
                 hits_, count, coherent);
+  const auto seconds = [&] {
+    const auto times = device_.times().find(query.any ? occluded_rays_.name : trace_rays_.name);
+    return times == device_.times().end() ? 0 : 1e-3 * times->second.device_ms;
+  };
+  const double before = seconds();
   device_.finish();
+  return seconds() - before;
+}
+
+std::size_t RayTracer::greatest_group(bool any) const {
+  const std::size_t kernels =
+      any ? device_.limits(occluded_rays_).work_group : device_.limits(trace_rays_).work_group;
+  return stack_limit_ > 0 ? std::min(stack_limit_, kernels) : kernels;
 }
 
 std::vector<Hit> RayTracer::hits() {

@@ -24,8 +24,12 @@ class RayTracer {
   /// The rays that run() traces from now on.
   void upload(std::span<const Ray> rays);
 
-  /// Traces all rays and waits for the end. Work-groups have one dimension here: `group.x`.
-  void run(const RayQuery& query, const WorkGroup& group = {});
+  /// Traces all rays and waits for the end. Work-groups have one dimension here: `group.x`. Returns the
+  /// kernel's seconds by the device's events; 0 where the driver gives no times.
+  double run(const RayQuery& query, const WorkGroup& group = {});
+
+  /// Most work-items that a group of the kernel of such rays may have.
+  std::size_t greatest_group(bool any) const;
 
   /// Results of the last run() with any = false.
   std::vector<Hit> hits();
@@ -41,7 +45,8 @@ class RayTracer {
                            Buffer<Ray>, Buffer<Result>, u32, u32>;
 
   Device& device_;
-  unsigned batch_ = 1;  // rays a work-item traces
+  unsigned batch_ = 1;           // rays a work-item traces
+  std::size_t stack_limit_ = 0;  // work-items of a group, as the device's class has room for; 0: any number
   DeviceScene tables_;
   RayKernel<Hit> trace_rays_;
   RayKernel<u32> occluded_rays_;

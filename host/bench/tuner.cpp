@@ -92,6 +92,7 @@ class Candidate {
     for (int i = 0; i < count; ++i) seconds.push_back(run());
     return spread(seconds).median;
   }
+  std::size_t greatest_group() const { return frames_->greatest_group(); }
   const Film& film() const { return frames_->film(); }
 
  private:
@@ -120,14 +121,18 @@ std::pair<double, double> duel(Candidate& a, Candidate& b, int count) {
 using OnStep = std::function<void(const std::string&)>;
 
 TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, const std::string& scene_name,
-                        const Choices& choices, double budget, const OnStep& on_step) {
+                        Choices choices, double budget, const OnStep& on_step) {
   const Stopwatch clock;
   const auto tell = [&](const std::string& what) { on_step(choices.kernel + ": " + what); };
   tell("the defaults");
   TuneProblem problem;
-  problem.axes = choices.sizes();
-  problem.start.assign(problem.axes.size(), 0);
+  problem.start.assign(choices.sizes().size(), 0);
   Candidate usual(device, scene, choices, problem.start);
+  // Only the built kernels tell how large their groups may be.
+  std::erase_if(choices.groups, [most = usual.greatest_group()](const WorkGroup& group) {
+    return most > 0 && group.kind == fixed && group.x * group.y > most;
+  });
+  problem.axes = choices.sizes();
   const Film expected = usual.film();
   const double default_seconds = usual.median(runs);
   problem.measure = [&](const TunePoint& point) -> std::optional<double> {

@@ -97,6 +97,8 @@ bool is_out_of_resources(int status) {
          status == CL_OUT_OF_HOST_MEMORY;
 }
 
+bool is_work_group_too_large(int status) { return status == CL_INVALID_WORK_GROUP_SIZE; }
+
 void check_cl(int status, const DeviceInfo& device, const std::string& what) {
   if (status == CL_SUCCESS) return;
   throw DeviceError(fmt::format("{}: {}: {}", device.label(), what, cl_status_name(status)), status);

@@ -12,6 +12,9 @@ std::string cl_status_name(int status);
 /// CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_RESOURCES or CL_OUT_OF_HOST_MEMORY: less at a time may work.
 bool is_out_of_resources(int status);
 
+/// CL_INVALID_WORK_GROUP_SIZE: the kernel takes more registers or stack than a group of that size has.
+bool is_work_group_too_large(int status);
+
 /// Throws DeviceError "0:1 platform / device: WHAT: CL_OUT_OF_RESOURCES" unless `status` is CL_SUCCESS.
 void check_cl(int status, const DeviceInfo& device, const std::string& what);
 

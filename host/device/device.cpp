@@ -67,6 +67,12 @@ double event_ms(const cl::Event& event) {
   return static_cast<double>(end - start) * 1e-6;
 }
 
+/// A processor's compiler names the instruction itself, and one without it may claim fma() all the same; for
+/// others the driver's word counts.
+bool has_fma_instruction(const cl::Device& device, const DeviceInfo& info) {
+  return info.type != "cpu" && (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_FMA) != 0;
+}
+
 }  // namespace
 
 struct Device::Pending {
@@ -84,6 +90,7 @@ Device::Device(DeviceInfo info) : info_(std::move(info)) {
   check_cl(status, info_, "clCreateContext");
   queue_ = cl::CommandQueue(context_, device_, CL_QUEUE_PROFILING_ENABLE, &status);
   check_cl(status, info_, "clCreateCommandQueue");
+  fma_ = has_fma_instruction(device_, info_);
   fence_ = allocate(4, "\0\0\0");
 }
 
@@ -100,14 +107,18 @@ Program Device::build(const std::string& entry, const KernelDefines& defines, Bu
   BuildReport own;
   BuildReport& result = report ? *report : own;
   result = {};
-  const std::string source = expand_kernel(entry, defines, generated);
-  const auto built = std::ranges::find_if(
-      programs_, [&](const auto& program) { return program->entry == entry && program->source == source; });
+  KernelDefines all = defines;
+  if (fma_) all.emplace("DEVICE_HAS_FMA", "1");
+  const std::string source = expand_kernel(entry, all, generated);
+  const auto built =
+      std::ranges::find_if(programs_, [&, options = all_build_options(wish_)](const auto& program) {
+        return program->entry == entry && program->source == source && program->options == options;
+      });
   if (built != programs_.end()) {
     result.cached = true;
     return Program(*built);
   }
-  programs_.push_back(build_program(context_, device_, info_, entry, source, result));
+  programs_.push_back(build_program(context_, device_, info_, entry, source, wish_, result));
   result.seconds = milliseconds(Clock::now() - start) * 1e-3;
   return Program(programs_.back());
 }
@@ -131,16 +142,51 @@ namespace {
 std::string place(const DeviceInfo& info) { return fmt::format("{}:{}", info.platform, info.device); }
 
 /// The faults that a test may ask for (base/faults.h).
-void inject_launch_faults(const DeviceInfo& info, const std::string& name, std::size_t items) {
+void inject_launch_faults(const DeviceInfo& info, const std::string& name, std::size_t items,
+                          std::size_t group) {
   while (fault("hang", place(info), items)) std::this_thread::sleep_for(std::chrono::hours(1));
   if (fault("crash", place(info), items)) std::abort();
   if (fault("kill", place(info), items)) ::raise(SIGKILL);
   if (fault("stop", place(info), items)) ::raise(SIGSTOP);
   if (const auto status = fault("launch", place(info), items))
     check_cl(*status, info, fmt::format("launch of {}", name));
+  if (const auto status = fault("group", place(info), group))
+    check_cl(*status, info, fmt::format("launch of {} in groups of {}", name, group));
 }
 
 }  // namespace
+
+std::optional<NvidiaLimits> Device::nvidia() const {
+  // From cl_nv_device_attribute_query, by number: headers have no names for them.
+  constexpr cl_device_info major = 0x4000, minor = 0x4001, registers = 0x4002, warp = 0x4003;
+  if (info_.extensions.find("cl_nv_device_attribute_query") == std::string::npos) return std::nullopt;
+  NvidiaLimits limits;
+  const auto ask = [&](cl_device_info what, unsigned& value) {
+    cl_uint told = 0;
+    if (clGetDeviceInfo(device_(), what, sizeof told, &told, nullptr) == CL_SUCCESS) value = told;
+  };
+  ask(major, limits.major);
+  ask(minor, limits.minor);
+  ask(registers, limits.registers);
+  ask(warp, limits.warp);
+  if (limits.warp == 0 || limits.registers == 0) return std::nullopt;
+  return limits;
+}
+
+KernelLimits Device::limits_of(const cl::Kernel& kernel) const {
+  KernelLimits limits;
+  // What a driver does not tell stays 0.
+  kernel.getWorkGroupInfo(device_, CL_KERNEL_WORK_GROUP_SIZE, &limits.work_group);
+  kernel.getWorkGroupInfo(device_, CL_KERNEL_PREFERRED_WORK_GROUP_SIZE_MULTIPLE, &limits.preferred_multiple);
+  kernel.getWorkGroupInfo(device_, CL_KERNEL_PRIVATE_MEM_SIZE, &limits.private_bytes);
+  kernel.getWorkGroupInfo(device_, CL_KERNEL_LOCAL_MEM_SIZE, &limits.local_bytes);
+  // Mesa's rusticl gives the size of a sub-group for any kernel, and runs larger groups all the same. Where
+  // such a limit is meant, a launch fails and is made smaller.
+  if (limits.work_group <= limits.preferred_multiple) limits.work_group = info_.max_work_group;
+  if (const auto most = fault("limit", place(info_)))
+    limits.work_group = std::min(limits.work_group, static_cast<std::size_t>(*most));
+  return limits;
+}
 
 cl::Buffer Device::allocate(std::size_t bytes, const void* data) {
   constexpr std::size_t unused = 16;  // OpenCL has no empty buffers
@@ -179,7 +225,7 @@ cl::Event Device::enqueue(cl::Kernel& kernel, const std::string& name, ProgramRe
   const cl::NDRange local = driver_chooses ? cl::NullRange
                             : flat         ? cl::NDRange(size.local_x)
                                            : cl::NDRange(size.local_x, size.local_y);
-  inject_launch_faults(info_, name, size.x * size.y);
+  inject_launch_faults(info_, name, size.x * size.y, size.local_x * size.local_y);
   if (pending_.empty()) batch_start_ = Clock::now();
   const cl_int status = queue_.enqueueNDRangeKernel(kernel, cl::NullRange, global, local, nullptr, &event);
   if (status != CL_SUCCESS)

@@ -7,13 +7,16 @@
 #include <CL/opencl.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
 #include <typeinfo>
 #include <vector>
 
+#include "device/build_options.h"
 #include "device/devices.h"
+#include "device/nvidia.h"
 
 namespace sundog {
 
@@ -64,6 +67,13 @@ struct Kernel {
   std::shared_ptr<ProgramRecord> program;
 };
 
+/// What a driver tells of a kernel on its device; 0: it does not.
+struct KernelLimits {
+  std::size_t work_group = 0;  // the most work-items of a group: the device's, where registers allow as many
+  std::size_t preferred_multiple = 0;
+  cl_ulong private_bytes = 0, local_bytes = 0;  // of a work-item, of a group
+};
+
 /// A type's name as kernels spell it: "u32", "float4", "Ray"; with a * for a buffer.
 std::string kernel_type_name(const std::type_info& type);
 template <class T>
@@ -88,6 +98,8 @@ class Program {
     return {make_kernel(name, {ArgumentType<Args>::name()...}), name, record_};
   }
 
+  std::vector<std::string> kernel_names() const;
+
  private:
   cl::Kernel make_kernel(const std::string& name, const std::vector<std::string>& host_types) const;
   std::shared_ptr<ProgramRecord> record_;
@@ -107,9 +119,15 @@ class Device {
 
   const DeviceInfo& info() const { return info_; }
 
+  /// Of a device of NVIDIA's; nothing for the others.
+  std::optional<NvidiaLimits> nvidia() const;
+
+  /// For every build() from now on.
+  void build_with(BuildWish wish) { wish_ = std::move(wish); }
+
   /// Builds `entry` ("entry/whitted.cl", embedded or generated) with `defines`, from the binary cache when it
-  /// holds it; what it has built before it gives again. `generated` are further files (path -> text, such as "generated/sdf.cl") that the kernels may
-  /// include. Throws BuildError with the compiler's log.
+  /// holds it; what it has built before it gives again. `generated` are further files (path -> text, such as
+  /// "generated/sdf.cl") that the kernels may include. Throws BuildError with the compiler's log.
   Program build(const std::string& entry, const KernelDefines& defines, BuildReport* report = nullptr,
                 const GeneratedFiles& generated = {});
 
@@ -140,6 +158,11 @@ class Device {
     return enqueue(kernel.kernel, kernel.name, kernel.program.get(), size);
   }
 
+  template <class... Args>
+  KernelLimits limits(const Kernel<Args...>& kernel) const {
+    return limits_of(kernel.kernel);
+  }
+
   /// Waits for all launches so far and adds their times to `times()`.
   void finish();
   const std::map<std::string, KernelTimes>& times() const { return times_; }
@@ -159,6 +182,7 @@ class Device {
     static_assert(sizeof(T) == 4 || sizeof(T) == 16, "kernel values are 4-byte scalars or 16-byte vectors");
     check_argument(kernel.setArg(index, sizeof(T), &value), name, index);
   }
+  KernelLimits limits_of(const cl::Kernel& kernel) const;
   void check_argument(cl_int status, const std::string& name, cl_uint index) const;
   cl::Buffer allocate(std::size_t bytes, const void* data);
   void write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset);
@@ -167,6 +191,8 @@ class Device {
                     const LaunchSize& size);
 
   DeviceInfo info_;
+  bool fma_ = false;  // has the instruction (kernels/lib/config.h)
+  BuildWish wish_;
   cl::Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;

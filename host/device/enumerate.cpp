@@ -12,6 +12,7 @@
 #include <mutex>
 #include <thread>
 
+#include "device/build_options.h"
 #include "device/cl_status.h"
 #include "device/devices.h"
 #include "device/estimate.h"
@@ -193,6 +194,7 @@ void prepare_drivers() {
     // binary out. One version for all was as fast in every kernel measured, so each kernel is compiled once.
     setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
     setenv("PATH", "/usr/local/bin:/usr/bin:/bin", 0);  // PoCL ends a process in which it finds no linker
+    if (!build_log_folder().empty()) bypass_driver_caches();
     give_pocl_a_folder();
     enlarge_thread_stacks();
   });

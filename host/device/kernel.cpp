@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
+#include <sstream>
 
 #include "base/error.h"
 #include "device/cl_status.h"
@@ -19,6 +20,7 @@ std::string plain_type(std::string type) {
   static const std::map<std::string, std::string> spellings = {
       {"unsigned int", "u32"}, {"uint", "u32"}, {"int", "i32"}};
   const bool pointer = type.ends_with('*');
+  if (type.starts_with("struct ")) type.erase(0, std::string_view("struct ").size());
   if (pointer) type.pop_back();
   while (type.ends_with(' ')) type.pop_back();
   if (const auto found = spellings.find(type); found != spellings.end()) type = found->second;
@@ -56,6 +58,13 @@ cl::Kernel Program::make_kernel(const std::string& name, const std::vector<std::
     throw BuildError(fmt::format("{} has no kernel {}: {}", entry, name, cl_status_name(status)), "");
   check_arguments(kernel, name, entry, host_types);
   return kernel;
+}
+
+std::vector<std::string> Program::kernel_names() const {
+  std::vector<std::string> names;
+  std::istringstream in(record_ ? record_->program.getInfo<CL_PROGRAM_KERNEL_NAMES>() : "");
+  for (std::string name; std::getline(in, name, ';');) names.push_back(name.substr(0, name.find('\0')));
+  return names;
 }
 
 std::vector<std::string> argument_types(const cl::Kernel& kernel) {

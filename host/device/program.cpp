@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/faults.h"
 #include "base/file.h"
+#include "device/build_options.h"
 #include "device/cl_status.h"
 #include "device/compile_process.h"
 #include "device/program_cache.h"
@@ -17,13 +18,10 @@
 namespace sundog {
 namespace {
 
-// Argument information is asked for always, so that the tests check the very program that renders.
-constexpr const char* build_options = "-cl-std=CL1.2 -cl-kernel-arg-info";
-
 /// Everything that may change what the compiler makes. PoCL reads the named variables when it compiles.
-std::string program_key(const DeviceInfo& info, const std::string& source) {
+std::string program_key(const DeviceInfo& info, const std::string& options, const std::string& source) {
   std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n", info.platform_name, info.platform_version,
-                                info.name, info.driver, info.version, build_options);
+                                info.name, info.driver, info.version, options);
   for (const char* name :
        {"POCL_EXTRA_BUILD_FLAGS", "POCL_WORK_GROUP_METHOD", "POCL_WORK_GROUP_SPECIALIZATION"}) {
     const char* value = std::getenv(name);
@@ -39,6 +37,21 @@ void dump_source(const std::string& entry, const std::string& source) {
   std::filesystem::create_directories(folder);
   const std::string stem = std::filesystem::path(entry).stem().string();
   write_file(std::filesystem::path(folder) / fmt::format("{}-{:.8}.cl", stem, hash128(source)), source);
+}
+
+/// SUNDOG_BUILD_LOG=folder keeps what the compiler said of each program there, and of what.
+void keep_log(const ProgramRecord& record, const std::string& log, cl_int status) {
+  const std::string folder = build_log_folder();
+  if (folder.empty()) return;
+  std::filesystem::create_directories(folder);
+  const std::string stem = std::filesystem::path(record.entry).stem().string();
+  const DeviceInfo& info = record.device;
+  write_file(std::filesystem::path(folder) /
+                 fmt::format("{}-{}.{}-{:.8}.txt", stem, info.platform, info.device, hash128(record.key)),
+             fmt::format("program  {}\ndevice   {}\ndriver   {}, {}\noptions  {}\nstatus   {}\n\n"
+                         "== log ==\n{}\n\n== source ==\n{}",
+                         record.entry, info.label(), info.driver, info.version, record.options,
+                         cl_status_name(status), log, record.source));
 }
 
 std::string build_log(const cl::Program& program, const cl::Device& device) {
@@ -71,24 +84,25 @@ bool kernels_work(const cl::Program& program) {
 
 /// The program of a cached binary; null when the driver will not have it.
 cl::Program program_from_binary(const cl::Context& context, const cl::Device& device,
-                                const std::string& binary) {
+                                const std::string& binary, const std::string& options) {
   const cl::Program::Binaries binaries{{binary.begin(), binary.end()}};
   std::vector<cl_int> statuses;
   cl_int status = CL_SUCCESS;
   cl::Program program(context, {device}, binaries, &statuses, &status);
   if (status != CL_SUCCESS || std::ranges::any_of(statuses, [](cl_int s) { return s != CL_SUCCESS; }))
     return {};
-  if (program.build({device}, build_options) != CL_SUCCESS || !kernels_work(program)) return {};
+  if (program.build({device}, options.c_str()) != CL_SUCCESS || !kernels_work(program)) return {};
   return program;
 }
 
 /// Builds a program of nothing: the driver reads what it needs to build any. A name of its own, lest the
 /// driver has it in a cache.
-void warm_up(const cl::Context& context, const cl::Device& device, const std::string& name) {
+cl_int build_nothing(const cl::Context& context, const cl::Device& device, const std::string& name,
+                     const std::string& options) {
   cl_int status = CL_SUCCESS;
   const cl::Program nothing(context, fmt::format("__kernel void nothing_{}(void) {{}}", name), false,
                             &status);
-  if (status == CL_SUCCESS) nothing.build({device}, build_options);
+  return status == CL_SUCCESS ? nothing.build({device}, options.c_str()) : status;
 }
 
 /// The program of a binary that another process compiled; null when the driver will not have it.
@@ -107,12 +121,18 @@ cl::Program program_of_parts(const cl::Context& context, const cl::Device& devic
 /// Compiles in another process while this one's driver makes itself ready; false: it has to be done here.
 bool compile_beside(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
                     const std::string& source) {
-  auto process = CompileProcess::start(record.device, source, build_options);
+  auto process = CompileProcess::start(record.device, source, record.options);
   if (!process) return false;
-  warm_up(context, device, hash128(source));
+  build_nothing(context, device, hash128(source), record.options);
   const std::string compiled = process->wait();
   if (!compiled.empty()) record.program = program_of_parts(context, device, compiled);
   return record.program() != nullptr;
+}
+
+/// Whether the build failed by the user's options: nothing at all can be built with them.
+bool options_are_bad(const ProgramRecord& record, const cl::Context& context, const cl::Device& device) {
+  return !user_build_options().empty() &&
+         build_nothing(context, device, hash128(record.key), record.options) != CL_SUCCESS;
 }
 
 void compile(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
@@ -122,7 +142,13 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
   check_cl(status, record.device, fmt::format("{}: clCreateProgramWithSource", record.entry));
   status = record.program.build({device}, options.c_str());
   report.log = build_log(record.program, device);
+  keep_log(record, report.log, status);
   if (status == CL_SUCCESS) return;
+  if (options_are_bad(record, context, device))
+    throw BuildError(
+        fmt::format("SUNDOG_BUILD_OPTIONS '{}': {} builds nothing with them: {} ({})", user_build_options(),
+                    record.device.label(), cl_status_name(status), first_error(report.log)),
+        report.log);
   if (status != CL_BUILD_PROGRAM_FAILURE && report.log.empty())
     check_cl(status, record.device, fmt::format("{}: clBuildProgram", record.entry));
   throw BuildError(
@@ -134,9 +160,9 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
 /// noalias scopes): such a program builds, but gives no kernels. Without optimisation it runs.
 void compile_to_kernels(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
                         const std::string& source, BuildReport& report) {
-  compile(record, context, device, source, build_options, report);
+  compile(record, context, device, source, record.options, report);
   if (kernels_work(record.program)) return;
-  compile(record, context, device, source, fmt::format("{} -cl-opt-disable", build_options), report);
+  compile(record, context, device, source, fmt::format("{} -cl-opt-disable", record.options), report);
   if (kernels_work(record.program)) return;
   throw BuildError(fmt::format("{} on {}: the driver built it but makes no kernels of it", record.entry,
                                record.device.label()),
@@ -147,7 +173,8 @@ void compile_to_kernels(ProgramRecord& record, const cl::Context& context, const
 
 std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const cl::Device& device,
                                              const DeviceInfo& info, const std::string& entry,
-                                             const std::string& source, BuildReport& report) {
+                                             const std::string& source, const BuildWish& wish,
+                                             BuildReport& report) {
   dump_source(entry, source);
   if (fault("build", fmt::format("{}:{}", info.platform, info.device)))
     throw BuildError(fmt::format("{} did not build on {}: a fault was asked for", entry, info.label()), "");
@@ -155,10 +182,13 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
   record->device = info;
   record->entry = entry;
   record->source = source;
-  record->key = program_key(info, source);
+  record->options = all_build_options(wish);
+  record->key = program_key(info, record->options, source);
   record->cache_file = program_cache_file(record->key);
-  if (const auto cached = load_program(record->cache_file, record->key)) {
-    record->program = program_from_binary(context, device, cached->binary);
+  const bool from_source = wish.from_source || !build_log_folder().empty();
+  const auto cached = from_source ? std::nullopt : load_program(record->cache_file, record->key);
+  if (cached) {
+    record->program = program_from_binary(context, device, cached->binary, record->options);
     if (record->program()) {
       report.cached = true;
       record->stored = true;
@@ -172,7 +202,7 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
       report.note = *reason;
       record->cache_file.clear();
     }
-  if (!compile_beside(*record, context, device, source))
+  if (from_source || !compile_beside(*record, context, device, source))
     compile_to_kernels(*record, context, device, source, report);
   return record;
 }

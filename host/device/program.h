@@ -14,6 +14,7 @@ struct ProgramRecord {
   DeviceInfo device;
   std::string entry;                 // the kernel file, for messages
   std::string source;                // expanded
+  std::string options;               // that it is built with
   std::string key;                   // all that the binary depends on
   std::filesystem::path cache_file;  // empty: there is no cache to store it in
   bool stored = false;               // the cache holds this program, with the machine code of stored_variants
@@ -23,7 +24,8 @@ struct ProgramRecord {
 /// Expands, and loads from the cache or compiles. Throws BuildError, DeviceError.
 std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const cl::Device& device,
                                              const DeviceInfo& info, const std::string& entry,
-                                             const std::string& source, BuildReport& report);
+                                             const std::string& source, const BuildWish& wish,
+                                             BuildReport& report);
 
 /// Stores the program when the cache lacks something that was launched. Throws DeviceError, IoError.
 void save_program(ProgramRecord& record);

@@ -18,13 +18,24 @@ constexpr double launch_seconds = 0.05;
 // Pixel-samples before anything is known of the device; a field's may take a thousand times as long.
 constexpr std::size_t first_launch_size = 4096, first_launch_size_of_fields = 512;
 
-void check_work_group(const DeviceInfo& device, const KernelConfig& config, const WorkGroup& group) {
-  const std::size_t most = greatest_work_group(config, device);
+// Resources that ran out may be those of a group, where it has more work-items than this.
+constexpr std::size_t small_group = 64;
+
+void check_work_group(const DeviceInfo& device, std::size_t most, const WorkGroup& group) {
   if (group.kind == WorkGroup::Kind::fixed && most > 0 && group.x * group.y > most)
     throw UsageError(
         fmt::format("{}: a work-group of {} is more than the {} that it can have in this scene; ask for "
                     "less, or for a smaller max_depth",
                     device.label(), group.x * group.y, most));
+}
+
+/// Halves the longer side of a group until it has at most `most` work-items (0: any number).
+LaunchSize within(LaunchSize size, std::size_t most) {
+  while (most > 0 && size.local_x * size.local_y > most) {
+    std::size_t& side = size.local_x >= size.local_y ? size.local_x : size.local_y;
+    side /= 2;
+  }
+  return size;
 }
 
 unsigned divide_up(unsigned a, unsigned b) { return (a + b - 1) / b; }
@@ -45,11 +56,8 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
       config_(make_kernel_config(scene, device.info(), tuning_)),
       watch_(watch),
       next_size_(scene.fields.fields.empty() ? first_launch_size : first_launch_size_of_fields) {
-  check_work_group(device.info(), config_, options.work_group);
-  // What was fastest for a scene of less depth may be too large for this one.
-  const std::size_t most = greatest_work_group(config_, device.info());
-  if (most > 0 && tuning_.work_group.x * tuning_.work_group.y > most) tuning_.work_group = {};
-  if (most > 0 && tuning_.surfaces_group.x > most) tuning_.surfaces_group = {};
+  most_group_ = greatest_work_group(config_, device.info());
+  check_work_group(device.info(), most_group_, options.work_group);
   const Stopwatch building;
   times.cached = true;
   render_ = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, u32, u32, u32, u32, u32,
@@ -57,11 +65,25 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
   if (!options.aovs.empty())
     first_surfaces_ = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32>(
         build("entry/aov.cl", times), "first_surfaces");
+  limit_groups();
   times.build_kernels = building.seconds();
   const Stopwatch uploading;
   tables_ = upload_scene(device, scene);
   times.upload = uploading.seconds();
   if (scene.features.camera_inside) find_camera_media();
+}
+
+// The kernels' own limits are known once they are built: theirs are what a group's registers suffice for.
+void TileRenderer::limit_groups() {
+  const auto limit = [&](std::size_t kernels) {
+    if (kernels > 0) most_group_ = most_group_ > 0 ? std::min(most_group_, kernels) : kernels;
+  };
+  limit(device_.limits(render_).work_group);
+  if (!options_.aovs.empty()) limit(device_.limits(first_surfaces_).work_group);
+  check_work_group(device_.info(), most_group_, options_.work_group);
+  // What was fastest for a scene of less depth may be too large for this one.
+  if (most_group_ > 0 && tuning_.work_group.x * tuning_.work_group.y > most_group_) tuning_.work_group = {};
+  if (most_group_ > 0 && tuning_.surfaces_group.x > most_group_) tuning_.surfaces_group = {};
 }
 
 Program TileRenderer::build(const char* entry, RenderTimes& times) {
@@ -91,8 +113,9 @@ LaunchSize TileRenderer::launch_size(std::size_t columns, std::size_t rows) cons
   const std::size_t items = columns * rows;
   if (group.kind == WorkGroup::Kind::driver) return {items, 1, 0, 0};
   if (group.kind == WorkGroup::Kind::fixed) {
-    if (group.y > 1) return {columns, rows, group.x, group.y};
-    return {items, 1, group.x, 1};
+    return within(
+        group.y > 1 ? LaunchSize{columns, rows, group.x, group.y} : LaunchSize{items, 1, group.x, 1},
+        most_group_);
   }
   if (alone_) return {items, 1, 1, 1};
   // One ray a lane wants a full group, if only to fill the driver's vectors. With many pixels a work-item,
@@ -104,7 +127,7 @@ LaunchSize TileRenderer::launch_size(std::size_t columns, std::size_t rows) cons
     const bool many_pixels = config_.tile_w * config_.tile_h > 1;
     wanted = many_pixels ? (share < 4 ? 1 : 4) : std::clamp<std::size_t>(share, 8, 64);
   }
-  return {items, 1, std::min(wanted, std::max<std::size_t>(1, device_.info().max_work_group)), 1};
+  return within({items, 1, wanted, 1}, most_group_);
 }
 
 // Cuts the tile into runs of work-items, and long rows of samples into several launches, by what the last
@@ -134,6 +157,7 @@ unsigned TileRenderer::launch_samples(const Tile& tile, const StopFlags& flags) 
       last_samples_ = std::max(last_samples_, count);
       const LaunchSize size = grid ? launch_size(columns, items / columns) : launch_size(items, 1);
       last_size_ = pixels * count;
+      last_group_ = size.local_x * size.local_y;
       const Stopwatch clock;
       const WatchedLaunch watched(watch_, pixel_seconds_ * static_cast<double>(last_size_),
                                   pixel_seconds_ <= 0);
@@ -162,13 +186,15 @@ void TileRenderer::launch_aovs(const Tile& tile, std::vector<float4>& aovs) {
   aovs.resize(3 * pixels);
   if (pixels == 0) return;
   const bool tuned = tuning_.surfaces_group.kind == WorkGroup::Kind::fixed;
-  const std::size_t group = tuned ? tuning_.surfaces_group.x : 16;
+  const LaunchSize size = within({divide_up(static_cast<unsigned>(pixels), config_.tile_w * config_.tile_h),
+                                  1, tuned ? tuning_.surfaces_group.x : 16, 1},
+                                 most_group_);
+  last_group_ = size.local_x;
   const WatchedLaunch watched(watch_, 0, true);
   run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32>(
-      device_, first_surfaces_,
-      {divide_up(static_cast<unsigned>(pixels), config_.tile_w * config_.tile_h), 1, group, 1}, tables_,
-      tables_.camera_media, aovs_, counters_, static_cast<u32>(tile.x), static_cast<u32>(tile.y),
-      static_cast<u32>(tile.width), static_cast<u32>(pixels));
+      device_, first_surfaces_, size, tables_, tables_.camera_media, aovs_, counters_,
+      static_cast<u32>(tile.x), static_cast<u32>(tile.y), static_cast<u32>(tile.width),
+      static_cast<u32>(pixels));
   device_.finish();
   device_.read(aovs_, std::span<float4>(aovs));
 }
@@ -178,6 +204,14 @@ bool TileRenderer::shrink(const std::string& why) {
   if (last_size_ <= least_size_) return false;
   most_size_ = next_size_ = std::max(last_size_ / 2, least_size_);
   notes_.push_back(fmt::format("{}: launches of at most {} pixel-samples from here on", why, most_size_));
+  return true;
+}
+
+// Halves the work-groups; false when the last one had no more than `least` work-items.
+bool TileRenderer::shrink_group(const std::string& why, std::size_t least) {
+  if (last_group_ <= least) return false;
+  most_group_ = last_group_ / 2;
+  notes_.push_back(fmt::format("{}: work-groups of at most {} from here on", why, most_group_));
   return true;
 }
 
@@ -215,7 +249,7 @@ void TileRenderer::check_finished(const Tile& asked, const TileResult& made) {
 
 TileResult TileRenderer::render(const Tile& tile, const StopFlags& flags) {
   while (true) {
-    last_size_ = 0;
+    last_size_ = last_group_ = 0;
     last_samples_ = 0;
     try {
       TileResult made = try_render(tile, flags);
@@ -226,7 +260,9 @@ TileResult TileRenderer::render(const Tile& tile, const StopFlags& flags) {
       throw DeviceError(std::string(error.what()) +
                         "; a single sample of a pixel is too much for it: choose another device");
     } catch (const DeviceError& error) {
-      if (!is_out_of_resources(error.status) || !shrink(error.what())) throw;
+      if (is_work_group_too_large(error.status) && shrink_group(error.what(), 1)) continue;
+      if (!is_out_of_resources(error.status)) throw;
+      if (!shrink_group(error.what(), small_group) && !shrink(error.what())) throw;
     }
   }
 }

@@ -21,9 +21,12 @@ class TileRenderer {
 
   /// Renders all samples of a tile in launches of bounded time. Where the device runs out of memory or
   /// resources, once more in launches of half the size, and so on; where its driver ended the kernel's loops
-  /// early, in launches of half the samples, at last in work-groups of one. Throws DeviceError.
+  /// early, in launches of half the samples, at last in work-groups of one; where a work-group is too large
+  /// for it, in groups of half the size. Throws DeviceError.
   TileResult render(const Tile& tile, const StopFlags& flags);
 
+  /// Most work-items that a group of its kernels may have; 0: nobody says.
+  std::size_t greatest_group() const { return most_group_; }
   double readback_seconds() const { return readback_seconds_; }
   /// What did not stop it: a cache that could not be used, launches that had to be made smaller.
   const std::vector<std::string>& notes() const { return notes_; }
@@ -33,6 +36,8 @@ class TileRenderer {
   Program build(const char* entry, RenderTimes& times);
   TileResult try_render(const Tile& tile, const StopFlags& flags);
   bool shrink(const std::string& why);
+  bool shrink_group(const std::string& why, std::size_t least);
+  void limit_groups();
   bool ask_less(const std::string& why);
   void check_finished(const Tile& asked, const TileResult& made);
   unsigned launch_samples(const Tile& tile, const StopFlags& flags);
@@ -60,6 +65,8 @@ class TileRenderer {
   std::size_t last_size_ = 0;                     // of the last one
   std::size_t least_size_ = 0;                    // of any, in the tile in hand
   std::size_t most_size_ = std::size_t{1} << 30;  // less where the device ran out of resources
+  std::size_t most_group_ = 0;                    // work-items of a group; 0: nobody says
+  std::size_t last_group_ = 0;                    // of the last launch; 0: the driver's choice
   unsigned most_samples_ = ~0u;                   // of a launch; less where the driver ended loops early
   unsigned last_samples_ = 0;                     // the most of any launch, in the tile in hand
   bool alone_ = false;                            // work-groups of one

@@ -7,8 +7,9 @@
 
 // Without the instruction fma() is a program of its own, inlined at every use (rusticl took 12 times as long
 // to compile); two roundings are as good here. PoCL does not define FP_FAST_FMAF, but names the host's
-// __FMA__.
-#if !defined(FP_FAST_FMAF) && !defined(__FMA__)
+// __FMA__; the host defines DEVICE_HAS_FMA for
+// devices other than processors whose driver says that they have the instruction.
+#if !defined(FP_FAST_FMAF) && !defined(__FMA__) && !defined(DEVICE_HAS_FMA)
 #define fma(a, b, c) ((a) * (b) + (c))
 #endif
 

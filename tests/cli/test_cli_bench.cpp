@@ -99,6 +99,9 @@ TEST_CASE("bench rays times every kind of ray and checks the hits") {
     CHECK(row.at("checked") == row.at("rays"));  // each
     CHECK(row.at("rounded") <= 0.01 * row.at("rays").get<double>());
     CHECK(row.at("differ") == 0);
+    CHECK(row.at("tracer") == "wide");
+    // The kernel's time is part of what the host waits for. PoCL's clock may start with the launch.
+    CHECK(row.at("kernel_Mrays/s").at("median") >= 0.99 * row.at("rate_Mrays/s").at("median").get<double>());
   }
   CHECK(kinds == std::vector<std::string>{"primary", "shadow", "bounce", "shuffled", "reflection", "glass"});
 }
@@ -143,6 +146,52 @@ TEST_CASE("bench rays fails where a kernel tells wrong distances") {
   CHECK(result.status == 4);
   CHECK_THAT(result.err, ContainsSubstring("wrong answers"));
   CHECK(is_one_error_line(result.err));
+}
+
+TEST_CASE("bench kernels tells limits of each kernel and tracer, and nothing where nobody tells") {
+  const CliFolder folder;
+  for (const std::string tracer : {"wide", "compact"}) {
+    const CommandResult result = run_sundog({"bench", "kernels", folder.scene, "--device", "pthread", "--set",
+                                             "/render/tracer=" + tracer, "--json", folder.file("k.json")});
+    CAPTURE(result.out, result.err);
+    REQUIRE(result.status == 0);
+    CHECK_THAT(result.out, ContainsSubstring(tracer + " tracer") && ContainsSubstring("occluded_rays"));
+    std::set<std::string> kernels;
+    const json report = json::parse(sundog::read_file(folder.file("k.json")));
+    for (const json& row : report.at("measurements")) {
+      CAPTURE(row.dump());
+      kernels.insert(row.at("kernel"));
+      CHECK(row.at("tracer") == tracer);
+      CHECK(row.at("group_limit") >= row.at("group_given"));
+      CHECK(row.at("group_given") > 0);
+      CHECK(row.at("multiple") > 0);
+      CHECK(row.at("registers").is_null());
+      CHECK(row.at("spill_stores_B").is_null());
+      CHECK(row.at("threads").is_null());
+    }
+    CHECK(kernels ==
+          std::set<std::string>{"render_whitted", "first_surfaces", "trace_rays", "occluded_rays"});
+  }
+}
+
+TEST_CASE("bench workgroup tries no group that a kernel's own limit forbids") {
+  const CliFolder folder;
+  CommandOptions options;
+  options.environment["SUNDOG_FAULTS"] = "limit=8@0:0";
+  options.environment["POCL_DEVICES"] = "pthread";
+  const CommandResult result =
+      run_sundog({"bench", "workgroup", folder.scene, "--device", "0:0", "--rays", "16", "--repeat", "1",
+                  "--kernel", "occluded_rays", "--json", folder.file("w.json")},
+                 options);
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  std::set<std::string> sizes;
+  const json report = json::parse(sundog::read_file(folder.file("w.json")));
+  for (const json& row : report.at("measurements")) {
+    CHECK(row.at("problem").is_null());
+    sizes.insert(row.at("work-group"));
+  }
+  CHECK(sizes == std::set<std::string>{"default", "driver", "1", "2", "4", "8", "7"});
 }
 
 TEST_CASE("bench rays says that it leaves distance fields out, and times nothing where nothing else is") {

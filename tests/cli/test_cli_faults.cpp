@@ -83,6 +83,39 @@ TEST_CASE("one of two devices fails, and the frame has the same bits and status 
   }
 }
 
+TEST_CASE("a work-group that is too large for the device is made smaller, and the picture is the same") {
+  FaultyFolder folder;
+  const std::string plain = folder.plain();
+  // CL_INVALID_WORK_GROUP_SIZE; CL_OUT_OF_RESOURCES, as some drivers say instead.
+  const auto [fault, group, note] =
+      GENERATE(std::tuple{"group=-54>3@0:1", "16", "work-groups of at most 2 from here on"},
+               std::tuple{"group=-54>3@0:1", "4x4", "work-groups of at most 2 from here on"},
+               std::tuple{"group=-5>64@0:1", "128", "work-groups of at most 64 from here on"});
+  CAPTURE(fault, group);
+  const CommandResult result = folder.render(fault, {"--device", "!0:0", "--work-group", group, "--verbose"});
+  CAPTURE(result.err, result.out);
+  CHECK(result.status == 0);
+  CHECK(read_file(folder / "a.pfm") == plain);
+  CHECK(contains(result.out, note));
+  const json device = folder.stats()["devices"][0];
+  CHECK(device["failures"] == 0);
+  CHECK(device["retired"] == false);
+}
+
+TEST_CASE("a kernel's own limit bounds its work-groups, and a larger one is refused by name") {
+  FaultyFolder folder;
+  const std::string plain = folder.plain();
+  CommandResult result = folder.render("limit=2@0:1", {"--device", "!0:0"});
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+  CHECK(read_file(folder / "a.pfm") == plain);
+  CHECK(folder.stats()["devices"][0]["kernels"]["render_whitted"]["work_group"].dump().find("4") ==
+        std::string::npos);
+  result = folder.render("limit=2@0:1", {"--device", "!0:0", "--work-group", "4"});
+  CHECK(result.status == 2);
+  CHECK(contains(result.err, "a work-group of 4 is more than the 2 that it can have"));
+}
+
 TEST_CASE("where resources do not suffice, launches are made smaller until they do") {
   FaultyFolder folder;
   const std::string plain = folder.plain();

@@ -21,7 +21,7 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
       {{}, "wanted a command (render, devices, "},
       {{""}, "found none"},
       {{"frobnicate"}, "found 'frobnicate'"},
-      {{"bench"}, "wanted a benchmark (workgroup, threads, rays, samples, devices), found none"},
+      {{"bench"}, "wanted a benchmark (workgroup, threads, rays, samples, devices, kernels), found none"},
       {{"bench", "speed"}, "found 'speed'"},
       {{"bench", "threads"}, "SCENE is required"},
       {{"bench", "workgroup", scene, "--kernel", "magic"}, "--kernel magic: wanted one of render_whitted"},

@@ -164,6 +164,86 @@ TEST_CASE("SUNDOG_DUMP_KERNELS keeps the text that the compiler gets") {
              ContainsSubstring("#define WIDTH 8") && ContainsSubstring("values[i] += what;"));
 }
 
+TEST_CASE("SUNDOG_BUILD_OPTIONS reach the compiler and are part of what the cache knows a program by") {
+  const std::string text = add_kernel +
+                           "#ifndef FROM_OUTSIDE\n#error not defined\n#endif\n"
+                           "__kernel void tell(__global uint* value) { value[0] = FROM_OUTSIDE; }\n";
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      const OwnCache cache;
+      const auto told = [&](const char* options, bool* cached) {
+        const ScopedVariable variable("SUNDOG_BUILD_OPTIONS", options);
+        Device device(info);
+        BuildReport report;
+        auto tell = device.build("add.cl", {}, &report, {{"add.cl", text}}).kernel<Buffer<u32>>("tell");
+        *cached = report.cached;
+        const auto value = device.make<u32>(1);
+        device.run(tell, {1, 1, 1, 1}, value);
+        std::vector<u32> result(1);
+        device.read(value, std::span<u32>(result));
+        return result[0];
+      };
+      bool cached = true;
+      CHECK(told("-DFROM_OUTSIDE=7", &cached) == 7);
+      CHECK(!cached);
+      CHECK(told("-DFROM_OUTSIDE=8", &cached) == 8);
+      CHECK(!cached);
+      CHECK(told("-DFROM_OUTSIDE=7", &cached) == 7);
+      CHECK(cached);
+    }
+}
+
+TEST_CASE("options that the compiler refuses are an error that names the variable") {
+  const ScopedVariable variable("SUNDOG_BUILD_OPTIONS", "--no-such-option");
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      const OwnCache cache;
+      Device device(info);
+      CHECK_THROWS_WITH(build_text(device, add_kernel),
+                        ContainsSubstring("SUNDOG_BUILD_OPTIONS '--no-such-option': " + info.label()));
+    }
+}
+
+TEST_CASE("an error of a kernel is its own, whatever options were given") {
+  const ScopedVariable variable("SUNDOG_BUILD_OPTIONS", "-DANYTHING");
+  Device device(test_devices().front());
+  CHECK_THROWS_WITH(build_text(device, "__kernel void f(__global float* a) { a[0] = undeclared; }"),
+                    ContainsSubstring("did not build on"));
+}
+
+TEST_CASE("SUNDOG_BUILD_LOG keeps log, options and source of each program, cached or not") {
+  const GeneratedFiles bad = {{"bad.cl", "__kernel void f(__global float* a) { a[0] = undeclared; }"}};
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      const OwnCache cache;
+      add_on(info);
+      const TemporaryFolder folder;
+      const ScopedVariable log("SUNDOG_BUILD_LOG", folder.path().c_str());
+      CHECK(!add_on(info).cached);
+      auto files = files_of(folder.path());
+      REQUIRE(files.size() == 1);
+      CHECK_THAT(read_file(files[0]),
+                 ContainsSubstring("program  add.cl") && ContainsSubstring(info.label()) &&
+                     ContainsSubstring(info.driver) && ContainsSubstring("options  -cl-std=CL1.2") &&
+                     ContainsSubstring("status   CL_SUCCESS") && ContainsSubstring("values[i] += what;"));
+      fs::remove(files[0]);
+      Device device(info);
+      CHECK_THROWS_AS(device.build("bad.cl", {}, nullptr, bad), BuildError);
+      files = files_of(folder.path());
+      REQUIRE(files.size() == 1);
+      CHECK_THAT(read_file(files[0]), ContainsSubstring("undeclared identifier"));
+    }
+}
+
+TEST_CASE("a kernel tells how large its groups may be") {
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      Device device(info);
+      const Program program = build_text(device, add_kernel);
+      CHECK(program.kernel_names() == std::vector<std::string>{"add"});
+      const KernelLimits limits = device.limits(program.kernel<>("add"));
+      CHECK(limits.work_group > 0);
+      CHECK(limits.work_group <= info.max_work_group);
+      CHECK(limits.preferred_multiple > 0);
+    }
+}
+
 TEST_CASE("a kernel's parameter types are known by their names") {
   const std::string text =
       "#include \"shared/bvh.h\"\n"

@@ -1,0 +1,198 @@
+// tinybvh_rays MODEL... : traces the same rays with sundog's tracer and with the OpenCL kernels of tinybvh
+// (https://github.com/jbikker/tinybvh: two-wide after Aila and Laine, compressed eight-wide) on one device,
+// in turn, and prints millions of rays a second by kernel time (by the host's clock where the driver gives no
+// times) and their ratio by kind of ray. Its kernels know no ends of rays, so every ray here begins at 0 and
+// has none, for both: a shadow ray goes on behind its light. Hits are compared before a time counts.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/error.h"
+#include "bench/ray_sets.h"
+#include "bench/ray_tracer.h"
+#include "bench_scenes.h"
+#include "compile/compiled_scene.h"
+#include "peer_program.h"
+#include "render/kernel_config.h"
+#include "tinybvh_peer.h"
+
+using namespace sundog;
+
+namespace {
+
+struct Options : PeerOptions {
+  TinyBvhOptions peer;
+  std::vector<std::string> kinds;
+  std::vector<float> from{0.25f, 0.2f, 1.0f};
+  std::string device = "gpu", tracer = "auto";
+  unsigned size = 1024;
+};
+
+/// Rays of all t from 0.
+RaySet without_ends(RaySet set) {
+  for (Ray& ray : set.rays) {
+    ray.ox += ray.t_min * ray.dx;
+    ray.oy += ray.t_min * ray.dy;
+    ray.oz += ray.t_min * ray.dz;
+    ray.t_min = 0;
+    ray.t_max = tinybvh_far;
+  }
+  return set;
+}
+
+Contestant sundog_contestant(RayTracer& tracer) {
+  Contestant result{"sundog", {}, {}, {}, true, {}};
+  result.run = [&](const RaySet& set) { return tracer.run({set.any, set.coherent}); };
+  result.distances = [&] {
+    std::vector<float> distances;
+    for (const Hit& hit : tracer.hits())
+      distances.push_back(hit.instance == NO_INSTANCE ? tinybvh_far : hit.t);
+    return distances;
+  };
+  result.occluded = [&] {
+    std::vector<bool> hits;
+    for (const u32 hit : tracer.occluded()) hits.push_back(hit != 0);
+    return hits;
+  };
+  return result;
+}
+
+/// Rays for which the two disagree: one hits and the other does not, or the distances differ.
+std::size_t count_mismatches(const RaySet& set, const Contestant& ours, const Contestant& theirs) {
+  std::size_t count = 0;
+  if (set.any) {
+    const std::vector<bool> a = ours.occluded(), b = theirs.occluded();
+    for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i];
+  } else {
+    const std::vector<float> a = ours.distances(), b = theirs.distances();
+    for (std::size_t i = 0; i < a.size(); ++i) count += !(std::abs(a[i] - b[i]) <= 1e-4f * b[i]);
+  }
+  return count;
+}
+
+/// Millions of rays a second of one run, and notes whether it is by the kernel's own time.
+double rate(Contestant& who, const RaySet& set, bool& by_events) {
+  const Stopwatch clock;
+  const double kernel = who.run(set), wall = clock.seconds();
+  by_events = by_events && kernel > 0;
+  who.mrays.push_back(1e-6 * static_cast<double>(set.rays.size()) / (kernel > 0 ? kernel : wall));
+  return who.mrays.back();
+}
+
+nlohmann::json compare(const Options& options, const RaySet& set, std::vector<Contestant>& all) {
+  nlohmann::json result{{"kind", set.kind}, {"rays", set.rays.size()}};
+  std::vector<std::size_t> differ(all.size());
+  std::vector<std::vector<double>> ratios(all.size());
+  bool by_events = true;
+  const auto runs = [&](const Contestant& who) { return who.any || !set.any; };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].mrays.clear();
+    if (!runs(all[i])) continue;
+    all[i].run(set);
+    if (i > 0) differ[i] = count_mismatches(set, all[0], all[i]);
+  }
+  for (unsigned n = 0; n < options.repeats; ++n) {
+    const double ours = rate(all[0], set, by_events);
+    for (std::size_t i = 1; i < all.size(); ++i)
+      if (runs(all[i])) ratios[i].push_back(ours / rate(all[i], set, by_events));
+  }
+  fmt::print("  {:<11}{:>9}{:>9.2f}", set.kind, set.rays.size(), spread(all[0].mrays).median);
+  result["sundog_mrays"] = to_json(spread(all[0].mrays));
+  result["clock"] = by_events ? "events" : "wall";
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const std::string& name = all[i].name;
+    if (ratios[i].empty()) {
+      fmt::print("{:>9}{:>8}{:>8}", "-", "-", "-");
+      continue;
+    }
+    const Spread theirs = spread(all[i].mrays), ratio = spread(ratios[i]);
+    fmt::print("{:>9.2f}{:>8.2f}{:>8}", theirs.median, ratio.median, differ[i]);
+    result[name + "_mrays"] = to_json(theirs);
+    result["ratio_to_" + name] = to_json(ratio);
+    result[name + "_mismatches"] = differ[i];
+  }
+  fmt::print("\n");
+  std::fflush(stdout);
+  return result;
+}
+
+/// Three corners a triangle, in the world.
+std::vector<float4> corners_of(const SceneDescription& scene) {
+  std::vector<float4> corners;
+  for (const Mesh& mesh : scene.meshes)
+    for (const glm::uvec3& triangle : mesh.triangles)
+      for (int k = 0; k < 3; ++k) {
+        const glm::vec3& p = mesh.positions[triangle[k]];
+        corners.push_back({p.x, p.y, p.z, 0});
+      }
+  return corners;
+}
+
+nlohmann::json compare_model(const Options& options, const std::string& path) {
+  SceneDescription description = scene_of_model(path, options.spatial_splits);
+  CompiledScene scene = compile(description);
+  if (options.tracer != "auto") scene.tracer = options.tracer == "wide" ? Tracer::wide : Tracer::compact;
+  const DeviceInfo info = select_devices(enumerate_devices(), {options.device}).at(0);
+  Device device(info);
+  RayTracer tracer(device, scene);
+  const TinyBvhTables tables = tinybvh_tables(corners_of(description));
+  Buffer<TinyBvhRay> rays;
+  std::size_t count = 0;
+  std::vector<Contestant> all = tinybvh_kernels_of(options.peer, device, tables, rays, count);
+  if (all.empty()) throw BuildError("none of tinybvh's kernels runs here", "");
+  all.insert(all.begin(), sundog_contestant(tracer));
+  const char* class_name = traces_compact(scene, info) ? "compact" : "wide";
+  fmt::print("{}: {} triangles, {}, {} tracer; tinybvh {}; build {:.0f} ms, tinybvh {:.0f} ms\n", path,
+             scene.figures.triangles, info.label(), class_name, tables.version,
+             scene.figures.build_seconds * 1e3, tables.build_seconds * 1e3);
+  fmt::print("  {:<11}{:>9}{:>9}", "Mrays/s", "rays", "sundog");
+  for (std::size_t i = 1; i < all.size(); ++i) fmt::print("{:>9}{:>8}{:>8}", all[i].name, "ratio", "differ");
+  fmt::print("\n");
+  const TraceFunction trace = [&](std::span<const Ray> given) { return tracer.trace(given); };
+  const Viewpoint view = framing_viewpoint(scene, {options.from[0], options.from[1], options.from[2]}, trace);
+  std::vector<RaySet> sets{primary_rays(view, options.size)};
+  for (RaySet& set : secondary_rays(scene, view, sets[0], trace, options.kinds))
+    sets.push_back(std::move(set));
+  nlohmann::json result{{"model", path},
+                        {"triangles", scene.figures.triangles},
+                        {"device", info.label()},
+                        {"driver", info.driver},
+                        {"tracer", class_name},
+                        {"tinybvh", tables.version},
+                        {"options", options.peer.build},
+                        {"sets", nlohmann::json::array()}};
+  for (const RaySet& each : sets) {
+    const auto& kinds = options.kinds;
+    if (each.rays.empty() || (!kinds.empty() && !std::count(kinds.begin(), kinds.end(), each.kind))) continue;
+    const RaySet set = without_ends(each);
+    tracer.upload(set.rays);
+    count = set.rays.size();
+    rays = device.upload(std::span<const TinyBvhRay>(tinybvh_rays(set.rays, options.peer.group)));
+    result["sets"].push_back(compare(options, set, all));
+  }
+  return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  options.peer.folder = TINYBVH_FOLDER;
+  CLI::App app{"The same rays through sundog's tracer and through tinybvh's OpenCL kernels, in turn"};
+  add_peer_options(app, options);
+  app.add_option("--from", options.from, "direction from the model to the camera")->expected(3);
+  app.add_option("--size", options.size, "pixels along each side of the image");
+  app.add_option("--device", options.device, "SPEC of the device");
+  app.add_option("--kinds", options.kinds, "kinds of rays; all without it");
+  app.add_option("--tracer", options.tracer, "sundog's: auto, wide or compact")
+      ->check(CLI::IsMember({"auto", "wide", "compact"}));
+  app.add_option("--tinybvh", options.peer.folder, "its checkout, for the kernels' text");
+  app.add_option("--peer-options", options.peer.build, "build options of its kernels");
+  app.add_option("--define", options.peer.defines, "NAME[=VALUE] for its kernels, such as USE_VLOAD_VSTORE");
+  app.add_option("--group", options.peer.group, "work-items of a group of its kernels")
+      ->check(CLI::PositiveNumber);
+  return run_peer_program(app, argc, argv, options,
+                          [&](const std::string& model) { return compare_model(options, model); });
+}
