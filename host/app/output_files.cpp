@@ -19,11 +19,17 @@ fs::path place(const std::string& name) {
   return failed ? fs::path(name) : whole;
 }
 
+/// Devices and pipes: nothing in them is written over.
+bool holds_nothing(const std::string& name) {
+  std::error_code failed;
+  return fs::exists(name, failed) && !fs::is_regular_file(name, failed);
+}
+
 }  // namespace
 
 void check_output_files(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
-    if (outputs[i].empty()) continue;
+    if (outputs[i].empty() || holds_nothing(outputs[i])) continue;
     for (const std::string& input : inputs)
       if (place(outputs[i]) == place(input))
         throw UsageError(

@@ -30,23 +30,32 @@ std::string program_key(const DeviceInfo& info, const std::string& options, cons
   return key + source;
 }
 
+/// The folder that a variable names, made.
+std::filesystem::path made_folder(const char* variable, const std::string& folder) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed)
+    throw IoError(fmt::format("{}: {}, which {} names, cannot be made: name a folder that can be written",
+                              folder, failed.message(), variable));
+  return folder;
+}
+
 /// SUNDOG_DUMP_KERNELS=folder keeps each program's final text there.
 void dump_source(const std::string& entry, const std::string& source) {
   const char* folder = std::getenv("SUNDOG_DUMP_KERNELS");
   if (!folder || !*folder) return;
-  std::filesystem::create_directories(folder);
   const std::string stem = std::filesystem::path(entry).stem().string();
-  write_file(std::filesystem::path(folder) / fmt::format("{}-{:.8}.cl", stem, hash128(source)), source);
+  write_file(made_folder("SUNDOG_DUMP_KERNELS", folder) / fmt::format("{}-{:.8}.cl", stem, hash128(source)),
+             source);
 }
 
 /// SUNDOG_BUILD_LOG=folder keeps what the compiler said of each program there, and of what.
 void keep_log(const ProgramRecord& record, const std::string& log, cl_int status) {
   const std::string folder = build_log_folder();
   if (folder.empty()) return;
-  std::filesystem::create_directories(folder);
   const std::string stem = std::filesystem::path(record.entry).stem().string();
   const DeviceInfo& info = record.device;
-  write_file(std::filesystem::path(folder) /
+  write_file(made_folder("SUNDOG_BUILD_LOG", folder) /
                  fmt::format("{}-{}.{}-{:.8}.txt", stem, info.platform, info.device, hash128(record.key)),
              fmt::format("program  {}\ndevice   {}\ndriver   {}, {}\noptions  {}\nstatus   {}\n\n"
                          "== log ==\n{}\n\n== source ==\n{}",

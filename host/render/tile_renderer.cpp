@@ -190,12 +190,14 @@ void TileRenderer::launch_aovs(const Tile& tile, std::vector<float4>& aovs) {
                                   1, tuned ? tuning_.surfaces_group.x : 16, 1},
                                  most_group_);
   last_group_ = size.local_x;
-  const WatchedLaunch watched(watch_, 0, true);
+  constexpr double expected = 3;  // not known: only what stands for minutes is stuck
+  const WatchedLaunch watched(watch_, expected, !aovs_launched_);
   run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32>(
       device_, first_surfaces_, size, tables_, tables_.camera_media, aovs_, counters_,
       static_cast<u32>(tile.x), static_cast<u32>(tile.y), static_cast<u32>(tile.width),
       static_cast<u32>(pixels));
   device_.finish();
+  aovs_launched_ = true;
   device_.read(aovs_, std::span<float4>(aovs));
 }
 
@@ -262,7 +264,8 @@ TileResult TileRenderer::render(const Tile& tile, const StopFlags& flags) {
     } catch (const DeviceError& error) {
       if (is_work_group_too_large(error.status) && shrink_group(error.what(), 1)) continue;
       if (!is_out_of_resources(error.status)) throw;
-      if (!shrink_group(error.what(), small_group) && !shrink(error.what())) throw;
+      if (!shrink_group(error.what(), small_group) && !shrink(error.what()) && !shrink_group(error.what(), 1))
+        throw;
     }
   }
 }

@@ -56,6 +56,7 @@ class TileRenderer {
               u32>
       render_;
   SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32> first_surfaces_;
+  bool aovs_launched_ = false;
   Buffer<float4> film_;
   Buffer<float> weights_;
   Buffer<float4> aovs_;

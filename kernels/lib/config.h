@@ -7,8 +7,7 @@
 
 // Without the instruction fma() is a program of its own, inlined at every use (rusticl took 12 times as long
 // to compile); two roundings are as good here. PoCL does not define FP_FAST_FMAF, but names the host's
-// __FMA__; the host defines DEVICE_HAS_FMA for
-// devices other than processors whose driver says that they have the instruction.
+// __FMA__; for other devices than processors the host defines DEVICE_HAS_FMA where the driver says so.
 #if !defined(FP_FAST_FMAF) && !defined(__FMA__) && !defined(DEVICE_HAS_FMA)
 #define fma(a, b, c) ((a) * (b) + (c))
 #endif
@@ -46,7 +45,7 @@
 // Whether a batch of rays that run close together can go through the BVH as one.
 #define PACKETS (WIDE_VECTORS && BATCH == 16 && HAS_BVH)
 
-// Whether rays that go by themselves are walked a few in turn. It pays in meshes.
+// Whether rays that go by themselves are walked in lists (walk.cl). It pays in meshes.
 #define WALKS_IN_TURN (WIDE_VECTORS && HAS_MESH)
 
 // Pending rays of a work-item: enough for a full binary tree of max_depth levels walked BATCH rays at a time.

@@ -1,4 +1,4 @@
-// One ray through the two-level BVH, where it does not pay to walk several in turn (walk.cl).
+// One ray through the two-level BVH, where rays are not walked in lists (walk.cl).
 #ifndef SUNDOG_LIB_SINGLE_CL
 #define SUNDOG_LIB_SINGLE_CL
 #include "lib/config.h"

@@ -16,11 +16,14 @@
 #define FEW_SOLIDS (2u * LANES)
 #endif
 
+// Not by products with 0: some compilers take those for 0.
+static inline MASK finite3(const REAL3* a) {
+  return MASK_OF(fabs(a->x) < INFINITY) & MASK_OF(fabs(a->y) < INFINITY) & MASK_OF(fabs(a->z) < INFINITY);
+}
 // Rays that can hit something: a ray with a component that is not finite, or without a direction, hits
 // nothing.
 static inline MASK traceable(const REAL3* o, const REAL3* d, REAL t_min, REAL t_max) {
-  const REAL zero = o->x * 0.0f + o->y * 0.0f + o->z * 0.0f + d->x * 0.0f + d->y * 0.0f + d->z * 0.0f;
-  return MASK_OF(zero == 0.0f) & MASK_OF(t_max > t_min) &
+  return finite3(o) & finite3(d) & MASK_OF(t_max > t_min) &
          (MASK_OF(d->x != 0.0f) | MASK_OF(d->y != 0.0f) | MASK_OF(d->z != 0.0f));
 }
 

@@ -19,7 +19,7 @@ constexpr const char* octahedron =
 CommandResult gpu_script(const std::vector<std::string>& arguments, const CommandOptions& more = {}) {
   CommandOptions options = more;
   options.environment["SUNDOG_BUILD"] = fs::path(SUNDOG_BINARY).parent_path().string();
-  options.timeout = 600;
+  options.timeout = 1800;
   std::vector<std::string> command{SUNDOG_SOURCE_DIR "/bench/gpu.sh"};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return run_command(command, options);

@@ -139,10 +139,10 @@ bool all_finite(const Hit& hit) {
 
 }  // namespace
 
-TEST_CASE("rays that are none hit nothing, and the rays beside them what they hit alone: one mesh") {
+TEST_CASE("rays that are none hit nothing: one mesh") {
   check_no_rays(lone_mesh());
 }
-TEST_CASE("rays that are none hit nothing, and the rays beside them what they hit alone: all shapes") {
+TEST_CASE("rays that are none hit nothing: all shapes") {
   check_no_rays(all_shapes());
 }
 
