@@ -174,22 +174,25 @@ DeviceInfo choose_device(unsigned threads) {
 }
 
 // What is rendered when nothing is named.
-std::vector<std::string> standard_scenes(Options& options) {
+std::vector<std::string> standard_scenes(const Options& options) {
   std::vector<std::string> scenes{SUNDOG_SOURCE_DIR "/scenes/spheres.json",
                                   SUNDOG_SOURCE_DIR "/bench/scenes/ice_boxes.json",
                                   SUNDOG_SOURCE_DIR "/bench/scenes/ice_mesh.json"};
-  const char* assets = std::getenv("SUNDOG_ASSETS");
-  if (options.bunny.empty() && assets) options.bunny = std::filesystem::path(assets) / bunny_file;
-  if (!options.bunny.empty())
-    scenes.emplace_back(bunny_name);
-  else
-    fmt::print("No glass bunny: give its file by --bunny, or the folder of {} as SUNDOG_ASSETS\n",
-               bunny_file);
+  if (!options.bunny.empty()) scenes.emplace_back(bunny_name);
   return scenes;
 }
 
 int run(Options options) {
-  if (options.scenes.empty()) options.scenes = standard_scenes(options);
+  const char* assets = std::getenv("SUNDOG_ASSETS");
+  if (options.bunny.empty() && assets) options.bunny = std::filesystem::path(assets) / bunny_file;
+  const std::string no_bunny =
+      fmt::format("give its file by --bunny, or the folder of {} as SUNDOG_ASSETS", bunny_file);
+  if (options.scenes.empty()) {
+    options.scenes = standard_scenes(options);
+    if (options.bunny.empty()) fmt::print("No glass bunny: {}\n", no_bunny);
+  } else if (options.bunny.empty() && std::ranges::count(options.scenes, bunny_name)) {
+    throw UsageError(fmt::format("{}: {}", bunny_name, no_bunny));
+  }
   const std::string version = povray::installed_version();
   const DeviceInfo device = choose_device(options.threads);
   fmt::print("{}, driver {}; {}\n{} threads, {}x{}, {} runs in turn; {} shadows; seconds by the {} clock\n",
