@@ -82,7 +82,7 @@ Bounds triangle_box(const Mesh& mesh, const glm::uvec3& triangle) {
 
 /// The power of two that PlacedMesh::unit is.
 double table_unit(const Mesh& mesh) {
-  constexpr int far = 36;  // 2^36 is 7e10
+  constexpr int far = 24;  // 2^24 is 1.7e7: the product of three lengths of a small triangle stays normal
   const auto greatest = [&](const tbb::blocked_range<std::size_t>& range, float most) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const glm::vec3 size = glm::abs(mesh.positions[i]);

@@ -52,11 +52,15 @@ ALWAYS_INLINE bool packet_triangle(__global const TriangleBlock* blocks, u32 pla
   const float16 a = select(e1, e0, e0 < e1), b = select(e1, e0, e0 > e1);
   int16 hit = (select(e2, a, a < e2) >= 0.0f) | (select(e2, b, b > e2) <= 0.0f);
   if (!lane_bits(hit)) return false;
-  const float16 scale = 1.0f / (e0 + e1 + e2);
-  const float16 w0 = e0 * scale, u = e1 * scale, v = e2 * scale;
-  const float16 t = fma(w0, z0, fma(u, z1, v * z2)) * rays->sz;
-  hit &= (t > hits->t_min) & (t <= hits->found->t);
+  const float16 det = e0 + e1 + e2, size = fabs(det);
+  const float16 scaled_t = fma(e0, z0, fma(e1, z1, e2 * z2)) * rays->sz;
+  const float16 signed_t = as_float16(as_int16(scaled_t) ^ (as_int16(det) ^ as_int16(size)));
+  hit &= (signed_t > (hits->t_min * (1.0f - RANGE_SLACK)) * size) &
+         (signed_t <= (hits->found->t * (1.0f + RANGE_SLACK)) * size);
   if (!lane_bits(hit)) return false;
+  const float16 scale = 1.0f / det;
+  const float16 u = e1 * scale, v = e2 * scale, t = scaled_t * scale;
+  hit &= (t > hits->t_min) & (t <= hits->found->t) & (t < INFINITY);
   u32 ties = lane_bits(hit & (t == hits->found->t));
   while (ties) {
     const u32 i = lowest_bit(ties);

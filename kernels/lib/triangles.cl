@@ -69,6 +69,12 @@ ALWAYS_INLINE void offer_triangle(__global const TriangleBlock* blocks, u32 plac
   hit->instance = instance;
 }
 
+// Nothing is divided before a hit: t is `scaled_t` over the determinant, and whether it lies in (t_min,
+// t_max], where 0 <= t_min, is asked by products. Their bounds are wider by this share, more than the
+// rounding of a division in OpenCL (2.5 ulp) and what goes with it; who is let through is divided and asked
+// exactly.
+#define RANGE_SLACK 2e-6f
+
 #if WIDE_VECTORS
 static inline float8 edge_function(float8 ax, float8 ay, float8 bx, float8 by) { return ax * by - ay * bx; }
 
@@ -91,17 +97,20 @@ ALWAYS_INLINE BlockTest test_block(__global const TriangleBlock* block, const Sh
                y2 = fma(-(float8)(ray->sy), z2, ray->oy - vload8(6, vy));
   const float8 e0 = edge_function(x2, y2, x1, y1), e1 = edge_function(x0, y0, x2, y2),
                e2 = edge_function(x1, y1, x0, y0);
-  BlockTest test;
   const int8 inside = (least8(least8(e0, e1), e2) >= 0.0f) | (greatest8(greatest8(e0, e1), e2) <= 0.0f);
-  // Whether the rest is needed cannot be foretold: a branch here costs more than the rest. Without area
-  // everything below is NaN, which fails the comparisons. Weights first: no overflow of a product of three
-  // lengths.
-  const float8 scale = 1.0f / (e0 + e1 + e2);
-  const float8 w0 = e0 * scale;
+  const float8 det = e0 + e1 + e2, size = fabs(det);
+  const float8 scaled_t = fma(e0, z0, fma(e1, z1, e2 * z2)) * ray->sz;
+  const float8 signed_t = as_float8(as_int8(scaled_t) ^ (as_int8(det) ^ as_int8(size)));
+  BlockTest test;
+  // The only branch, so of a ray alone the way is foretold once a block.
+  test.lanes = lane_mask(inside & (signed_t > (t_min * (1.0f - RANGE_SLACK)) * size) &
+                         (signed_t <= (t_max * (1.0f + RANGE_SLACK)) * size));
+  if (!test.lanes) return test;
+  const float8 scale = 1.0f / det;
   test.u = e1 * scale;
   test.v = e2 * scale;
-  test.t = fma(w0, z0, fma(test.u, z1, test.v * z2)) * ray->sz;
-  test.lanes = lane_mask(inside & (test.t > t_min) & (test.t <= t_max));
+  test.t = scaled_t * scale;
+  test.lanes &= lane_mask((test.t > t_min) & (test.t <= t_max) & (test.t < INFINITY));
   return test;
 }
 
@@ -142,10 +151,16 @@ ALWAYS_INLINE void closest_in_block(__global const TriangleBlock* blocks, u32 in
     const float e0 = edge_function(x2, y2, x1, y1), e1 = edge_function(x0, y0, x2, y2),
                 e2 = edge_function(x1, y1, x0, y0);
     if (!((e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) || (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f))) continue;
-    const float scale = 1.0f / (e0 + e1 + e2);
-    const float w0 = e0 * scale, u = e1 * scale, v = e2 * scale;
-    const float t = fma(w0, z0, fma(u, z1, v * z2)) * ray->sz;
-    if (t > t_min && t <= hit->t) offer_triangle(blocks, index * 8u + i, t, u, v, instance, hit);
+    const float det = e0 + e1 + e2, size = fabs(det);
+    const float scaled_t = fma(e0, z0, fma(e1, z1, e2 * z2)) * ray->sz;
+    const float signed_t = det < 0.0f ? -scaled_t : scaled_t;
+    if (!(signed_t > (t_min * (1.0f - RANGE_SLACK)) * size &&
+          signed_t <= (hit->t * (1.0f + RANGE_SLACK)) * size))
+      continue;
+    const float scale = 1.0f / det;
+    const float t = scaled_t * scale, u = e1 * scale, v = e2 * scale;
+    if (t > t_min && t <= hit->t && t < INFINITY)
+      offer_triangle(blocks, index * 8u + i, t, u, v, instance, hit);
   }
 }
 #endif

@@ -139,12 +139,8 @@ bool all_finite(const Hit& hit) {
 
 }  // namespace
 
-TEST_CASE("rays that are none hit nothing: one mesh") {
-  check_no_rays(lone_mesh());
-}
-TEST_CASE("rays that are none hit nothing: all shapes") {
-  check_no_rays(all_shapes());
-}
+TEST_CASE("rays that are none hit nothing: one mesh") { check_no_rays(lone_mesh()); }
+TEST_CASE("rays that are none hit nothing: all shapes") { check_no_rays(all_shapes()); }
 
 TEST_CASE("directions of any length that a float can square hit as unit ones do") {
   for_each_tracer(all_shapes(), [](const CompiledScene& flat, RayTracer& tracer, bool coherent) {
@@ -181,6 +177,34 @@ TEST_CASE("denormal and huge directions and origins give a finite hit or none") 
         CHECK(changed[i]);
       else
         CHECK(all_finite(hits[i]));
+    }
+  });
+}
+
+TEST_CASE("an interval that ends at a hit holds it, one that begins there does not") {
+  for_each_tracer(lone_mesh(), [](const CompiledScene&, RayTracer& tracer, bool coherent) {
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < 640; ++i) rays.push_back(good_ray(i));
+    for (std::size_t i = 0; i < rays.size(); ++i) scale_direction(rays[i], 1 + 0.37f * static_cast<float>(i));
+    const std::vector<Hit> hits = tracer.trace(rays, coherent);
+    const auto trace_within = [&](const auto& set_interval) {
+      std::vector<Ray> changed = rays;
+      for (std::size_t i = 0; i < rays.size(); ++i) set_interval(changed[i], hits[i].t);
+      return tracer.trace(changed, coherent);
+    };
+    const std::vector<Hit> ends = trace_within([](Ray&r, float t) { r.t_max = t; }),
+                           ends_before =
+                               trace_within([](Ray&r, float t) { r.t_max = std::nextafter(t, 0.0f); }),
+                           begins = trace_within([](Ray&r, float t) { r.t_min = t; }),
+                           begins_before =
+                               trace_within([](Ray&r, float t) { r.t_min = std::nextafter(t, 0.0f); });
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      CAPTURE(i, hits[i].t);
+      REQUIRE(ends[i].t == hits[i].t);
+      REQUIRE(ends[i].prim == hits[i].prim);
+      REQUIRE(begins_before[i].t == hits[i].t);
+      REQUIRE(ends_before[i].instance == NO_INSTANCE);
+      REQUIRE(begins[i].t > hits[i].t);
     }
   });
 }
