@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <string>
-#include <vector>
 
 #include "device/choice.h"
 
@@ -13,29 +12,6 @@ namespace {
 // A CPU's driver keeps the private memory of a whole group on a thread's stack, 8 MiB by default, and crashes
 // when that is full. What a work-item holds is its ray stack and its batch.
 constexpr std::size_t group_memory = std::size_t{6} << 20, ray_bytes = 80, batch_bytes = 640;
-
-// Children that wait below each node, bottom-up. A node that is visited leaves all its children but one on
-// the stack; a child's own need adds to its waiting siblings. Nodes of one tree may lie in any order, so the
-// walk keeps its own stack.
-unsigned tree_stack_size(const std::vector<Bvh8Node>& nodes, u32 root) {
-  struct Visit {
-    u32 node;
-    unsigned waiting;
-  };
-  std::vector<Visit> visits{{root, 0}};
-  unsigned most = 0;
-  while (!visits.empty()) {
-    const Visit visit = visits.back();
-    visits.pop_back();
-    const Bvh8Node& node = nodes[visit.node];
-    const unsigned children = static_cast<unsigned>(std::popcount(node.valid));
-    const unsigned waiting = visit.waiting + (children > 0 ? children - 1 : 0);
-    most = std::max(most, waiting);
-    for (unsigned i = 0; i < 8; ++i)
-      if ((node.valid >> i & 1u) && !(node.child[i] & BVH_LEAF)) visits.push_back({node.child[i], waiting});
-  }
-  return most;
-}
 
 /// Shadow rays of one surface that wait at a time: a light each, as far as that is a moderate number, and
 /// rounded up, so that similar scenes share their kernels.
@@ -56,20 +32,6 @@ std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& de
   if (device.device_class != DeviceClass::cpu) return device.max_work_group;
   const std::size_t item = config.ray_stack * ray_bytes + config.tile_w * config.tile_h * batch_bytes;
   return std::min(device.max_work_group, group_memory / item);
-}
-
-unsigned traversal_stack_size(const CompiledScene& scene) {
-  if (scene.info.bounded_count == 0) return 1;
-  unsigned meshes = 0;
-  std::vector<u32> roots;
-  for (const Instance& instance : scene.instances)
-    if (instance.shape == SHAPE_MESH) roots.push_back(instance.root);
-  std::sort(roots.begin(), roots.end());
-  roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
-  for (const u32 root : roots)
-    if (!(root & BVH_LEAF)) meshes = std::max(meshes, tree_stack_size(scene.nodes, root));
-  const bool leaf_root = scene.info.tlas_root & BVH_LEAF;
-  return std::max(1u, meshes + (leaf_root ? 0 : tree_stack_size(scene.nodes, scene.info.tlas_root)));
 }
 
 bool traces_compact(const CompiledScene& scene, const DeviceInfo& device) {
@@ -103,7 +65,7 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
     config.ray_stack += light_room(scene) + 1;
   }
   // Rounded up, so that similar scenes share their kernels.
-  define("BVH_STACK", (traversal_stack_size(scene) + 31u) / 32u * 32u);
+  define("BVH_STACK", (scene.features.bvh_stack + 31u) / 32u * 32u);
   static constexpr const char* shape_names[SHAPE_SDF] = {"HAS_MESH", "HAS_SPHERE",   "HAS_PLANE",
                                                          "HAS_BOX",  "HAS_CYLINDER", "HAS_CONE",
                                                          "HAS_DISK", "HAS_TORUS",    "HAS_ROUNDBOX"};

@@ -25,7 +25,4 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
 /// Most work-items that a group of the render kernels may have; 0: the device does not say.
 std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& device);
 
-/// Most nodes that wait at once in a traversal of the scene: the BVH stack's size.
-unsigned traversal_stack_size(const CompiledScene& scene);
-
 }  // namespace sundog
