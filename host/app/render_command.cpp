@@ -5,7 +5,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <optional>
 
 #include "app/commands.h"
@@ -18,6 +17,7 @@
 #include "app/progress.h"
 #include "app/rank_watch.h"
 #include "app/remote_devices.h"
+#include "app/render_result.h"
 #include "app/save_image.h"
 #include "app/stats.h"
 #include "app/warnings.h"
@@ -79,84 +79,6 @@ RenderOptions render_options(const RenderCommand& command) {
     options.checkpoint_seconds = std::max(0.0, std::strtod(seconds, nullptr));
   options.keep_failed = true;
   return options;
-}
-
-/// What the parts of a frame must have in common besides the scene's file.
-std::map<std::string, std::string> settings_of(const RenderCommand& command, const CompiledScene& scene) {
-  std::map<std::string, std::string> settings;
-  for (const std::string& setting : command.overrides) {
-    const std::size_t equals = setting.find('=');
-    settings["--set " + setting.substr(0, equals)] = setting.substr(equals + 1);
-  }
-  for (const char* told_otherwise : {"/image/width", "/image/height", "/render/samples", "/render/max_depth"})
-    settings.erase(std::string("--set ") + told_otherwise);
-  settings["samples"] = fmt::format("{}", scene.info.samples);
-  settings["max_depth"] = fmt::format("{}", scene.info.max_depth);
-  if (command.frame) settings["frame"] = fmt::format("{}", *command.frame);
-  return settings;
-}
-
-/// Writes the image, whole or in part, and takes the checkpoint of a whole one away: not before it is safe.
-void save(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result,
-          const std::string& checkpoint) {
-  Picture picture{result.image, result.aovs, result.film, result.key, checkpoint, command.full_floats};
-  if (picture.key == 0) picture.key = hash_scene(scene);
-  if (!command.part)
-    save_image(picture, command.out);
-  else if (result.complete)
-    write_part(command.out, {*command.part, picture.key, command.scene, settings_of(command, scene),
-                             command.aovs, result.film});
-  if (!result.checkpoint_error.empty()) throw IoError(result.checkpoint_error);
-  if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint);
-}
-
-void warn(const RenderResult& result) {
-  print_warnings(losses(result.counts));
-  for (const DeviceReport& report : result.devices) print_warnings(failures_text(report));
-}
-
-void summarise(const RenderCommand& command, const RenderResult& result, const TimeLedger& times) {
-  if (command.quiet) return;
-  const double rays = static_cast<double>(ray_count(result.counts));
-  const double seconds = times.render.render + times.render.readback;
-  fmt::print("{}: {}x{}, {:.4g} Mrays in {:.2f} s ({:.3g} Mrays/s), {:.2f} s in all\n", command.out,
-             result.image.width, result.image.height, rays / 1e6, seconds,
-             seconds > 0 ? rays / 1e6 / seconds : 0, times.total);
-  if (command.verbose) fmt::print("{}", details_text(result, times));
-}
-
-double percent_done(const RenderResult& result) {
-  const auto& done = result.film.done;
-  const double pixels = static_cast<double>(std::max<std::size_t>(1, done.size()));
-  return 100 * static_cast<double>(std::ranges::count(done, 1)) / pixels;
-}
-
-std::string part_text(const RenderCommand& command, const RenderResult& result) {
-  if (command.part)
-    return fmt::format("{} is not written{}", command.out,
-                       command.resume.empty() ? "" : "; the same command goes on from its checkpoint");
-  return fmt::format("{:.3g} % of the pixels are in {}{}", percent_done(result), command.out,
-                     command.resume.empty() ? "" : "; the same command goes on from there");
-}
-
-/// Told before the picture is written, for which mpirun may leave no time.
-void tell_kept(const RenderResult& result, const std::string& checkpoint) {
-  fmt::print(
-      stderr,
-      "sundog: interrupted: {:.3g} % of the pixels are in {}; the same command with --resume {} goes on "
-      "from there\n",
-      percent_done(result), checkpoint, checkpoint);
-}
-
-/// The exit status of a frame, after what there is of it has been saved.
-int conclude(const RenderCommand& command, const RenderResult& result, bool told) {
-  if (result.complete) return exit_done;
-  if (result.failure) {
-    fmt::print(stderr, "sundog: every device failed: {}\n", part_text(command, result));
-    std::rethrow_exception(result.failure);
-  }
-  if (!told) fmt::print(stderr, "sundog: interrupted: {}\n", part_text(command, result));
-  return exit_interrupted;
 }
 
 /// What the frames of one run share: the devices stay open, with their kernels.
@@ -223,7 +145,7 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
 
   times.render = result.times;
   const Stopwatch writing;
-  save(command, *scene.flat, result, checkpoint);
+  save_result(command, *scene.flat, result, checkpoint);
   times.write = writing.seconds();
   times.total = clock.seconds();
   if (!command.stats.empty()) {
@@ -231,8 +153,7 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
     const json stats = stats_json(command, scene.description, *scene.flat, result, times);
     write_file(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   }
-  warn(result);
-  summarise(command, result, times);
+  tell_result(command, result, times);
   return conclude(command, result, told);
 }
 
