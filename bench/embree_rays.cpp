@@ -9,21 +9,15 @@
 
 #include "base/error.h"
 #include "bench/check_hits.h"
-#include "bench/ray_sets.h"
-#include "bench/ray_tracer.h"
 #include "bench_scenes.h"
 #include "embree_peer.h"
-#include "peer_program.h"
+#include "peer_rays.h"
 
 using namespace sundog;
 
 namespace {
 
-struct Options : PeerOptions {
-  std::vector<std::string> kinds, defines;
-  std::vector<float> from{0.25f, 0.2f, 1.0f};
-  std::string device = "cpu";
-  unsigned size = 1024, threads = 1;
+struct Options : RayOptions {
   bool packets = false;
   EmbreeOptions embree;
 };
@@ -130,49 +124,21 @@ class Comparison {
   std::size_t wrong_ = 0;
 };
 
-/// "NAME=VALUE" or "NAME" to definitions.
-KernelDefines kernel_defines(const std::vector<std::string>& texts) {
-  KernelDefines defines;
-  for (const std::string& text : texts) {
-    const std::size_t equals = text.find('=');
-    defines[text.substr(0, equals)] = equals == std::string::npos ? "1" : text.substr(equals + 1);
-  }
-  return defines;
-}
-
 nlohmann::json compare_model(const Options& options, const std::string& path) {
-  const SceneDescription description = scene_of_model(path, options.spatial_splits);
-  const CompiledScene scene = compile(description);
-  DeviceInfo info = select_devices(enumerate_devices(), {options.device}).at(0);
-  // A GPU is compared as a whole.
-  info.sub_units = info.type == "cpu" && options.threads < info.compute_units ? options.threads : 0;
-  Device device(info);
-  RayTracer tracer(device, scene, kernel_defines(options.defines));
-  const EmbreePeer embree(description, options.embree);
+  PeerModel model(path, options);
+  const EmbreePeer embree(model.description, options.embree);
+  const BvhFigures& figures = model.scene.figures;
   fmt::print("{}: {} triangles, {} thread(s) of {}; build {:.0f} ms, Embree {:.0f} ms\n", path,
-             scene.figures.triangles, options.threads, info.label(), scene.figures.build_seconds * 1e3,
+             figures.triangles, options.threads, model.device.info().label(), figures.build_seconds * 1e3,
              embree.build_seconds() * 1e3);
   fmt::print("  {:<11}{:>9}{:>9}{:>9}{:>8}{:>15}\n", "Mrays/s", "rays", "sundog", "Embree", "ratio",
              "differ");
-  const TraceFunction trace = [&](std::span<const Ray> rays) { return tracer.trace(rays); };
-  const Viewpoint view = framing_viewpoint(scene, {options.from[0], options.from[1], options.from[2]}, trace);
-  std::vector<RaySet> sets{primary_rays(view, options.size)};
-  if (options.kinds != std::vector<std::string>{"primary"})
-    for (RaySet& set : secondary_rays(scene, view, sets[0], trace, options.kinds))
-      sets.push_back(std::move(set));
-  nlohmann::json result{{"model", path},
-                        {"triangles", scene.figures.triangles},
-                        {"device", info.label()},
-                        {"driver", info.driver},
-                        {"threads", options.threads},
-                        {"clock", options.wall ? "wall" : "processor"},
-                        {"sets", nlohmann::json::array()}};
-  Comparison comparison(options, scene, tracer, embree);
-  for (const RaySet& set : sets) {
-    const auto& kinds = options.kinds;
-    if (set.rays.empty() || (!kinds.empty() && !std::count(kinds.begin(), kinds.end(), set.kind))) continue;
-    result["sets"].push_back(comparison.run(set));
-  }
+  nlohmann::json result = model.facts();
+  result["threads"] = options.threads;
+  result["clock"] = options.wall ? "wall" : "processor";
+  result["sets"] = nlohmann::json::array();
+  Comparison comparison(options, model.scene, model.tracer, embree);
+  for (const RaySet& set : model.rays(options)) result["sets"].push_back(comparison.run(set));
   if (comparison.wrong() > 0)
     throw DeviceError(
         fmt::format("{}: {} rays have wrong answers of sundog's: no ratio counts", path, comparison.wrong()));
@@ -184,12 +150,9 @@ nlohmann::json compare_model(const Options& options, const std::string& path) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app{"The same rays through sundog's tracer and through Embree, in turn"};
-  add_peer_options(app, options);
-  app.add_option("--from", options.from, "direction from the model to the camera")->expected(3);
-  app.add_option("--size", options.size, "pixels along each side of the image");
+  options.threads = 1;
+  add_ray_options(app, options);
   app.add_option("--threads", options.threads, "compute units and Embree threads");
-  app.add_option("--device", options.device, "SPEC of the device");
-  app.add_option("--kinds", options.kinds, "kinds of rays; all without it");
   app.add_option("--define", options.defines, "NAME=VALUE for the kernels");
   app.add_flag("--packets", options.packets, "also Embree's 16-wide packets");
   app.add_flag("--robust", options.embree.robust, "Embree's watertight mode");

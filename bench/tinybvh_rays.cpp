@@ -10,24 +10,16 @@
 #include <functional>
 
 #include "base/error.h"
-#include "bench/ray_sets.h"
-#include "bench/ray_tracer.h"
 #include "bench_scenes.h"
-#include "compile/compiled_scene.h"
-#include "peer_program.h"
-#include "render/kernel_config.h"
+#include "peer_rays.h"
 #include "tinybvh_peer.h"
 
 using namespace sundog;
 
 namespace {
 
-struct Options : PeerOptions {
+struct Options : RayOptions {
   TinyBvhOptions peer;
-  std::vector<std::string> kinds;
-  std::vector<float> from{0.25f, 0.2f, 1.0f};
-  std::string device = "gpu", tracer = "auto";
-  unsigned size = 1024;
 };
 
 /// Rays of all t from 0.
@@ -131,45 +123,33 @@ std::vector<float4> corners_of(const SceneDescription& scene) {
 }
 
 nlohmann::json compare_model(const Options& options, const std::string& path) {
-  SceneDescription description = scene_of_model(path, options.spatial_splits);
-  CompiledScene scene = compile(description);
-  if (options.tracer != "auto") scene.tracer = options.tracer == "wide" ? Tracer::wide : Tracer::compact;
-  const DeviceInfo info = select_devices(enumerate_devices(), {options.device}).at(0);
-  Device device(info);
-  RayTracer tracer(device, scene);
-  const TinyBvhTables tables = tinybvh_tables(corners_of(description));
+  PeerModel model(path, options);
+  const TinyBvhTables tables = tinybvh_tables(corners_of(model.description));
   Buffer<TinyBvhRay> rays;
   std::size_t count = 0;
-  std::vector<Contestant> all = tinybvh_kernels_of(options.peer, device, tables, rays, count);
-  if (all.empty()) throw BuildError("none of tinybvh's kernels runs here", "");
-  all.insert(all.begin(), sundog_contestant(tracer));
-  const char* class_name = traces_compact(scene, info) ? "compact" : "wide";
+  std::vector<Contestant> all = tinybvh_kernels_of(options.peer, model.device, tables, rays, count);
+  if (all.empty())
+    throw BuildError(fmt::format("{}: none of tinybvh's kernels runs here, for the reasons above (--tinybvh "
+                                 "names a checkout with a folder of kernels)",
+                                 options.peer.folder),
+                     "");
+  all.insert(all.begin(), sundog_contestant(model.tracer));
+  const BvhFigures& figures = model.scene.figures;
   fmt::print("{}: {} triangles, {}, {} tracer; tinybvh {}; build {:.0f} ms, tinybvh {:.0f} ms\n", path,
-             scene.figures.triangles, info.label(), class_name, tables.version,
-             scene.figures.build_seconds * 1e3, tables.build_seconds * 1e3);
+             figures.triangles, model.device.info().label(), model.tracer_name(), tables.version,
+             figures.build_seconds * 1e3, tables.build_seconds * 1e3);
   fmt::print("  {:<11}{:>9}{:>9}", "Mrays/s", "rays", "sundog");
   for (std::size_t i = 1; i < all.size(); ++i) fmt::print("{:>9}{:>8}{:>8}", all[i].name, "ratio", "differ");
   fmt::print("\n");
-  const TraceFunction trace = [&](std::span<const Ray> given) { return tracer.trace(given); };
-  const Viewpoint view = framing_viewpoint(scene, {options.from[0], options.from[1], options.from[2]}, trace);
-  std::vector<RaySet> sets{primary_rays(view, options.size)};
-  for (RaySet& set : secondary_rays(scene, view, sets[0], trace, options.kinds))
-    sets.push_back(std::move(set));
-  nlohmann::json result{{"model", path},
-                        {"triangles", scene.figures.triangles},
-                        {"device", info.label()},
-                        {"driver", info.driver},
-                        {"tracer", class_name},
-                        {"tinybvh", tables.version},
-                        {"options", options.peer.build},
-                        {"sets", nlohmann::json::array()}};
-  for (const RaySet& each : sets) {
-    const auto& kinds = options.kinds;
-    if (each.rays.empty() || (!kinds.empty() && !std::count(kinds.begin(), kinds.end(), each.kind))) continue;
+  nlohmann::json result = model.facts();
+  result["tinybvh"] = tables.version;
+  result["options"] = options.peer.build;
+  result["sets"] = nlohmann::json::array();
+  for (const RaySet& each : model.rays(options)) {
     const RaySet set = without_ends(each);
-    tracer.upload(set.rays);
+    model.tracer.upload(set.rays);
     count = set.rays.size();
-    rays = device.upload(std::span<const TinyBvhRay>(tinybvh_rays(set.rays, options.peer.group)));
+    rays = model.device.upload(std::span<const TinyBvhRay>(tinybvh_rays(set.rays, options.peer.group)));
     result["sets"].push_back(compare(options, set, all));
   }
   return result;
@@ -181,11 +161,8 @@ int main(int argc, char** argv) {
   Options options;
   options.peer.folder = TINYBVH_FOLDER;
   CLI::App app{"The same rays through sundog's tracer and through tinybvh's OpenCL kernels, in turn"};
-  add_peer_options(app, options);
-  app.add_option("--from", options.from, "direction from the model to the camera")->expected(3);
-  app.add_option("--size", options.size, "pixels along each side of the image");
-  app.add_option("--device", options.device, "SPEC of the device");
-  app.add_option("--kinds", options.kinds, "kinds of rays; all without it");
+  options.device = "gpu";
+  add_ray_options(app, options);
   app.add_option("--tracer", options.tracer, "sundog's: auto, wide or compact")
       ->check(CLI::IsMember({"auto", "wide", "compact"}));
   app.add_option("--tinybvh", options.peer.folder, "its checkout, for the kernels' text");

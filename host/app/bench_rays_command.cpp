@@ -24,6 +24,12 @@ struct RaysOptions : BenchOptions {
   std::string size = "1024", kinds;
 };
 
+/// Which rays are timed.
+struct RaysWanted {
+  unsigned size;
+  std::vector<std::string> kinds;  // empty: all
+};
+
 /// One kind of rays of one scene on one device.
 struct RayTimes {
   std::string kind;
@@ -40,14 +46,12 @@ Answers answers_of(RayTracer& tracer, const RaySet& set) {
 
 /// "primary,shadow": of which kinds; empty: of all. Throws UsageError.
 std::vector<std::string> parse_kinds(const std::string& text) {
-  static const std::vector<std::string> known = {"primary",  "shadow",     "bounce",
-                                                 "shuffled", "reflection", "glass"};
   std::vector<std::string> kinds;
   std::istringstream in(text);
   for (std::string kind; std::getline(in, kind, ',');) {
-    if (std::ranges::count(known, kind) == 0)
-      throw UsageError(
-          fmt::format("--kinds '{}': wanted some of {} with commas between", text, fmt::join(known, ", ")));
+    if (std::ranges::count(ray_kinds, kind) == 0)
+      throw UsageError(fmt::format("--kinds '{}': wanted some of {} with commas between", text,
+                                   fmt::join(ray_kinds, ", ")));
     kinds.push_back(kind);
   }
   return kinds;
@@ -77,22 +81,13 @@ RayTimes time_rays(const CompiledScene& scene, const RaySet& set, RayTracer& tra
 }
 
 std::vector<RayTimes> time_scene(const CompiledScene& scene, Device& device, const RaysOptions& options,
-                                 const std::string& name) {
+                                 const RaysWanted& wanted, const std::string& name) {
   RayTracer tracer(device, scene);
   const TraceFunction trace = [&](std::span<const Ray> rays) { return tracer.trace(rays); };
-  const Viewpoint view = scene_viewpoint(scene);
-  const std::vector<std::string> kinds = parse_kinds(options.kinds);
-  const auto wanted = [&](const std::string& kind) {
-    return kinds.empty() || std::ranges::count(kinds, kind) > 0;
-  };
-  std::vector<RaySet> sets{
-      primary_rays(view, static_cast<unsigned>(parse_number("--size", options.size, 1, 16384)))};
-  if (kinds != std::vector<std::string>{"primary"})
-    for (RaySet& set : secondary_rays(scene, view, sets[0], trace, kinds)) sets.push_back(std::move(set));
   std::vector<RayTimes> times;
-  for (const RaySet& set : sets) {
+  for (const RaySet& set : frame_rays(scene, scene_viewpoint(scene), wanted.size, trace, wanted.kinds)) {
     show_step(options, fmt::format("{}: {} rays", name, set.kind));
-    if (!set.rays.empty() && wanted(set.kind)) times.push_back(time_rays(scene, set, tracer, options.repeat));
+    times.push_back(time_rays(scene, set, tracer, options.repeat));
   }
   return times;
 }
@@ -136,6 +131,8 @@ std::string describe(const CompiledScene& scene) {
 }
 
 int bench_rays(const RaysOptions& options) {
+  const RaysWanted wanted{static_cast<unsigned>(parse_number("--size", options.size, 1, 16384)),
+                          parse_kinds(options.kinds)};
   Report report = new_report("rays", "Rays a second by kind", options);
   report.measurements.columns = {{"scene", ""},       {"device", ""},  {"kind", ""},         {"rays", ""},
                                  {"hits", ""},        {"checked", ""}, {"rounded", ""},      {"differ", ""},
@@ -151,7 +148,7 @@ int bench_rays(const RaysOptions& options) {
     for (const DeviceInfo& info : devices) {
       Device device(info);
       const char* tracer = traces_compact(scene, info) ? "compact" : "wide";
-      add_rows(report, name, info, tracer, time_scene(scene, device, options, name));
+      add_rows(report, name, info, tracer, time_scene(scene, device, options, wanted, name));
     }
   }
   report.notes.push_back(fmt::format(
@@ -175,7 +172,7 @@ void add_bench_rays(CLI::App& bench, Command& chosen) {
   add_bench_options(app, *options);
   value(app, "--size", "N", options->size, "pixels a side of the camera's rays (default 1024)");
   value(app, "--kinds", "NAMES", options->kinds,
-        "some of primary,shadow,bounce,shuffled,reflection,glass (default all)");
+        fmt::format("some of {} (default all)", fmt::join(ray_kinds, ",")));
   app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_rays(*options); }}; });
 }
 

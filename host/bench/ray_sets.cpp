@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -102,6 +103,30 @@ void shuffle(std::vector<Ray>& rays) {
     std::swap(rays[i], rays[hash(static_cast<u32>(i) ^ 0x5bd1e995u) % (i + 1)]);
 }
 
+/// All kinds but primary.
+std::vector<RaySet> secondary_rays(const CompiledScene& scene, const Viewpoint& view, const RaySet& primary,
+                                   const TraceFunction& trace, bool glass) {
+  const std::vector<Hit> hits = trace(primary.rays);
+  RaySet shadow{"shadow", true, true, {}}, bounce{"bounce", false, false, {}},
+      shuffled{"shuffled", false, false, {}}, reflection{"reflection", false, false, {}};
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const auto s = surface_at(scene, primary.rays[i], hits[i]);
+    if (!s) continue;
+    const vec3 p = s->p + s->offset * s->n, d = direction(primary.rays[i]);
+    const float distance = glm::length(view.light - p);
+    const vec3 wi = (view.light - p) / distance;
+    if (glm::dot(wi, s->n) > 0) shadow.rays.push_back(make_ray(p, wi, distance));
+    bounce.rays.push_back(make_ray(p, cosine_direction(s->n, static_cast<u32>(i)), unlimited));
+    reflection.rays.push_back(make_ray(p, glm::normalize(d - 2 * glm::dot(d, s->n) * s->n), unlimited));
+  }
+  shuffled.rays = bounce.rays;
+  shuffle(shuffled.rays);
+  std::vector<RaySet> sets;
+  for (RaySet* set : {&shadow, &bounce, &shuffled, &reflection}) sets.push_back(std::move(*set));
+  if (glass) sets.push_back(glass_rays(scene, primary.rays, hits, trace));
+  return sets;
+}
+
 }  // namespace
 
 Viewpoint scene_viewpoint(const CompiledScene& scene) {
@@ -164,30 +189,17 @@ RaySet primary_rays(const Viewpoint& view, unsigned size) {
   return set;
 }
 
-std::vector<RaySet> secondary_rays(const CompiledScene& scene, const Viewpoint& view, const RaySet& primary,
-                                   const TraceFunction& trace, const std::vector<std::string>& kinds) {
-  const std::vector<Hit> hits = trace(primary.rays);
-  RaySet shadow{"shadow", true, true, {}}, bounce{"bounce", false, false, {}},
-      shuffled{"shuffled", false, false, {}}, reflection{"reflection", false, false, {}};
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    const auto s = surface_at(scene, primary.rays[i], hits[i]);
-    if (!s) continue;
-    const vec3 p = s->p + s->offset * s->n, d = direction(primary.rays[i]);
-    const float distance = glm::length(view.light - p);
-    const vec3 wi = (view.light - p) / distance;
-    if (glm::dot(wi, s->n) > 0) shadow.rays.push_back(make_ray(p, wi, distance));
-    bounce.rays.push_back(make_ray(p, cosine_direction(s->n, static_cast<u32>(i)), unlimited));
-    reflection.rays.push_back(make_ray(p, glm::normalize(d - 2 * glm::dot(d, s->n) * s->n), unlimited));
-  }
-  shuffled.rays = bounce.rays;
-  shuffle(shuffled.rays);
+std::vector<RaySet> frame_rays(const CompiledScene& scene, const Viewpoint& view, unsigned size,
+                               const TraceFunction& trace, const std::vector<std::string>& kinds) {
   const auto wanted = [&](const std::string& kind) {
-    return kinds.empty() || std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+    return kinds.empty() || std::ranges::count(kinds, kind) > 0;
   };
   std::vector<RaySet> sets;
-  for (RaySet* set : {&shadow, &bounce, &shuffled, &reflection})
-    if (wanted(set->kind)) sets.push_back(std::move(*set));
-  if (wanted("glass")) sets.push_back(glass_rays(scene, primary.rays, hits, trace));
+  sets.push_back(primary_rays(view, size));
+  if (std::any_of(ray_kinds.begin() + 1, ray_kinds.end(), wanted))
+    for (RaySet& set : secondary_rays(scene, view, sets[0], trace, wanted("glass")))
+      sets.push_back(std::move(set));
+  std::erase_if(sets, [&](const RaySet& set) { return set.rays.empty() || !wanted(set.kind); });
   return sets;
 }
 

@@ -39,15 +39,20 @@ Viewpoint framing_viewpoint(const CompiledScene& scene, const glm::vec3& from, c
 /// size x size pixels (rounded up to a multiple of 16), through their centres.
 RaySet primary_rays(const Viewpoint& view, unsigned size);
 
-/// What follows from the hits of the primary rays: those of `kinds`, or all when it is empty. Each set may be
-/// empty.
+/// All kinds of rays, in the order of frame_rays().
+///   primary     the camera's
 ///   shadow      from the point towards the light, where the light is in front of the surface
 ///   bounce      cosine-weighted about the normal (towards the camera)
 ///   shuffled    the same in random order
 ///   reflection  the mirrored camera rays
 ///   glass       the rays inside and behind a solid of index 1.5: refracted, then refracted and reflected at
 ///               each further surface, up to 5 surfaces along a path
-std::vector<RaySet> secondary_rays(const CompiledScene& scene, const Viewpoint& view, const RaySet& primary,
-                                   const TraceFunction& trace, const std::vector<std::string>& kinds = {});
+inline const std::vector<std::string> ray_kinds = {"primary",  "shadow",     "bounce",
+                                                   "shuffled", "reflection", "glass"};
+
+/// The rays of a frame of size x size pixels (as primary_rays() has them) and what follows from their hits,
+/// a set a kind: of `kinds`, or of all when it is empty. Kinds without any ray have no set.
+std::vector<RaySet> frame_rays(const CompiledScene& scene, const Viewpoint& view, unsigned size,
+                               const TraceFunction& trace, const std::vector<std::string>& kinds = {});
 
 }  // namespace sundog
