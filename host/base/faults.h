@@ -10,6 +10,7 @@ namespace sundog {
 /// happens at WHERE with more than SIZE, at the Nth such occasion or at each. The kinds, and what asks for
 /// them:
 ///     build@P:D           the kernels do not build on the device
+///     kernels@P:D         the driver makes no kernels of a program that it has built from its source
 ///     compile@P:D         the process that compiles for the device ends without a result
 ///     alloc=STATUS@P:D    a buffer of more than SIZE bytes gives the OpenCL status
 ///     launch=STATUS@P:D   a launch of more than SIZE work-items gives the OpenCL status

@@ -49,17 +49,20 @@ void dump_source(const std::string& entry, const std::string& source) {
              source);
 }
 
-/// SUNDOG_BUILD_LOG=folder keeps what the compiler said of each program there, and of what.
-void keep_log(const ProgramRecord& record, const std::string& log, cl_int status) {
+/// SUNDOG_BUILD_LOG=folder keeps what the compiler said of each program there, and of what. One that is built
+/// again with other options has a file for each.
+void keep_log(const ProgramRecord& record, const std::string& options, const std::string& log,
+              cl_int status) {
   const std::string folder = build_log_folder();
   if (folder.empty()) return;
   const std::string stem = std::filesystem::path(record.entry).stem().string();
   const DeviceInfo& info = record.device;
-  write_file(made_folder("SUNDOG_BUILD_LOG", folder) /
-                 fmt::format("{}-{}.{}-{:.8}.txt", stem, info.platform, info.device, hash128(record.key)),
+  write_file(made_folder("SUNDOG_BUILD_LOG", folder) / fmt::format("{}-{}.{}-{:.8}.txt", stem, info.platform,
+                                                                   info.device,
+                                                                   hash128(options + "\n" + record.key)),
              fmt::format("program  {}\ndevice   {}\ndriver   {}, {}\noptions  {}\nstatus   {}\n\n"
                          "== log ==\n{}\n\n== source ==\n{}",
-                         record.entry, info.label(), info.driver, info.version, record.options,
+                         record.entry, info.label(), info.driver, info.version, options,
                          cl_status_name(status), log, record.source));
 }
 
@@ -151,7 +154,7 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
   check_cl(status, record.device, fmt::format("{}: clCreateProgramWithSource", record.entry));
   status = record.program.build({device}, options.c_str());
   report.log = build_log(record.program, device);
-  keep_log(record, report.log, status);
+  keep_log(record, options, report.log, status);
   if (status == CL_SUCCESS) return;
   if (options_are_bad(record, context, device))
     throw BuildError(
@@ -165,14 +168,17 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
       report.log);
 }
 
+/// The device as faults name it: "P:D".
+std::string place_of(const DeviceInfo& info) { return fmt::format("{}:{}", info.platform, info.device); }
+
 /// Oclgrind's optimiser leaves calls in the program that its interpreter does not know (llvm.bitreverse,
 /// noalias scopes): such a program builds, but gives no kernels. Without optimisation it runs.
 void compile_to_kernels(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
                         const std::string& source, BuildReport& report) {
-  compile(record, context, device, source, record.options, report);
-  if (kernels_work(record.program)) return;
-  compile(record, context, device, source, fmt::format("{} -cl-opt-disable", record.options), report);
-  if (kernels_work(record.program)) return;
+  for (const char* more : {"", " -cl-opt-disable"}) {
+    compile(record, context, device, source, record.options + more, report);
+    if (!fault("kernels", place_of(record.device)) && kernels_work(record.program)) return;
+  }
   throw BuildError(fmt::format("{} on {}: the driver built it but makes no kernels of it", record.entry,
                                record.device.label()),
                    report.log);
@@ -185,7 +191,7 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
                                              const std::string& source, const BuildWish& wish,
                                              BuildReport& report) {
   dump_source(entry, source);
-  if (fault("build", fmt::format("{}:{}", info.platform, info.device)))
+  if (fault("build", place_of(info)))
     throw BuildError(fmt::format("{} did not build on {}: a fault was asked for", entry, info.label()), "");
   auto record = std::make_shared<ProgramRecord>();
   record->device = info;

@@ -1,48 +1,12 @@
 // What goes wrong with devices, drivers and disks costs time, not the frame. The faults are asked for by
 // SUNDOG_FAULTS (host/base/faults.h).
 #include <base/file.h>
-#include <base/image_io.h>
-
-#include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "catch.h"
-#include "cli_scene.h"
+#include "faulty_folder.h"
 
 using namespace sundog;
 using nlohmann::json;
-
-namespace {
-
-/// A folder whose renders have two devices, PoCL's "basic" (0:0) and "pthread" (0:1), which compute the same
-/// bits.
-struct FaultyFolder : CliFolder {
-  CommandOptions options;
-  FaultyFolder() { options.environment["POCL_DEVICES"] = "basic pthread"; }
-
-  std::string size = "160x120";
-  CommandResult render(const std::string& faults, const std::vector<std::string>& more = {}) {
-    options.environment["SUNDOG_FAULTS"] = faults;
-    std::vector<std::string> arguments = {"render",  scene,          "-o",        file("a.pfm"),
-                                          "--size",  size,           "--samples", "4",
-                                          "--stats", file("s.json"), "--device",  "portable comp"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_sundog(arguments, options);
-  }
-  std::string plain() {
-    const CommandResult result = render("");
-    REQUIRE(result.status == 0);
-    CHECK(result.err.empty());
-    return read_file(*this / "a.pfm");
-  }
-  json stats() const { return json::parse(read_file(*this / "s.json")); }
-};
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-}  // namespace
 
 TEST_CASE("two devices share a frame, and the statistics tell each one's part") {
   FaultyFolder folder;
@@ -102,16 +66,26 @@ TEST_CASE("a work-group that is too large for the device is made smaller, and th
   CHECK(device["retired"] == false);
 }
 
+// With the compact tracer, whose groups are of 8 work-items at least however many units there are.
 TEST_CASE("a kernel's own limit bounds its work-groups, and a larger one is refused by name") {
   FaultyFolder folder;
-  const std::string plain = folder.plain();
-  CommandResult result = folder.render("limit=2@0:1", {"--device", "!0:0"});
+  std::vector<std::string> one = {"--device", "!0:0", "--set", "/render/tracer=compact"};
+  const auto group = [&] {
+    const json sides = folder.stats()["devices"][0]["kernels"]["render_whitted"]["work_group"];
+    return sides.at(0).get<int>() * sides.at(1).get<int>();
+  };
+  REQUIRE(folder.render("", one).status == 0);
+  REQUIRE(group() >= 8);
+  const std::string plain = read_file(folder / "a.pfm");
+  // A group of more would be noticed in each launch, and told in a note.
+  CommandResult result = folder.render("limit=2@0:1,group=-54>2@0:1", one);
   CAPTURE(result.err);
   CHECK(result.status == 0);
   CHECK(read_file(folder / "a.pfm") == plain);
-  CHECK(folder.stats()["devices"][0]["kernels"]["render_whitted"]["work_group"].dump().find("4") ==
-        std::string::npos);
-  result = folder.render("limit=2@0:1", {"--device", "!0:0", "--work-group", "4"});
+  CHECK(group() == 2);
+  CHECK_FALSE(contains(folder.stats()["devices"][0]["notes"].dump(), "work-groups of at most"));
+  one.insert(one.end(), {"--work-group", "4"});
+  result = folder.render("limit=2@0:1", one);
   CHECK(result.status == 2);
   CHECK(contains(result.err, "a work-group of 4 is more than the 2 that it can have"));
 }
@@ -222,84 +196,9 @@ TEST_CASE("an image for which the disk has no room is kept elsewhere, with statu
   CHECK(read_file(folder / "a.pfm") == plain);  // without a launch
 }
 
-TEST_CASE("a kernel cache that is corrupt or cannot be written costs time only") {
-  FaultyFolder folder;
-  const std::string plain = folder.plain();
-  folder.options.environment["XDG_CACHE_HOME"] = folder.file("cache");
-  folder.options.environment["POCL_CACHE_DIR"] = folder.file("pocl");
-  const std::vector<std::string> one = {"--device", "!0:0"};
-  SECTION("corrupt") {
-    REQUIRE(folder.render("", one).status == 0);
-    for (const auto& file : std::filesystem::recursive_directory_iterator(folder / "cache/sundog"))
-      if (file.is_regular_file()) std::ofstream(file.path(), std::ios::in | std::ios::out).seekp(300) << "xx";
-    REQUIRE(folder.render("", one).status == 0);
-    CHECK(folder.stats()["kernels_cached"] == false);
-    CHECK(read_file(folder / "a.pfm") == plain);
-    REQUIRE(folder.render("", one).status == 0);
-    CHECK(folder.stats()["kernels_cached"] == true);
-  }
-  SECTION("PoCL's own, at which it would abort") {
-    folder.options.environment["POCL_CACHE_DIR"] = "";
-    // What a process that was killed has left, in the folder that PoCL takes by itself and in sundog's.
-    for (const char* place : {"cache/pocl/kcache", "cache/sundog/pocl/killed"}) {
-      CommandOptions user = folder.options;
-      user.environment["POCL_CACHE_DIR"] = folder.file(place);
-      std::filesystem::create_directories(folder / place);
-      REQUIRE(run_sundog({"render", folder.scene, "-o", folder.file("b.pfm")}, user).status == 0);
-      int files = 0;
-      for (const auto& file : std::filesystem::recursive_directory_iterator(folder / place))
-        if (file.path().extension() == ".bc" || file.path().extension() == ".so")
-          std::ofstream(file.path(), std::ios::in | std::ios::out).seekp(20) << "xxxxxxxxxxxx", ++files;
-      REQUIRE(files > 0);
-    }
-    folder.write("cache/sundog/pocl/killed/lock", "");
-    for (const char* kernels : {"", "off"}) {
-      folder.options.environment["SUNDOG_KERNEL_CACHE"] = kernels;
-      CHECK(folder.render("", one).status == 0);
-      CHECK(read_file(folder / "a.pfm") == plain);
-    }
-    CHECK(std::filesystem::is_empty(folder / "cache/sundog/pocl"));
-  }
-  SECTION("a file where the folder should be") {
-    folder.write("cache", "");
-    const CommandResult result = folder.render("", one);
-    CHECK(result.status == 0);
-    CHECK(result.err.empty());
-    CHECK(contains(folder.stats()["devices"][0]["notes"].at(0), "no kernel cache: "));
-  }
-  SECTION("a file where the folder should be that PoCL has no device without") {
-    folder.write("cache", "");
-    std::filesystem::create_directories(folder / "temporary");
-    folder.options.environment["POCL_CACHE_DIR"] = "";
-    folder.options.environment["TMPDIR"] = folder.file("temporary");
-    CHECK(folder.render("", one).status == 0);
-    CHECK(std::filesystem::is_empty(folder / "temporary"));
-  }
-  CHECK(read_file(folder / "a.pfm") == plain);
-}
-
 TEST_CASE("faults that nobody understands are refused") {
   FaultyFolder folder;
   const CommandResult result = folder.render("build");
   CHECK(result.status == 2);
   CHECK(contains(result.err, "SUNDOG_FAULTS: wanted KIND"));
-}
-
-TEST_CASE(
-    "a process that compiles beside the renderer, and one that fails at it, make no difference to the "
-    "picture") {
-  const CliFolder folder;
-  CommandOptions options;
-  std::vector<std::string> pictures;
-  for (const std::string faults : {"", "compile@0:0"}) {
-    options.environment["SUNDOG_FAULTS"] = faults;
-    options.environment["XDG_CACHE_HOME"] = folder.file("cache" + faults);  // nothing is compiled yet
-    const CommandResult result =
-        run_sundog({"render", folder.scene, "-o", folder.file("a.pfm"), "--device", "0:0"}, options);
-    CAPTURE(faults, result.err);
-    REQUIRE(result.status == 0);
-    CHECK(result.err.empty());
-    pictures.push_back(read_file(folder / "a.pfm"));
-  }
-  CHECK(pictures[0] == pictures[1]);
 }

@@ -1,0 +1,112 @@
+// Programs that are hard to come by: a cache that is damaged, a compiler's process that fails, a driver that
+// builds without result.
+#include <base/file.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "catch.h"
+#include "faulty_folder.h"
+
+using namespace sundog;
+
+TEST_CASE("a kernel cache that is corrupt or cannot be written costs time only") {
+  FaultyFolder folder;
+  const std::string plain = folder.plain();
+  folder.options.environment["XDG_CACHE_HOME"] = folder.file("cache");
+  folder.options.environment["POCL_CACHE_DIR"] = folder.file("pocl");
+  const std::vector<std::string> one = {"--device", "!0:0"};
+  SECTION("corrupt") {
+    REQUIRE(folder.render("", one).status == 0);
+    for (const auto& file : std::filesystem::recursive_directory_iterator(folder / "cache/sundog"))
+      if (file.is_regular_file()) std::ofstream(file.path(), std::ios::in | std::ios::out).seekp(300) << "xx";
+    REQUIRE(folder.render("", one).status == 0);
+    CHECK(folder.stats()["kernels_cached"] == false);
+    CHECK(read_file(folder / "a.pfm") == plain);
+    REQUIRE(folder.render("", one).status == 0);
+    CHECK(folder.stats()["kernels_cached"] == true);
+  }
+  SECTION("PoCL's own, at which it would abort") {
+    folder.options.environment["POCL_CACHE_DIR"] = "";
+    // What a process that was killed has left, in the folder that PoCL takes by itself and in sundog's.
+    for (const char* place : {"cache/pocl/kcache", "cache/sundog/pocl/killed"}) {
+      CommandOptions user = folder.options;
+      user.environment["POCL_CACHE_DIR"] = folder.file(place);
+      std::filesystem::create_directories(folder / place);
+      REQUIRE(run_sundog({"render", folder.scene, "-o", folder.file("b.pfm")}, user).status == 0);
+      int files = 0;
+      for (const auto& file : std::filesystem::recursive_directory_iterator(folder / place))
+        if (file.path().extension() == ".bc" || file.path().extension() == ".so")
+          std::ofstream(file.path(), std::ios::in | std::ios::out).seekp(20) << "xxxxxxxxxxxx", ++files;
+      REQUIRE(files > 0);
+    }
+    folder.write("cache/sundog/pocl/killed/lock", "");
+    for (const char* kernels : {"", "off"}) {
+      folder.options.environment["SUNDOG_KERNEL_CACHE"] = kernels;
+      CHECK(folder.render("", one).status == 0);
+      CHECK(read_file(folder / "a.pfm") == plain);
+    }
+    CHECK(std::filesystem::is_empty(folder / "cache/sundog/pocl"));
+  }
+  SECTION("a file where the folder should be") {
+    folder.write("cache", "");
+    const CommandResult result = folder.render("", one);
+    CHECK(result.status == 0);
+    CHECK(result.err.empty());
+    CHECK(contains(folder.stats()["devices"][0]["notes"].at(0), "no kernel cache: "));
+  }
+  SECTION("a file where the folder should be that PoCL has no device without") {
+    folder.write("cache", "");
+    std::filesystem::create_directories(folder / "temporary");
+    folder.options.environment["POCL_CACHE_DIR"] = "";
+    folder.options.environment["TMPDIR"] = folder.file("temporary");
+    CHECK(folder.render("", one).status == 0);
+    CHECK(std::filesystem::is_empty(folder / "temporary"));
+  }
+  CHECK(read_file(folder / "a.pfm") == plain);
+}
+
+TEST_CASE(
+    "a program of which the driver makes no kernels is built again without optimisation, and both logs are "
+    "kept") {
+  FaultyFolder folder;
+  folder.size = "32x24";
+  folder.options.environment["SUNDOG_BUILD_LOG"] = folder.file("logs");
+  const std::vector<std::string> one = {"--device", "!0:0"};
+  CommandResult result = folder.render("kernels@0:1#1", one);
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+  std::vector<std::string> options;
+  for (const auto& file : std::filesystem::directory_iterator(folder / "logs")) {
+    std::istringstream lines(read_file(file.path()));
+    for (std::string line; std::getline(lines, line) && !line.empty();)
+      if (line.starts_with("options  ")) options.push_back(line);
+  }
+  REQUIRE(options.size() == 2);
+  std::ranges::sort(options, {}, &std::string::size);
+  CHECK(options[1] == options[0] + " -cl-opt-disable");
+
+  result = folder.render("kernels@0:1", one);
+  CHECK(result.status == 5);
+  CHECK(contains(result.err, "the driver built it but makes no kernels of it"));
+}
+
+TEST_CASE(
+    "a process that compiles beside the renderer, and one that fails at it, make no difference to the "
+    "picture") {
+  const CliFolder folder;
+  CommandOptions options;
+  std::vector<std::string> pictures;
+  for (const std::string faults : {"", "compile@0:0"}) {
+    options.environment["SUNDOG_FAULTS"] = faults;
+    options.environment["XDG_CACHE_HOME"] = folder.file("cache" + faults);  // nothing is compiled yet
+    const CommandResult result =
+        run_sundog({"render", folder.scene, "-o", folder.file("a.pfm"), "--device", "0:0"}, options);
+    CAPTURE(faults, result.err);
+    REQUIRE(result.status == 0);
+    CHECK(result.err.empty());
+    pictures.push_back(read_file(folder / "a.pfm"));
+  }
+  CHECK(pictures[0] == pictures[1]);
+}
