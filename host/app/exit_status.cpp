@@ -37,7 +37,8 @@ int exit_status_of(const std::function<int()>& command, bool speaks) {
     return fail(exit_device, error.what());
   } catch (const BuildError& error) {
     fail(exit_build, error.what());
-    if (speaks) fmt::print(stderr, "{}{}", error.log, error.log.ends_with('\n') ? "" : "\n");
+    if (speaks && !error.log.empty())
+      fmt::print(stderr, "{}{}", error.log, error.log.ends_with('\n') ? "" : "\n");
     return exit_build;
   } catch (const std::bad_alloc&) {
     return fail(exit_failure, "out of memory");

@@ -22,6 +22,7 @@ namespace sundog {
 ///     kill@P:D            the process is killed (SIGKILL) at a launch
 ///     stop@P:D            a launch stops the process, as SIGSTOP from outside does
 ///     write@NAME          a file of that name cannot be written, as on a full disk
+///     room=KIBIBYTES@pocl no more can be written to the folder where PoCL writes
 ///     stall@NAME          writing a file of that name never ends
 /// Returns VALUE (0 without one) where a fault strikes now. Throws UsageError for a variable that is none.
 std::optional<int> fault(std::string_view kind, std::string_view where, std::size_t size = 0);

@@ -22,6 +22,7 @@
 #include "base/spawn_self.h"
 #include "device/cl_status.h"
 #include "device/device.h"
+#include "device/pocl_folder.h"
 
 namespace sundog {
 namespace {
@@ -34,9 +35,7 @@ std::atomic<bool>& allowed() {
 }
 
 /// By name, as it is the habit of one driver that is got round here.
-bool reads_a_library(const DeviceInfo& device) {
-  return device.platform_name == "Portable Computing Language" && device.type == "cpu";
-}
+bool reads_a_library(const DeviceInfo& device) { return is_pocl(device) && device.type == "cpu"; }
 
 /// A file in memory that holds `text`, read from its start; -1 where there can be none.
 int memory_file(const std::string& text) {

@@ -160,8 +160,10 @@ void list_platform(DeviceInfo platform, cl_platform_id id, std::vector<DeviceInf
   };
   cl_uint count = 0;
   cl_int status = clGetDeviceIDs(id, CL_DEVICE_TYPE_ALL, 0, nullptr, &count);
-  if (status == CL_DEVICE_NOT_FOUND || (status == CL_SUCCESS && count == 0))
-    return problem("the platform has no device");
+  if (status == CL_DEVICE_NOT_FOUND || (status == CL_SUCCESS && count == 0)) {
+    const std::string why = is_pocl(platform) ? pocl_folder_problem() : "";
+    return problem("the platform has no device" + (why.empty() ? "" : ": " + why));
+  }
   if (status != CL_SUCCESS) return problem("clGetDeviceIDs: " + cl_status_name(status));
   std::vector<cl_device_id> devices(count);
   status = clGetDeviceIDs(id, CL_DEVICE_TYPE_ALL, count, devices.data(), nullptr);

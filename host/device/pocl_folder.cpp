@@ -3,13 +3,17 @@
 #include "device/pocl_folder.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
+#include <optional>
 #include <string>
 
+#include "base/faults.h"
 #include "base/file.h"
 
 namespace sundog {
@@ -47,11 +51,17 @@ void remove_left_over(const fs::path& root) {
   }
 }
 
-/// PoCL ends the process when it cannot write what it compiles: some megabytes.
-bool has_room(const fs::path& folder) {
+// PoCL was seen to write 2 MiB for a scene's kernels; a folder with less room than the first is not chosen
+// where there is another, and one with less than the second is of no use.
+constexpr std::uintmax_t ample_room = std::uintmax_t{32} << 20, least_room = std::uintmax_t{3} << 20;
+
+/// Bytes that can be written there; none: nobody knows.
+std::optional<std::uintmax_t> room_in(const fs::path& folder) {
+  if (const auto kibibytes = fault("room", "pocl")) return std::uintmax_t(*kibibytes) << 10;
   std::error_code error;
   const fs::space_info space = fs::space(folder, error);
-  return !error && space.available >= std::uintmax_t{32} << 20;
+  if (error) return std::nullopt;
+  return space.available;
 }
 
 /// A new folder in the cache, or where that cannot be written or is full, among the temporary files; empty:
@@ -61,7 +71,7 @@ std::string make_folder() {
   const fs::path cache = cache_directory(), root = cache / "pocl";
   if (!cache.empty() && (fs::create_directories(root, error), fs::is_directory(root, error)))
     remove_left_over(root);
-  if (!cache.empty() && has_room(root)) {
+  if (!cache.empty() && room_in(root).value_or(0) >= ample_room) {
     std::string folder = (root / "XXXXXX").string();
     if (::mkdtemp(folder.data())) return folder;
   }
@@ -70,6 +80,22 @@ std::string make_folder() {
 }
 
 }  // namespace
+
+bool is_pocl(const DeviceInfo& device) { return device.platform_name == "Portable Computing Language"; }
+
+std::string pocl_folder_problem() {
+  const char* folder = std::getenv("POCL_CACHE_DIR");
+  if (!folder)
+    return "no folder can be made for what PoCL writes: name one that can be written by XDG_CACHE_HOME or "
+           "TMPDIR";
+  const auto room = room_in(folder);
+  if (!room || *room >= least_room) return "";
+  return fmt::format(
+      "{}, where PoCL writes, has room for {} KiB, and {} are needed: make room, or name another "
+      "folder by {}",
+      folder, *room >> 10, least_room >> 10,
+      folder == own_folder() ? "XDG_CACHE_HOME or TMPDIR" : "POCL_CACHE_DIR");
+}
 
 void give_pocl_a_folder() noexcept {
   try {

@@ -13,6 +13,7 @@
 #include "device/build_options.h"
 #include "device/cl_status.h"
 #include "device/compile_process.h"
+#include "device/pocl_folder.h"
 #include "device/program_cache.h"
 
 namespace sundog {
@@ -193,6 +194,9 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
   dump_source(entry, source);
   if (fault("build", place_of(info)))
     throw BuildError(fmt::format("{} did not build on {}: a fault was asked for", entry, info.label()), "");
+  if (is_pocl(info) && std::getenv("POCL_CACHE_DIR"))
+    if (const std::string problem = pocl_folder_problem(); !problem.empty())
+      throw BuildError(fmt::format("{} cannot be built on {}: {}", entry, info.label(), problem), "");
   auto record = std::make_shared<ProgramRecord>();
   record->device = info;
   record->entry = entry;

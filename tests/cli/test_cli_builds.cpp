@@ -67,6 +67,37 @@ TEST_CASE("a kernel cache that is corrupt or cannot be written costs time only")
   CHECK(read_file(folder / "a.pfm") == plain);
 }
 
+TEST_CASE("where PoCL has no room to write, the message tells the folder and the mend") {
+  FaultyFolder folder;
+  std::filesystem::create_directories(folder / "temporary");
+  folder.options.environment["XDG_CACHE_HOME"] = folder.file("cache");
+  folder.options.environment["POCL_CACHE_DIR"] = "";
+  folder.options.environment["TMPDIR"] = folder.file("temporary");
+  const std::vector<std::string> one = {"--device", "!0:0"};
+  CommandResult result = folder.render("room=100@pocl", one);
+  CAPTURE(result.err);
+  CHECK(result.status == 5);
+  CHECK(is_one_error_line(result.err));
+  CHECK(contains(result.err, folder.file("temporary/sundog-pocl-")));
+  CHECK(contains(result.err,
+                 "has room for 100 KiB, and 3072 are needed: make room, or name another folder by "
+                 "XDG_CACHE_HOME or TMPDIR"));
+  CHECK(std::filesystem::is_empty(folder / "temporary"));
+
+  folder.options.environment["POCL_CACHE_DIR"] = folder.file("temporary");
+  result = folder.render("room=100@pocl", one);
+  CHECK(result.status == 5);
+  CHECK(contains(result.err, folder.file("temporary") + ", where PoCL writes"));
+  CHECK(contains(result.err, "by POCL_CACHE_DIR"));
+
+  folder.options.environment["POCL_CACHE_DIR"] = "";
+  for (const char* name : {"XDG_CACHE_HOME", "TMPDIR"})
+    folder.options.environment[name] = "/proc";  // where even root makes no folder
+  result = folder.render("", one);
+  CHECK(result.status == 4);
+  CHECK(contains(result.err, "name one that can be written by XDG_CACHE_HOME or TMPDIR"));
+}
+
 TEST_CASE(
     "a program of which the driver makes no kernels is built again without optimisation, and both logs are "
     "kept") {
