@@ -1,0 +1,49 @@
+// Statements and expressions to values in a graph. Internal to lower().
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/formula/definition.h"
+#include "scene/formula/graph.h"
+#include "scene/formula/syntax.h"
+#include "scene/formula/value.h"
+
+namespace sundog {
+
+/// Walks syntax trees and gives them their values in one graph. What is wrong is a FormulaError with its
+/// place.
+class Lowering {
+ public:
+  /// Knows the definition's parameters, of these values, and pi. `values` must outlive it.
+  Lowering(Graph& graph, const FormulaDefinition& definition, const std::vector<double>& values);
+
+  /// A name that statements may read but not set.
+  void define(const std::string& name, const Value& value) { fixed_[name] = value; }
+  /// A name that statements may set to another value of the same type.
+  void declare(const std::string& name, const Value& value) { variables_[name] = value; }
+  const Value& variable(const std::string& name) const { return variables_.at(name); }
+  bool was_set(const std::string& name) const { return set_.contains(name); }
+
+  void run(const std::vector<Statement>& statements);
+  Value value_of(const Expression& e);
+
+  Values v;
+
+ private:
+  void assign(const Statement& s);
+  Value lower(const Expression& e);
+  Value named(const std::string& name) const;
+  Value logical(const Expression& e);
+  Value choice(const Expression& e);
+  Value binary(const Expression& e);
+  Value power(const Expression& e);
+
+  Graph& g;
+  const std::vector<double>& parameter_values_;
+  NodeId branch_ = no_node;  // where what is being lowered is used; no_node: everywhere
+  std::map<std::string, Value> fixed_, variables_;
+  std::map<std::string, bool> set_;
+};
+
+}  // namespace sundog
