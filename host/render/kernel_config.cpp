@@ -26,6 +26,27 @@ unsigned marched_lanes(unsigned batch) {
   return 1;
 }
 
+/// What the scene uses; `define` takes a name and a number.
+template <class Define>
+void define_features(const SceneFeatures& features, const Define& define) {
+  static constexpr const char* shape_names[SHAPE_SDF] = {"HAS_MESH", "HAS_SPHERE",   "HAS_PLANE",
+                                                         "HAS_BOX",  "HAS_CYLINDER", "HAS_CONE",
+                                                         "HAS_DISK", "HAS_TORUS",    "HAS_ROUNDBOX"};
+  for (unsigned shape = 0; shape < SHAPE_SDF; ++shape) define(shape_names[shape], features.shapes[shape]);
+  define("HAS_SECONDARY", features.secondary_rays);
+  define("HAS_MEDIA", features.media);
+  define("HAS_SHADOW_FILTERS", features.shadow_filters);
+  define("HAS_SDF", features.shapes[SHAPE_SDF]);
+  define("SDF_TWO_SIDED", features.two_sided_fields);
+  define("HAS_GLOW", features.glow);
+  define("HAS_OCCLUSION", features.occlusion);
+  define("HAS_SOFT_SHADOWS", features.soft_shadows);
+  define("SDF_FLAGS", features.field_flags);
+  define("HAS_FOG", features.fog);
+  define("HAS_ABSORPTION", features.absorption);
+  define("HAS_FRACTIONAL_EXPONENTS", features.fractional_exponents);
+}
+
 }  // namespace
 
 std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& device) {
@@ -66,26 +87,10 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   }
   // Rounded up, so that similar scenes share their kernels.
   define("BVH_STACK", (scene.features.bvh_stack + 31u) / 32u * 32u);
-  static constexpr const char* shape_names[SHAPE_SDF] = {"HAS_MESH", "HAS_SPHERE",   "HAS_PLANE",
-                                                         "HAS_BOX",  "HAS_CYLINDER", "HAS_CONE",
-                                                         "HAS_DISK", "HAS_TORUS",    "HAS_ROUNDBOX"};
-  for (unsigned shape = 0; shape < SHAPE_SDF; ++shape)
-    define(shape_names[shape], scene.features.shapes[shape]);
-  define("HAS_SECONDARY", scene.features.secondary_rays);
-  define("HAS_MEDIA", scene.features.media);
-  define("HAS_SHADOW_FILTERS", scene.features.shadow_filters);
-  define("HAS_SDF", scene.features.shapes[SHAPE_SDF]);
-  define("SDF_TWO_SIDED", scene.features.two_sided_fields);
-  define("HAS_GLOW", scene.features.glow);
-  define("HAS_OCCLUSION", scene.features.occlusion);
-  define("HAS_SOFT_SHADOWS", scene.features.soft_shadows);
-  define("SDF_FLAGS", scene.features.field_flags);
-  define("HAS_FOG", scene.features.fog);
+  define_features(scene.features, define);
   const unsigned lanes = marched_lanes(batch), few_solids = 2 * lanes;
   define("FEW_SOLIDS", few_solids);
   define("HAS_BVH", scene.features.shapes[SHAPE_MESH] || scene.info.bounded_count > few_solids);
-  define("HAS_ABSORPTION", scene.features.absorption);
-  define("HAS_FRACTIONAL_EXPONENTS", scene.features.fractional_exponents);
   define("LANES", lanes);
   if (!scene.fields.source.empty()) config.generated["generated/sdf.cl"] = scene.fields.source;
   return config;
