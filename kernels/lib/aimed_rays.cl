@@ -16,16 +16,8 @@ typedef struct AimedRays {
   MASK x, y, z;
 } AimedRays;
 
-// One axis of make_slab_ray; `offset` is that of its lower planes.
-static inline void aim_slabs(REAL o, REAL d, int offset, REAL* rcp_near, REAL* rcp_far, REAL* shift_near,
-                             REAL* shift_far, MASK* near, MASK* far) {
-  const REAL rcp = 1.0f / select(d, copysign((REAL)(1e-18f), d), MASK_OF(fabs(d) < 1e-18f));
-  *rcp_near = rcp * 0.9999997f;
-  *rcp_far = rcp * 1.0000003f;
-  const REAL from = o * *rcp_near, to = o * *rcp_far;
-  const REAL slack = along_face(rcp);
-  *shift_near = -(from + fma(fabs(from), (REAL)(2.4e-7f), slack));
-  *shift_far = -(to - fma(fabs(to), (REAL)(2.4e-7f), slack));
+// Where the near and the far planes of an axis lie in Bvh8Node, `offset` its lower ones.
+static inline void aim_planes(REAL rcp, int offset, MASK* near, MASK* far) {
   *near = offset + (MASK_OF(rcp < 0.0f) & 24);
   *far = offset * 2 + 24 - *near;
 }
@@ -58,12 +50,12 @@ static inline void aim_ray(AimedRays* rays, u32 i, float3 o, float3 d) {
 // All lanes.
 static inline AimedRays aimed(const REAL3* o, const REAL3* d) {
   AimedRays rays;
-  aim_slabs(o->x, d->x, 0, &rays.rcp_near.x, &rays.rcp_far.x, &rays.shift_near.x, &rays.shift_far.x,
-            &rays.near_x, &rays.far_x);
-  aim_slabs(o->y, d->y, 8, &rays.rcp_near.y, &rays.rcp_far.y, &rays.shift_near.y, &rays.shift_far.y,
-            &rays.near_y, &rays.far_y);
-  aim_slabs(o->z, d->z, 16, &rays.rcp_near.z, &rays.rcp_far.z, &rays.shift_near.z, &rays.shift_far.z,
-            &rays.near_z, &rays.far_z);
+  aim_planes(aim_slabs(o->x, d->x, &rays.rcp_near.x, &rays.rcp_far.x, &rays.shift_near.x, &rays.shift_far.x),
+             0, &rays.near_x, &rays.far_x);
+  aim_planes(aim_slabs(o->y, d->y, &rays.rcp_near.y, &rays.rcp_far.y, &rays.shift_near.y, &rays.shift_far.y),
+             8, &rays.near_y, &rays.far_y);
+  aim_planes(aim_slabs(o->z, d->z, &rays.rcp_near.z, &rays.rcp_far.z, &rays.shift_near.z, &rays.shift_far.z),
+             16, &rays.near_z, &rays.far_z);
   const REAL size_x = fabs(d->x), size_y = fabs(d->y), size_z = fabs(d->z);
   const MASK along_x = MASK_OF(size_x >= size_y) & MASK_OF(size_x >= size_z),
              along_y = MASK_OF(size_x < size_y) & MASK_OF(size_y >= size_z);

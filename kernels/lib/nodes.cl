@@ -3,6 +3,7 @@
 #ifndef SUNDOG_LIB_NODES_CL
 #define SUNDOG_LIB_NODES_CL
 #include "lib/config.h"
+#include "lib/lanes.h"
 #include "lib/masks.cl"
 #include "shared/bvh.h"
 
@@ -34,26 +35,33 @@ typedef struct SlabRay {
 } SlabRay;
 
 // A component too small to divide by stands for a slope that never crosses a slab within a float's range.
+#define LEAST_COMPONENT 1e-18f
 static inline float3 safe_reciprocal(float3 d) {
-  return 1.0f / select(d, copysign((float3)(1e-18f), d), fabs(d) < 1e-18f);
+  return 1.0f / select(d, copysign((float3)(LEAST_COMPONENT), d), fabs(d) < LEAST_COMPONENT);
 }
 
 // Distances that matter only to rays along an axis: they may run in a face, or in the plane through 0, where
 // widening by parts of a coordinate is nothing.
 #define along_face(rcp) ((rcp) * (rcp)*1e-25f)
 
+// Factors of a reciprocal by which a slab is entered earlier and left later, and the shifts of its near and
+// of its far planes for an origin that lies `at` (origin times reciprocal) along the ray; V is their type.
+#define NEARER 0.9999997f
+#define FARTHER 1.0000003f
+#define shift_to_near(V, at, slack) (-((at) + fma(fabs(at), (V)(2.4e-7f), slack)))
+#define shift_to_far(V, at, slack) (-((at)-fma(fabs(at), (V)(2.4e-7f), slack)))
+
 static inline SlabRay make_slab_ray(float3 o, float3 d) {
   SlabRay ray;
 #if !WIDE_VECTORS
   ray.o = o;
 #endif
-  const float3 rcp = safe_reciprocal(d);
-  ray.rcp_near = rcp * 0.9999997f;
-  ray.rcp_far = rcp * 1.0000003f;
+  const float3 rcp = safe_reciprocal(d), slack = along_face(rcp);
+  ray.rcp_near = rcp * NEARER;
+  ray.rcp_far = rcp * FARTHER;
   const float3 near = o * ray.rcp_near, far = o * ray.rcp_far;
-  const float3 slack = along_face(rcp);
-  ray.shift_near = -(near + fma(fabs(near), (float3)(2.4e-7f), slack));
-  ray.shift_far = -(far - fma(fabs(far), (float3)(2.4e-7f), slack));
+  ray.shift_near = shift_to_near(float3, near, slack);
+  ray.shift_far = shift_to_far(float3, far, slack);
   // By the sign of the reciprocal: a component of -0 has a negative one.
   ray.near_x = rcp.x < 0.0f ? 24u : 0u;
   ray.near_y = rcp.y < 0.0f ? 32u : 8u;
@@ -69,6 +77,19 @@ static inline SlabRay make_slab_ray(float3 o, float3 d) {
 #define KEY_SLOT 7u
 
 #if WIDE_VECTORS
+// One axis of make_slab_ray for a ray a lane. Returns the reciprocal.
+static inline REAL aim_slabs(REAL o, REAL d, REAL* rcp_near, REAL* rcp_far, REAL* shift_near,
+                             REAL* shift_far) {
+  const REAL least = AS_REAL((AS_MASK(d) & (int)0x80000000) | as_int(LEAST_COMPONENT));
+  const REAL rcp = 1.0f / select(d, least, MASK_OF(fabs(d) < LEAST_COMPONENT)), slack = along_face(rcp);
+  *rcp_near = rcp * NEARER;
+  *rcp_far = rcp * FARTHER;
+  const REAL near = o * *rcp_near, far = o * *rcp_far;
+  *shift_near = shift_to_near(REAL, near, slack);
+  *shift_far = shift_to_far(REAL, far, slack);
+  return rcp;
+}
+
 // Distances to the near and the far side of the eight children's boxes, cut to [t_min, t_max], as the floats'
 // bits: a child is crossed where near <= far.
 ALWAYS_INLINE void slab_distances(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,

@@ -55,11 +55,6 @@ static inline void renew_bounds(PacketHits* hits) {
   hits->live = ~lane_bits(as_int16(hits->found->t)) & ALL_RAYS;
 }
 
-static inline float16 safe_reciprocal16(float16 d) {
-  const float16 tiny = as_float16((as_int16(d) & (int)0x80000000) | as_int(1e-18f));
-  return 1.0f / select(d, tiny, fabs(d) < 1e-18f);
-}
-
 static inline float16 least16(float16 a, float16 b) { return select(b, a, a < b); }
 
 // The lower half of the result is the least of neighbours in a, the upper one of those in b.
@@ -148,14 +143,9 @@ NEVER_INLINE bool aim_packet(PacketRays* rays) {
   float16 ends[16];
 #pragma unroll
   for (u32 axis = 0; axis < 3u; ++axis) {
-    const float16 o = rays->o[axis], rcp = safe_reciprocal16(rays->d[axis]);
-    const float16 rcp_near = rcp * 0.9999997f, rcp_far = rcp * 1.0000003f;
-    const float16 near = o * rcp_near, far = o * rcp_far;
-    rays->rcp_near[axis] = rcp_near;
-    rays->rcp_far[axis] = rcp_far;
-    const float16 slack = along_face(rcp);
-    rays->shift_near[axis] = -(near + fma(fabs(near), (float16)(2.4e-7f), slack));
-    rays->shift_far[axis] = -(far - fma(fabs(far), (float16)(2.4e-7f), slack));
+    const float16 o = rays->o[axis];
+    const float16 rcp = aim_slabs(o, rays->d[axis], &rays->rcp_near[axis], &rays->rcp_far[axis],
+                                  &rays->shift_near[axis], &rays->shift_far[axis]);
     ends[axis] = o;
     ends[4u + axis] = -o;
     ends[8u + axis] = rcp;
