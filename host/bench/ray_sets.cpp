@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "bench/random.h"
+
 namespace sundog {
 namespace {
 
@@ -16,14 +18,7 @@ using glm::vec3;
 constexpr float unlimited = std::numeric_limits<float>::infinity();
 constexpr unsigned tile = 16, block = 4;
 
-/// PCG's output function on a linear congruential step (O'Neill 2014): a random 32-bit word of x.
-u32 hash(u32 x) {
-  const u32 state = x * 747796405u + 2891336453u;
-  const u32 word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-  return (word >> 22u) ^ word;
-}
-
-float uniform(u32 x) { return static_cast<float>(hash(x) >> 8) * 0x1p-24f; }
+float uniform(u32 x) { return unit_float(random_word(x)); }
 
 Ray make_ray(const vec3& o, const vec3& d, float t_max) { return {o.x, o.y, o.z, 0, d.x, d.y, d.z, t_max}; }
 
@@ -100,7 +95,7 @@ RaySet glass_rays(const CompiledScene& scene, std::vector<Ray> rays, std::vector
 
 void shuffle(std::vector<Ray>& rays) {
   for (std::size_t i = rays.size(); i-- > 1;)
-    std::swap(rays[i], rays[hash(static_cast<u32>(i) ^ 0x5bd1e995u) % (i + 1)]);
+    std::swap(rays[i], rays[random_word(static_cast<u32>(i) ^ 0x5bd1e995u) % (i + 1)]);
 }
 
 /// All kinds but primary.

@@ -9,6 +9,7 @@
 
 #include "base/image_compare.h"
 #include "bench/plain/surface.h"
+#include "bench/random.h"
 
 namespace sundog {
 namespace plain {
@@ -224,14 +225,6 @@ MediaStack camera_media(const CompiledScene& scene, const HitFinder& finder) {
   return holding;
 }
 
-u32 hash(u32 x) {
-  const u32 state = x * 747796405u + 2891336453u;
-  const u32 word = ((state >> ((state >> 28) + 4u)) ^ state) * 277803737u;
-  return (word >> 22) ^ word;
-}
-
-float unit_float(u32 bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
-
 /// The kernels' sample positions, so that the pictures can be compared: a Hammersley set shifted in each
 /// pixel.
 glm::vec2 sample_offset(u32 x, u32 y, u32 sample, u32 samples) {
@@ -239,8 +232,9 @@ glm::vec2 sample_offset(u32 x, u32 y, u32 sample, u32 samples) {
   u32 mirrored = 0;
   for (u32 bit = 0; bit < 32; ++bit) mirrored |= (sample >> bit & 1u) << (31 - bit);
   const float a = (static_cast<float>(sample) + 0.5f) / static_cast<float>(samples) +
-                  unit_float(hash(x + hash(y + hash(0))));
-  return {std::min(a - std::floor(a), 0x1.fffffep-1f), unit_float(mirrored + hash(x + hash(y + hash(1))))};
+                  unit_float(random_word(x + random_word(y + random_word(0))));
+  return {std::min(a - std::floor(a), 0x1.fffffep-1f),
+          unit_float(mirrored + random_word(x + random_word(y + random_word(1))))};
 }
 
 Path camera_path(const SceneInfo& info, float x, float y, const MediaStack& media) {

@@ -140,44 +140,49 @@ Value Values::negate(const Value& a) {
 Value Values::multiply(const Value& a, const Value& b) {
   require(a.type != ValueType::condition && b.type != ValueType::condition,
           "conditions cannot be multiplied");
-  if (a.type == ValueType::quat && b.type == ValueType::quat) {
-    Value r = result(ValueType::quat, {&a, &b});
-    const auto sum = [&](NodeId p, NodeId q, NodeId s, NodeId t, bool m1, bool m2, bool m3) {
-      NodeId total = p;
-      total = m1 ? g.sub(total, q) : g.add(total, q);
-      total = m2 ? g.sub(total, s) : g.add(total, s);
-      return m3 ? g.sub(total, t) : g.add(total, t);
-    };
-    const auto m = [&](NodeId p, NodeId q) { return g.mul(p, q); };
-    r.part[0] = sum(m(a.x(), b.x()), m(a.y(), b.y()), m(a.z(), b.z()), m(a.w(), b.w()), true, true, true);
-    r.part[1] = sum(m(a.x(), b.y()), m(a.y(), b.x()), m(a.z(), b.w()), m(a.w(), b.z()), false, false, true);
-    r.part[2] = sum(m(a.x(), b.z()), m(a.z(), b.x()), m(a.w(), b.y()), m(a.y(), b.w()), false, false, true);
-    r.part[3] = sum(m(a.x(), b.w()), m(a.w(), b.x()), m(a.y(), b.z()), m(a.z(), b.y()), false, false, true);
-    r.tight = a.tight && b.tight;
-    if (!r.varies || !r.tight) return r;
-    const NodeId left = a.varies ? g.mul(length(b).x(), a.slope) : g.constant(0);
-    const NodeId right = b.varies ? g.mul(length(a).x(), b.slope) : g.constant(0);
-    r.slope = g.add(left, right);
-    return r;
+  if (a.type == ValueType::quat && b.type == ValueType::quat) return quaternion_product(a, b);
+  if (a.type == ValueType::scalar) return scaled(b, a);
+  if (b.type == ValueType::scalar) return scaled(a, b);
+  require(a.type == b.type, "a " + name_of(a.type) + " and a " + name_of(b.type) + " cannot be multiplied");
+  return product_of_parts(a, b);
+}
+
+Value Values::quaternion_product(const Value& a, const Value& b) {
+  Value r = result(ValueType::quat, {&a, &b});
+  const auto sum = [&](NodeId p, NodeId q, NodeId s, NodeId t, bool m1, bool m2, bool m3) {
+    NodeId total = p;
+    total = m1 ? g.sub(total, q) : g.add(total, q);
+    total = m2 ? g.sub(total, s) : g.add(total, s);
+    return m3 ? g.sub(total, t) : g.add(total, t);
+  };
+  const auto m = [&](NodeId p, NodeId q) { return g.mul(p, q); };
+  r.part[0] = sum(m(a.x(), b.x()), m(a.y(), b.y()), m(a.z(), b.z()), m(a.w(), b.w()), true, true, true);
+  r.part[1] = sum(m(a.x(), b.y()), m(a.y(), b.x()), m(a.z(), b.w()), m(a.w(), b.z()), false, false, true);
+  r.part[2] = sum(m(a.x(), b.z()), m(a.z(), b.x()), m(a.w(), b.y()), m(a.y(), b.w()), false, false, true);
+  r.part[3] = sum(m(a.x(), b.w()), m(a.w(), b.x()), m(a.y(), b.z()), m(a.z(), b.y()), false, false, true);
+  r.tight = a.tight && b.tight;
+  if (!r.varies || !r.tight) return r;
+  const NodeId left = a.varies ? g.mul(length(b).x(), a.slope) : g.constant(0);
+  const NodeId right = b.varies ? g.mul(length(a).x(), b.slope) : g.constant(0);
+  r.slope = g.add(left, right);
+  return r;
+}
+
+Value Values::product_of_parts(const Value& a, const Value& b) {
+  Value r = each(Op::multiply, a, b);
+  const Value& v = a.varies ? a : b;
+  const Value& k = a.varies ? b : a;
+  if (v.varies && !k.varies && v.tight && g.is_constant(k.x()) && g.is_constant(k.y()) &&
+      g.is_constant(k.z())) {
+    const double s = std::abs(g[k.x()].value);
+    r.tight = s == std::abs(g[k.y()].value) && s == std::abs(g[k.z()].value);
+    r.slope = g.scaled(v.slope, s);
   }
-  const bool scaling = a.type == ValueType::scalar || b.type == ValueType::scalar;
-  require(scaling || a.type == b.type,
-          "a " + name_of(a.type) + " and a " + name_of(b.type) + " cannot be multiplied");
-  if (!scaling) {
-    Value r = each(Op::multiply, a, b);
-    const Value& v = a.varies ? a : b;
-    const Value& k = a.varies ? b : a;
-    if (v.varies && !k.varies && v.tight && g.is_constant(k.x()) && g.is_constant(k.y()) &&
-        g.is_constant(k.z())) {
-      const double s = std::abs(g[k.x()].value);
-      r.tight = s == std::abs(g[k.y()].value) && s == std::abs(g[k.z()].value);
-      r.slope = g.scaled(v.slope, s);
-    }
-    return r;
-  }
-  const Value& k = a.type == ValueType::scalar ? a : b;
-  const Value& v = a.type == ValueType::scalar ? b : a;
-  Value r = result(v.type, {&a, &b});
+  return r;
+}
+
+Value Values::scaled(const Value& v, const Value& k) {
+  Value r = result(v.type, {&v, &k});
   for (std::size_t i = 0; i < static_cast<std::size_t>(r.size()); ++i) r.part[i] = g.mul(v.part[i], k.x());
   if (v.varies && !k.varies && v.tight) {
     r.tight = true;

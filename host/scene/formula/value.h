@@ -88,6 +88,9 @@ class Values {
   friend class Powers;
   Value widened(const Value& scalar, ValueType type);
   Value result(ValueType type, std::initializer_list<const Value*> from);
+  Value quaternion_product(const Value& a, const Value& b);
+  Value product_of_parts(const Value& a, const Value& b);
+  Value scaled(const Value& v, const Value& k);
   Value isometry(const Value& from);
   void require(bool holds, const std::string& what);
   std::optional<Value> cheap_fold(const Value& v, const Value& n, const Value& d);
