@@ -1,0 +1,121 @@
+// What of a glTF is no mesh: materials, lights, cameras.
+#include <numbers>
+
+#include "catch.h"
+#include "gltf_text.h"
+#include "model_files.h"
+
+using namespace sundog;
+
+namespace {
+
+MaterialDescription material_of(const std::string& material, Model* model = nullptr) {
+  const Model loaded =
+      load_text("a.gltf", quad(one_node + R"(,"materials":[)" + material + "]", R"(,"material":0)"));
+  if (model) *model = loaded;
+  REQUIRE(loaded.materials.size() == 1);
+  return loaded.materials[0];
+}
+
+bool near(dvec3 a, dvec3 b) { return glm::length(a - b) < 1e-6; }
+
+}  // namespace
+
+TEST_CASE("metallic-roughness factors become phong coefficients", "[models]") {
+  const MaterialDescription plastic = material_of(R"({"name":"p","pbrMetallicRoughness":{
+    "baseColorFactor":[0.8,0.4,0.2,1],"metallicFactor":0,"roughnessFactor":0.5}})");
+  CHECK(plastic.name == "p");
+  CHECK(near(plastic.diffuse, {0.8, 0.4, 0.2}));
+  CHECK(near(plastic.specular, dvec3(0.04)));
+  CHECK(plastic.exponent == Approx(30));
+  CHECK(plastic.reflection == dvec3(0));
+  const MaterialDescription mirror =
+      material_of(R"({"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.4,0.2,1],"roughnessFactor":0}})");
+  CHECK(near(mirror.reflection, {0.8, 0.4, 0.2}));
+  CHECK(near(mirror.diffuse, {0, 0, 0}));
+  CHECK(std::isfinite(mirror.exponent));
+  const MaterialDescription rough =
+      material_of(R"({"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.4,0.2,1]}})");
+  CHECK(near(rough.diffuse, {0.8, 0.4, 0.2}));
+  CHECK(rough.reflection == dvec3(0));
+}
+
+TEST_CASE("transmission with a volume is a dielectric with an absorbing medium, without one a thin pane",
+          "[models]") {
+  Model model;
+  const std::string glass = R"({"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0},"extensions":{
+    "KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_ior":{"ior":1.33})";
+  const MaterialDescription solid = material_of(
+      glass +
+          R"(,"KHR_materials_volume":{"thicknessFactor":1,"attenuationDistance":2,"attenuationColor":[0.5,1,0]}}})",
+      &model);
+  CHECK(solid.type == MaterialType::dielectric);
+  CHECK(solid.transmission == dvec3(1));
+  CHECK(solid.diffuse == dvec3(0));
+  REQUIRE(solid.medium == 0);
+  CHECK(model.media.at(0).ior == 1.33);
+  CHECK(model.media[0].absorption.x == Approx(std::log(2.0) / 2));
+  CHECK(model.media[0].absorption.y == 0);
+  CHECK(std::isfinite(model.media[0].absorption.z));
+  for (const char* volume : {"}}", R"(,"KHR_materials_volume":{"thicknessFactor":0}}})"}) {
+    const MaterialDescription thin = material_of(glass + volume, &model);
+    CHECK(thin.medium == -1);
+    CHECK(model.media.empty());
+    CHECK(thin.transmission.x == Approx(1 - 0.020059));
+    CHECK(thin.reflection.x == Approx(0.020059).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("a metal transmits nothing, whatever its transmission factor", "[models]") {
+  const MaterialDescription metal =
+      material_of(R"({"extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})");
+  CHECK(metal.transmission == dvec3(0));
+  CHECK(metal.diffuse == dvec3(1));
+}
+
+TEST_CASE("alpha lets light straight through when blended or masked, and is left aside when opaque",
+          "[models]") {
+  const std::string pbr = R"({"pbrMetallicRoughness":{"metallicFactor":0,"baseColorFactor":[1,1,1,0.25]})";
+  CHECK(material_of(pbr + R"(,"alphaMode":"BLEND"})").transmission == dvec3(0.75));
+  CHECK(material_of(pbr + R"(,"alphaMode":"BLEND"})").diffuse == dvec3(0.25));
+  CHECK(material_of(pbr + R"(,"alphaMode":"MASK"})").transmission == dvec3(1));
+  CHECK(material_of(pbr + R"(,"alphaMode":"MASK","alphaCutoff":0.2})").transmission == dvec3(0));
+  CHECK(material_of(pbr + "}").transmission == dvec3(0));
+}
+
+TEST_CASE("glTF's lights come with their node's place and direction, in sundog's units", "[models]") {
+  const Model model = load_text("a.gltf", document(R"("extensions":{"KHR_lights_punctual":{"lights":[
+    {"type":"directional","intensity":3,"color":[1,0.5,0]},{"type":"point","intensity":40},
+    {"type":"spot","spot":{"innerConeAngle":0.1,"outerConeAngle":0.2}}]}},"nodes":[
+    {"rotation":[-0.70710678,0,0,0.70710678],"extensions":{"KHR_lights_punctual":{"light":0}}},
+    {"translation":[1,2,3],"extensions":{"KHR_lights_punctual":{"light":1}}},
+    {"scale":[3,3,3],"extensions":{"KHR_lights_punctual":{"light":2}}}])"));
+  REQUIRE(model.lights.size() == 3);
+  CHECK(model.lights[0].type == LightType::directional);
+  CHECK(near(model.lights[0].direction, {0, -1, 0}));
+  CHECK(model.lights[0].color == dvec3(1, 0.5, 0));
+  CHECK(model.lights[0].intensity == Approx(3 / std::numbers::pi));
+  CHECK(model.lights[0].falloff == dvec3(1, 0, 0));
+  CHECK(model.lights[1].type == LightType::point);
+  CHECK(model.lights[1].position == dvec3(1, 2, 3));
+  CHECK(model.lights[1].falloff == dvec3(0, 0, 1));
+  CHECK(model.lights[2].type == LightType::spot);
+  CHECK(near(model.lights[2].direction, {0, 0, -1}));
+  CHECK(model.lights[2].inner_angle == Approx(glm::degrees(0.1)));
+  CHECK(model.lights[2].outer_angle == Approx(glm::degrees(0.2)));
+}
+
+TEST_CASE("the first perspective camera of a glTF's scene is the model's", "[models]") {
+  const Model model = load_text("a.gltf", document(R"("cameras":[
+    {"type":"orthographic","orthographic":{"xmag":1,"ymag":1,"znear":0,"zfar":9}},
+    {"type":"perspective","perspective":{"yfov":1,"znear":0.5}},{"type":"perspective","perspective":{"yfov":2,"znear":1}}],
+    "nodes":[{"camera":0},{"camera":1,"translation":[1,2,3],"rotation":[0,0.70710678,0,0.70710678]},{"camera":2}])"));
+  REQUIRE(model.camera);
+  CHECK(model.camera->fov == Approx(glm::degrees(1.0)));
+  CHECK(model.camera->near == 0.5);
+  CHECK(std::isinf(model.camera->far));
+  CHECK(model.camera->position == dvec3(1, 2, 3));
+  CHECK(near(model.camera->target, {0, 2, 3}));
+  CHECK(near(model.camera->up, {0, 1, 0}));
+  CHECK(model.warnings.size() == 1);
+}
