@@ -127,15 +127,55 @@ void write_picture(const Options& options, const std::vector<float>& shades) {
   write_file(options.image, bytes);
 }
 
+using Render = std::function<void(std::vector<float>&)>;
+using Times = std::map<std::string, std::vector<double>>;  // milliseconds, by contender
+
+constexpr const char *scalar_name = "C++ scalar", *simd_name = "C++ omp simd, 16 lanes";
+
+/// Whether all pictures are the scalar one, as far as they must be; the shares that differ go into `report`.
+bool pictures_agree(const std::map<std::string, Render>& contenders, std::vector<float>& shades, bool exact,
+                    nlohmann::json& report) {
+  std::vector<float> reference(shades.size());
+  contenders.at(scalar_name)(reference);
+  for (const auto& [name, render] : contenders) {
+    render(shades);
+    const double share = difference(reference, shades);
+    report["differs"][name] = share;
+    if (!exact && share > 0.02) {
+      fmt::print(stderr, "{}: {:.2f} % of the pixels differ; its time does not count\n", name, 100 * share);
+      return false;
+    }
+  }
+  return true;
+}
+
+std::vector<double> ratios(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < a.size(); ++i) result.push_back(a[i] / b[i]);
+  return result;
+}
+
+void tell_times(const Times& times, nlohmann::json& report) {
+  fmt::print("{:28} {:>9} {:>9} {:>9} {:>11} {:>11} {:>9}\n", "", "ms", "least", "greatest", "x scalar",
+             "x simd", "differs");
+  for (const auto& [name, values] : times) {
+    const Spread s = spread(values);
+    const double to_scalar = spread(ratios(times.at(scalar_name), values)).median;
+    const double to_simd = spread(ratios(times.at(simd_name), values)).median;
+    report["results"][name] = {{"ms", s.median}, {"scalar_ratio", to_scalar}, {"simd_ratio", to_simd}};
+    fmt::print("{:28} {:9.1f} {:9.1f} {:9.1f} {:11.2f} {:11.2f} {:8.2f}%\n", name, s.median, s.min, s.max,
+               to_scalar, to_simd, 100 * report["differs"][name].get<double>());
+  }
+}
+
 int run(const Options& options) {
   const Picture picture = make_picture(options);
   Device device(select_devices(enumerate_devices(), {options.device}).at(0));
   const std::size_t pixels =
       static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
-  std::vector<float> reference(pixels), shades(pixels);
-  std::map<std::string, std::function<void(std::vector<float>&)>> contenders;
-  contenders["C++ scalar"] = [&](auto& out) { render_scalar(picture, out); };
-  contenders["C++ omp simd, 16 lanes"] = [&](auto& out) { render_simd(picture, out); };
+  std::map<std::string, Render> contenders;
+  contenders[scalar_name] = [&](auto& out) { render_scalar(picture, out); };
+  contenders[simd_name] = [&](auto& out) { render_simd(picture, out); };
   std::vector<std::unique_ptr<KernelPeer>> kernels;
   for (const int lanes : {1, 4, 8, 16}) {
     kernels.push_back(std::make_unique<KernelPeer>(device, picture, lanes, options.exact));
@@ -143,38 +183,17 @@ int run(const Options& options) {
       kernel->run(out);
     };
   }
-  render_scalar(picture, reference);
   nlohmann::json report{
       {"device", device.info().label()}, {"size", options.size}, {"repeats", options.repeats}};
-  std::map<std::string, std::vector<double>> times;
-  for (auto& [name, render] : contenders) {
-    render(shades);
-    const double share = difference(reference, shades);
-    report["differs"][name] = share;
-    if (!options.exact && share > 0.02) {
-      fmt::print(stderr, "{}: {:.2f} % of the pixels differ; its time does not count\n", name, 100 * share);
-      return 6;
-    }
-  }
+  std::vector<float> shades(pixels);
+  if (!pictures_agree(contenders, shades, options.exact, report)) return 6;
   if (!options.image.empty()) write_picture(options, shades);
+  Times times;
   for (int i = 0; i < options.repeats; ++i)
     for (auto& [name, render] : contenders) times[name].push_back(milliseconds([&] { render(shades); }));
   const auto counts = kernels.back()->counts();
   fmt::print("Mandelbulb, power 8, {0}x{0}, one thread of {1}\n", options.size, device.info().label());
-  fmt::print("{:28} {:>9} {:>9} {:>9} {:>11} {:>11} {:>9}\n", "", "ms", "least", "greatest", "x scalar",
-             "x simd", "differs");
-  for (const auto& [name, values] : times) {
-    const Spread s = spread(values);
-    std::vector<double> to_scalar, to_simd;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      to_scalar.push_back(times["C++ scalar"][i] / values[i]);
-      to_simd.push_back(times["C++ omp simd, 16 lanes"][i] / values[i]);
-    }
-    report["results"][name] = {
-        {"ms", s.median}, {"scalar_ratio", spread(to_scalar).median}, {"simd_ratio", spread(to_simd).median}};
-    fmt::print("{:28} {:9.1f} {:9.1f} {:9.1f} {:11.2f} {:11.2f} {:8.2f}%\n", name, s.median, s.min, s.max,
-               spread(to_scalar).median, spread(to_simd).median, 100 * report["differs"][name].get<double>());
-  }
+  tell_times(times, report);
   const double frames = options.repeats + 1;
   fmt::print("steps a pixel {:.2f}, taken back {:.2f}, hits {:.1f} %, ended by the step limit {:.0f}\n",
              counts[0] / frames / double(pixels), counts[3] / frames / double(pixels),

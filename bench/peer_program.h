@@ -1,4 +1,4 @@
-// The common frame of the programs that measure in turn with Embree: MODEL... and the same options on the
+// The common frame of the programs that measure in turn with a peer: MODEL... and the same options on the
 // command line, a result for each model, all of them as JSON.
 #pragma once
 #include <CLI/CLI.hpp>

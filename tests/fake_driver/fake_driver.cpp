@@ -1,5 +1,5 @@
 // An OpenCL driver that is wrong in every way that the list of devices must survive. Loaded by the ICD
-// loader; it has four platforms:
+// loader; it has five platforms:
 //   "Fake failing"   the list of its devices fails with CL_OUT_OF_HOST_MEMORY
 //   "Fake mute"      two devices: one that does not know its name, and one that has no compiler
 //   "Fake old"       a device that speaks OpenCL C 1.1, and one that is big-endian

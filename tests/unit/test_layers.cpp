@@ -22,8 +22,7 @@ const std::map<std::string, Names> allowed = {
     {"render", {"base", "scene", "compile", "device", "shared"}},
     {"bench", {"base", "scene", "compile", "device", "render", "shared"}},
     {"mpi", {"render"}},
-    {"viewer", {"base", "scene", "compile", "device", "render", "shared"}},
-    {"app", {"base", "scene", "compile", "device", "render", "bench", "viewer", "shared"}},
+    {"app", {"base", "scene", "compile", "device", "render", "bench", "shared"}},
 };
 
 struct Include {
