@@ -57,7 +57,8 @@ std::vector<std::string> parse_kinds(const std::string& text) {
   return kinds;
 }
 
-RayTimes time_rays(const CompiledScene& scene, const RaySet& set, RayTracer& tracer, int repeat) {
+RayTimes time_rays(const std::string& name, const CompiledScene& scene, const RaySet& set, RayTracer& tracer,
+                   int repeat) {
   RayTimes times;
   times.kind = set.kind;
   times.rays = set.rays.size();
@@ -65,8 +66,8 @@ RayTimes time_rays(const CompiledScene& scene, const RaySet& set, RayTracer& tra
   tracer.run({set.any, set.coherent});
   times.check = check_hits(scene, set, answers_of(tracer, set));
   if (times.check.differ > 0)
-    throw DeviceError(fmt::format("{} of {} {} rays have wrong answers: no time counts", times.check.differ,
-                                  times.check.checked, set.kind));
+    throw DeviceError(fmt::format("{}: {} of {} {} rays have wrong answers: no time counts", name,
+                                  times.check.differ, times.check.checked, set.kind));
   const double millions = 1e-6 * static_cast<double>(set.rays.size());
   std::vector<double> rates, kernel_rates;
   for (int i = 0; i < repeat; ++i) {
@@ -87,7 +88,7 @@ std::vector<RayTimes> time_scene(const CompiledScene& scene, Device& device, con
   std::vector<RayTimes> times;
   for (const RaySet& set : frame_rays(scene, scene_viewpoint(scene), wanted.size, trace, wanted.kinds)) {
     show_step(options, fmt::format("{}: {} rays", name, set.kind));
-    times.push_back(time_rays(scene, set, tracer, options.repeat));
+    times.push_back(time_rays(name, scene, set, tracer, options.repeat));
   }
   return times;
 }

@@ -30,9 +30,15 @@ HostRay host_ray(const Ray& ray) {
 
 double greatest(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
+/// How large what is met is in the instance's space: a solid's unit, or the triangle.
+double size_met(const CompiledScene& scene, u32 instance, u32 prim) {
+  if (scene.instances[instance].shape != SHAPE_MESH) return 1;
+  return prim < scene.triangles.size() ? double(scene.triangles[prim].extent) : 0;
+}
+
 /// How far rounding may move the ray about `t`, in units of the world: by the coordinates there, in the
 /// world's space and in that of the instance that is met.
-double reach(const CompiledScene& scene, const HostRay& ray, double t, u32 instance) {
+double reach(const CompiledScene& scene, const HostRay& ray, double t, u32 instance, u32 prim) {
   const auto greater = [&](const HostRay& r) {
     return std::max(greatest(r.origin), greatest(r.origin + t * r.direction));
   };
@@ -40,7 +46,7 @@ double reach(const CompiledScene& scene, const HostRay& ray, double t, u32 insta
   if (instance != NO_INSTANCE) {
     const HostRay inside = object_ray(scene.instances[instance], ray);
     const double scale = glm::length(inside.direction) / glm::length(ray.direction);
-    result = std::max(result, (greater(inside) + 1) / scale);
+    result = std::max(result, (greater(inside) + size_met(scene, instance, prim)) / scale);
   }
   return rounding * result;
 }
@@ -50,7 +56,7 @@ double reach_of_none(const CompiledScene& scene, const HostRay& ray) {
   const float4& ball = scene.info.scene_center;
   const double length = glm::length(ray.direction);
   const double beyond = glm::length(dvec3(ball.x, ball.y, ball.z) - ray.origin) + double(ball.w);
-  return reach(scene, ray, std::min(ray.t_max, beyond / length), NO_INSTANCE);
+  return reach(scene, ray, std::min(ray.t_max, beyond / length), NO_INSTANCE, 0);
 }
 
 /// A ray as rounding may have it.
@@ -82,10 +88,11 @@ struct Findings {
   double nearest = unlimited, farthest = 0;
   double slack = 0;  // along the ray
 
-  Findings(const CompiledScene& scene, const HostRay& ray, double found, u32 instance) {
+  Findings(const CompiledScene& scene, const HostRay& ray, double found, u32 instance, u32 prim) {
     const std::optional<HostHit> hit = trace_host(scene, ray);
-    double distance = std::isfinite(found) ? reach(scene, ray, found, instance) : reach_of_none(scene, ray);
-    if (hit) distance = std::max(distance, reach(scene, ray, hit->t, hit->instance));
+    double distance =
+        std::isfinite(found) ? reach(scene, ray, found, instance, prim) : reach_of_none(scene, ray);
+    if (hit) distance = std::max(distance, reach(scene, ray, hit->t, hit->instance, hit->prim));
     slack = distance / glm::length(ray.direction);
     copies = moved_copies(ray, distance);
     for (const Copy& copy : copies) {
@@ -129,12 +136,12 @@ bool is_right(const CompiledScene& scene, const Ray& ray, const Hit& hit) {
   const bool met = hit.instance != NO_INSTANCE;
   if (met && (hit.instance >= scene.info.instance_count || !std::isfinite(hit.t))) return false;
   const double t = met ? double(hit.t) : unlimited;
-  const Findings findings(scene, host_ray(ray), t, hit.instance);
+  const Findings findings(scene, host_ray(ray), t, hit.instance, hit.prim);
   return findings.hold(t) && (!met || findings.meet(scene, hit.instance, t));
 }
 
 bool is_right(const CompiledScene& scene, const Ray& ray, bool occluded) {
-  const Findings findings(scene, host_ray(ray), unlimited, NO_INSTANCE);
+  const Findings findings(scene, host_ray(ray), unlimited, NO_INSTANCE, 0);
   return occluded ? std::isfinite(findings.nearest) : !std::isfinite(findings.farthest);
 }
 

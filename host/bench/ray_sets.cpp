@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "bench/plain/surface.h"
 #include "bench/random.h"
 
 namespace sundog {
@@ -46,8 +47,8 @@ std::optional<Surface> surface_at(const CompiledScene& scene, const Ray& ray, co
   surface.n = n / length;
   surface.entering = glm::dot(surface.n, direction(ray)) < 0;
   if (!surface.entering) surface.n = -surface.n;
-  const vec3 reach = glm::max(glm::abs(origin(ray)), glm::abs(surface.p));
-  surface.offset = std::max({reach.x, reach.y, reach.z}) * 0x1p-19f;
+  const plain::Hit met{hit.t, hit.u, hit.v, hit.prim, hit.instance, ng};
+  surface.offset = plain::start_offset(scene, origin(ray), met, surface.p, n);
   return surface;
 }
 

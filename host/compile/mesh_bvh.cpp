@@ -123,13 +123,20 @@ WideBvh build_mesh(const SceneDescription& scene, std::size_t index, const Mesh&
   return build_wide_bvh(mesh.triangles.size(), fill, settings);
 }
 
+/// By the arithmetic of finish_triangle.
+bool has_area(const glm::vec3& v0, const glm::vec3& v1, const glm::vec3& v2) {
+  return glm::cross(v1 - v0, v2 - v0) != glm::vec3(0);
+}
+
 TriangleBlock make_block(const Mesh& mesh, std::span<const u32> members, u32 first_triangle) {
   TriangleBlock block{};
   std::fill(std::begin(block.prim), std::end(block.prim), NO_PRIM);
   for (std::size_t lane = 0; lane < members.size(); ++lane) {
     const glm::uvec3& triangle = mesh.triangles[members[lane]];
     const glm::vec3& v0 = mesh.positions[triangle.x];
-    const glm::vec3 &v1 = mesh.positions[triangle.y], &v2 = mesh.positions[triangle.z];
+    glm::vec3 v1 = mesh.positions[triangle.y], v2 = mesh.positions[triangle.z];
+    // A point is never hit; what has no area might be, by rounding, and has no normal.
+    if (!has_area(v0, v1, v2)) v1 = v2 = v0;
     block.v0_x[lane] = v0.x, block.v0_y[lane] = v0.y, block.v0_z[lane] = v0.z;
     block.v1_x[lane] = v1.x, block.v1_y[lane] = v1.y, block.v1_z[lane] = v1.z;
     block.v2_x[lane] = v2.x, block.v2_y[lane] = v2.y, block.v2_z[lane] = v2.z;

@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
@@ -69,12 +70,20 @@ u32 triangle_material(const Mesh& mesh, std::size_t triangle, u32 default_materi
   return static_cast<u32>(mesh.materials[triangle]);
 }
 
+float triangle_extent(const Mesh& mesh, const glm::uvec3& triangle) {
+  const glm::vec3 &a = mesh.positions[triangle.x], &b = mesh.positions[triangle.y],
+                  &c = mesh.positions[triangle.z];
+  const glm::vec3 size = glm::max(glm::max(a, b), c) - glm::min(glm::min(a, b), c);
+  return std::max({size.x, size.y, size.z});
+}
+
 void fill_facets(const Mesh& mesh, u32 first_vertex, u32 default_material, std::span<Vertex> vertices,
                  std::span<TriangleShading> triangles) {
   parallel_range(mesh.triangles.size(), [&](std::size_t t) {
     const glm::dvec3 normal = face_normal(mesh, mesh.triangles[t]);
     TriangleShading& triangle = triangles[t];
     triangle.material = triangle_material(mesh, t, default_material);
+    triangle.extent = triangle_extent(mesh, mesh.triangles[t]);
     for (std::size_t corner = 0; corner < 3; ++corner) {
       Vertex& vertex = vertices[3 * t + corner];
       vertex = make_vertex(mesh, mesh.triangles[t][static_cast<int>(corner)]);
@@ -101,7 +110,8 @@ void fill_vertices(const Mesh& mesh, u32 first_vertex, u32 default_material, std
   parallel_range(triangles.size(), [&](std::size_t t) {
     const glm::uvec3& corners = mesh.triangles[t];
     triangles[t] = {{first_vertex + corners.x, first_vertex + corners.y, first_vertex + corners.z},
-                    triangle_material(mesh, t, default_material)};
+                    triangle_material(mesh, t, default_material),
+                    triangle_extent(mesh, corners)};
   });
 }
 

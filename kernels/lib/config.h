@@ -8,7 +8,10 @@
 // Without the instruction fma() is a program of its own, inlined at every use (rusticl took 12 times as long
 // to compile); two roundings are as good here. PoCL does not define FP_FAST_FMAF, but names the host's
 // __FMA__; for other devices than processors the host defines DEVICE_HAS_FMA where the driver says so.
-#if !defined(FP_FAST_FMAF) && !defined(__FMA__) && !defined(DEVICE_HAS_FMA)
+#if defined(FP_FAST_FMAF) || defined(__FMA__) || defined(DEVICE_HAS_FMA)
+#define HAS_FMA 1
+#else
+#define HAS_FMA 0
 #define fma(a, b, c) ((a) * (b) + (c))
 #endif
 

@@ -36,6 +36,8 @@ ALWAYS_INLINE u32 triangles_in_packet(__global const TriangleBlock* block, const
   return lane_mask((least_x <= 0.0f) & (most_x >= 0.0f) & (least_y <= 0.0f) & (most_y >= 0.0f));
 }
 
+EDGE_FUNCTION(edge_function16, float16)
+
 // The triangle at `place` against all rays. Returns whether it is a hit of any.
 ALWAYS_INLINE bool packet_triangle(__global const TriangleBlock* blocks, u32 place, const PacketRays* rays,
                                    PacketHits* hits, u32 instance, bool any) {
@@ -48,7 +50,8 @@ ALWAYS_INLINE bool packet_triangle(__global const TriangleBlock* blocks, u32 pla
                 x2 = fma(-rays->sx, z2, ox - vx[48]);
   const float16 y0 = fma(-rays->sy, z0, oy - vy[0]), y1 = fma(-rays->sy, z1, oy - vy[24]),
                 y2 = fma(-rays->sy, z2, oy - vy[48]);
-  const float16 e0 = x2 * y1 - y2 * x1, e1 = x0 * y2 - y0 * x2, e2 = x1 * y0 - y1 * x0;
+  const float16 e0 = edge_function16(x2, y2, x1, y1), e1 = edge_function16(x0, y0, x2, y2),
+                e2 = edge_function16(x1, y1, x0, y0);
   const float16 a = select(e1, e0, e0 < e1), b = select(e1, e0, e0 > e1);
   int16 hit = (select(e2, a, a < e2) >= 0.0f) | (select(e2, b, b > e2) <= 0.0f);
   if (!lane_bits(hit)) return false;

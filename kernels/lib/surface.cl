@@ -50,13 +50,20 @@ static inline Faces hit_faces(TRACE_PARAMETERS, SHADE_PARAMETERS, REAL3 d, const
   return faces;
 }
 
+static inline REAL greatest_size(REAL3 a) { return greatest3(real3(fabs(a.x), fabs(a.y), fabs(a.z))); }
+
 // How far from the surface a new ray must start: a few of the float's spacings at the magnitudes that made
 // the position (the idea of Waechter and Binder 2019, without their absolute threshold, so that a scene works
 // in any unit).
 static inline REAL offset_distance(REAL3 o, REAL3 p) {
-  return real_max(greatest3(real3(fabs(o.x), fabs(o.y), fabs(o.z))),
-                  greatest3(real3(fabs(p.x), fabs(p.y), fabs(p.z)))) *
-         0x1p-19f;
+  return real_max(greatest_size(o), greatest_size(p)) * 0x1p-19f;
+}
+
+// The same on triangles: corners that are far away round the hit as well, in the mesh's space. `normal` is
+// the normal there and `outward` in the world: the quotient of their lengths takes what is measured along it
+// to the world.
+static inline REAL triangle_offset(REAL extent, REAL3 normal, REAL3 outward) {
+  return extent * 0x1p-21f * greatest_size(normal) / nonzero(greatest_size(outward));
 }
 
 static inline MASK odd_cell(REAL3 p, float frequency) {
@@ -74,15 +81,17 @@ static inline REAL3 settle_on_sphere(__global const Instance* instance, REAL3 p)
   return along3(p, -0.5f * (dot3(q, q) - 1.0f) / dot3(gradient, gradient), gradient);
 }
 
-// Normals of the corners and their colours, interpolated, for the lanes of `lanes`. World space, unit.
+// Normals of the corners and their colours, interpolated, for the lanes of `lanes`, and the triangles'
+// extents. World space, unit.
 NEVER_INLINE REAL3 shading_normals(SHADE_PARAMETERS, __global const Instance* instance, const Hits* hits,
-                                   MASK lanes, REAL3* color) {
+                                   MASK lanes, REAL3* color, REAL* extent) {
   REAL3 normal = hits->ng;
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     __global const TriangleShading* triangle = triangles + MASK_LANE(hits->prim, i);
     const Vertex a = vertices[triangle->vertex[0]], b = vertices[triangle->vertex[1]],
                  c = vertices[triangle->vertex[2]];
+    REAL_LANE(*extent, i) = triangle->extent;
     const float u = REAL_LANE(hits->u, i), v = REAL_LANE(hits->v, i), w = 1.0f - u - v;
     set3(color, i, w * (float3)(a.r, a.g, a.b) + u * (float3)(b.r, b.g, b.b) + v * (float3)(c.r, c.g, c.b));
     set3(&normal, i,
@@ -120,6 +129,7 @@ static inline void interact(TRACE_PARAMETERS, SHADE_PARAMETERS, REAL3 o, REAL3 d
   s->ng = select3(negate3(outward), outward, faces->entering);
   s->ns = s->ng;
   s->p = along3(o, hits->t, d);
+  REAL extent = (REAL)(0.0f);
   REAL3 color = all3((float3)(1.0f));
   MASK colored = MASK_OF((faces->flags & (int)MATERIAL_VERTEX_COLOR) != 0);
   u32 index;
@@ -131,7 +141,7 @@ static inline void interact(TRACE_PARAMETERS, SHADE_PARAMETERS, REAL3 o, REAL3 d
 #endif
 #if HAS_MESH
     if (instance->shape == SHAPE_MESH) {
-      const REAL3 ns = shading_normals(SHADE_ARGUMENTS, instance, hits, mine, &color);
+      const REAL3 ns = shading_normals(SHADE_ARGUMENTS, instance, hits, mine, &color, &extent);
       const MASK smooth = mine & MASK_OF((faces->flags & (int)MATERIAL_FLAT) == 0);
       s->ns = select3(s->ns, facing_normals(ns, s->ng, faces->entering, d), smooth);
     }
@@ -148,7 +158,7 @@ static inline void interact(TRACE_PARAMETERS, SHADE_PARAMETERS, REAL3 o, REAL3 d
       color_surfaces(materials + material, instance, of_material, s);
     }
   }
-  s->offset = offset_distance(o, s->p);
+  s->offset = real_max(triangle_offset(extent, hits->ng, faces->outward), offset_distance(o, s->p));
   if (any_lane(colored & lanes)) {
     s->ambient = select3(s->ambient, multiply3(s->ambient, color), colored);
     s->diffuse = select3(s->diffuse, multiply3(s->diffuse, color), colored);

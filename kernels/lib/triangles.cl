@@ -1,8 +1,8 @@
 // Eight triangles against one ray, watertight (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle
 // Intersection"): corners are moved into a space in which the ray is the z axis, and there the sign of an
-// edge's function is right or the function is zero, so neighbours agree on each edge and a ray cannot pass
-// between them. That needs products and difference rounded one by one: no fma in edge_function. The result
-// does not depend on the order in which blocks are visited: equal t goes to the lower index.
+// edge's function is right, so neighbours agree on each edge: a ray cannot pass between them, nor meet a
+// triangle that it sees edge on beside it. The result does not depend on the order in which blocks are
+// visited: equal t goes to the lower index.
 #ifndef SUNDOG_LIB_TRIANGLES_CL
 #define SUNDOG_LIB_TRIANGLES_CL
 #include "lib/config.h"
@@ -75,8 +75,30 @@ ALWAYS_INLINE void offer_triangle(__global const TriangleBlock* blocks, u32 plac
 // exactly.
 #define RANGE_SLACK 2e-6f
 
+// a x b, 0 only where a and b are in line: with the error of one product added (Kahan), or where there is no
+// instruction for that, with those of both products where these are equal (Dekker 1971).
+#if HAS_FMA
+#define EDGE_FUNCTION(name, real)                               \
+  static inline real name(real ax, real ay, real bx, real by) { \
+    const real product = ay * bx;                               \
+    return fma(ax, by, -product) + fma(-ay, bx, product);       \
+  }
+#else
+#define EDGE_FUNCTION(name, real)                                                       \
+  static inline real name##_error(real a, real b, real product) {                       \
+    const real wide_a = a * 4097.0f, wide_b = b * 4097.0f;                              \
+    const real high_a = wide_a - (wide_a - a), high_b = wide_b - (wide_b - b);          \
+    const real low_a = a - high_a, low_b = b - high_b;                                  \
+    return high_a * high_b - product + high_a * low_b + low_a * high_b + low_a * low_b; \
+  }                                                                                     \
+  static inline real name(real ax, real ay, real bx, real by) {                         \
+    const real p = ax * by, q = ay * bx;                                                \
+    return p == q ? name##_error(ax, by, p) - name##_error(ay, bx, q) : p - q;          \
+  }
+#endif
+
 #if WIDE_VECTORS
-static inline float8 edge_function(float8 ax, float8 ay, float8 bx, float8 by) { return ax * by - ay * bx; }
+EDGE_FUNCTION(edge_function8, float8)
 
 // What the eight lanes have in common with the hit test; t, u, v are set where `lanes` is not 0.
 typedef struct BlockTest {
@@ -95,8 +117,8 @@ ALWAYS_INLINE BlockTest test_block(__global const TriangleBlock* block, const Sh
   const float8 y0 = fma(-(float8)(ray->sy), z0, ray->oy - vload8(0, vy)),
                y1 = fma(-(float8)(ray->sy), z1, ray->oy - vload8(3, vy)),
                y2 = fma(-(float8)(ray->sy), z2, ray->oy - vload8(6, vy));
-  const float8 e0 = edge_function(x2, y2, x1, y1), e1 = edge_function(x0, y0, x2, y2),
-               e2 = edge_function(x1, y1, x0, y0);
+  const float8 e0 = edge_function8(x2, y2, x1, y1), e1 = edge_function8(x0, y0, x2, y2),
+               e2 = edge_function8(x1, y1, x0, y0);
   const int8 inside = (least8(least8(e0, e1), e2) >= 0.0f) | (greatest8(greatest8(e0, e1), e2) <= 0.0f);
   const float8 det = e0 + e1 + e2, size = fabs(det);
   const float8 scaled_t = fma(e0, z0, fma(e1, z1, e2 * z2)) * ray->sz;
@@ -135,7 +157,7 @@ ALWAYS_INLINE void closest_in_block(__global const TriangleBlock* blocks, u32 in
   if (test.lanes) nearest_of_block(blocks, index, &test, instance, hit);
 }
 #else
-static inline float edge_function(float ax, float ay, float bx, float by) { return ax * by - ay * bx; }
+EDGE_FUNCTION(edge_function, float)
 
 ALWAYS_INLINE void closest_in_block(__global const TriangleBlock* blocks, u32 index, const ShearRay* ray,
                                     float t_min, u32 instance, Hit* hit) {

@@ -47,7 +47,7 @@ SUNDOG_SHARED_SIZE(CompactNode, 96)
 
 // 320 bytes: eight triangles by their corners, object space. Neighbours hold the same bits of a shared corner, which
 // is what makes the hit test watertight. `prim` indexes TriangleShading; an unused lane holds zeros and NO_PRIM
-// (a triangle without area: never hit).
+// (a point: never hit), and a triangle without area is held as a point too.
 typedef struct TriangleBlock {
   float v0_x[8], v0_y[8], v0_z[8];
   float v1_x[8], v1_y[8], v1_z[8];
@@ -59,12 +59,14 @@ SUNDOG_SHARED_SIZE(TriangleBlock, 320)
 #define NO_PRIM 0xFFFFFFFFu
 #define NO_INSTANCE 0xFFFFFFFFu
 
-// 16 bytes: what shading needs of a triangle: three indices into the Vertex array, and its material.
+// 20 bytes: what shading needs of a triangle: three indices into the Vertex array, its material, and the
+// greatest distance of its corners along an axis, which rounding of positions on it is relative to.
 typedef struct TriangleShading {
   u32 vertex[3];
   u32 material;
+  float extent;
 } TriangleShading;
-SUNDOG_SHARED_SIZE(TriangleShading, 16)
+SUNDOG_SHARED_SIZE(TriangleShading, 20)
 
 // 32 bytes: a mesh vertex's attributes. Normals are unit length, object space.
 typedef struct Vertex {

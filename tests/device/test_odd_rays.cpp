@@ -7,7 +7,7 @@
 #include "bench/check_hits.h"
 #include "bench/ray_tracer.h"
 #include "catch.h"
-#include "devices.h"
+#include "each_tracer.h"
 #include "scenes.h"
 #include "test_meshes.h"
 
@@ -88,28 +88,6 @@ std::vector<Ray> with_changes(const std::vector<Change>& changes, std::vector<bo
         if (changed.back()) changes[c](rays.back());
       }
   return rays;
-}
-
-/// Calls test(tracer, coherent) for each way to trace on each device.
-void for_each_tracer(const SceneDescription& description, const auto& test) {
-  struct Way {
-    const char* name;
-    Tracer tracer;
-    bool coherent;
-  };
-  SceneDescription scene = description;
-  for (const DeviceInfo& info : test_devices())
-    for (const Way& way : {Way{"together", Tracer::wide, true}, Way{"alone", Tracer::wide, false},
-                           Way{"compact", Tracer::compact, false}}) {
-      if (info.native_vector_width <= 1 && way.tracer == Tracer::wide) continue;
-      DYNAMIC_SECTION(info.label() << ", " << way.name) {
-        Device device(info);
-        scene.render.tracer = way.tracer;
-        const CompiledScene flat = compile(scene);
-        RayTracer tracer(device, flat);
-        test(flat, tracer, way.coherent);
-      }
-    }
 }
 
 void check_no_rays(const SceneDescription& scene) {

@@ -35,7 +35,48 @@ SceneDescription scene_in(double unit, bool smooth) {
   return scene;
 }
 
+/// A mirroring ball on a floor that reaches `size` to all sides, of two triangles or, for 0, a plane.
+SceneDescription ball_on_floor(float size, double slant, Tracer tracer) {
+  SceneDescription scene = scenes::line_of_sight({0.5, 0.6, 3}, {0, 0, 0});
+  scene.camera.fov = 40;
+  scene.image.width = scene.image.height = 64;
+  scene.render.tracer = tracer;
+  LightDescription light;
+  light.position = {2, 4, 3};
+  scene.lights.push_back(light);
+  const int mirror = scenes::add_mirror(scene, 0.5), white = scenes::add_white(scene);
+  scenes::place(scene, SphereShape{0.5}, mirror);
+  const glm::dmat4 slanted = glm::rotate(glm::dmat4(1), slant, glm::dvec3(0, 0, 1));
+  if (size == 0) {
+    scenes::place(scene, PlaneShape{}, white, glm::translate(slanted, glm::dvec3(0, -0.5, 0)));
+    return scene;
+  }
+  Mesh floor;
+  for (const glm::dvec2 corner : {glm::dvec2(-1, -1), {1, -1}, {1, 1}, {-1, 1}})
+    floor.positions.emplace_back(slanted * glm::dvec4(corner.x * size, -0.5, corner.y * size, 1));
+  floor.triangles = {{0, 1, 2}, {0, 2, 3}};
+  scene.meshes = {floor};
+  scenes::place(scene, MeshShape{0}, white);
+  return scene;
+}
+
 }  // namespace
+
+TEST_CASE("a floor of two huge triangles throws no shadow on itself") {
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      for (const double slant : {0.0, 0.3})
+        for (const Tracer tracer : {Tracer::wide, Tracer::compact}) {
+          if (tracer == Tracer::wide && device.native_vector_width <= 1) continue;
+          const Image expected = scenes::render_on(device, ball_on_floor(0, slant, tracer)).image;
+          for (const float size : {100.0f, 1e3f, 1e4f}) {
+            CAPTURE(slant, size, tracer == Tracer::compact);
+            const ImageDifference d = compare_images(
+                scenes::render_on(device, ball_on_floor(size, slant, tracer)).image, expected, 0.03);
+            CHECK(d.over_tolerance <= d.pixels / 25);  // the horizon, and shadows that begin a little farther
+          }
+        }
+    }
+}
 
 TEST_CASE("a mesh of extreme coordinates that its transform brings to size looks as any other") {
   for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {

@@ -17,6 +17,8 @@ vec3 interpolate(const Hit& hit, const vec3& a, const vec3& b, const vec3& c) {
 vec3 normal_of(const Vertex& v) { return {v.nx, v.ny, v.nz}; }
 vec3 color_of(const Vertex& v) { return {v.r, v.g, v.b}; }
 
+float greatest_size(const vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
 bool odd_cell(const vec3& p, float frequency) {
   const vec3 cell = glm::floor(p * frequency + 0x1p-17f);
   return std::fmod(cell.x + cell.y + cell.z, 2.0f) != 0;
@@ -57,16 +59,23 @@ const Material& material_of(const CompiledScene& scene, const Hit& hit) {
   return scene.materials[own != NO_MATERIAL ? own : scene.triangles[hit.prim].material];
 }
 
+float start_offset(const CompiledScene& scene, const vec3& o, const Hit& hit, const vec3& p,
+                   const vec3& outward) {
+  const float offset = std::max(greatest_size(o), greatest_size(p)) * 0x1p-19f;
+  if (scene.instances[hit.instance].shape != SHAPE_MESH) return offset;
+  const float extent = scene.triangles[hit.prim].extent;
+  return std::max(offset, extent * 0x1p-21f * greatest_size(hit.ng) / greatest_size(outward));
+}
+
 Surface make_surface(const CompiledScene& scene, const Ray& ray, const Hit& hit) {
   const Instance& instance = scene.instances[hit.instance];
   Surface s;
   s.material = &material_of(scene, hit);
-  const vec3 outward = glm::normalize(world_normal(instance, hit.ng));
+  const vec3 normal = world_normal(instance, hit.ng), outward = glm::normalize(normal);
   const bool entering = glm::dot(outward, ray.d) < 0;
   s.ng = s.ns = entering ? outward : -outward;
   s.p = ray.o + hit.t * ray.d;
-  const vec3 size = glm::max(glm::abs(ray.o), glm::abs(s.p));
-  s.offset = std::max({size.x, size.y, size.z}) * 0x1p-19f;
+  s.offset = start_offset(scene, ray.o, hit, s.p, normal);
   vec3 color(1);
   if (instance.shape == SHAPE_MESH) shade_mesh(scene, ray, hit, entering, s, color);
   const u32 flags = s.material->flags;

@@ -19,6 +19,11 @@ float power(float x, float e);
 
 const Material& material_of(const CompiledScene& scene, const Hit& hit);
 
+/// How far off the surface at p a further ray starts. `outward`: the hit's normal in the world, as long as
+/// the transform makes it.
+float start_offset(const CompiledScene& scene, const glm::vec3& o, const Hit& hit, const glm::vec3& p,
+                   const glm::vec3& outward);
+
 Surface make_surface(const CompiledScene& scene, const Ray& ray, const Hit& hit);
 
 struct LightSample {
