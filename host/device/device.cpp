@@ -58,12 +58,14 @@ void keep_for_good(const cl::Device& device, const cl::CommandQueue& queue) {
   kept->emplace_back(device, queue);
 }
 
-/// An event's time on the device; 0 where the driver does not measure.
+/// An event's time on the device; 0 where the driver does not measure. Rusticl on llvmpipe stamps begin and
+/// end at once, some nanoseconds apart: in less than a microsecond no launch ends.
 double event_ms(const cl::Event& event) {
+  constexpr cl_ulong least = 1000;
   cl_int started = CL_SUCCESS, ended = CL_SUCCESS;
   const cl_ulong start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>(&started);
   const cl_ulong end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>(&ended);
-  if (started != CL_SUCCESS || ended != CL_SUCCESS || end <= start) return 0;
+  if (started != CL_SUCCESS || ended != CL_SUCCESS || end < start + least) return 0;
   return static_cast<double>(end - start) * 1e-6;
 }
 

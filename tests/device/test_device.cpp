@@ -44,6 +44,27 @@ TEST_CASE("a launch covers exactly the items it was asked for, whatever the loca
     }
 }
 
+TEST_CASE("a launch's time by the driver's events is none or one that it may have taken") {
+  const std::string text = R"(
+    __kernel void spin(__global uint* values, uint rounds) {
+      uint x = values[get_global_id(0)];
+      for (uint i = 0; i < rounds; ++i) x = x * 747796405u + 2891336453u;
+      values[get_global_id(0)] = x;
+    })";
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      Device device(info);
+      auto spin = build_text(device, text).kernel<Buffer<u32>, u32>("spin");
+      const auto values = device.upload<u32>(std::vector<u32>(256, 1));
+      for (int i = 0; i < 20; ++i) {
+        device.run(spin, {.x = 256}, values, u32{20'000});  // 5 million steps
+        device.finish();
+      }
+      const double ms = device.times().at("spin").device_ms;
+      CAPTURE(ms);
+      CHECK((ms == 0 || ms > 20 * 1e-3));
+    }
+}
+
 TEST_CASE("a two-dimensional launch is padded in both directions") {
   const std::string text = R"(
     __kernel void place(__global uint* seen, uint width, uint height) {
