@@ -88,9 +88,11 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   // Rounded up, so that similar scenes share their kernels.
   define("BVH_STACK", (scene.features.bvh_stack + 31u) / 32u * 32u);
   define_features(scene.features, define);
-  const unsigned lanes = marched_lanes(batch), few_solids = 2 * lanes;
+  const unsigned lanes = marched_lanes(batch), few_solids = std::max(2u, lanes * 3 / 2);
   define("FEW_SOLIDS", few_solids);
-  define("HAS_BVH", scene.features.shapes[SHAPE_MESH] || scene.info.bounded_count > few_solids);
+  // Packets gain by a tree over fewer; over very few not what its kernels take to compile.
+  const unsigned without_tree = vectors && batch == 16 ? 6 : few_solids;
+  define("HAS_BVH", scene.features.shapes[SHAPE_MESH] || scene.info.bounded_count > without_tree);
   define("LANES", lanes);
   if (!scene.fields.source.empty()) config.generated["generated/sdf.cl"] = scene.fields.source;
   return config;

@@ -48,8 +48,8 @@
 // Whether a batch of rays that run close together can go through the BVH as one.
 #define PACKETS (WIDE_VECTORS && BATCH == 16 && HAS_BVH)
 
-// Whether rays that go by themselves are walked in lists (walk.cl). It pays in meshes.
-#define WALKS_IN_TURN (WIDE_VECTORS && HAS_MESH)
+// Whether rays that go by themselves are walked in lists (walk.cl).
+#define WALKS_IN_TURN (WIDE_VECTORS && HAS_BVH)
 
 // Pending rays of a work-item: enough for a full binary tree of max_depth levels walked BATCH rays at a time.
 #ifndef RAY_STACK
@@ -95,7 +95,7 @@
 #ifndef HAS_ROUNDBOX
 #define HAS_ROUNDBOX 1
 #endif
-// There is a mesh, or more bounded solids than FEW_SOLIDS: a BVH leads to them.
+// A BVH leads to what is bounded: there is a mesh, or several solids.
 #ifndef HAS_BVH
 #define HAS_BVH 1
 #endif

@@ -52,28 +52,43 @@ static inline Hits select_hits(const Hits* a, const Hits* b, MASK m) {
   return hits;
 }
 
-// The solid `index` in (t_min, hits->t] for the lanes of `active`; world-space rays. Of equal distances the
-// lower index counts.
-NEVER_INLINE void hit_solid(__global const Instance* restrict instances, u32 index, const REAL3* o,
-                            const REAL3* d, const REAL* t_min, MASK active, Hits* hits) {
-  __global const Instance* instance = instances + index;
-  REAL3 oo = *o, dd = *d;
-  if (!(instance->flags & INSTANCE_IDENTITY)) {
-    oo = object_points(instance, oo);
-    dd = object_vectors(instance, dd);
-  }
+// Solids of one shape, `index` a lane, in (t_min, hits->t] for the lanes of `active`; object-space rays. Of
+// equal distances the lower index counts.
+ALWAYS_INLINE void offer_solids(u32 shape, float4 parameters, MASK index, REAL3 o, REAL3 d, REAL t_min,
+                                MASK active, Hits* hits) {
   const REAL zero = (REAL)(0.0f);
   SolidHits solid = {hits->t, hits->ng, NO_LANES, NO_LANES};
-  closest_in_solid(instance->shape, instance->parameters, oo, dd, *t_min, active, &solid);
-  const MASK earlier = MASK_OF(hits->instance != (int)NO_INSTANCE) & MASK_OF(hits->instance <= (int)index);
+  closest_in_solid(shape, parameters, o, d, t_min, active, &solid);
+  const MASK earlier = MASK_OF(hits->instance != (int)NO_INSTANCE) & MASK_OF(hits->instance <= index);
   const MASK found = solid.found & ~(earlier & MASK_OF(solid.t == hits->t));
   if (!any_lane(found)) return;
   hits->t = select(hits->t, solid.t, found);
   hits->u = select(hits->u, zero, found);
   hits->v = select(hits->v, zero, found);
   hits->prim = select(hits->prim, solid.part, found);
-  hits->instance = select(hits->instance, (MASK)((int)index), found);
+  hits->instance = select(hits->instance, index, found);
   hits->ng = select3(hits->ng, solid.ng, found);
+}
+
+// The instances [first, last), all solids, for the lanes of `active`; world-space rays. With `any`, lanes
+// that have found something are done. The loop stands in the function, so that rays and hits stay in
+// registers.
+NEVER_INLINE void hit_solids(__global const Instance* restrict instances, u32 first, u32 last,
+                             const REAL3* rays_o, const REAL3* rays_d, const REAL* rays_t_min, MASK active,
+                             bool any, Hits* hits) {
+  const REAL3 o = *rays_o, d = *rays_d;
+  const REAL t_min = *rays_t_min;
+  Hits found = *hits;
+  for (u32 i = first; i < last; ++i) {
+    if (any) active &= ~hit_anything(&found);
+    if (!any_lane(active)) break;
+    __global const Instance* instance = instances + i;
+    const bool moves = !(instance->flags & INSTANCE_IDENTITY);
+    offer_solids(instance->shape, instance->parameters, (MASK)((int)i),
+                 moves ? object_points(instance, o) : o, moves ? object_vectors(instance, d) : d, t_min,
+                 active, &found);
+  }
+  *hits = found;
 }
 
 #endif

@@ -4,11 +4,10 @@
 #define SUNDOG_LIB_PACKET_CL
 #include "lib/config.h"
 #if PACKETS
+#include "lib/packet_alone.cl"
 #include "lib/packet_mesh.cl"
 #include "lib/packet_nodes.cl"
-#include "lib/single.cl"
 #include "lib/tables.h"
-#include "lib/walk.cl"
 
 // So few rays in the scene or in an instance go alone.
 #ifndef PACKET_LEAST
@@ -18,7 +17,7 @@
 static inline void packet_in_solid(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,
                                    u32 index, bool any) {
   const REAL3 o = real3(rays->o[0], rays->o[1], rays->o[2]), d = real3(rays->d[0], rays->d[1], rays->d[2]);
-  hit_solid(instances, index, &o, &d, &hits->t_min, lanes_of(active), hits->found);
+  hit_solids(instances, index, index + 1u, &o, &d, &hits->t_min, lanes_of(active), false, hits->found);
   if (any) end_lanes(hits, lanes_of(active));
 }
 
@@ -53,23 +52,6 @@ NEVER_INLINE void packet_in_instance(TRACE_PARAMETERS, const PacketRays* rays, P
   packet_in_solid(TRACE_ARGUMENTS, rays, hits, active, index, any);
 }
 
-// The rays of `active` by themselves, from `word` of the scene BVH on.
-static inline void bounded_alone(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,
-                                 u32 word, bool any) {
-#if HAS_MESH
-  walk_lanes(TRACE_ARGUMENTS, rays, hits, active, word, NO_INSTANCE, any);
-#else
-  for (u32 bits = active; bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
-    Hit hit = get_hit(hits->found, i);
-    trace_bounded(TRACE_ARGUMENTS, word, packet_origin(rays, i), packet_direction(rays, i),
-                  get_lane(&hits->t_min, i), any, &hit);
-    set_hit(hits->found, i, &hit);
-  }
-  if (any) end_lanes(hits, lanes_of(active));
-#endif
-}
-
 NEVER_INLINE void packet_in_leaf(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active,
                                  u32 word, bool any) {
   const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
@@ -96,7 +78,7 @@ NEVER_INLINE void packet_in_scene(TRACE_PARAMETERS, const PacketRays* rays, Pack
       if (word & BVH_LEAF)
         packet_in_leaf(TRACE_ARGUMENTS, rays, hits, active, word, any);
       else
-        bounded_alone(TRACE_ARGUMENTS, rays, hits, active, word, any);
+        walk_lanes(TRACE_ARGUMENTS, rays, hits, active, word, NO_INSTANCE, any);
       renew_bounds(hits);
     }
   }

@@ -4,9 +4,9 @@
 #define SUNDOG_LIB_PACKET_MESH_CL
 #include "lib/config.h"
 #if PACKETS && HAS_MESH
+#include "lib/packet_alone.cl"
 #include "lib/packet_nodes.cl"
 #include "lib/tables.h"
-#include "lib/walk.cl"
 
 // So few rays in a leaf are tested one after another, when the nearest hit is wanted and when any.
 #ifndef LEAF_LEAST
@@ -77,19 +77,6 @@ ALWAYS_INLINE bool packet_triangle(__global const TriangleBlock* blocks, u32 pla
   hits->found->prim = select(hits->found->prim, (int16)((int)place), hit);
   hits->found->instance = select(hits->found->instance, (int16)((int)instance), hit);
   return true;
-}
-
-// The rays of `active` by themselves, from `word` of the scene BVH or of `instance`'s mesh BVH on. Returns
-// whether any hits something nearer.
-NEVER_INLINE bool walk_lanes(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 active, u32 word,
-                             u32 instance, bool any) {
-  const REAL3 o = real3(rays->o[0], rays->o[1], rays->o[2]), d = real3(rays->d[0], rays->d[1], rays->d[2]);
-  const REAL before = hits->found->t;
-  const WalkRays walkers = {&o, &d, &hits->t_min, hits->found};
-  walk_rays(TRACE_ARGUMENTS, &walkers, active, word, instance, any);
-  const MASK nearer = MASK_OF(hits->found->t < before);
-  if (any) end_lanes(hits, lanes_of(active));
-  return any_lane(nearer);
 }
 
 // The rays of `active` one after another through the blocks of a leaf. Returns whether any hits something

@@ -3,11 +3,22 @@
 #define SUNDOG_LIB_SINGLE_CL
 #include "lib/config.h"
 #if !WALKS_IN_TURN
+#include "lib/hits.cl"
 #include "lib/nodes.cl"
-#include "lib/solid_instance.cl"
 #include "lib/tables.h"
 #include "lib/transform.cl"
 #include "lib/triangles.cl"
+
+// The solid `index` in (t_min, hit->t], world-space ray: one ray stands in for all lanes.
+static inline void trace_solid(__global const Instance* restrict instances, u32 index, float3 o, float3 d,
+                               float t_min, Hit* hit) {
+  const REAL3 origins = all3(o), directions = all3(d);
+  const REAL starts = (REAL)(t_min);
+  Hits hits = no_hits((REAL)(hit->t));
+  hits.instance = (MASK)((int)hit->instance);
+  hit_solids(instances, index, index + 1u, &origins, &directions, &starts, ALL_LANES, false, &hits);
+  if ((u32)MASK_LANE(hits.instance, 0) == index) *hit = get_hit(&hits, 0);
+}
 
 #if HAS_MESH
 // Nearest hit in one mesh BVH, or with `any` whichever comes first; o, d in object space. Uses the stack from

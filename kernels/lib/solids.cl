@@ -256,7 +256,7 @@ static inline void closest_in_roundbox(float4 parameters, REAL3 o, REAL3 d, REAL
 
 // The nearest hits of the lanes of `active` in (t_min, hits->t]; sets `found`, and the rest where there is
 // one.
-static inline void closest_in_solid(u32 shape, float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
+ALWAYS_INLINE void closest_in_solid(u32 shape, float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                     SolidHits* hits) {
   switch (shape) {
 #if HAS_SPHERE

@@ -10,10 +10,10 @@
 #include "lib/tables.h"
 #include "lib/walk.cl"
 
-// Up to so many solids are tried one after another for all rays of a batch, which is quicker than taking each
-// ray through the BVH.
+// Where there are no meshes, up to so many solids are tried one after another for all rays of a batch, which
+// is quicker than taking each ray through the BVH. A packet goes through the BVH whenever there is one.
 #ifndef FEW_SOLIDS
-#define FEW_SOLIDS (2u * LANES)
+#define FEW_SOLIDS 24u
 #endif
 
 // Not by products with 0: some compilers take those for 0.
@@ -25,16 +25,6 @@ static inline MASK finite3(const REAL3* a) {
 static inline MASK traceable(const REAL3* o, const REAL3* d, REAL t_min, REAL t_max) {
   return finite3(o) & finite3(d) & MASK_OF(t_max > t_min) &
          (MASK_OF(d->x != 0.0f) | MASK_OF(d->y != 0.0f) | MASK_OF(d->z != 0.0f));
-}
-
-// The instances [first, last), all solids. With `any`, lanes that have found something are done.
-static inline void hit_solids(__global const Instance* restrict instances, u32 first, u32 last,
-                              const REAL3* o, const REAL3* d, const REAL* t_min, MASK active, bool any,
-                              Hits* hits) {
-  for (u32 i = first; i < last; ++i) {
-    const MASK left = any ? active & ~hit_anything(hits) : active;
-    if (any_lane(left)) hit_solid(instances, i, o, d, t_min, left, hits);
-  }
 }
 
 #if PACKETS
@@ -110,13 +100,19 @@ static inline void find_hits(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, c
   *hits = no_hits(t_max);
 #if HAS_TRACED
   active &= traceable(o, d, *t_min, t_max);
-  bool in_tree = info->bounded_count > 0u;
-#if HAS_SOLID
-#if !HAS_MESH
-  in_tree = info->bounded_count > FEW_SOLIDS;
+#if !HAS_BVH
+  const bool in_tree = false;
+#elif HAS_MESH
+  const bool in_tree = info->bounded_count > 0u;
+#elif PACKETS
+  const bool in_tree = coherent || info->bounded_count > FEW_SOLIDS;
+#else
+  const bool in_tree = info->bounded_count > FEW_SOLIDS;
 #endif
+#if HAS_SOLID
   const u32 first = in_tree ? info->bounded_count : 0u;
-  hit_solids(instances, first, info->instance_count, o, d, t_min, active, any, hits);
+  if (first < info->instance_count)
+    hit_solids(instances, first, info->instance_count, o, d, t_min, active, any, hits);
 #endif
 #if HAS_BVH
   if (any) active &= ~hit_anything(hits);

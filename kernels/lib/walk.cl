@@ -10,10 +10,10 @@
 #include "lib/aimed_rays.cl"
 #include "lib/hits.cl"
 #include "lib/nodes.cl"
-#include "lib/solid_instance.cl"
 #include "lib/tables.h"
 #include "lib/transform.cl"
 #include "lib/triangles.cl"
+#include "lib/walk_solids.cl"
 
 // Words on a walk's stack that are no child: below all others, and below those of a mesh.
 #define WALK_END 0xFFFFFFFFu
@@ -67,20 +67,9 @@ ALWAYS_INLINE void drop_behind(Walk* walk, u32 from, float t) {
   walk->top = to;
 }
 
-// A leaf of the scene BVH: the first of its instances is tested, or entered when it is a mesh, and the others
-// wait. Returns whether the ray is to be aimed anew in the mesh's space.
-NEVER_INLINE bool walk_instance(__global const Instance* restrict instances, const WalkRays* rays, Walk* walk,
-                                u32 word) {
-  const u32 index = word & BVH_FIRST_MASK, ray = walk->ray;
-  if (word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK) push_word(walk, word - (1u << BVH_LEAF_SHIFT) + 1u);
+// Into the mesh `index`. Returns whether the ray is to be aimed anew in its space.
+static inline bool enter_mesh(__global const Instance* restrict instances, Walk* walk, u32 index) {
   __global const Instance* instance = instances + index;
-  if (instance->shape != SHAPE_MESH) {
-    Hit hit = get_hit(rays->hits, ray);
-    trace_solid(instances, index, get3(rays->o, ray), get3(rays->d, ray), REAL_LANE(*rays->t_min, ray), &hit);
-    if (hit.t < REAL_LANE(rays->hits->t, ray)) drop_behind(walk, 1u, hit.t);
-    set_hit(rays->hits, ray, &hit);
-    return false;
-  }
   walk->instance = index;
   walk->base = walk->top;
   push_word(walk, WALK_BACK);
@@ -128,6 +117,44 @@ ALWAYS_INLINE void walk_block(__global const TriangleBlock* blocks, const REAL* 
   drop_behind(walk, walk->base, hit.t);
 }
 
+// What is left to do for a walk after a leaf's word, for all walks of the round at once.
+#define LEAF_TURN 1u   // it has entered a mesh: its ray is aimed in the mesh's space
+#define LEAF_SOLID 2u  // it has come to a solid
+
+// The next word of a walk, a leaf.
+ALWAYS_INLINE u32 walk_leaf(TRACE_PARAMETERS, const WalkRays* rays, const AimedRays* world, Walk* walk,
+                            u32 word, bool any) {
+#if HAS_MESH
+  if (word == WALK_BACK) {
+    leave_mesh(walk, world);
+    if (!any) drop_behind(walk, 1u, REAL_LANE(rays->hits->t, walk->ray));
+    return 0u;
+  }
+  if (walk->instance != NO_INSTANCE) {
+    walk_block(blocks, rays->t_min, rays->hits, walk, word);
+    return 0u;
+  }
+#endif
+  // The first of the leaf's instances; the others wait.
+  const u32 index = word & BVH_FIRST_MASK;
+  if (word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK) push_word(walk, word - (1u << BVH_LEAF_SHIFT) + 1u);
+  if (!HAS_MESH || instances[index].shape != SHAPE_MESH) return LEAF_SOLID;
+  return enter_mesh(instances, walk, index) ? LEAF_TURN : 0u;
+}
+
+// The walks of `bits`, which is not 0, at solids[ray]. Returns those that go on.
+NEVER_INLINE u32 walk_solids(__global const Instance* restrict instances, const u32* solids, u32 bits,
+                             const WalkRays* rays, Walk* walks, bool any) {
+  const REAL before = rays->hits->t;
+  hit_solids_by_lane(instances, solids, bits, rays->o, rays->d, rays->t_min, rays->hits);
+  if (any) return bits & ~lane_bits(hit_anything(rays->hits));
+  for (u32 nearer = bits & lane_bits(MASK_OF(rays->hits->t < before)); nearer; nearer &= nearer - 1u) {
+    const u32 ray = lowest_bit(nearer);
+    drop_behind(&walks[ray], 1u, REAL_LANE(rays->hits->t, ray));
+  }
+  return bits;
+}
+
 // The next word of a walk, a node.
 ALWAYS_INLINE void walk_node(__global const u32* nodes, const REAL* t_min, const Hits* hits, Walk* walk,
                              u32 word, bool any) {
@@ -165,6 +192,7 @@ NEVER_INLINE void walk_rays(TRACE_PARAMETERS, const WalkRays* rays, u32 bits, u3
   Walk walks[LANES];
   Walk *at_node[LANES + 1], *at_leaf[LANES + 1];
   u32 node_words[LANES + 1], node_count = 0, leaf_count = 0;
+  u32 solids[LANES];  // that the rays have come to
   for (; bits; bits &= bits - 1u) {
     const u32 ray = lowest_bit(bits);
     start_walk(&walks[ray], &world, ray, word, instance);
@@ -180,23 +208,22 @@ NEVER_INLINE void walk_rays(TRACE_PARAMETERS, const WalkRays* rays, u32 bits, u3
       for (u32 k = 0; k < count; ++k) LIST_WALK(at_node[k]);
     } else {
       const u32 count = leaf_count;
-      u32 entering = 0;
+      u32 entering = 0, at_solid = 0;
       leaf_count = 0;
       for (u32 k = 0; k < count; ++k) {
         Walk* walk = at_leaf[k];
         const u32 word = walk->stack[--walk->top], ray = walk->ray;
-        if (word == WALK_BACK) {
-          leave_mesh(walk, &world);
-          if (!any) drop_behind(walk, 1u, REAL_LANE(hits->t, ray));
-        } else if (walk->instance != NO_INSTANCE) {
-          walk_block(blocks, t_min, hits, walk, word);
-        } else {
-          entering |= (walk_instance(instances, rays, walk, word) ? 1u : 0u) << ray;
-        }
-        if (any && MASK_LANE(hits->instance, ray) != (int)NO_INSTANCE) continue;
+        const u32 left = walk_leaf(TRACE_ARGUMENTS, rays, &world, walk, word, any);
+        solids[ray] = word & BVH_FIRST_MASK;
+        entering |= (left & LEAF_TURN) << ray;
+        at_solid |= (left / LEAF_SOLID) << ray;
+        if (left == LEAF_SOLID || (any && MASK_LANE(hits->instance, ray) != (int)NO_INSTANCE)) continue;
         LIST_WALK(walk);
       }
       if (entering) aim_in_meshes(instances, rays, &turned, walks, entering);
+      if (!HAS_SOLID || !at_solid) continue;
+      for (u32 on = walk_solids(instances, solids, at_solid, rays, walks, any); on; on &= on - 1u)
+        LIST_WALK(&walks[lowest_bit(on)]);
     }
   }
 }

@@ -53,6 +53,34 @@ SceneDescription mixed_scene() {
   return scene;
 }
 
+/// Solids of every kind, turned, squeezed, mirrored and overlapping, some twice in one place; no mesh.
+SceneDescription solids(int count) {
+  SceneDescription scene = scenes::line_of_sight({0, 0, 5}, {0, 0, 0});
+  const int white = scenes::add_white(scene);
+  const std::vector<Shape> shapes = {SphereShape{},
+                                     BoxShape{},
+                                     ConeShape{1, 0.3},
+                                     CylinderShape{},
+                                     DiskShape{},
+                                     TorusShape{1, 0.3},
+                                     RoundBoxShape{{1, 0.6, 0.8}, 0.2}};
+  std::mt19937 random(7);
+  const double size = 0.6 / std::cbrt(count);
+  glm::dmat4 place(1);
+  for (int i = 0; i < count; ++i) {
+    if (i % 10 != 9) {  // else again where the last one is
+      place = glm::translate(glm::dmat4(1), glm::dvec3(in_cube(random)));
+      if (i % 4 != 1)
+        place = glm::rotate(place, 6.0 * uniform(random), glm::dvec3(in_cube(random)) + glm::dvec3(0, 2, 0));
+      place = glm::scale(place, size * glm::dvec3(i % 3 ? 1 : -1, i % 5 ? 1 : 0.4, 1));
+    }
+    scenes::place(scene, shapes[static_cast<std::size_t>(i) % shapes.size()], white, place);
+  }
+  scenes::place(scene, SphereShape{}, white, glm::dmat4(1));  // where it lies, so without a transform
+  scenes::place(scene, PlaneShape{}, white, glm::translate(glm::dmat4(1), {0, -1.7, 0}));
+  return scene;
+}
+
 /// Sixteens that run close together, wider and wider; every seventh holds rays of other kinds too.
 std::vector<Ray> bundles(std::size_t count) {
   std::mt19937 random(3);
@@ -183,6 +211,9 @@ TEST_CASE("rays together find what each finds alone: one mesh") { compare_togeth
 TEST_CASE("rays together find what each finds alone: instances, solids and a plane") {
   compare_together_and_alone(mixed_scene());
 }
+TEST_CASE("rays together find what each finds alone: few solids, some solids, many solids") {
+  compare_together_and_alone(solids(GENERATE(3, 9, 40, 300)));
+}
 TEST_CASE("rays together find what each finds alone: along the faces of boxes") {
   compare_together_and_alone(lattice_steps(), lattice_rays);
 }
@@ -193,7 +224,9 @@ TEST_CASE("the compact tracer finds what the wide one finds: one mesh") {
 TEST_CASE("the compact tracer finds what the wide one finds: instances, solids and a plane") {
   compare_wide_and_compact(mixed_scene());
 }
-
+TEST_CASE("the compact tracer finds what the wide one finds: some solids, many solids") {
+  compare_wide_and_compact(solids(GENERATE(9, 300)));
+}
 TEST_CASE("the compact tracer finds what the wide one finds: along the faces of boxes") {
   compare_wide_and_compact(lattice_steps(), lattice_rays);
 }
