@@ -86,6 +86,7 @@ std::vector<Copy> moved_copies(const HostRay& ray, double distance) {
 struct Findings {
   std::vector<Copy> copies;
   double nearest = unlimited, farthest = 0;
+  double last = 0;   // the farthest of those that meet something
   double slack = 0;  // along the ray
 
   Findings(const CompiledScene& scene, const HostRay& ray, double found, u32 instance, u32 prim) {
@@ -99,6 +100,7 @@ struct Findings {
       const std::optional<HostHit> other = trace_host(scene, copy.ray);
       const double t = other ? std::max(0.0, other->t + copy.ahead) : unlimited;
       nearest = std::min(nearest, t), farthest = std::max(farthest, t);
+      if (other) last = std::max(last, t);
     }
   }
 
@@ -107,7 +109,7 @@ struct Findings {
 
   /// Whether one of them meets the instance about `t`.
   bool meet(const CompiledScene& scene, u32 instance, double t) const {
-    const double about = 2 * room(t) + (std::isfinite(farthest) ? farthest - nearest : 0);
+    const double about = 2 * room(t) + std::max(0.0, last - nearest);
     return std::any_of(copies.begin(), copies.end(), [&](const Copy& copy) {
       HostRay ray = copy.ray;
       ray.t_min = t - about, ray.t_max = t + about;

@@ -154,15 +154,26 @@ Viewpoint framing_viewpoint(const CompiledScene& scene, const vec3& from, const 
   view.up = glm::cross(view.right, view.forward);
   view.eye = center + 1.4f * size * away;
   view.light = center + 2 * size * glm::normalize(0.9f * view.right + 0.9f * view.up + 0.8f * away);
-  float narrow = 0.01f, wide = 0.6f;
-  for (int step = 0; step < 16; ++step) {
-    view.tangent = 0.5f * (narrow + wide);
-    const RaySet set = primary_rays(view, 256);
-    const std::vector<Hit> hits = trace(set.rays);
+  const auto share = [&](float tangent) {
+    view.tangent = tangent;
+    const std::vector<Hit> hits = trace(primary_rays(view, 256).rays);
     const auto met =
         std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.instance != NO_INSTANCE; });
-    (static_cast<float>(met) > wanted * static_cast<float>(hits.size()) ? narrow : wide) = view.tangent;
+    return static_cast<float>(met) / static_cast<float>(hits.size());
+  };
+  // From the widest view on, as there may be nothing in the middle: the first that is filled enough, or the
+  // fullest.
+  constexpr float widest = 0.6f, narrowest = 0.01f, step = 0.9f;
+  float best = 0, narrow = widest, wide = widest;
+  for (float tangent = widest; tangent > narrowest && best < wanted; tangent *= step) {
+    const float met = share(tangent);
+    if (met > best) best = met, narrow = tangent, wide = std::min(tangent / step, widest);
   }
+  for (int i = 0; best >= wanted && i < 12; ++i) {
+    const float middle = 0.5f * (narrow + wide);
+    (share(middle) > wanted ? narrow : wide) = middle;
+  }
+  view.tangent = narrow;
   return view;
 }
 

@@ -1,4 +1,5 @@
 // The judge of tracers: right answers pass, also where rounding decides; wrong ones are found, each of them.
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
@@ -155,4 +156,44 @@ TEST_CASE("at a silhouette, at an edge and at the ends of its interval a ray may
     CHECK_FALSE(is_right(scene, missed, true));
     CHECK(is_right(scene, missed, none));
   }
+}
+
+TEST_CASE("where a ray grazes a surface near its border, rounding may move the hit far") {
+  Mesh square;
+  square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  square.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const CompiledScene scene = compile(scene_of(square));
+  constexpr float slope = 1e-3f;
+  const Ray grazing{0.5f, 0.5f, 0.4999f * slope, 0, 1, 0, -slope, infinity};
+  const auto hit_at = [](float t) { return Hit{t, 0, 0, 0, 0, 0, 0, 1}; };
+  CHECK(is_right(scene, grazing, hit_at(0.4999f)));
+  CHECK(is_right(scene, grazing, hit_at(0.4994f)));
+  CHECK_FALSE(is_right(scene, grazing, hit_at(0.48f)));
+  CHECK_FALSE(is_right(scene, grazing, hit_at(0.52f)));
+}
+
+TEST_CASE("a view is filled also where nothing is in the middle of the scene") {
+  SceneDescription description = scene_of(bumpy_sphere(4));
+  Object object = description.objects[0];
+  description.objects.clear();
+  const std::vector<vec3> centers = {{-3, 0, 0}, {3, 0, 0}};
+  for (const vec3& center : centers) {
+    object.shape = SphereShape{0.9};
+    object.world_from_object = glm::translate(dmat4(1), glm::dvec3(center));
+    description.objects.push_back(object);
+  }
+  const TraceFunction trace = [&](std::span<const Ray> rays) {
+    std::vector<Hit> hits(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const vec3 o(rays[i].ox, rays[i].oy, rays[i].oz), d(rays[i].dx, rays[i].dy, rays[i].dz);
+      hits[i].instance = NO_INSTANCE;
+      for (const vec3& center : centers)
+        if (glm::length(glm::cross(center - o, d)) < 0.9f) hits[i].instance = 0;
+    }
+    return hits;
+  };
+  const Viewpoint view = framing_viewpoint(compile(description), {0, 0, 1}, trace);
+  const std::vector<Hit> hits = trace(primary_rays(view, 64).rays);
+  const auto met = std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return h.instance == 0; });
+  CHECK(met > 64 * 64 / 20);
 }
