@@ -84,6 +84,11 @@ void stand_on_floor(Mesh& mesh) {
 }  // namespace
 
 SceneDescription scene_of_model(const std::string& path, bool spatial_splits) {
+  if (path.ends_with(".json")) {
+    SceneDescription scene = load_scene(path);
+    if (spatial_splits) scene.render.spatial_splits = true;
+    return scene;
+  }
   Model model = load_model(path);
   SceneDescription scene;
   scene.file = path;

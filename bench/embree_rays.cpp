@@ -1,6 +1,7 @@
 // embree_rays MODEL... : traces the same rays with sundog's tracer and with Embree, in turn, on the same
 // number of threads, and prints millions of rays a second and their ratio by kind of ray. Embree is given
 // what it takes to answer in its own form (a filled RTCRayHit a ray); sundog is charged for launch and wait.
+// --copies and --balls make a model a crowd of instances and exact spheres.
 // Hits are compared: where the two disagree by more than rounding explains, and sundog's answer is the wrong
 // one (bench/check_hits.h tells), the program fails.
 #include <fmt/format.h>
@@ -135,6 +136,8 @@ nlohmann::json compare_model(const Options& options, const std::string& path) {
              "differ");
   nlohmann::json result = model.facts();
   result["threads"] = options.threads;
+  result["copies"] = options.copies;
+  result["balls"] = options.balls;
   result["clock"] = options.wall ? "wall" : "processor";
   result["sets"] = nlohmann::json::array();
   Comparison comparison(options, model.scene, model.tracer, embree);
@@ -153,6 +156,8 @@ int main(int argc, char** argv) {
   options.threads = 1;
   add_ray_options(app, options);
   app.add_option("--threads", options.threads, "compute units and Embree threads");
+  app.add_option("--copies", options.copies, "turned, overlapping instances of the model");
+  app.add_option("--balls", options.balls, "exact spheres among them");
   app.add_option("--define", options.defines, "NAME=VALUE for the kernels");
   app.add_flag("--packets", options.packets, "also Embree's 16-wide packets");
   app.add_flag("--robust", options.embree.robust, "Embree's watertight mode");

@@ -10,7 +10,9 @@
 namespace sundog {
 
 void add_peer_options(CLI::App& app, PeerOptions& options) {
-  app.add_option("models", options.models, ".obj, .ply, .stl, .gltf, also .gz")->required();
+  app.add_option("models", options.models,
+                 ".obj, .ply, .stl, .gltf, also .gz; .json scenes of meshes, with Embree also of balls")
+      ->required();
   app.add_option("--repeats", options.repeats, "pairs of measurements")->check(CLI::PositiveNumber);
   app.add_option("--json", options.json, "file for the figures");
   app.add_flag("--wall", options.wall, "wall clock, not processor time over threads");

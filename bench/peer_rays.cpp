@@ -2,10 +2,17 @@
 #include "peer_rays.h"
 
 #include "bench_scenes.h"
+#include "crowd.h"
 #include "render/kernel_config.h"
 
 namespace sundog {
 namespace {
+
+SceneDescription described(const std::string& model, const RayOptions& options) {
+  SceneDescription scene = scene_of_model(model, options.spatial_splits);
+  make_crowd(scene, options.copies, options.balls);
+  return scene;
+}
 
 CompiledScene compiled(const SceneDescription& description, const std::string& tracer) {
   CompiledScene scene = compile(description);
@@ -41,7 +48,7 @@ void add_ray_options(CLI::App& app, RayOptions& options) {
 
 PeerModel::PeerModel(const std::string& model, const RayOptions& options)
     : path(model),
-      description(scene_of_model(model, options.spatial_splits)),
+      description(described(model, options)),
       scene(compiled(description, options.tracer)),
       device(chosen_device(options)),
       tracer(device, scene, kernel_defines(options.defines)) {}

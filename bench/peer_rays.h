@@ -16,6 +16,7 @@ struct RayOptions : PeerOptions {
   std::vector<float> from{0.25f, 0.2f, 1.0f};
   unsigned size = 1024;
   std::vector<std::string> kinds;
+  unsigned copies = 1, balls = 0;  // make_crowd()
 };
 
 /// add_peer_options() and --device --from --size --kinds.

@@ -2,6 +2,7 @@
 // and touching triangles.
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <random>
 
@@ -138,3 +139,39 @@ void compare(const Mesh& mesh, std::size_t allowed) {
 // right: a few in 100,000.
 TEST_CASE("nearest hits on a mesh like a scan are Embree's") { compare(bumpy_sphere(90), 40); }
 TEST_CASE("nearest hits on degenerate and doubled triangles are Embree's") { compare(degenerate_mesh(), 40); }
+
+TEST_CASE("nearest hits of meshes in several places among balls are Embree's") {
+  SceneDescription scene = scene_of(bumpy_sphere(30));
+  const Object mesh = scene.objects[0];
+  std::mt19937 random(4);
+  const auto coordinate = [&] { return 4e-3 * static_cast<double>(random() % 1000) - 2; };
+  for (int i = 0; i < 60; ++i) {
+    Object object = mesh;
+    if (i % 6) object.shape = SphereShape{0.3};
+    object.world_from_object =
+        glm::rotate(glm::translate(dmat4(1), {coordinate(), coordinate(), coordinate()}), 0.1 * i, {1, 2, 0});
+    scene.objects.push_back(object);
+  }
+  const CompiledScene flat = compile(scene);
+  const EmbreePeer embree(scene, {.robust = true});
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      Device device(info);
+      RayTracer tracer(device, flat);
+      std::vector<Ray> rays = make_rays(Kind::random, scene.meshes[0]);
+      if (info.native_vector_width <= 1) rays.resize(ray_count / 20);
+      std::vector<EmbreeHit> theirs(rays.size());
+      embree.intersect(rays, theirs, 1);
+      const std::vector<Hit> ours = tracer.trace(rays);
+      std::size_t hits = 0, differ = 0, other = 0;
+      for (std::size_t i = 0; i < ours.size(); ++i) {
+        const bool hit = ours[i].instance != NO_INSTANCE, expected = theirs[i].prim != NO_PRIM;
+        hits += hit;
+        differ +=
+            hit != expected || (hit && std::abs(ours[i].t - theirs[i].t) > 1e-5f * std::max(1.0f, ours[i].t));
+        other += hit && expected && flat.instances[ours[i].instance].object != theirs[i].object;
+      }
+      CHECK(hits > rays.size() / 4);
+      CHECK(differ <= rays.size() / 5000);
+      CHECK(other <= rays.size() / 5000);
+    }
+}

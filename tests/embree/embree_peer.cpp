@@ -12,6 +12,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "embree_mesh.h"
+#include "embree_spheres.h"
 
 namespace sundog {
 namespace {
@@ -68,6 +69,8 @@ struct EmbreePeer::State {
   RTCScene scene = nullptr;
   std::vector<RTCScene> meshes;
   bool instanced = false;
+  u32 balls = 0;                  // the geometry of all balls
+  std::vector<u32> ball_objects;  // the objects that they are
   double seconds = 0, processor_seconds = 0;
 
   ~State() {
@@ -83,23 +86,26 @@ struct EmbreePeer::State {
     return made;
   }
 
-  void attach(RTCScene to, RTCGeometry geometry) const {
-    rtcAttachGeometry(to, geometry);
+  void attach(RTCScene to, RTCGeometry geometry, u32 id) const {
+    rtcAttachGeometryByID(to, geometry, id);
     rtcReleaseGeometry(geometry);
   }
 
-  void attach_instance(const Object& object, RTCScene mesh) const {
+  void attach_instance(u32 id, const Object& object, RTCScene mesh) const {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(geometry, mesh);
     const glm::mat4 transform(object.world_from_object);
     rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &transform);
     rtcCommitGeometry(geometry);
-    attach(scene, geometry);
+    attach(scene, geometry, id);
   }
 
-  template <class RTCHitType>
-  u32 object(const RTCHitType& hit) const {
-    return instanced ? hit.instID[0] : hit.geomID;
+  /// What a hit of these numbers is of.
+  void name(EmbreeHit& hit, u32 geometry, u32 prim, u32 instance) const {
+    if (geometry == RTC_INVALID_GEOMETRY_ID) return;
+    const bool of_ball = instance == RTC_INVALID_GEOMETRY_ID && geometry == balls;
+    hit.prim = of_ball ? 0 : prim;
+    hit.object = of_ball ? ball_objects[prim] : instance != RTC_INVALID_GEOMETRY_ID ? instance : geometry;
   }
 };
 
@@ -107,12 +113,21 @@ EmbreePeer::EmbreePeer(const SceneDescription& scene, const EmbreeOptions& optio
     : state_(std::make_unique<State>()) {
   const RTCBuildQuality quality = options.high_quality ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
   State& state = *state_;
-  for (const Object& object : scene.objects) {
-    if (!std::holds_alternative<MeshShape>(object.shape))
+  std::vector<Ball> balls;
+  std::vector<u32> placed;  // the objects that are meshes
+  for (u32 i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    if (const std::optional<Ball> ball = as_ball(object)) {
+      balls.push_back(*ball);
+      state.ball_objects.push_back(i);
+    } else if (std::holds_alternative<MeshShape>(object.shape)) {
+      placed.push_back(i);
+    } else {
       throw SceneError(scene.file.string(), object.place,
-                       "an exact solid, which Embree does not know; use a scene of meshes");
-    state.instanced = state.instanced || scene.objects.size() > 1 || object.world_from_object != dmat4(1);
+                       "an exact solid that Embree does not know; use a scene of meshes and balls");
+    }
   }
+  state.instanced = placed.size() != 1 || scene.objects[placed[0]].world_from_object != dmat4(1);
   const auto shape = [](const Object& object) {
     return static_cast<std::size_t>(std::get<MeshShape>(object.shape).mesh);
   };
@@ -124,13 +139,16 @@ EmbreePeer::EmbreePeer(const SceneDescription& scene, const EmbreeOptions& optio
   if (state.instanced) {
     for (RTCGeometry geometry : geometries) {
       state.meshes.push_back(state.new_scene(options));
-      state.attach(state.meshes.back(), geometry);
+      state.attach(state.meshes.back(), geometry, 0);
       rtcCommitScene(state.meshes.back());
     }
-    for (const Object& object : scene.objects) state.attach_instance(object, state.meshes[shape(object)]);
+    for (const u32 i : placed)
+      state.attach_instance(i, scene.objects[i], state.meshes[shape(scene.objects[i])]);
   } else {
-    for (RTCGeometry geometry : geometries) state.attach(state.scene, geometry);
+    state.attach(state.scene, geometries[shape(scene.objects[placed[0]])], placed[0]);
   }
+  state.balls = static_cast<u32>(scene.objects.size());
+  if (!balls.empty()) state.attach(state.scene, embree_spheres(state.device, balls), state.balls);
   rtcCommitScene(state.scene);
   state.seconds = clock.seconds();
   state.processor_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
@@ -152,9 +170,7 @@ void EmbreePeer::intersect(std::span<const Ray> rays, std::span<EmbreeHit> hits,
       ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
       rtcIntersect1(state_->scene, &context, &ray);
       hits[i] = {ray.ray.tfar, ray.hit.u, ray.hit.v, NO_PRIM, NO_INSTANCE};
-      if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-      hits[i].prim = ray.hit.primID;
-      hits[i].object = state_->object(ray.hit);
+      state_->name(hits[i], ray.hit.geomID, ray.hit.primID, ray.hit.instID[0]);
     }
   };
   const auto packets = [&](std::size_t begin, std::size_t end) {
@@ -166,12 +182,8 @@ void EmbreePeer::intersect(std::span<const Ray> rays, std::span<EmbreeHit> hits,
       for (int k = 0; k < 16; ++k) packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
       rtcIntersect16(valid, state_->scene, &context, &packet);
       for (std::size_t k = 0; k < 16 && i + k < end; ++k) {
-        const bool hit = packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
-        hits[i + k] = {packet.ray.tfar[k], packet.hit.u[k], packet.hit.v[k],
-                       hit ? packet.hit.primID[k] : NO_PRIM,
-                       !hit                ? NO_INSTANCE
-                       : state_->instanced ? packet.hit.instID[0][k]
-                                           : packet.hit.geomID[k]};
+        hits[i + k] = {packet.ray.tfar[k], packet.hit.u[k], packet.hit.v[k], NO_PRIM, NO_INSTANCE};
+        state_->name(hits[i + k], packet.hit.geomID[k], packet.hit.primID[k], packet.hit.instID[0][k]);
       }
     }
   };

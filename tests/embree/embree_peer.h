@@ -1,5 +1,5 @@
-// A scene's meshes under Embree 3, and its answers for given rays: what the tracer is held against, for hits
-// and for speed.
+// A scene's meshes and balls under Embree 3, and its answers for given rays: what the tracer is held against,
+// for hits and for speed.
 #pragma once
 #include <memory>
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace sundog {
 
-/// What Embree says of a ray. `object` is the scene's object, `prim` the triangle of its mesh; NO_PRIM: no
-/// hit.
+/// What Embree says of a ray. `object` is the scene's object, `prim` the triangle of its mesh or 0; NO_PRIM:
+/// no hit.
 struct EmbreeHit {
   float t = 0, u = 0, v = 0;
   u32 prim = NO_PRIM, object = NO_INSTANCE;
@@ -25,7 +25,8 @@ struct EmbreeOptions {
 
 class EmbreePeer {
  public:
-  /// Builds the BVH. The scene must outlive it. Throws SceneError for a scene with exact solids.
+  /// Builds the BVH. The scene must outlive it. Throws SceneError where an object is neither a mesh nor a
+  /// ball.
   explicit EmbreePeer(const SceneDescription& scene, const EmbreeOptions& options = {});
   ~EmbreePeer();
 
