@@ -45,8 +45,9 @@ void make_crowd(SceneDescription& scene, unsigned copies, unsigned balls) {
   for (unsigned i = 0; copies > 1 && i < copies; ++i) {
     const dvec3 cell(i % side, i / side % side, i / side / side);
     const dvec3 at = spacing * longest * (cell - 0.5 * (side - 1.0)) + 0.1 * longest * in_cube();
+    const double angle = 6.3 * uniform();
     const dmat4 turned =
-        glm::rotate(glm::translate(dmat4(1), middle + at), 6.3 * uniform(), in_cube() + dvec3(0, 2, 0));
+        glm::rotate(glm::translate(dmat4(1), middle + at), angle, in_cube() + dvec3(0, 2, 0));
     for (Object object : model) {
       object.world_from_object = glm::translate(turned, -middle) * object.world_from_object;
       scene.objects.push_back(std::move(object));

@@ -90,7 +90,7 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   define_features(scene.features, define);
   const unsigned lanes = marched_lanes(batch), few_solids = std::max(2u, lanes * 3 / 2);
   define("FEW_SOLIDS", few_solids);
-  // Packets gain by a tree over fewer; over very few not what its kernels take to compile.
+  // Packets gain by a tree over fewer; over very few nothing, and its kernels take long to compile.
   const unsigned without_tree = vectors && batch == 16 ? 6 : few_solids;
   define("HAS_BVH", scene.features.shapes[SHAPE_MESH] || scene.info.bounded_count > without_tree);
   define("LANES", lanes);
