@@ -7,6 +7,8 @@
 #include <limits>
 #include <random>
 
+#include "base/error.h"
+
 namespace sundog {
 namespace {
 
@@ -14,14 +16,20 @@ struct Box {
   dvec3 lower{std::numeric_limits<double>::max()}, upper{-std::numeric_limits<double>::max()};
 };
 
-/// Of all meshes, where they lie.
+/// Of all meshes, where objects place them. Throws SceneError when there are none.
 Box extent(const SceneDescription& scene) {
   Box box;
-  for (const Mesh& mesh : scene.meshes)
-    for (const glm::vec3& p : mesh.positions) {
-      box.lower = glm::min(box.lower, dvec3(p));
-      box.upper = glm::max(box.upper, dvec3(p));
+  for (const Object& object : scene.objects) {
+    const MeshShape* shape = std::get_if<MeshShape>(&object.shape);
+    if (!shape) continue;
+    for (const glm::vec3& p : scene.meshes.at(static_cast<std::size_t>(shape->mesh)).positions) {
+      const dvec3 placed(object.world_from_object * glm::dvec4(p, 1));
+      box.lower = glm::min(box.lower, placed);
+      box.upper = glm::max(box.upper, placed);
     }
+  }
+  if (!(box.lower.x <= box.upper.x))
+    throw SceneError(scene.file.string(), "/objects", "no mesh, where one was wanted to make a crowd of");
   return box;
 }
 

@@ -33,7 +33,8 @@ struct Viewpoint {
 /// The scene's own camera, and its first point or spot light (else one beside the camera).
 Viewpoint scene_viewpoint(const CompiledScene& scene);
 
-/// A view along -`from` in which 65 % of the rays meet the scene, with a light on the upper right.
+/// A view along -`from` in which 65 % of the rays meet the scene, or as many as there can be, with a light on
+/// the upper right.
 Viewpoint framing_viewpoint(const CompiledScene& scene, const glm::vec3& from, const TraceFunction& trace);
 
 /// size x size pixels (rounded up to a multiple of 16), through their centres.

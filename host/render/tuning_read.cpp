@@ -1,5 +1,8 @@
 // A tuning result from JSON: what is kept for a device, and what `sundog tune --import` is given. Every error
 // names the file and the place in it.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <string>
@@ -53,8 +56,13 @@ TuningEntry entry_from(JsonObject& entry) {
   tuning.surfaces_group = work_group_from(entry.at("surfaces_group", kept));
   tuning.tile_w = whole("tile_w", 16);
   tuning.tile_h = whole("tile_h", 16);
-  if ((tuning.tile_w == 0) != (tuning.tile_h == 0))
-    entry.value().fail("wanted tile_w and tile_h both 0 or neither");
+  // What a batch of rays has vectors for.
+  constexpr std::array<unsigned, 5> batches = {0, 1, 4, 8, 16};
+  const unsigned batch = tuning.tile_w * tuning.tile_h;
+  if ((tuning.tile_w == 0) != (tuning.tile_h == 0) || std::ranges::find(batches, batch) == batches.end())
+    entry.value().fail(
+        fmt::format("wanted tile_w and tile_h both 0, or with a product of 1, 4, 8 or 16, found {} and {}",
+                    tuning.tile_w, tuning.tile_h));
   tuning.packet_least = whole("packet_least", 64);
   tuning.launch_ms = entry.at("launch_ms", kept).number(milliseconds);
   tuning.tile_ms = entry.at("tile_ms", kept).number(milliseconds);

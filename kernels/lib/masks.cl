@@ -10,7 +10,7 @@ static inline u32 lane_mask(int8 lanes) {
   return (u32)__builtin_ia32_movmskps256(as_float8(lanes));
 #else
   // One byte a lane keeps one bit; the product gathers the eight of them in its top byte.
-  const ulong bits = as_ulong(convert_char8(lanes)) & 0x8040201008040201UL;
+  const ulong bits = as_ulong(convert_char8(lanes >> 31)) & 0x8040201008040201UL;
   return (u32)((bits * 0x0101010101010101UL) >> 56);
 #endif
 }

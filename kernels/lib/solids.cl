@@ -203,7 +203,7 @@ static inline void closest_in_torus(float4 parameters, REAL3 o, REAL3 d, REAL t_
 #endif
 
 #if HAS_ROUNDBOX
-static inline void unite(Span* whole, Span part) {
+static inline void unite_spans(Span* whole, Span part) {
   whole->enter = select(whole->enter, real_min(whole->enter, part.enter), part.crosses);
   whole->leave = select(whole->leave, real_max(whole->leave, part.leave), part.crosses);
 }
@@ -223,15 +223,15 @@ static inline void closest_in_roundbox(float4 parameters, REAL3 o, REAL3 d, REAL
   if (!any_lane(active)) return;
   Span span = {(REAL)(INFINITY), (REAL)(-INFINITY), ALL_LANES};
   const float3 core = half_size - r;
-  unite(&span, box_span(&ray, core + (float3)(r, 0.0f, 0.0f), &axis_in, &axis_out));
-  unite(&span, box_span(&ray, core + (float3)(0.0f, r, 0.0f), &axis_in, &axis_out));
-  unite(&span, box_span(&ray, core + (float3)(0.0f, 0.0f, r), &axis_in, &axis_out));
+  unite_spans(&span, box_span(&ray, core + (float3)(r, 0.0f, 0.0f), &axis_in, &axis_out));
+  unite_spans(&span, box_span(&ray, core + (float3)(0.0f, r, 0.0f), &axis_in, &axis_out));
+  unite_spans(&span, box_span(&ray, core + (float3)(0.0f, 0.0f, r), &axis_in, &axis_out));
 #pragma unroll 1
   for (u32 corner = 0; corner < 8u; ++corner) {
     const REAL3 center = all3((float3)(corner & 1u ? core.x : -core.x, corner & 2u ? core.y : -core.y,
                                        corner & 4u ? core.z : -core.z));
     const REAL3 c = subtract3(o, center);
-    unite(&span, round_span(c, d, r));
+    unite_spans(&span, round_span(c, d, r));
 #pragma unroll 1
     for (u32 axis = 0; axis < 3u; ++axis) {  // each edge once: from the corner on its negative end
       if (corner & (1u << axis)) continue;

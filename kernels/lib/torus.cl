@@ -17,7 +17,8 @@ NEVER_INLINE bool closest_in_one_torus(float r, float3 o, float3 d, float t_min,
   const float3 e = d / length_d;
   const float shift = -dot(o, e);  // the line's point nearest to the centre, in units of length
   const float3 s = o + shift * e;
-  const float reach2 = (1.0f + r) * (1.0f + r) - dot(s, s);
+  // A little beyond the ball around the torus, or rounding takes the change of sign at its equator for none.
+  const float reach2 = 1.001f * (1.0f + r) * (1.0f + r) - dot(s, s);
   if (!(reach2 > 0.0f)) return false;
   const float reach = sqrt(reach2);
   // With p = s + x e and s.e = 0: |p|^2 = x^2 + |s|^2.

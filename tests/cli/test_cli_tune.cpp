@@ -109,6 +109,16 @@ TEST_CASE(
                ContainsSubstring("bad.json: " + std::string(c.place)) && ContainsSubstring(c.says));
     CHECK_THAT(result.err, !ContainsSubstring("json.exception"));
   }
+  for (const auto& [width, height] : {std::pair(3, 5), {0, 4}, {16, 16}, {2, 1}}) {
+    json bad = good;
+    bad[0]["entries"][0]["tile_w"] = width, bad[0]["entries"][0]["tile_h"] = height;
+    folder.write("bad.json", bad.dump());
+    const CommandResult result = folder.run({"--import", folder.file("bad.json")});
+    CAPTURE(width, height, result.err);
+    CHECK(result.status == 3);
+    CHECK_THAT(result.err,
+               ContainsSubstring("/0/entries/0: wanted tile_w and tile_h both 0, or with a product of"));
+  }
 }
 
 TEST_CASE("tuning results that are none are refused, and a damaged file is as none") {

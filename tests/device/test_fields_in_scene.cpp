@@ -1,6 +1,7 @@
 // Distance fields as objects of a scene: closed forms, and the same pictures as exact solids make.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -206,5 +207,24 @@ TEST_CASE("a scene with fields has the same bits for every work-group and tile s
         options.tile = group == 5 ? 12 : 40;
         CHECK(same_bits(scenes::render_on(device, scene, options).image, reference.image));
       }
+    }
+}
+
+TEST_CASE("every kind of solid stands beside a field") {
+  const SceneDescription scene = scene_of_text(R"({"image": {"width": 32, "height": 32},
+    "camera": {"position": [0, 0, 9], "target": [0, 0, 0], "fov": 50},
+    "materials": {"white": {"color": [0.8, 0.8, 0.8], "ambient": 1}},
+    "lights": [{"type": "ambient"}],
+    "objects": [{"type": "formula", "distance": "length(p) - 1", "material": "white"},
+      {"type": "sphere", "center": [3, 0, 0], "material": "white"},
+      {"type": "box", "center": [-3, 0, 0], "half": [1, 1, 1], "material": "white"},
+      {"type": "cylinder", "material": "white", "transform": [{"translate": [0, 3, 0]}]},
+      {"type": "cone", "material": "white", "transform": [{"translate": [0, -3, 0]}]},
+      {"type": "disk", "material": "white", "transform": [{"translate": [3, 3, 0]}]},
+      {"type": "torus", "material": "white", "transform": [{"translate": [-3, 3, 0]}]},
+      {"type": "round_box", "material": "white", "transform": [{"translate": [3, -3, 0]}]}]})");
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      const Image image = scenes::render_on(device, scene).image;
+      CHECK(*std::max_element(image.data.begin(), image.data.end()) > 0.3f);
     }
 }

@@ -186,3 +186,25 @@ TEST_CASE("an interval that ends at a hit holds it, one that begins there does n
     }
   });
 }
+
+TEST_CASE("rays meet a torus also at its outer equator") {
+  SceneDescription scene = scenes::line_of_sight({0, 0, 5}, {0, 0, 0});
+  scenes::place(scene, TorusShape{1, 0.6}, scenes::add_white(scene));
+  // From within the tube to the equator, and from there outwards to it again.
+  std::vector<Ray> rays;
+  for (int i = 0; i < 20'000; ++i) {
+    const float angle = 0.001f * static_cast<float>(i), turn = 0.00037f * static_cast<float>(i % 2000 - 1000);
+    const glm::vec3 from(1.1f * std::cos(angle), 0.01f * static_cast<float>(i % 7), 1.1f * std::sin(angle)),
+        to(1.6f * std::cos(angle + turn), 1e-4f * static_cast<float>(i % 5 - 2),
+           1.6f * std::sin(angle + turn)),
+        d = glm::normalize(to - from), outside = from + 3.0f * d;
+    rays.push_back({from.x, from.y, from.z, 0, d.x, d.y, d.z, infinity});
+    rays.push_back({outside.x, outside.y, outside.z, 0, -d.x, -d.y, -d.z, infinity});
+  }
+  for_each_tracer(scene, [&](const CompiledScene& flat, RayTracer& tracer, bool coherent) {
+    const std::vector<Hit> hits = tracer.trace(rays, coherent);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) wrong += !is_right(flat, rays[i], hits[i]);
+    CHECK(wrong == 0);
+  });
+}

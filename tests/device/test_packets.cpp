@@ -184,6 +184,28 @@ void compare_together_and_alone(const SceneDescription& scene,
     }
 }
 
+/// Without the processor's own instructions, as other compilers have it.
+void compare_with_portable(const SceneDescription& scene) {
+  const CompiledScene flat = compile(scene);
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      Device device(info);
+      RayTracer own(device, flat), portable(device, flat, {{"SUNDOG_PORTABLE", "1"}});
+      const std::vector<Ray> rays = bundles(info.native_vector_width > 1 ? 50'003 : 2'009);
+      for (const bool coherent : {false, true}) {
+        CAPTURE(coherent);
+        const std::vector<Hit> expected = own.trace(rays, coherent), found = portable.trace(rays, coherent);
+        const std::vector<u32> occluded = portable.occlusion(rays, coherent);
+        std::size_t differ = 0, any_differs = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          differ += std::memcmp(&expected[i], &found[i], sizeof(Hit)) != 0;
+          any_differs += (expected[i].instance != NO_INSTANCE) != (occluded[i] != 0);
+        }
+        CHECK(differ == 0);
+        CHECK(any_differs == 0);
+      }
+    }
+}
+
 void compare_wide_and_compact(SceneDescription scene, std::vector<Ray> (*make_rays)(std::size_t) = bundles) {
   for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
       if (info.native_vector_width <= 1) continue;  // runs the compact tracer anyway
@@ -216,6 +238,10 @@ TEST_CASE("rays together find what each finds alone: few solids, some solids, ma
 }
 TEST_CASE("rays together find what each finds alone: along the faces of boxes") {
   compare_together_and_alone(lattice_steps(), lattice_rays);
+}
+
+TEST_CASE("without a processor's own instructions the hits are the same") {
+  compare_with_portable(GENERATE(0, 1) ? solids(40) : mixed_scene());
 }
 
 TEST_CASE("the compact tracer finds what the wide one finds: one mesh") {

@@ -145,7 +145,10 @@ EmbreePeer::EmbreePeer(const SceneDescription& scene, const EmbreeOptions& optio
     for (const u32 i : placed)
       state.attach_instance(i, scene.objects[i], state.meshes[shape(scene.objects[i])]);
   } else {
-    state.attach(state.scene, geometries[shape(scene.objects[placed[0]])], placed[0]);
+    const std::size_t used = shape(scene.objects[placed[0]]);
+    for (std::size_t i = 0; i < geometries.size(); ++i)
+      if (i != used) rtcReleaseGeometry(geometries[i]);
+    state.attach(state.scene, geometries[used], placed[0]);
   }
   state.balls = static_cast<u32>(scene.objects.size());
   if (!balls.empty()) state.attach(state.scene, embree_spheres(state.device, balls), state.balls);
