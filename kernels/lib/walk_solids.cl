@@ -12,21 +12,17 @@ typedef struct TransformLanes {
   MASK moves;  // not the identity
 } TransformLanes;
 
+static inline void set_row(REAL* row, u32 lane, float4 r) {
+  REAL_LANE(row[0], lane) = r.x;
+  REAL_LANE(row[1], lane) = r.y;
+  REAL_LANE(row[2], lane) = r.z;
+  REAL_LANE(row[3], lane) = r.w;
+}
+
 static inline void set_transform(TransformLanes* to, u32 lane, __global const Instance* instance) {
-  const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
-               r2 = instance->object_from_world[2];
-  REAL_LANE(to->m[0], lane) = r0.x;
-  REAL_LANE(to->m[1], lane) = r0.y;
-  REAL_LANE(to->m[2], lane) = r0.z;
-  REAL_LANE(to->m[3], lane) = r0.w;
-  REAL_LANE(to->m[4], lane) = r1.x;
-  REAL_LANE(to->m[5], lane) = r1.y;
-  REAL_LANE(to->m[6], lane) = r1.z;
-  REAL_LANE(to->m[7], lane) = r1.w;
-  REAL_LANE(to->m[8], lane) = r2.x;
-  REAL_LANE(to->m[9], lane) = r2.y;
-  REAL_LANE(to->m[10], lane) = r2.z;
-  REAL_LANE(to->m[11], lane) = r2.w;
+  set_row(to->m, lane, instance->object_from_world[0]);
+  set_row(to->m + 4, lane, instance->object_from_world[1]);
+  set_row(to->m + 8, lane, instance->object_from_world[2]);
   MASK_LANE(to->moves, lane) = instance->flags & INSTANCE_IDENTITY ? 0 : -1;
 }
 

@@ -1,5 +1,6 @@
 // Rays that go through the tracer together find what each finds alone, to the bit, and nothing else about a
 // batch matters: its company, rays that hit nothing, rays that are no rays.
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <random>
@@ -161,6 +162,18 @@ std::vector<Ray> lattice_rays(std::size_t count) {
   return rays;
 }
 
+/// Hits to the bit, and whether there are any.
+void check_same(const std::vector<Hit>& expected, const std::vector<Hit>& found,
+                const std::vector<u32>& occluded) {
+  std::size_t differ = 0, any_differs = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    differ += std::memcmp(&expected[i], &found[i], sizeof(Hit)) != 0;
+    any_differs += (expected[i].instance != NO_INSTANCE) != (occluded[i] != 0);
+  }
+  CHECK(differ == 0);
+  CHECK(any_differs == 0);
+}
+
 void compare_together_and_alone(const SceneDescription& scene,
                                 std::vector<Ray> (*make_rays)(std::size_t) = bundles) {
   const CompiledScene flat = compile(scene);
@@ -170,17 +183,11 @@ void compare_together_and_alone(const SceneDescription& scene,
       const std::vector<Ray> rays = make_rays(info.native_vector_width > 1 ? 200'009 : 2'009);
       const std::vector<Hit> together = tracer.trace(rays, true), alone = tracer.trace(rays, false);
       const std::vector<u32> occluded = tracer.occlusion(rays, true);
-      std::size_t hits = 0, differ = 0, any_differs = 0;
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        const bool hit = alone[i].instance != NO_INSTANCE;
-        hits += hit;
-        differ += std::memcmp(&together[i], &alone[i], sizeof(Hit)) != 0;
-        any_differs += hit != (occluded[i] != 0);
-      }
+      check_same(alone, together, occluded);
+      const auto hits = static_cast<std::size_t>(std::count_if(
+          alone.begin(), alone.end(), [](const Hit& hit) { return hit.instance != NO_INSTANCE; }));
       CHECK(hits > rays.size() / 10);
       CHECK(hits < rays.size());
-      CHECK(differ == 0);
-      CHECK(any_differs == 0);
     }
 }
 
@@ -195,13 +202,7 @@ void compare_with_portable(const SceneDescription& scene) {
         CAPTURE(coherent);
         const std::vector<Hit> expected = own.trace(rays, coherent), found = portable.trace(rays, coherent);
         const std::vector<u32> occluded = portable.occlusion(rays, coherent);
-        std::size_t differ = 0, any_differs = 0;
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-          differ += std::memcmp(&expected[i], &found[i], sizeof(Hit)) != 0;
-          any_differs += (expected[i].instance != NO_INSTANCE) != (occluded[i] != 0);
-        }
-        CHECK(differ == 0);
-        CHECK(any_differs == 0);
+        check_same(expected, found, occluded);
       }
     }
 }
@@ -217,13 +218,7 @@ void compare_wide_and_compact(SceneDescription scene, std::vector<Ray> (*make_ra
       RayTracer compact(device, compile(scene));
       const std::vector<Hit> expected = wide.trace(rays), found = compact.trace(rays);
       const std::vector<u32> occluded = compact.occlusion(rays);
-      std::size_t differ = 0, any_differs = 0;
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        differ += std::memcmp(&expected[i], &found[i], sizeof(Hit)) != 0;
-        any_differs += (expected[i].instance != NO_INSTANCE) != (occluded[i] != 0);
-      }
-      CHECK(differ == 0);
-      CHECK(any_differs == 0);
+      check_same(expected, found, occluded);
     }
 }
 
