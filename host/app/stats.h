@@ -20,7 +20,7 @@ struct TimeLedger {
   }
 };
 
-/// The statistics file, "schema": 1 (README.md describes it).
+/// The statistics file, "schema": 1 (docs/command-line.md describes it).
 nlohmann::json stats_json(const RenderCommand& command, const SceneDescription& scene,
                           const CompiledScene& flat, const RenderResult& result, const TimeLedger& times);
 

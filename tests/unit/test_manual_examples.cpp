@@ -1,0 +1,36 @@
+// The fractals and formulas of docs/formulas.md are scenes that load, without a warning but the one that the page
+// mentions.
+#include <fstream>
+
+#include "catch.h"
+#include "scene_text.h"
+
+namespace {
+
+/// The examples of the page: indented lines that begin with a brace, up to the next line that is not indented.
+std::vector<std::string> examples() {
+  std::ifstream file(SUNDOG_SOURCE_DIR "/docs/formulas.md");
+  std::vector<std::string> examples;
+  bool is_open = false;
+  for (std::string line; std::getline(file, line);) {
+    const bool is_indented = line.starts_with("    ");
+    if (is_indented && !is_open && line[4] == '{') examples.emplace_back();
+    is_open = is_indented && (is_open || line[4] == '{');
+    if (is_open) examples.back() += line + "\n";
+  }
+  return examples;
+}
+
+}  // namespace
+
+TEST_CASE("the manual's fractals and formulas load") {
+  const auto texts = examples();
+  CHECK(texts.size() >= 5);
+  for (const std::string& example : texts) {
+    INFO(example);
+    const auto scene = load_scene_text(R"({"materials": {"stone": {}}, "objects": [)" + example + "]}");
+    CHECK(scene.fields.size() == 1);
+    for (const std::string& warning : scene.warnings) CHECK(warning.find("changes by") != std::string::npos);
+    CHECK(scene.warnings.empty() == (example.find("sin(") == std::string::npos));
+  }
+}
