@@ -1,6 +1,6 @@
-// How much of a light reaches the points of a batch. Opaque scenes end at the first occluder; else
-// transmissive things are filters: each interface lets its transmission through (1 - F of a dielectric, on
-// the straight line), and media absorb.
+// How much of a light reaches the points of a batch. Media absorb. Opaque scenes end at the first occluder;
+// else transmissive things are filters: each interface lets its transmission through (1 - F of a dielectric,
+// on the straight line).
 #ifndef SUNDOG_LIB_SHADOW_CL
 #define SUNDOG_LIB_SHADOW_CL
 #include "lib/field_light.cl"
@@ -83,7 +83,12 @@ static inline MASK reach_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* 
   add_to_pixels(paths->throughput, paths->pixel, lanes & ~passing, radiance);
   return passing & ~too_many;
 #else
-  add_to_pixels(paths->throughput, paths->pixel, lanes & ~hit_anything(hits), radiance);
+  const MASK arriving = lanes & ~hit_anything(hits);
+  REAL3 light = paths->throughput;
+#if HAS_MEDIA
+  light = multiply3(light, absorb(media, current_media(media, rays, arriving), rays->t_max, arriving));
+#endif
+  add_to_pixels(light, paths->pixel, arriving, radiance);
   return NO_LANES;
 #endif
 }

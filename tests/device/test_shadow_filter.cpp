@@ -2,6 +2,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "bench/plain/whitted.h"
 #include "catch.h"
 #include "devices.h"
 #include "scenes.h"
@@ -19,7 +20,54 @@ double reflectance(double degrees, double index) {
   return (s * s + p * p) / 2;
 }
 
+// A white floor at y = 0, seen from a distance of 1.5 at its point (0, 0, 0), under a point light 1.25 away.
+SceneDescription lit_floor() {
+  SceneDescription scene = scenes::line_of_sight({0, 0.9, 1.2}, {0, 0, 0});
+  scenes::place(scene, PlaneShape{}, scenes::add_white(scene));
+  LightDescription point;
+  point.position = {0.75, 1, 0};
+  scene.lights.push_back(point);
+  return scene;
+}
+
+const glm::dvec3 absorption(0.3, 0, 1.5);
+
+// The lit floor through `absorption` from the light to the camera.
+void check_dimmed(const glm::dvec3& seen) {
+  for (int c = 0; c < 3; ++c)
+    CHECK(seen[c] == Approx(0.8 * std::exp(-absorption[c] * (1.5 + 1.25))).epsilon(1e-5));
+}
+
+glm::dvec3 plain_pixel(const SceneDescription& scene) {
+  const Image image = render_plain(compile(scene));
+  return {image.data.at(0), image.data.at(1), image.data.at(2)};
+}
+
 }  // namespace
+
+TEST_CASE("an absorbing world dims what lies between a light and an opaque scene") {
+  SceneDescription scene = lit_floor();
+  scene.media[0].absorption = absorption;
+  SceneDescription shaded = scene;
+  scenes::place(shaded, SphereShape{0.1}, scenes::add_white(shaded),
+                glm::translate(glm::dmat4(1), {0.375, 0.5, 0}));
+  check_dimmed(plain_pixel(scene));
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      check_dimmed(scenes::pixel_on(device, scene));
+      CHECK(scenes::pixel_on(device, shaded) == glm::dvec3(0));
+    }
+}
+
+TEST_CASE("a medium whose surface stops shadow rays dims the lights inside of it") {
+  SceneDescription scene = lit_floor();
+  const int glass = scenes::add_dielectric(scene, 1.5, absorption);
+  scene.materials[static_cast<std::size_t>(glass)].shadow_opaque = true;
+  scenes::place(scene, BoxShape{{4, 4, 4}}, glass);
+  check_dimmed(plain_pixel(scene));
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      check_dimmed(scenes::pixel_on(device, scene));
+    }
+}
 
 TEST_CASE("a pane of glass at any slant dims a light by what its two faces reflect") {
   const double degrees = GENERATE(0.0, 30.0, 60.0, 80.0);

@@ -96,7 +96,8 @@ vec3 filter(const CompiledScene& scene, const Material& material, const Hit& hit
 vec3 visibility(const World& world, Ray ray, MediaStack media) {
   const CompiledScene& scene = world.scene;
   ++world.counts[COUNT_SHADOW];
-  if (!scene.features.shadow_filters) return world.finder.any(ray) ? vec3(0) : vec3(1);
+  if (!scene.features.shadow_filters)
+    return world.finder.any(ray) ? vec3(0) : absorb(scene, media.current(scene), ray.t_max);
   vec3 through(1);
   float from = 0;
   for (int i = 0; i < most_crossings; ++i) {
