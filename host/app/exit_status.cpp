@@ -14,9 +14,11 @@
 namespace sundog {
 namespace {
 
-/// Prints the error in one line, whatever a library's message holds.
+/// Prints the error in one line without control characters, whatever a file or a library put into it.
 void say(std::string message) {
   std::ranges::replace(message, '\n', ' ');
+  std::ranges::replace_if(
+      message, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
   fmt::print(stderr, "sundog: {}\n", message);
 }
 

@@ -10,11 +10,10 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/limits.h"
 
 namespace sundog {
 namespace {
-
-constexpr int greatest_size = 65536;
 
 template <class T>
 std::optional<T> number(std::string_view text, T low, T high) {
@@ -29,8 +28,8 @@ std::optional<T> number(std::string_view text, T low, T high) {
 std::optional<std::pair<int, int>> number_pair(std::string_view text) {
   const std::size_t cross = text.find('x');
   if (cross == std::string_view::npos) return {};
-  const std::optional<int> width = number(text.substr(0, cross), 1, greatest_size);
-  const std::optional<int> height = number(text.substr(cross + 1), 1, greatest_size);
+  const std::optional<int> width = number(text.substr(0, cross), 1, most_edge);
+  const std::optional<int> height = number(text.substr(cross + 1), 1, most_edge);
   if (!width || !height) return {};
   return std::pair(*width, *height);
 }
@@ -48,7 +47,7 @@ WorkGroup parse_work_group(const std::string& text) {
   using enum WorkGroup::Kind;
   if (text == "auto") return {automatic};
   if (text == "driver") return {driver};
-  if (const auto edge = number(text, 1, greatest_size)) return {fixed, static_cast<std::size_t>(*edge), 1};
+  if (const auto edge = number(text, 1, most_edge)) return {fixed, static_cast<std::size_t>(*edge), 1};
   if (const auto pair = number_pair(text))
     return {fixed, static_cast<std::size_t>(pair->first), static_cast<std::size_t>(pair->second)};
   throw UsageError(
@@ -59,12 +58,12 @@ PartOfFrame parse_part(const std::string& text) {
   const std::size_t slash = text.find('/');
   const std::string_view all = text;
   if (slash != std::string::npos) {
-    const std::optional<int> count = number(all.substr(slash + 1), 1, greatest_size);
+    const std::optional<int> count = number(all.substr(slash + 1), 1, most_parts);
     const std::optional<int> index = number(all.substr(0, slash), 1, count.value_or(0));
     if (index) return {*index, *count};
   }
   throw UsageError(fmt::format("--tiles {}: wanted I/N, N parts from 1 to {} and I from 1 to N, such as 2/8",
-                               text, greatest_size));
+                               text, most_parts));
 }
 
 Split parse_split(const std::string& text) {
@@ -95,8 +94,8 @@ double parse_tolerance(const std::string& text) {
 std::vector<std::string> parse_image_size(const std::string& text) {
   const auto size = number_pair(text);
   if (!size)
-    throw UsageError(fmt::format("--size {}: wanted WIDTHxHEIGHT, each from 1 to {}, such as 640x480", text,
-                                 greatest_size));
+    throw UsageError(
+        fmt::format("--size {}: wanted WIDTHxHEIGHT, each from 1 to {}, such as 640x480", text, most_edge));
   return {fmt::format("/image/width={}", size->first), fmt::format("/image/height={}", size->second)};
 }
 

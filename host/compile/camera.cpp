@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "base/limits.h"
 
 namespace sundog {
 namespace {
@@ -56,10 +57,9 @@ void set_camera(const SceneDescription& scene, SceneInfo& info) {
   info.background_bottom = pack(image.background_bottom, camera.far);
   info.background_top = pack(image.background_top);
   info.up = pack(up);
-  constexpr double most_pixels = 1 << 28;  // a film of 16 bytes a pixel: 4 GiB
-  if (static_cast<double>(image.width) * image.height > most_pixels)
+  if (!is_frame_size(image.width, image.height))
     fail(scene, "/image",
-         fmt::format("wanted at most {:.0f} pixels in all, found {} x {}", most_pixels, image.width,
+         fmt::format("wanted at most {} pixels in all, found {} x {}", most_pixels, image.width,
                      image.height));
   info.width = static_cast<u32>(image.width);
   info.height = static_cast<u32>(image.height);

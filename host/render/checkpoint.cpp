@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/input.h"
+#include "base/limits.h"
 #include "render/film.h"
 #include "render/hash.h"
 
@@ -63,7 +64,8 @@ void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_
   std::memcpy(&header, bytes.data(), sizeof header);
   const std::size_t body = bytes.size() - sizeof checksum;
   std::memcpy(&checksum, bytes.data() + body, sizeof checksum);
-  if (std::memcmp(header.magic, magic, sizeof magic) != 0 || checksum != hash_bytes(bytes.data(), body))
+  if (std::memcmp(header.magic, magic, sizeof magic) != 0 || checksum != hash_bytes(bytes.data(), body) ||
+      !is_frame_size(header.width, header.height))
     throw damaged;
   const std::size_t expected = sizeof header + film.sums.size() * sizeof(float4) +
                                film.weights.size() * sizeof(float) + film.aovs.size() * sizeof(float4) +

@@ -1,63 +1,17 @@
-// The file: a line of JSON with the sizes, a byte for each pixel that tells whether it is there, the done
-// pixels' sums, weights and AOVs, and a checksum of all that in 16 digits.
 #include "render/part.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstring>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/file.h"
-#include "base/input.h"
-#include "render/hash.h"
 
 namespace sundog {
+
 namespace {
-
-using nlohmann::json;
-
-constexpr const char* format_name = "sundog part 1";
-constexpr std::size_t checksum_digits = 16;
 constexpr int bands_a_part = 8;
-
-template <class T>
-void append_done(std::string& bytes, const std::vector<T>& values, const std::vector<std::uint8_t>& done) {
-  const std::size_t each = values.size() / std::max<std::size_t>(done.size(), 1);
-  for (std::size_t i = 0; i < done.size(); ++i)
-    if (done[i]) bytes.append(reinterpret_cast<const char*>(values.data() + each * i), each * sizeof(T));
-}
-
-/// Takes what append_done() has put; false when there is too little of it.
-template <class T>
-bool take_done(const std::string& bytes, std::size_t& at, std::vector<T>& values,
-               const std::vector<std::uint8_t>& done) {
-  const std::size_t each = values.size() / std::max<std::size_t>(done.size(), 1), size = each * sizeof(T);
-  for (std::size_t i = 0; i < done.size(); ++i) {
-    if (!done[i]) continue;
-    if (at + size > bytes.size()) return false;
-    std::memcpy(values.data() + each * i, bytes.data() + at, size);
-    at += size;
-  }
-  return true;
-}
-
-std::string checksum(const std::string& bytes) {
-  return fmt::format("{:016x}", hash_bytes(bytes.data(), bytes.size()));
-}
-
-/// The pixels of a file whose checksum is right, after its line of JSON.
-bool read_film(const std::string& bytes, std::size_t at, Film& film) {
-  if (at + film.done.size() > bytes.size()) return false;
-  std::memcpy(film.done.data(), bytes.data() + at, film.done.size());
-  at += film.done.size();
-  return take_done(bytes, at, film.sums, film.done) && take_done(bytes, at, film.weights, film.done) &&
-         take_done(bytes, at, film.aovs, film.done) && at == bytes.size();
-}
-
 }  // namespace
 
 std::vector<RowRange> part_rows(int height, const PartOfFrame& part) {
@@ -69,52 +23,27 @@ std::vector<RowRange> part_rows(int height, const PartOfFrame& part) {
   return rows;
 }
 
-void write_part(const std::filesystem::path& path, const PartFile& file) {
-  const json head = {{"format", format_name},    {"part", file.part.index},    {"parts", file.part.count},
-                     {"key", file.key},          {"scene", file.scene},        {"aovs", file.aovs},
-                     {"width", file.film.width}, {"height", file.film.height}, {"settings", file.settings}};
-  std::string bytes = head.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
-  bytes.append(reinterpret_cast<const char*>(file.film.done.data()), file.film.done.size());
-  append_done(bytes, file.film.sums, file.film.done);
-  append_done(bytes, file.film.weights, file.film.done);
-  append_done(bytes, file.film.aovs, file.film.done);
-  write_file(path, bytes + checksum(bytes));
-}
-
-PartFile read_part(const std::filesystem::path& path) {
-  std::string bytes = read_input(path);
-  const auto refuse = [&](const char* why) { return SceneError(path.string(), "", why); };
-  if (!bytes.starts_with('{') || bytes.find(format_name) == std::string::npos)
-    throw refuse("is no part of a frame: `sundog render --tiles` writes them");
-  const std::string damaged = "is damaged: render this part again";
-  if (bytes.size() < checksum_digits) throw refuse(damaged.c_str());
-  const std::string sum = bytes.substr(bytes.size() - checksum_digits);
-  bytes.resize(bytes.size() - checksum_digits);
-  if (sum != checksum(bytes)) throw refuse(damaged.c_str());
-  const std::size_t line = bytes.find('\n');
-  PartFile file;
-  try {
-    const json head = json::parse(bytes.substr(0, line));
-    file.part = {head.at("part").get<int>(), head.at("parts").get<int>()};
-    file.key = head.at("key").get<std::uint64_t>();
-    file.scene = head.at("scene").get<std::string>();
-    file.aovs = head.at("aovs").get<std::vector<std::string>>();
-    file.settings = head.at("settings").get<std::map<std::string, std::string>>();
-    file.film = Film(head.at("width").get<int>(), head.at("height").get<int>(), !file.aovs.empty());
-  } catch (const json::exception&) {
-    throw refuse(damaged.c_str());
-  }
-  if (!read_film(bytes, line + 1, file.film)) throw refuse(damaged.c_str());
-  return file;
-}
-
 namespace {
+
+constexpr std::size_t most_listed = 8, longest_setting = 60;
+
+/// "a, b, c and 12 more".
+template <class T>
+std::string listed(const std::vector<T>& all) {
+  const auto end = all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), most_listed));
+  const std::string text = fmt::format("{}", fmt::join(all.begin(), end, ", "));
+  return all.size() > most_listed ? fmt::format("{} and {} more", text, all.size() - most_listed) : text;
+}
+
+std::string cut(const std::string& text) {
+  return text.size() > longest_setting ? text.substr(0, longest_setting) + "..." : text;
+}
 
 /// "samples 16, the other samples 4": the settings that differ.
 std::string settings_difference(const PartFile& a, const PartFile& b) {
   const auto text = [](const PartFile& part, const std::string& name) {
     const auto found = part.settings.find(name);
-    return found == part.settings.end() ? "no " + name : name + " " + found->second;
+    return found == part.settings.end() ? "no " + cut(name) : cut(name) + " " + cut(found->second);
   };
   std::map<std::string, std::string> names = a.settings;
   names.insert(b.settings.begin(), b.settings.end());
@@ -124,7 +53,7 @@ std::string settings_difference(const PartFile& a, const PartFile& b) {
     of_a.push_back(text(a, name));
     of_b.push_back(text(b, name));
   }
-  return of_a.empty() ? "" : fmt::format("{}, the other {}", fmt::join(of_b, ", "), fmt::join(of_a, ", "));
+  return of_a.empty() ? "" : fmt::format("{}, the other {}", listed(of_b), listed(of_a));
 }
 
 /// Why two parts cannot belong to one frame; empty when they can.
@@ -139,9 +68,9 @@ std::string difference(const PartFile& a, const PartFile& b) {
   if (a.key == b.key) return {};
   if (const std::string settings = settings_difference(a, b); !settings.empty())
     return fmt::format("rendered with {}", settings);
-  if (a.scene != b.scene) return fmt::format("of {}, the other of {}", b.scene, a.scene);
+  if (a.scene != b.scene) return fmt::format("of {}, the other of {}", cut(b.scene), cut(a.scene));
   return fmt::format("of another state of {}, or of a file that it names (digest {:016x}, the other {:016x})",
-                     b.scene, b.key, a.key);
+                     cut(b.scene), b.key, a.key);
 }
 
 void check_complete(const std::string& path, const PartFile& file) {
@@ -161,8 +90,8 @@ void check_all_there(const std::map<int, std::string>& found, int count) {
         found.begin()->second, "",
         fmt::format("part{0} {1} of {2} {3} missing: render {4} with --tiles {5}/{2} and the options of the "
                     "others",
-                    missing.size() > 1 ? "s" : "", fmt::join(missing, ", "), count,
-                    missing.size() > 1 ? "are" : "is", missing.size() > 1 ? "each" : "it",
+                    missing.size() > 1 ? "s" : "", listed(missing), count, missing.size() > 1 ? "are" : "is",
+                    missing.size() > 1 ? "each" : "it",
                     missing.size() > 1 ? "I" : std::to_string(missing.front())));
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/limits.h"
 #include "scene/read/parts.h"
 
 namespace sundog {
@@ -77,8 +78,8 @@ Camera read_camera(const JsonValue& value, bool& placed) {
 ImageSettings read_image(const JsonValue& value) {
   return value.object("image", [](JsonObject& object) {
     ImageSettings image;
-    image.width = object.integer("width", image.width, 1, 65536);
-    image.height = object.integer("height", image.height, 1, 65536);
+    image.width = object.integer("width", image.width, 1, most_edge);
+    image.height = object.integer("height", image.height, 1, most_edge);
     const auto background = object.find("background");
     if (!background) return image;
     if (background->json().is_array()) {

@@ -1,0 +1,17 @@
+// The largest frame: files and options beyond it are refused.
+#pragma once
+#include <cstdint>
+
+namespace sundog {
+
+constexpr int most_edge = 65536;  // of width and height
+constexpr std::int64_t most_pixels = 1 << 28;
+constexpr int most_parts = 65536;  // of a frame, for machines that share nothing but a folder
+
+/// Whether there may be a frame of these edges.
+constexpr bool is_frame_size(std::int64_t width, std::int64_t height) {
+  return width >= 1 && width <= most_edge && height >= 1 && height <= most_edge &&
+         width * height <= most_pixels;
+}
+
+}  // namespace sundog
