@@ -1,5 +1,5 @@
-// The fractals and formulas of docs/formulas.md are scenes that load, without a warning but the one that the page
-// mentions.
+// The fractals and formulas of docs/formulas.md are scenes that load, without a warning but the one that the
+// page mentions.
 #include <fstream>
 
 #include "catch.h"
@@ -7,7 +7,8 @@
 
 namespace {
 
-/// The examples of the page: indented lines that begin with a brace, up to the next line that is not indented.
+/// The examples of the page: indented lines that begin with a brace, up to the next line that is not
+/// indented.
 std::vector<std::string> examples() {
   std::ifstream file(SUNDOG_SOURCE_DIR "/docs/formulas.md");
   std::vector<std::string> examples;

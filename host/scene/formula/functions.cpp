@@ -108,7 +108,7 @@ std::map<std::string, Function> make_functions() {
   f["abs"] = {"abs(x)", "absolute value; of a point by components", 1, 1,
               [](V v, A a) { return v.each(Op::absolute, a[0]); }};
   f["sign"] = {"sign(x)", "-1, 0 or 1", 1, 1, [](V v, A a) { return sign_of(v, a[0]); }};
-  f["floor"] = {"floor(x)", "greatest whole number below", 1, 1,
+  f["floor"] = {"floor(x)", "greatest whole number that is not above x", 1, 1,
                 [](V v, A a) { return v.each(Op::round_down, a[0]); }};
   f["fract"] = {"fract(x)", "x - floor(x)", 1, 1,
                 [](V v, A a) { return v.add(a[0], v.each(Op::round_down, a[0]), true); }};
@@ -129,26 +129,26 @@ std::map<std::string, Function> make_functions() {
                      }};
   f["sqrt"] = {"sqrt(x)", "square root; 0 below 0", 1, 1,
                [](V v, A a) { return of_number(v, Op::square_root, "sqrt", a[0], 0.0, {}); }};
-  f["exp"] = {"exp(x)", "e^x", 1, 1, [](V v, A a) { return exponential(v, a[0]); }};
-  f["log"] = {"log(x)", "natural logarithm", 1, 1,
+  f["exp"] = {"exp(x)", "e^x; x is at most 80", 1, 1, [](V v, A a) { return exponential(v, a[0]); }};
+  f["log"] = {"log(x)", "natural logarithm; of 1e-30 at least", 1, 1,
               [](V v, A a) { return of_number(v, Op::logarithm, "log", a[0], 1e-30, {}); }};
   f["pow"] = {"pow(x, n)", "x^n: of a vec3 the triplex power, of a quat the quaternion's", 2, 2,
               [](V v, A a) { return pow_of(v, a[0], a[1]); }};
-  f["sin"] = {"sin(x)", "angles are in radians", 1, 1, [](V v, A a) { return sine(v, a[0]); }};
-  f["cos"] = {"cos(x)", "", 1, 1, [](V v, A a) { return cosine(v, a[0]); }};
-  f["tan"] = {"tan(x)", "", 1, 1, [](V v, A a) { return v.divide(sine(v, a[0]), cosine(v, a[0])); }};
-  f["acos"] = {"acos(x)", "", 1, 1,
+  f["sin"] = {"sin(x)", "sine; angles are in radians", 1, 1, [](V v, A a) { return sine(v, a[0]); }};
+  f["cos"] = {"cos(x)", "cosine", 1, 1, [](V v, A a) { return cosine(v, a[0]); }};
+  f["tan"] = {"tan(x)", "tangent", 1, 1, [](V v, A a) { return v.divide(sine(v, a[0]), cosine(v, a[0])); }};
+  f["acos"] = {"acos(x)", "inverse cosine; x is kept within [-1, 1]", 1, 1,
                [](V v, A a) { return of_number(v, Op::arc_cosine, "acos", a[0], -1.0, 1.0); }};
-  f["asin"] = {"asin(x)", "", 1, 1, [](V v, A a) {
+  f["asin"] = {"asin(x)", "inverse sine; x is kept within [-1, 1]", 1, 1, [](V v, A a) {
                  return v.add(v.number(std::numbers::pi / 2),
                               of_number(v, Op::arc_cosine, "asin", a[0], -1.0, 1.0), true);
                }};
   f["atan"] = {"atan(y, x)", "angle of the point (x, y); atan(t) is atan(t, 1)", 1, 2, [](V v, A a) {
                  return v.each(Op::arc_tangent, scalar(a[0]), a.size() == 2 ? scalar(a[1]) : v.number(1));
                }};
-  f["sinh"] = {"sinh(x)", "", 1, 1, [](V v, A a) { return hyperbolic(v, a[0], true); }};
-  f["cosh"] = {"cosh(x)", "", 1, 1, [](V v, A a) { return hyperbolic(v, a[0], false); }};
-  f["tanh"] = {"tanh(x)", "", 1, 1,
+  f["sinh"] = {"sinh(x)", "hyperbolic sine", 1, 1, [](V v, A a) { return hyperbolic(v, a[0], true); }};
+  f["cosh"] = {"cosh(x)", "hyperbolic cosine", 1, 1, [](V v, A a) { return hyperbolic(v, a[0], false); }};
+  f["tanh"] = {"tanh(x)", "hyperbolic tangent", 1, 1,
                [](V v, A a) { return v.divide(hyperbolic(v, a[0], true), hyperbolic(v, a[0], false)); }};
   f["radians"] = {"radians(x)", "degrees to radians", 1, 1,
                   [turn](V v, A a) { return v.multiply(scalar(a[0]), v.number(turn)); }};
@@ -166,14 +166,14 @@ std::map<std::string, Function> make_functions() {
   f["fold"] = {"fold(v, n, d)",
                "reflect to the side of the plane n.v = d that n points to; d is 0 when left out", 2, 3,
                [](V v, A a) { return v.fold(a[0], a[1], a.size() == 3 ? a[2] : v.number(0)); }};
-  f["boxfold"] = {"boxfold(v, l)", "reflect what lies beyond the box [-l, l]", 2, 2,
+  f["boxfold"] = {"boxfold(v, l)", "reflect the components beyond [-l, l] at its ends", 2, 2,
                   [](V v, A a) { return v.box_fold(a[0], a[1]); }};
   f["ballfold"] = {"ballfold(v, r, R)", "invert in the ball of radius R, linear inside r", 3, 3,
                    [](V v, A a) { return v.ball_fold(a[0], a[1], a[2]); }};
   f["invert"] = {"invert(v, s)", "s v / |v|^2", 2, 2, [](V v, A a) { return v.invert(a[0], a[1]); }};
   f["wrap"] = {"wrap(v, m)", "repeat space with period m, centred on 0", 2, 2,
                [](V v, A a) { return v.wrap(a[0], a[1]); }};
-  f["rotate"] = {"rotate(v, axis, angle)", "rotation", 3, 3,
+  f["rotate"] = {"rotate(v, axis, angle)", "v turned about the axis by the angle", 3, 3,
                  [](V v, A a) { return v.rotate(a[0], a[1], a[2]); }};
   return f;
 }

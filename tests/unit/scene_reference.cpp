@@ -1,0 +1,345 @@
+#include "scene_reference.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+using nlohmann::ordered_json;
+
+namespace {
+
+/// A section of the page: its heading, a line under it, and the kinds ($defs) that it describes.
+struct Group {
+  std::string title, about;
+  std::vector<std::string> kinds;
+  std::string model;                // a kind whose `common` keys stand for those of all
+  std::vector<std::string> common;  // keys that are described once
+  std::string common_title;
+};
+
+const std::vector<Group>& groups() {
+  static const std::vector<Group> all{
+      {"The scene", "", {"scene"}, "", {}, ""},
+      {"Picture", "", {"camera", "image", "gradient", "render", "world", "fog"}, "", {}, ""},
+      {"Lights",
+       "An entry of `lights` has one of these types.",
+       {"ambient_light", "directional_light", "point_light", "spot_light", "falloff"},
+       "",
+       {},
+       ""},
+      {"Media and materials",
+       "",
+       {"medium", "absorption", "material", "checker", "term", "specular_term", "ray_term"},
+       "",
+       {},
+       ""},
+      {"Meshes", "", {"mesh", "generate_ice_block", "generate_ice_cavity"}, "", {}, ""},
+      {"Objects",
+       "An entry of `objects` is one of these or a [distance field](#distance-fields).",
+       {"sphere", "plane", "box", "round_box", "cylinder", "cone", "disk", "torus", "mesh_object",
+        "model_object", "field_object", "group_object", "transform_step", "rotate"},
+       "sphere",
+       {"name", "material", "transform"},
+       "Every object"},
+      {"Distance fields",
+       "Each is an object, or stands inside another field, with only the keys that say which field it is.",
+       {"fractal", "formula", "hybrid", "union", "intersection", "difference", "moved", "repeat", "thicken",
+        "shell", "native", "fractal_step", "formula_step", "formula_parameter", "field_entry", "interval",
+        "ball", "coloring", "glow"},
+       "fractal",
+       {"interval", "ball", "detail", "least_threshold", "greatest_threshold", "step_limit", "coloring",
+        "occlusion", "soft_shadow", "glow"},
+       "Every field"},
+      {"Animation",
+       "An entry of `animate` has one of these types.",
+       {"keyed_track", "rotate_track", "track_key"},
+       "",
+       {},
+       ""},
+  };
+  return all;
+}
+
+/// What a choice by "type" is called, and where it leads.
+const std::map<std::string, std::string>& choices() {
+  static const std::map<std::string, std::string> all{
+      {"light", "[light](#lights)"},          {"object", "[object](#objects)"},
+      {"field", "[field](#distance-fields)"}, {"step", "[step](#fractal-step)"},
+      {"track", "[track](#animation)"},       {"generate", "[ice block](#generate-ice-block)"}};
+  return all;
+}
+
+/// Values that have a name of their own.
+const std::map<std::string, std::string>& value_names() {
+  static const std::map<std::string, std::string> all{{"vec3", "[x, y, z]"},
+                                                      {"color", "colour"},
+                                                      {"share_color", "colour, each 0 to 1"},
+                                                      {"formula_text", "formula text"}};
+  return all;
+}
+
+std::string number_text(const ordered_json& value) {
+  const double x = value.get<double>();
+  return std::abs(x) < 1e10 && x == std::floor(x) ? fmt::format("{}", static_cast<long long>(x))
+                                                  : fmt::format("{:g}", x);
+}
+
+std::string value_text(const ordered_json& value) {
+  if (value.is_number()) return number_text(value);
+  if (!value.is_array()) return value.dump();
+  std::vector<std::string> items;
+  for (const ordered_json& item : value) items.push_back(value_text(item));
+  return fmt::format("[{}]", fmt::join(items, ", "));
+}
+
+std::string words(std::string name) {
+  for (char& c : name)
+    if (c == '_') c = ' ';
+  return name;
+}
+
+std::string link_to(const std::string& kind) {
+  std::string anchor = kind;
+  for (char& c : anchor) c = c == '_' || c == ' ' ? '-' : static_cast<char>(std::tolower(c));
+  std::string title = words(kind);
+  title[0] = static_cast<char>(std::tolower(title[0]));
+  return fmt::format("[{}](#{})", title, anchor);
+}
+
+std::string plural(const std::string& noun) {
+  const auto at = noun.starts_with("[") ? noun.find(']') : noun.find_first_of(",≥>");
+  std::string first = noun.substr(0, at), rest = at == std::string::npos ? "" : noun.substr(at);
+  const bool space = !first.empty() && first.back() == ' ';
+  if (space) first.pop_back();
+  return first + "s" + (space ? " " : "") + rest;
+}
+
+/// A number's limits; those of 1e18 and more are none.
+std::string limits_text(const ordered_json& rule) {
+  const auto limit = [&](const char* key) -> std::optional<std::string> {
+    if (!rule.contains(key) || std::abs(rule[key].get<double>()) >= 1e18) return {};
+    return number_text(rule[key]);
+  };
+  const auto low = limit("minimum"), high = limit("maximum"), above = limit("exclusiveMinimum"),
+             below = limit("exclusiveMaximum");
+  if (low && high) return fmt::format(", {} to {}", *low, *high);
+  std::vector<std::string> parts;
+  if (low) parts.push_back(fmt::format("at least {}", *low));
+  if (above) parts.push_back(fmt::format("above {}", *above));
+  if (high) parts.push_back(fmt::format("at most {}", *high));
+  if (below) parts.push_back(fmt::format("below {}", *below));
+  return parts.empty() ? "" : fmt::format(", {}", fmt::join(parts, ", "));
+}
+
+class Page {
+ public:
+  explicit Page(const ordered_json& schema) : kinds_(schema.at("$defs")) {}
+
+  std::string text() {
+    check_places();
+    out_ =
+        "# Scene reference\n\n"
+        "<!-- Written by docs/write_pages.sh from scenes/scene.schema.json. Edit the schema, then run it. "
+        "-->\n\n"
+        "Every key of a scene file. Lengths are in scene units, angles in degrees, colours linear [red, "
+        "green, blue]. "
+        "[Scenes](scenes.md) introduces the format.\n";
+    for (const Group& group : groups()) write(group);
+    return out_;
+  }
+
+ private:
+  static bool has_keys(const ordered_json& kind) {
+    return kind.contains("properties") && kind.contains("additionalProperties") &&
+           kind["additionalProperties"] == false;
+  }
+
+  void check_places() const {
+    std::set<std::string> placed;
+    for (const Group& group : groups()) placed.insert(group.kinds.begin(), group.kinds.end());
+    for (const auto& [name, kind] : kinds_.items())
+      if (has_keys(kind) && !placed.contains(name) && !is_inner(name))
+        throw std::runtime_error("$defs/" + name +
+                                 " of the schema needs a section in tests/unit/scene_reference.cpp");
+  }
+
+  /// A field inside another one, described with the object of the same name, of which it must be a part.
+  bool is_inner(const std::string& name) const {
+    if (!name.ends_with("_field")) return false;
+    const std::string outer = name.substr(0, name.size() - 6);
+    if (!kinds_.contains(outer)) return false;
+    for (const auto& [key, rule] : kinds_[name]["properties"].items())
+      if (kinds_[outer]["properties"].value(key, ordered_json()) != rule)
+        throw std::runtime_error("$defs/" + name + " and $defs/" + outer + " of the schema differ in \"" +
+                                 key + "\"");
+    return true;
+  }
+
+  const ordered_json& target(const ordered_json& rule) const {
+    return kinds_.at(rule.at("$ref").get<std::string>().substr(std::string("#/$defs/").size()));
+  }
+
+  std::string type_text(const ordered_json& rule) const {
+    if (rule.contains("$ref"))
+      return reference_text(rule.at("$ref").get<std::string>().substr(std::string("#/$defs/").size()));
+    if (rule.contains("anyOf")) return options_text(rule["anyOf"]);
+    if (rule.contains("enum")) {
+      std::vector<std::string> names;
+      for (const ordered_json& name : rule["enum"]) names.push_back("`" + name.get<std::string>() + "`");
+      return fmt::format("{}", fmt::join(names, ", "));
+    }
+    const std::string type = rule.at("type");
+    if (type == "number" || type == "integer")
+      return (type == "number" ? "number" : "whole number") + limits_text(rule);
+    if (type == "boolean") return "`true`, `false`";
+    if (type == "string") return "text";
+    if (type == "array") return array_text(rule);
+    if (type == "object")
+      return rule.contains("additionalProperties")
+                 ? "names, each with " + type_text(rule["additionalProperties"])
+                 : "names, each with a value";
+    throw std::runtime_error("no words for the type " + type);
+  }
+
+  std::string reference_text(const std::string& name) const {
+    if (choices().contains(name)) return choices().at(name);
+    if (value_names().contains(name)) return value_names().at(name);
+    return has_keys(kinds_.at(name)) ? link_to(name) : type_text(kinds_.at(name));
+  }
+
+  std::string options_text(const ordered_json& options) const {
+    std::vector<std::string> texts;
+    for (const ordered_json& option : options) texts.push_back(type_text(option));
+    return fmt::format("{}", fmt::join(texts, "; or "));
+  }
+
+  std::string array_text(const ordered_json& rule) const {
+    const std::string items = rule.contains("items") ? plural(type_text(rule["items"])) : "numbers";
+    const auto least = rule.value("minItems", 0), most = rule.value("maxItems", 0);
+    if (least > 0 && least == most) return fmt::format("{} {}", least, items);
+    if (most > 0) return fmt::format("list of {} to {} {}", least, most, items);
+    return least > 1 ? fmt::format("list of {} or more {}", least, items) : "list of " + items;
+  }
+
+  std::string meaning(const ordered_json& rule) const {
+    if (rule.contains("description")) return rule["description"];
+    return rule.contains("$ref") ? meaning(target(rule)) : "";
+  }
+
+  /// A bar would end the cell of a table.
+  static std::string in_cell(const std::string& text) {
+    std::string escaped;
+    for (const char c : text) escaped += c == '|' ? "\\|" : std::string(1, c);
+    return escaped;
+  }
+
+  std::string default_text(const ordered_json& rule) const {
+    if (rule.contains("default")) {
+      const ordered_json& value = rule["default"];
+      return value.is_string() ? fmt::format("`{}`", value.get<std::string>())
+                               : "`" + value_text(value) + "`";
+    }
+    return rule.contains("$ref") ? default_text(target(rule)) : "";
+  }
+
+  void write_table(const std::string& name, const std::vector<std::string>& keys) {
+    const ordered_json& kind = kinds_.at(name);
+    out_ += "\n| key | value | default | meaning |\n|---|---|---|---|\n";
+    for (const std::string& key : keys) {
+      const ordered_json& rule = kind.at("properties").at(key);
+      out_ +=
+          fmt::format("| `{}` | {} | {} | {} |\n", key, type_text(rule),
+                      is_required(kind, key) ? "**required**" : default_text(rule), in_cell(meaning(rule)));
+    }
+  }
+
+  /// The kind's keys without "type", and without those that stand in `group`'s table already.
+  std::vector<std::string> own_keys(const std::string& name) const {
+    std::vector<std::string> keys;
+    const ordered_json& kind = kinds_.at(name);
+    for (const auto& [key, rule] : kind.at("properties").items())
+      if (!(key == "type" && rule.contains("const")) && !is_of_base(name, key, rule) &&
+          (!is_common(key, rule) || is_required(kind, key)))
+        keys.push_back(key);
+    return keys;
+  }
+
+  /// The formula that a step is one of: "formula" for "formula_step".
+  std::string base_of(const std::string& name) const {
+    const std::string base = name.ends_with("_step") ? name.substr(0, name.size() - 5) : "";
+    return kinds_.contains(base) && has_keys(kinds_[base]) ? base : "";
+  }
+
+  bool is_of_base(const std::string& name, const std::string& key, const ordered_json& rule) const {
+    const std::string base = base_of(name);
+    return !base.empty() && kinds_.at(base).at("properties").value(key, ordered_json()) == rule;
+  }
+
+  static bool is_required(const ordered_json& kind, const std::string& key) {
+    const ordered_json required = kind.value("required", ordered_json::array());
+    return std::find(required.begin(), required.end(), key) != required.end();
+  }
+
+  bool is_common(const std::string& key, const ordered_json& rule) const {
+    for (const Group& group : groups())
+      for (const std::string& common : group.common)
+        if (key == common && rule == kinds_.at(group.model).at("properties").at(key)) return true;
+    return false;
+  }
+
+  void write(const Group& group) {
+    out_ += "\n## " + group.title + "\n";
+    if (!group.about.empty()) out_ += "\n" + group.about + "\n";
+    if (!group.common.empty()) {
+      out_ += "\n### " + group.common_title + "\n";
+      write_table(group.model, group.common);
+    }
+    for (const std::string& name : group.kinds) write_kind(name);
+  }
+
+  void write_kind(const std::string& name) {
+    const ordered_json& kind = kinds_.at(name);
+    out_ += "\n### " + words(name) + "\n\n";
+    const auto& keys = kind.at("properties");
+    if (keys.contains("type") && keys["type"].contains("const"))
+      out_ += fmt::format("`\"type\": {}`. ", keys["type"]["const"].dump());
+    out_ += kind.value("description", "") + "\n";
+    const auto own = own_keys(name);
+    if (!own.empty()) write_table(name, own);
+    write_shared(name);
+  }
+
+  /// Where the kind's other keys are described.
+  void write_shared(const std::string& name) {
+    std::vector<std::string> links;
+    const auto& keys = kinds_.at(name).at("properties");
+    for (const Group& group : groups())
+      for (const std::string& key : group.common)
+        if (keys.contains(key) && is_common(key, keys.at(key))) {
+          links.push_back(link_to(group.common_title));
+          break;
+        }
+    std::vector<std::string> of_base;
+    for (const auto& [key, rule] : keys.items())
+      if (is_of_base(name, key, rule) && !rule.contains("const") && !is_common(key, rule))
+        of_base.push_back("`" + key + "`");
+    if (!of_base.empty())
+      links.push_back(fmt::format("{}: {}", link_to(base_of(name)), fmt::join(of_base, ", ")));
+    if (!links.empty()) out_ += fmt::format("\nAlso the keys of {}.\n", fmt::join(links, " and "));
+  }
+
+  const ordered_json& kinds_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string scene_reference(const ordered_json& schema) { return Page(schema).text(); }
