@@ -1,0 +1,94 @@
+// The manual's options are those of the program: each one that a command knows stands in its page, and each
+// one in a table of options is known.
+#include <fmt/format.h>
+
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "base/file.h"
+#include "catch.h"
+#include "run_command.h"
+
+namespace {
+
+/// The page under docs/ that describes each command.
+const std::map<std::string, std::string> pages{{"render", "command-line"},
+                                               {"merge", "command-line"},
+                                               {"info", "command-line"},
+                                               {"formulas", "command-line"},
+                                               {"compare", "command-line"},
+                                               {"devices", "devices"},
+                                               {"check", "devices"},
+                                               {"tune", "devices"},
+                                               {"bench workgroup", "benchmarks"},
+                                               {"bench threads", "benchmarks"},
+                                               {"bench devices", "benchmarks"},
+                                               {"bench rays", "benchmarks"},
+                                               {"bench samples", "benchmarks"},
+                                               {"bench kernels", "benchmarks"}};
+
+/// The long options in a text: "--size", as a whole.
+std::set<std::string> options_in(const std::string& text) {
+  static const std::regex option("(^|[^-\\w])(--[a-z][a-z-]*)");
+  std::set<std::string> all;
+  for (std::sregex_iterator it(text.begin(), text.end(), option), end; it != end; ++it) all.insert((*it)[2]);
+  return all;
+}
+
+/// The options that `--help` of a command lists, without --help.
+std::set<std::string> known_options(const std::string& command) {
+  std::vector<std::string> arguments;
+  std::istringstream words(command);
+  for (std::string word; words >> word;) arguments.push_back(word);
+  arguments.push_back("--help");
+  const CommandResult help = run_sundog(arguments);
+  REQUIRE(help.status == 0);
+  std::set<std::string> all;
+  std::istringstream lines(help.out);
+  static const std::regex option("^  (-\\w,)?(--[a-z][a-z-]*).*");
+  for (std::string line; std::getline(lines, line);)
+    if (std::smatch found; std::regex_match(line, found, option) && found[2] != "--help")
+      all.insert(found[2]);
+  return all;
+}
+
+std::string page_text(const std::string& name) {
+  return sundog::read_file(fmt::format(SUNDOG_SOURCE_DIR "/docs/{}.md", name));
+}
+
+/// The first cells of the tables that list options or commands.
+std::string first_cells(const std::string& page) {
+  std::string cells;
+  std::istringstream lines(page);
+  bool is_option_table = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("| option")) is_option_table = true;
+    if (!line.starts_with("|")) is_option_table = false;
+    if (is_option_table) cells += line.substr(0, line.find('|', 1)) + "\n";
+  }
+  return cells;
+}
+
+}  // namespace
+
+TEST_CASE("the manual has every option of every command, and no other") {
+  std::map<std::string, std::set<std::string>> known;
+  for (const auto& [command, page] : pages) {
+    const std::set<std::string> there = options_in(page_text(page));
+    for (const std::string& option : known_options(command)) {
+      INFO("docs/" << page << ".md: " << command << " " << option);
+      CHECK(there.contains(option));
+      known[page].insert(option);
+    }
+  }
+  std::size_t count = 0;
+  for (const auto& [page, options] : known)
+    for (const std::string& option : options_in(first_cells(page_text(page)))) {
+      INFO("docs/" << page << ".md: " << option << " is no option of its commands");
+      CHECK(options.contains(option));
+      ++count;
+    }
+  CHECK(count > 30);
+}
