@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Renders every shipped scene to docs/pictures/NAME.png, as the README shows them.
+# Renders every shipped scene to docs/pictures/NAME.png and every surface of the list to docs/pictures/formulas.png, as the
+# pages show them. Arguments go to `render`. The second needs the bench programs (./test.sh builds them).
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 for scene in "$root"/scenes/*.json; do
@@ -7,3 +8,6 @@ for scene in "$root"/scenes/*.json; do
   case "$name" in scene.schema | fractal_light_*) continue ;; esac
   "$root/run.sh" render "$scene" -o "$root/docs/pictures/$name.png" "$@"
 done
+if [ -x "$root/build/release/bench/formula_sheet" ]; then
+  "$root/build/release/bench/formula_sheet" -o "$root/docs/pictures/formulas.png"
+fi

@@ -20,28 +20,22 @@ namespace {
 struct Group {
   std::string title, about;
   std::vector<std::string> kinds;
-  std::string model;                // a kind whose `common` keys stand for those of all
-  std::vector<std::string> common;  // keys that are described once
-  std::string common_title;
+  std::string model{};                // a kind whose `common` keys stand for those of all
+  std::vector<std::string> common{};  // keys that are described once,
+  std::string common_title{};         // under this heading
 };
 
 const std::vector<Group>& groups() {
   static const std::vector<Group> all{
-      {"The scene", "", {"scene"}, "", {}, ""},
-      {"Picture", "", {"camera", "image", "gradient", "render", "world", "fog"}, "", {}, ""},
+      {"The scene", "", {"scene"}},
+      {"Picture", "", {"camera", "image", "gradient", "render", "world", "fog"}},
       {"Lights",
        "An entry of `lights` has one of these types.",
-       {"ambient_light", "directional_light", "point_light", "spot_light", "falloff"},
-       "",
-       {},
-       ""},
+       {"ambient_light", "directional_light", "point_light", "spot_light", "falloff"}},
       {"Media and materials",
        "",
-       {"medium", "absorption", "material", "checker", "term", "specular_term", "ray_term"},
-       "",
-       {},
-       ""},
-      {"Meshes", "", {"mesh", "generate_ice_block", "generate_ice_cavity"}, "", {}, ""},
+       {"medium", "absorption", "material", "checker", "term", "specular_term", "ray_term"}},
+      {"Meshes", "", {"mesh", "generate_ice_block", "generate_ice_cavity"}},
       {"Objects",
        "An entry of `objects` is one of these or a [distance field](#distance-fields).",
        {"sphere", "plane", "box", "round_box", "cylinder", "cone", "disk", "torus", "mesh_object",
@@ -60,11 +54,7 @@ const std::vector<Group>& groups() {
        "Every field"},
       {"Animation",
        "An entry of `animate` has one of these types.",
-       {"keyed_track", "rotate_track", "track_key"},
-       "",
-       {},
-       ""},
-  };
+       {"keyed_track", "rotate_track", "track_key"}}};
   return all;
 }
 

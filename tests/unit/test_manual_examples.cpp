@@ -1,5 +1,5 @@
-// The fractals and formulas of docs/formulas.md are scenes that load, without a warning but the one that the
-// page mentions.
+// The scene of docs/scenes.md loads. The fractals and formulas of docs/formulas.md are scenes that load,
+// without a warning but the one that the page mentions.
 #include <fstream>
 
 #include "catch.h"
@@ -7,10 +7,10 @@
 
 namespace {
 
-/// The examples of the page: indented lines that begin with a brace, up to the next line that is not
+/// The examples of a page: indented lines that begin with a brace, up to the next line that is not
 /// indented.
-std::vector<std::string> examples() {
-  std::ifstream file(SUNDOG_SOURCE_DIR "/docs/formulas.md");
+std::vector<std::string> examples_of(const std::string& page) {
+  std::ifstream file(SUNDOG_SOURCE_DIR "/docs/" + page);
   std::vector<std::string> examples;
   bool is_open = false;
   for (std::string line; std::getline(file, line);) {
@@ -25,7 +25,7 @@ std::vector<std::string> examples() {
 }  // namespace
 
 TEST_CASE("the manual's fractals and formulas load") {
-  const auto texts = examples();
+  const auto texts = examples_of("formulas.md");
   CHECK(texts.size() >= 5);
   for (const std::string& example : texts) {
     INFO(example);
@@ -34,4 +34,12 @@ TEST_CASE("the manual's fractals and formulas load") {
     for (const std::string& warning : scene.warnings) CHECK(warning.find("changes by") != std::string::npos);
     CHECK(scene.warnings.empty() == (example.find("sin(") == std::string::npos));
   }
+}
+
+TEST_CASE("the manual's scene loads") {
+  const auto texts = examples_of("scenes.md");
+  REQUIRE(texts.size() == 1);
+  const auto scene = load_scene_text(texts[0]);
+  CHECK(scene.objects.size() == 2);
+  CHECK(scene.warnings.empty());
 }
