@@ -7,6 +7,7 @@
 #include <map>
 
 #include "compile/sdf_leaf.h"
+#include "compile/sdf_scale.h"
 
 namespace sundog {
 namespace {
@@ -22,8 +23,10 @@ class FieldsEmitter {
  public:
   CompiledFields run(std::span<const SdfDescription> fields) {
     for (const SdfDescription& field : fields) {
-      add_field(field);
-      out_.fields.push_back(record(field));
+      SdfDescription leveled = field;
+      level_scales(leveled.root);
+      add_field(leveled);
+      out_.fields.push_back(record(leveled));
     }
     if (!fields.empty()) out_.source = file_head + leaves_ + fields_ + dispatch() + "#endif\n";
     return std::move(out_);
@@ -33,8 +36,10 @@ class FieldsEmitter {
   struct Kind {
     const char *type, *suffix, *join;
   };
-  static constexpr Kind kinds[3] = {
-      {"REAL", "distance", ""}, {"REAL", "signed", ""}, {"SdfSample", "sample", "_samples"}};
+  static constexpr Kind kinds[4] = {{"REAL", "distance", ""},
+                                    {"REAL", "signed", ""},
+                                    {"SdfSample", "sample", "_samples"},
+                                    {"REAL", "near", ""}};
 
   std::size_t table(const std::vector<double>& values) {
     const std::size_t first = out_.parameters.size();
@@ -125,7 +130,8 @@ class FieldsEmitter {
     leaf_of_place_.clear();
     place(field.root);
     const std::size_t index = out_.fields.size();
-    for (int kind = 0; kind < 3; ++kind) {
+    uneven_.push_back(is_uneven(field.root));
+    for (int kind = 0; kind < (uneven_.back() ? 4 : 3); ++kind) {
       kind_ = kind;
       next_place_ = next_leaf_ = next_name_ = 0;
       next_native_ = first_native;
@@ -148,11 +154,17 @@ class FieldsEmitter {
 
   /// Emits a node at point `p` and returns its variable. `two_sided`: depths inside are wanted.
   std::string visit(const SdfNode& node, const std::string& p, bool two_sided) {
+    if (kind_ == 3 && is_smooth(node)) {
+      kind_ = 2;
+      const std::string sample = visit(node, p, two_sided);
+      kind_ = 3;
+      return define("near_distance(" + sample + ")");
+    }
     const std::string q = fmt::format("q + {}", places_[next_place_++]);
     const std::string first_value = q.substr(4);
     switch (node.kind) {
       case SdfNode::Kind::formula: {
-        const char* suffix = kind_ == 0 && two_sided ? "signed" : kinds[kind_].suffix;
+        const char* suffix = kind_ == 3 || (kind_ == 0 && two_sided) ? "signed" : kinds[kind_].suffix;
         return define(fmt::format("{}_{}({}, active, {})", leaf_of_place_[next_leaf_++], suffix, p, q));
       }
       case SdfNode::Kind::native:
@@ -213,18 +225,33 @@ class FieldsEmitter {
 
   std::string dispatch() const {
     std::string out;
-    for (int kind = 0; kind < 3; ++kind) {
+    const bool near = std::find(uneven_.begin(), uneven_.end(), true) != uneven_.end();
+    if (near) out += uneven_fields();
+    for (int kind = 0; kind < (near ? 4 : 3); ++kind) {
       out += fmt::format(
           "static inline {} sdf_{}(u32 field, REAL3 p, {}__global const float* restrict q) {{\n  switch "
           "(field) {{\n",
           kinds[kind].type, kinds[kind].suffix, kind == 2 ? "" : "MASK active, ");
       for (std::size_t i = 0; i + 1 < out_.fields.size(); ++i)
-        out += fmt::format("    case {}u: return field{}_{}(p, {}, q);\n", i, i, kinds[kind].suffix,
+        out += fmt::format("    case {}u: return field{}_{}(p, {}, q);\n", i, i, suffix_of(i, kind),
                            kind == 2 ? "ALL_LANES" : "active");
       out += fmt::format("    default: return field{}_{}(p, {}, q);\n  }}\n}}\n\n", out_.fields.size() - 1,
-                         kinds[kind].suffix, kind == 2 ? "ALL_LANES" : "active");
+                         suffix_of(out_.fields.size() - 1, kind), kind == 2 ? "ALL_LANES" : "active");
     }
     return out;
+  }
+
+  /// The question that marching asks of a field, and SDF_HAS_NEAR, without which it asks none.
+  std::string uneven_fields() const {
+    std::string out = "#define SDF_HAS_NEAR 1\nstatic inline bool sdf_uneven(u32 field) {\n  return false";
+    for (std::size_t i = 0; i < uneven_.size(); ++i)
+      if (uneven_[i]) out += fmt::format(" || field == {}u", i);
+    return out + ";\n}\n\n";
+  }
+
+  /// The function of a field: one whose estimates are distances has no other near its surface.
+  const char* suffix_of(std::size_t field, int kind) const {
+    return kinds[kind == 3 && !uneven_[field] ? 1 : kind].suffix;
   }
 
   static int iterations_of(const SdfNode& node) {
@@ -274,6 +301,7 @@ class FieldsEmitter {
   std::string leaves_, fields_, body_;
   std::vector<std::size_t> places_;
   std::vector<std::string> leaf_of_place_;
+  std::vector<bool> uneven_;  // a field each
   std::size_t next_place_ = 0, next_leaf_ = 0, next_name_ = 0, next_native_ = 0, native_count_ = 0;
   int leaf_count_ = 0, kind_ = 0;
 };

@@ -4,14 +4,21 @@
 #define SUNDOG_LIB_SDF_LIGHT_CL
 #include "lib/sdf/march.cl"
 
+// Distance of p from the surface, as light sees it.
+static inline REAL open_distance(SDF_PARAMETERS, u32 index, REAL3 p, MASK active) {
+#ifdef SDF_HAS_NEAR
+  if (sdf_uneven(index)) return called_near(index, p, active, NO_LANES, sdf_parameters);
+#endif
+  return sdf_distance(index, p, active, sdf_parameters) * sdf_fields[index].safety;
+}
+
 // 1 in the open, towards 0 in a crevice: five estimates along the normal, up to `reach` off the surface.
 static inline REAL sdf_openness(SDF_PARAMETERS, u32 index, REAL3 p, REAL3 normal, float reach, MASK active) {
-  const float safety = sdf_fields[index].safety;
   REAL missing = (REAL)(0.0f);
   float weight = 1.0f, total = 0.0f;
   for (int i = 1; i <= 5; ++i) {
     const float h = reach * (float)i * 0.2f;
-    const REAL d = sdf_distance(index, along3(p, (REAL)(h), normal), active, sdf_parameters) * safety;
+    const REAL d = open_distance(SDF_ARGUMENTS, index, along3(p, (REAL)(h), normal), active);
     missing = fma((REAL)(weight / h), real_max(h - d, (REAL)(0.0f)), missing);
     total += weight;
     weight *= 0.6f;
@@ -32,7 +39,11 @@ static inline REAL sdf_soft_shadow(SDF_PARAMETERS, u32 index, REAL3 p, REAL3 wi,
   for (u32 i = 0; i<field->step_limit&& * steps_left> 0u && any_lane(active); ++i) {
     *steps_left -= 1u;
     const REAL d = sdf_distance(index, along3(p, t, wi), active, sdf_parameters) * field->safety;
-    open = select(open, real_min(open, hardness * d * rough_inverse(t)), active);
+    REAL beside = d;
+#ifdef SDF_HAS_NEAR
+    if (sdf_uneven(index)) beside = open_distance(SDF_ARGUMENTS, index, along3(p, t, wi), active);
+#endif
+    open = select(open, real_min(open, hardness * beside * rough_inverse(t)), active);
     t += real_max(d, 0.02f * t);  // a penumbra is not looked at more closely than this
     active &= MASK_OF(open > 0.002f) & MASK_OF(t < leave);
   }

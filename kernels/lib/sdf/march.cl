@@ -6,6 +6,13 @@
 #include "generated/sdf.cl"
 #include "lib/sdf/cut.cl"
 
+// Rays may step over a surface, and go back to where they crossed it.
+#if SDF_TWO_SIDED || defined(SDF_HAS_NEAR)
+#define SDF_CROSSES 1
+#else
+#define SDF_CROSSES 0
+#endif
+
 // t counts in lengths of direction, which need not be a unit vector. The pixel's footprint at t is
 // footprint + t * spread, in the same unit.
 typedef struct MarchRays {
@@ -48,19 +55,35 @@ __attribute__((noinline)) static REAL called_estimate(u32 field, REAL3 p, MASK a
   return march_estimate(field, p, active, inside, q);
 }
 
+// The same, with the distance itself in the place of an estimate that is a small part of it. To first order:
+// it is used near the surface only.
+#ifdef SDF_HAS_NEAR
+__attribute__((noinline)) static REAL called_near(u32 field, REAL3 p, MASK active, MASK inside,
+                                                  __global const float* restrict q) {
+  const REAL d = sdf_near(field, p, active, q);
+  return select(d, -d, inside);
+}
+#endif
+static inline REAL surface_distance(SDF_PARAMETERS, u32 field, REAL3 p, MASK active, MASK inside) {
+#ifdef SDF_HAS_NEAR
+  if (sdf_uneven(field)) return called_near(field, p, active, inside, sdf_parameters);
+#endif
+  return called_estimate(field, p, active, inside, sdf_parameters);
+}
+
 // From within the threshold of a closed form to its surface: Newton's method along the ray, the slope taken
 // from the last two points, never further from the hit than a few thresholds. A ray that only grazes the
 // surface stays where it comes nearest.
 static inline REAL refine_hit(SDF_PARAMETERS, u32 field, const MarchRays* rays, REAL t, REAL inverse_speed,
                               REAL threshold, MASK hit) {
   const REAL reach = 64.0f * threshold * inverse_speed, low = t - reach, high = t + reach;
-  REAL before = t, f_before = called_estimate(field, along3(rays->origin, t, rays->direction), hit,
-                                              rays->inside, sdf_parameters);
+  REAL before = t, f_before = surface_distance(SDF_ARGUMENTS, field, along3(rays->origin, t, rays->direction),
+                                               hit, rays->inside);
   REAL best = t, f_best = f_before;
   t = fma(f_before, inverse_speed, t);
   for (int i = 0; i < 5; ++i) {
     const REAL f =
-        called_estimate(field, along3(rays->origin, t, rays->direction), hit, rays->inside, sdf_parameters);
+        surface_distance(SDF_ARGUMENTS, field, along3(rays->origin, t, rays->direction), hit, rays->inside);
     const MASK nearer = MASK_OF(fabs(f) < fabs(f_best));
     best = select(best, t, nearer);
     f_best = select(f_best, f, nearer);
@@ -74,9 +97,9 @@ static inline REAL refine_hit(SDF_PARAMETERS, u32 field, const MarchRays* rays, 
   return select(rays->t_max, best, MASK_OF(best < rays->t_max));
 }
 
-// A ray inside that has come out since `before`: halves the way between until the surface is found.
-static inline REAL bisect_exit(SDF_PARAMETERS, u32 field, const MarchRays* rays, REAL before, REAL t,
-                               MASK lanes) {
+// A ray that has changed sides since `before`: halves the way between until the surface is found.
+static inline REAL bisect_crossing(SDF_PARAMETERS, u32 field, const MarchRays* rays, REAL before, REAL t,
+                                   MASK lanes) {
   for (int i = 0; i < 12; ++i) {
     const REAL middle = 0.5f * (before + t);
     const REAL f = called_estimate(field, along3(rays->origin, middle, rays->direction), lanes, rays->inside,
@@ -96,7 +119,7 @@ static inline REAL clear_exit(SDF_PARAMETERS, u32 field, const MarchRays* rays, 
   REAL clear = t;
   for (int i = 0; i < 8 && any_lane(lanes); ++i) {
     const REAL f =
-        called_estimate(field, along3(rays->origin, clear, rays->direction), lanes, NO_LANES, sdf_parameters);
+        surface_distance(SDF_ARGUMENTS, field, along3(rays->origin, clear, rays->direction), lanes, NO_LANES);
     lanes &= MASK_OF(f < 0.75f * threshold);
     clear = select(clear, fma(real_max(f, 0.5f * threshold), inverse_speed, clear), lanes);
   }
@@ -123,9 +146,12 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   const REAL pull = select(smooth ? (REAL)(0.0f) : -inverse_speed, (REAL)(0.0f), rays->inside);
   // A ray inside an estimated surface goes on to where it comes out: depths are too rough to stop before it.
   const MASK to_crossing = smooth ? NO_LANES : rays->inside;
-#if SDF_TWO_SIDED
+#if SDF_CROSSES
   MASK overshot = NO_LANES;
-  REAL inside_at = first;  // the last point that was still inside
+  REAL clear_at = first;  // the last point on the side that the ray travels on
+#endif
+#ifdef SDF_HAS_NEAR
+  const bool uneven = sdf_uneven(index);
 #endif
   const REAL spread = rays->spread * speed * field->detail,
              footprint = rays->footprint * speed * field->detail;
@@ -135,8 +161,17 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
     const REAL f = march_estimate(index, p, active, rays->inside, sdf_parameters) * field->safety;
     const REAL threshold = real_clamp(fma(t, spread, footprint), least, greatest);
     hits.steps -= active;
+    REAL d = f;  // to the surface
+#ifdef SDF_HAS_NEAR
+    const MASK close = uneven ? active & MASK_OF(f < threshold) : NO_LANES;
+    if (uneven && (HAS_GLOW || any_lane(close)))
+      d = called_near(index, p, active, rays->inside, sdf_parameters);
+#endif
 #if HAS_GLOW
-    hits.nearest = select(hits.nearest, real_min(real_max(f, (REAL)(0.0f)), hits.nearest), active);
+    hits.nearest = select(hits.nearest, real_min(real_max(d, (REAL)(0.0f)), hits.nearest), active);
+#endif
+#ifdef SDF_HAS_NEAR
+    d = select(f, d, close);
 #endif
 
     // The spheres about the last point and this one must touch: else back to where the last one ended.
@@ -145,17 +180,21 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
     const MASK forward = active & ~gap;
 
     const REAL near = select(threshold, (REAL)(0.0f), to_crossing);
-    const MASK arrived = forward & select(MASK_OF(f < near), MASK_OF(f < wrong * threshold), leaving);
-    leaving &= ~(forward & MASK_OF(f >= threshold));
+    const MASK arrived = forward & select(MASK_OF(d < near), MASK_OF(d < wrong * threshold), leaving);
+#if SDF_CROSSES
+#ifdef SDF_HAS_NEAR
+    overshot |= arrived & MASK_OF(d < 0.0f) & (uneven && smooth ? rays->inside | ~leaving : rays->inside);
+#else
+    overshot |= arrived & MASK_OF(d < 0.0f) & rays->inside;
+#endif
+    clear_at = select(clear_at, t, forward & ~arrived);
+#endif
+    leaving &= ~(forward & MASK_OF(d >= threshold));
     hits.hit |= arrived;
     // Back to where the surface is a threshold away, so that rays which start here are clear of it.
-    const REAL back = real_clamp(threshold - f, (REAL)(0.0f), step);
+    const REAL back = real_clamp(threshold - d, (REAL)(0.0f), step);
     hits.t = select(hits.t, fma(back, pull, t), arrived);
     hits.threshold = select(hits.threshold, threshold, active);
-#if SDF_TWO_SIDED
-    overshot |= arrived & rays->inside & MASK_OF(f < 0.0f);
-    inside_at = select(inside_at, t, forward & ~arrived);
-#endif
     if (i == 0) hits.cut = arrived & from_cut & ~rays->inside & MASK_OF(f <= 0.0f);
 
     // Along a plane the estimate changes linearly: the longest step whose spheres still touch solves
@@ -164,7 +203,10 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
                                      (REAL)(-1.0f), (REAL)(0.5f));
     slope = select(slope, 0.5f * (slope + measured), forward & MASK_OF(step > 0.0f));
     slope = select(slope, (REAL)(-1.0f), gap);
-    const REAL proven = real_max(f, 0.5f * threshold);
+    REAL proven = real_max(f, 0.5f * threshold);
+#ifdef SDF_HAS_NEAR  // a step over the surface is found by its sign, and taken back to it
+    proven = select(proven, real_max(proven, real_min(0.5f * d, 4.0f * threshold)), close);
+#endif
     const REAL longer = 2.0f * f * rough_inverse(1.0f - slope);
     const REAL remaining = (last - t) * speed;
     const MASK through = forward & ~arrived & MASK_OF(proven >= remaining);
@@ -181,9 +223,10 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   hits.limited = active;
   hits.t = select(select(hits.t, t, active), last, hits.cut & ~hits.hit);
   hits.hit |= active | hits.cut;
-#if SDF_TWO_SIDED  // depths are no proven bound in every fractal (definition.h)
+#if SDF_CROSSES  // depths are no proven bound in every fractal (definition.h)
   if (any_lane(overshot))
-    hits.t = select(hits.t, bisect_exit(SDF_ARGUMENTS, index, rays, inside_at, hits.t, overshot), overshot);
+    hits.t =
+        select(hits.t, bisect_crossing(SDF_ARGUMENTS, index, rays, clear_at, hits.t, overshot), overshot);
   const MASK out = to_crossing & overshot;
   if (any_lane(out))
     hits.t =

@@ -78,6 +78,11 @@ static inline REAL axis_distance(REAL x, REAL y, REAL z) {
 // A formula that gives no number there counts as empty: the march goes on by a small step.
 static inline REAL finite_distance(REAL d) { return select((REAL)(1e-3f), d, MASK_OF(fabs(d) < 1e30f)); }
 
+// Distance to the surface, to first order, whatever the estimate was scaled by.
+static inline REAL near_distance(SdfSample s) {
+  return finite_distance(s.distance / real_sqrt(real_max(dot3(s.gradient, s.gradient), (REAL)(1e-30f))));
+}
+
 static inline SdfSample select_sample(SdfSample a, SdfSample b, MASK m) {
   SdfSample r;
   r.distance = select(a.distance, b.distance, m);
