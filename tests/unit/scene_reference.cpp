@@ -4,13 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <map>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <vector>
+
+#include "schema_words.h"
 
 using nlohmann::ordered_json;
 
@@ -58,80 +56,9 @@ const std::vector<Group>& groups() {
   return all;
 }
 
-/// What a choice by "type" is called, and where it leads.
-const std::map<std::string, std::string>& choices() {
-  static const std::map<std::string, std::string> all{
-      {"light", "[light](#lights)"},          {"object", "[object](#objects)"},
-      {"field", "[field](#distance-fields)"}, {"step", "[step](#fractal-step)"},
-      {"track", "[track](#animation)"},       {"generate", "[ice block](#generate-ice-block)"}};
-  return all;
-}
-
-/// Values that have a name of their own.
-const std::map<std::string, std::string>& value_names() {
-  static const std::map<std::string, std::string> all{{"vec3", "[x, y, z]"},
-                                                      {"color", "colour"},
-                                                      {"share_color", "colour, each 0 to 1"},
-                                                      {"formula_text", "formula text"}};
-  return all;
-}
-
-std::string number_text(const ordered_json& value) {
-  const double x = value.get<double>();
-  return std::abs(x) < 1e10 && x == std::floor(x) ? fmt::format("{}", static_cast<long long>(x))
-                                                  : fmt::format("{:g}", x);
-}
-
-std::string value_text(const ordered_json& value) {
-  if (value.is_number()) return number_text(value);
-  if (!value.is_array()) return value.dump();
-  std::vector<std::string> items;
-  for (const ordered_json& item : value) items.push_back(value_text(item));
-  return fmt::format("[{}]", fmt::join(items, ", "));
-}
-
-std::string words(std::string name) {
-  for (char& c : name)
-    if (c == '_') c = ' ';
-  return name;
-}
-
-std::string link_to(const std::string& kind) {
-  std::string anchor = kind;
-  for (char& c : anchor) c = c == '_' || c == ' ' ? '-' : static_cast<char>(std::tolower(c));
-  std::string title = words(kind);
-  title[0] = static_cast<char>(std::tolower(title[0]));
-  return fmt::format("[{}](#{})", title, anchor);
-}
-
-std::string plural(const std::string& noun) {
-  const auto at = noun.starts_with("[") ? noun.find(']') : noun.find_first_of(",≥>");
-  std::string first = noun.substr(0, at), rest = at == std::string::npos ? "" : noun.substr(at);
-  const bool space = !first.empty() && first.back() == ' ';
-  if (space) first.pop_back();
-  return first + "s" + (space ? " " : "") + rest;
-}
-
-/// A number's limits; those of 1e18 and more are none.
-std::string limits_text(const ordered_json& rule) {
-  const auto limit = [&](const char* key) -> std::optional<std::string> {
-    if (!rule.contains(key) || std::abs(rule[key].get<double>()) >= 1e18) return {};
-    return number_text(rule[key]);
-  };
-  const auto low = limit("minimum"), high = limit("maximum"), above = limit("exclusiveMinimum"),
-             below = limit("exclusiveMaximum");
-  if (low && high) return fmt::format(", {} to {}", *low, *high);
-  std::vector<std::string> parts;
-  if (low) parts.push_back(fmt::format("at least {}", *low));
-  if (above) parts.push_back(fmt::format("above {}", *above));
-  if (high) parts.push_back(fmt::format("at most {}", *high));
-  if (below) parts.push_back(fmt::format("below {}", *below));
-  return parts.empty() ? "" : fmt::format(", {}", fmt::join(parts, ", "));
-}
-
 class Page {
  public:
-  explicit Page(const ordered_json& schema) : kinds_(schema.at("$defs")) {}
+  explicit Page(const ordered_json& schema) : kinds_(schema.at("$defs")), words_(kinds_) {}
 
   std::string text() {
     check_places();
@@ -147,11 +74,6 @@ class Page {
   }
 
  private:
-  static bool has_keys(const ordered_json& kind) {
-    return kind.contains("properties") && kind.contains("additionalProperties") &&
-           kind["additionalProperties"] == false;
-  }
-
   void check_places() const {
     std::set<std::string> placed;
     for (const Group& group : groups()) placed.insert(group.kinds.begin(), group.kinds.end());
@@ -173,57 +95,6 @@ class Page {
     return true;
   }
 
-  const ordered_json& target(const ordered_json& rule) const {
-    return kinds_.at(rule.at("$ref").get<std::string>().substr(std::string("#/$defs/").size()));
-  }
-
-  std::string type_text(const ordered_json& rule) const {
-    if (rule.contains("$ref"))
-      return reference_text(rule.at("$ref").get<std::string>().substr(std::string("#/$defs/").size()));
-    if (rule.contains("anyOf")) return options_text(rule["anyOf"]);
-    if (rule.contains("enum")) {
-      std::vector<std::string> names;
-      for (const ordered_json& name : rule["enum"]) names.push_back("`" + name.get<std::string>() + "`");
-      return fmt::format("{}", fmt::join(names, ", "));
-    }
-    const std::string type = rule.at("type");
-    if (type == "number" || type == "integer")
-      return (type == "number" ? "number" : "whole number") + limits_text(rule);
-    if (type == "boolean") return "`true`, `false`";
-    if (type == "string") return "text";
-    if (type == "array") return array_text(rule);
-    if (type == "object")
-      return rule.contains("additionalProperties")
-                 ? "names, each with " + type_text(rule["additionalProperties"])
-                 : "names, each with a value";
-    throw std::runtime_error("no words for the type " + type);
-  }
-
-  std::string reference_text(const std::string& name) const {
-    if (choices().contains(name)) return choices().at(name);
-    if (value_names().contains(name)) return value_names().at(name);
-    return has_keys(kinds_.at(name)) ? link_to(name) : type_text(kinds_.at(name));
-  }
-
-  std::string options_text(const ordered_json& options) const {
-    std::vector<std::string> texts;
-    for (const ordered_json& option : options) texts.push_back(type_text(option));
-    return fmt::format("{}", fmt::join(texts, "; or "));
-  }
-
-  std::string array_text(const ordered_json& rule) const {
-    const std::string items = rule.contains("items") ? plural(type_text(rule["items"])) : "numbers";
-    const auto least = rule.value("minItems", 0), most = rule.value("maxItems", 0);
-    if (least > 0 && least == most) return fmt::format("{} {}", least, items);
-    if (most > 0) return fmt::format("list of {} to {} {}", least, most, items);
-    return least > 1 ? fmt::format("list of {} or more {}", least, items) : "list of " + items;
-  }
-
-  std::string meaning(const ordered_json& rule) const {
-    if (rule.contains("description")) return rule["description"];
-    return rule.contains("$ref") ? meaning(target(rule)) : "";
-  }
-
   /// A bar would end the cell of a table.
   static std::string in_cell(const std::string& text) {
     std::string escaped;
@@ -231,23 +102,14 @@ class Page {
     return escaped;
   }
 
-  std::string default_text(const ordered_json& rule) const {
-    if (rule.contains("default")) {
-      const ordered_json& value = rule["default"];
-      return value.is_string() ? fmt::format("`{}`", value.get<std::string>())
-                               : "`" + value_text(value) + "`";
-    }
-    return rule.contains("$ref") ? default_text(target(rule)) : "";
-  }
-
   void write_table(const std::string& name, const std::vector<std::string>& keys) {
     const ordered_json& kind = kinds_.at(name);
     out_ += "\n| key | value | default | meaning |\n|---|---|---|---|\n";
     for (const std::string& key : keys) {
       const ordered_json& rule = kind.at("properties").at(key);
-      out_ +=
-          fmt::format("| `{}` | {} | {} | {} |\n", key, type_text(rule),
-                      is_required(kind, key) ? "**required**" : default_text(rule), in_cell(meaning(rule)));
+      out_ += fmt::format("| `{}` | {} | {} | {} |\n", key, words_.type(rule),
+                          is_required(kind, key) ? "**required**" : words_.default_value(rule),
+                          in_cell(words_.meaning(rule)));
     }
   }
 
@@ -297,7 +159,7 @@ class Page {
 
   void write_kind(const std::string& name) {
     const ordered_json& kind = kinds_.at(name);
-    out_ += "\n### " + words(name) + "\n\n";
+    out_ += "\n### " + spaced(name) + "\n\n";
     const auto& keys = kind.at("properties");
     if (keys.contains("type") && keys["type"].contains("const"))
       out_ += fmt::format("`\"type\": {}`. ", keys["type"]["const"].dump());
@@ -327,6 +189,7 @@ class Page {
   }
 
   const ordered_json& kinds_;
+  SchemaWords words_;
   std::string out_;
 };
 
