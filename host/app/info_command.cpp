@@ -46,6 +46,9 @@ void print_text(const json& figures) {
              bvh["sah_cost_unit"].get<std::string>());
   fmt::print("memory     {:.2f} MiB: BVH {:.2f}, shading {:.2f}, tables {:.2f}\n", mebibytes("total"),
              mebibytes("bvh"), mebibytes("shading"), mebibytes("tables"));
+  for (const json& field : figures["field_bounds"])
+    fmt::print("field      {}: {} to {}\n", field["name"].get<std::string>(), point_text(field["min"]),
+               point_text(field["max"]));
   if (const json& bounds = figures["bounds"]; bounds.is_null())
     fmt::print("bounds     none\n");
   else

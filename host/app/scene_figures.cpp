@@ -62,6 +62,46 @@ json bounds(const CompiledScene& flat) {
           {"max", {box.upper[0], box.upper[1], box.upper[2]}}};
 }
 
+/// The intervals of the fields, each as far as it is cut and placed.
+json field_bounds(const SceneDescription& scene) {
+  json list = json::array();
+  for (const Object& object : scene.objects) {
+    const auto* shape = std::get_if<FieldShape>(&object.shape);
+    if (!shape) continue;
+    const SdfDescription& field = scene.fields[static_cast<std::size_t>(shape->field)];
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+    for (int corner = 0; corner < 8; ++corner) {
+      glm::dvec3 p;
+      for (int axis = 0; axis < 3; ++axis) {
+        double lower = field.lower[axis], upper = field.upper[axis];
+        if (field.sphere) {
+          lower = std::max(lower, (*field.sphere)[axis] - field.sphere->w);
+          upper = std::min(upper, (*field.sphere)[axis] + field.sphere->w);
+        }
+        p[axis] = corner >> axis & 1 ? upper : lower;
+      }
+      const glm::dvec3 world(object.world_from_object * glm::dvec4(p, 1));
+      low = glm::min(low, world);
+      high = glm::max(high, world);
+    }
+    list.push_back({{"name", object.name.empty() ? field.name : object.name},
+                    {"min", {low.x, low.y, low.z}},
+                    {"max", {high.x, high.y, high.z}}});
+  }
+  return list;
+}
+
+/// Both together.
+json whole_bounds(json box, const json& fields) {
+  for (const json& field : fields)
+    for (std::size_t axis = 0; axis < 3 && !box.is_null(); ++axis) {
+      box["min"][axis] = std::min(box["min"][axis].get<double>(), field["min"][axis].get<double>());
+      box["max"][axis] = std::max(box["max"][axis].get<double>(), field["max"][axis].get<double>());
+    }
+  if (!box.is_null() || fields.empty()) return box;
+  return whole_bounds({{"min", fields[0]["min"]}, {"max", fields[0]["max"]}}, fields);
+}
+
 json planes(const CompiledScene& flat) {
   return std::count_if(flat.instances.begin(), flat.instances.end(),
                        [](const Instance& instance) { return instance.shape == SHAPE_PLANE; });
@@ -91,7 +131,8 @@ json scene_figures(const SceneDescription& scene, const CompiledScene& flat) {
             {"build_seconds", flat.figures.build_seconds},
             {"build_seconds_unit", "seconds on the wall's clock, of the whole compiled scene"}}},
           {"bytes", table_bytes(flat)},
-          {"bounds", bounds(flat)}};
+          {"field_bounds", field_bounds(scene)},
+          {"bounds", whole_bounds(bounds(flat), field_bounds(scene))}};
 }
 
 }  // namespace sundog

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
+#include "scene/formula/evaluate.h"
 #include "scene_text.h"
 
 using namespace sundog;
@@ -81,4 +82,63 @@ TEST_CASE("a scene's formula too deep or too long is refused") {
   check_map_refused("z = z" + repeated(" + c", 5000), "8192 characters");
   check_map_refused(nlohmann::json(std::vector<std::string>(5000, "z = z + c")), "8192 characters");
   check_map_refused("z = z + " + repeated("a", 100), "32 characters");
+}
+
+TEST_CASE("a formula that its default interval cuts says so, and no other does") {
+  const auto warnings = [](const std::string& members) {
+    return load_scene_text(scene_of(R"({"type": "formula", "material": "m", )" + members + "}")).warnings;
+  };
+  const auto cut = warnings(R"("distance": "length(p - vec3(1, 0, 0)) - 0.8")");
+  REQUIRE(cut.size() == 1);
+  CHECK(cut[0].find("from -1.5 to 1.5") != std::string::npos);
+  CHECK(cut[0].find("set \"interval\"") != std::string::npos);
+  CHECK(warnings(R"("distance": "length(p) - 1.4")").empty());
+  CHECK(warnings(R"("map": "z = z ^ 8 + c")").empty());
+  CHECK(warnings(R"("distance": "length(p - vec3(1, 0, 0)) - 0.8",
+                    "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]})")
+            .empty());
+  CHECK(load_scene_text(scene_of(R"({"type": "fractal", "formula": "gyroid", "material": "m"})"))
+            .warnings.empty());
+}
+
+TEST_CASE("exact solids are operands of fields: their distances are those of the solids") {
+  struct Case {
+    std::string solid;
+    glm::dvec3 at;
+    double distance;
+  };
+  for (const Case& c :
+       {Case{R"("type": "sphere", "radius": 0.5, "center": [1, 0, 0])", {3, 0, 0}, 1.5},
+        Case{R"("type": "box", "min": [0, 0, 0], "max": [1, 2, 3])", {0.5, 2.25, 1}, 0.25},
+        Case{R"("type": "round_box", "half": 1, "radius": 0.2)", {0, 3, 0}, 2},
+        Case{R"("type": "cylinder", "from": [0, 0, 0], "to": [2, 0, 0], "radius": 0.5)", {1, 0, 2}, 1.5},
+        Case{R"("type": "cone", "bottom_radius": 1, "top_radius": 1, "height": 2)", {0, 0.5, 0}, -0.5},
+        Case{R"("type": "cone", "bottom_radius": 1, "top_radius": 0, "height": 1)", {1, 0.5, 0}, 0.70710678},
+        Case{R"("type": "torus", "major_radius": 1, "minor_radius": 0.25, "axis": [1, 0, 0])",
+             {0, 0, 1},
+             -0.25},
+        Case{R"("type": "plane", "point": [0, 0.5, 0])", {7, 3, 0}, 2.5},
+        Case{R"("type": "sphere", "transform": [{"scale": 2}, {"translate": [0, 1, 0]}])", {0, 4, 0}, 1}}) {
+    INFO(c.solid);
+    const auto scene = load_scene_text(scene_of(
+        R"({"type": "difference", "material": "m", "interval": {"min": [-9, -9, -9], "max": [9, 9, 9]},
+            "fields": [{)" +
+        c.solid + R"(}, {"type": "sphere", "name": "hole", "radius": 0.1}]})"));
+    CHECK(scene.warnings.empty());
+    const SdfNode& moved = scene.fields.at(0).root.children.at(0);
+    const glm::dvec3 p = glm::transpose(moved.rotation) * (c.at - moved.offset) / moved.scale;
+    CHECK(FormulaEvaluator(moved.children.at(0).formula).at(p).distance * moved.scale ==
+          Approx(c.distance).margin(1e-7));
+  }
+  const auto refused = [](const std::string& solid) {
+    return error_of(scene_of(
+        R"({"type": "union", "material": "m", "interval": {"min": [-9, -9, -9], "max": [9, 9, 9]},
+            "fields": [{"type": "sphere"}, )" +
+        solid + "]}"));
+  };
+  CHECK(refused(R"({"type": "cylinder", "capped": false})").reason.find("no inside") != std::string::npos);
+  CHECK(refused(R"({"type": "disk"})").reason.find("no inside") != std::string::npos);
+  CHECK(refused(R"({"type": "box", "transform": [{"scale": [1, 2, 1]}]})").place ==
+        "/objects/0/fields/1/transform");
+  CHECK(refused(R"({"type": "box", "material": "m"})").reason.find("whole field") != std::string::npos);
 }

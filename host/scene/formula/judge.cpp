@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/formula/evaluate.h"
 #include "scene/formula/survey.h"
+#include "scene/read/parts.h"
 
 namespace sundog {
 namespace {
@@ -177,7 +179,15 @@ void into_cell(const SdfNode& node, dvec3& lower, dvec3& upper) {
   }
 }
 
+bool is_solid(const JsonValue& value) {
+  const auto type = value.json().find("type");
+  const Names solids = solid_types();
+  return type != value.json().end() && type->is_string() &&
+         std::find(solids.begin(), solids.end(), type->get<std::string>()) != solids.end();
+}
+
 void judge_node(SdfNode& node, const JsonValue& value, dvec3 lower, dvec3 upper, bool whole) {
+  if (is_solid(value)) return;  // an exact distance
   if (node.kind == SdfNode::Kind::formula) return FormulaJudge(node.formula, value, whole).run(lower, upper);
   if (node.kind == SdfNode::Kind::transform) into_child(node, lower, upper);
   if (node.kind == SdfNode::Kind::repeat) into_cell(node, lower, upper);
@@ -194,6 +204,28 @@ void judge_node(SdfNode& node, const JsonValue& value, dvec3 lower, dvec3 upper,
 
 void judge_field(SdfNode& root, const JsonValue& value, const dvec3& lower, const dvec3& upper) {
   judge_node(root, value, lower, upper, true);
+}
+
+void judge_cut(const FormulaField& formula, const JsonValue& value, const dvec3& lower, const dvec3& upper) {
+  const auto& json = value.json();
+  if (!json.contains("map") && !json.contains("distance")) return;
+  constexpr int steps = 16;
+  FormulaEvaluator evaluator(formula);
+  for (int face = 0; face < 6; ++face)
+    for (int i = 0; i <= steps; ++i)
+      for (int j = 0; j <= steps; ++j) {
+        const int axis = face / 2;
+        dvec3 part(face % 2);
+        part[(axis + 1) % 3] = double(i) / steps;
+        part[(axis + 2) % 3] = double(j) / steps;
+        const dvec3 p = lower + part * (upper - lower);
+        if (!evaluator.at(p).inside) continue;
+        value.warn(
+            fmt::format("the solid reaches the boundary of the interval from {:g} to {:g} that a formula has "
+                        "by default, as at {}, and is cut there; set \"interval\"",
+                        lower.x, upper.x, text_of(p)));
+        return;
+      }
 }
 
 }  // namespace sundog

@@ -11,4 +11,9 @@ namespace sundog {
 /// warned of (JsonContext::warnings). Throws SceneError where no picture can come of it.
 void judge_field(SdfNode& root, const JsonValue& value, const glm::dvec3& lower, const glm::dvec3& upper);
 
+/// Warns where the solid of a formula of the user's own, which has no interval but the default one, reaches
+/// that one's boundary.
+void judge_cut(const FormulaField& formula, const JsonValue& value, const glm::dvec3& lower,
+               const glm::dvec3& upper);
+
 }  // namespace sundog

@@ -9,6 +9,8 @@
 
 #include "scene/formula/judge.h"
 #include "scene/formula/read_leaf.h"
+#include "scene/formula/read_solid_field.h"
+#include "scene/read/parts.h"
 
 namespace sundog {
 namespace {
@@ -22,10 +24,16 @@ SdfNode read_node(JsonObject& object, std::string_view type, std::array<double, 
 
 SdfNode read_child(const JsonValue& value, int depth, std::array<double, 6>* bounds = nullptr) {
   if (depth > deepest) value.fail(fmt::format("fields nested deeper than {} levels", deepest));
-  const std::string type = value.member("type", list_names(types)).choice(types);
-  return value.object(type + "_field", [&](JsonObject& object) {
+  static const auto operands = [] {
+    std::vector<std::string_view> result(types.begin(), types.end());
+    result.insert(result.end(), solid_types().begin(), solid_types().end());
+    return result;
+  }();
+  const std::string type = value.member("type", list_names(operands)).choice(operands);
+  const bool solid = std::find(types.begin(), types.end(), type) == types.end();
+  return value.object(solid ? type : type + "_field", [&](JsonObject& object) {
     object.at("type", "");
-    return read_node(object, type, bounds, depth);
+    return solid ? read_solid_field(object, type) : read_node(object, type, bounds, depth);
   });
 }
 
@@ -160,7 +168,10 @@ void read_whole(JsonObject& object, SdfDescription& field, const JsonValue& root
   if (const auto coloring = object.find("coloring")) field.coloring = read_coloring(*coloring);
   read_light(object, field, size);
   try {
-    if (root.context().measures) judge_field(field.root, root, field.lower, field.upper);
+    if (root.context().measures) {
+      judge_field(field.root, root, field.lower, field.upper);
+      if (is_leaf && !object.has("interval")) judge_cut(field.root.formula, root, field.lower, field.upper);
+    }
   } catch (const FormulaError& error) {
     fail_formula(root, error);
   }
