@@ -9,5 +9,5 @@ for scene in "$root"/scenes/*.json; do
   "$root/run.sh" render "$scene" -o "$root/docs/pictures/$name.png" "$@"
 done
 if [ -x "$root/build/release/bench/formula_sheet" ]; then
-  "$root/build/release/bench/formula_sheet" -o "$root/docs/pictures/formulas.png"
+  "$root/build/release/bench/formula_sheet" --size 180 -o "$root/docs/pictures/formulas.png"
 fi

@@ -10,8 +10,10 @@
 #include <sstream>
 
 #include "base/file.h"
+#include "base/image_io.h"
 #include "catch.h"
 #include "scene/formula/functions.h"
+#include "scene/formula/list.h"
 #include "scene_reference.h"
 
 using namespace sundog;
@@ -134,6 +136,18 @@ TEST_CASE("links and pictures of the pages lead somewhere") {
     }
   }
   CHECK(count > 50);
+}
+
+TEST_CASE("the contact sheet and the README have as many surfaces as the list") {
+  const std::size_t count = formula_list().size();
+  const std::string readme = read_file(root / "README.md");
+  CHECK(readme.find(fmt::format("the {} surfaces of `sundog formulas`", count)) != std::string::npos);
+  CHECK(readme.find(fmt::format("| {} surfaces and formulas", count)) != std::string::npos);
+  const Image sheet =
+      read_image(root / "docs/pictures/formulas.png");  // docs/render_pictures.sh: rows of eight
+  const std::size_t rows = (count + 7) / 8;
+  CHECK(sheet.width == 8 * 180);
+  CHECK(sheet.height == static_cast<int>(rows) * (180 + 22));
 }
 
 TEST_CASE("hand-written pages have at most 150 lines") {
