@@ -21,6 +21,7 @@ struct Group {
   std::string model{};                // a kind whose `common` keys stand for those of all
   std::vector<std::string> common{};  // keys that are described once,
   std::string common_title{};         // under this heading
+  std::string choice{};               // a choice by "type" that is described here
 };
 
 const std::vector<Group>& groups() {
@@ -49,7 +50,8 @@ const std::vector<Group>& groups() {
        "fractal",
        {"interval", "ball", "detail", "least_threshold", "greatest_threshold", "step_limit", "coloring",
         "occlusion", "soft_shadow", "glow"},
-       "Every field"},
+       "Every field",
+       "field"},
       {"Animation",
        "An entry of `animate` has one of these types.",
        {"keyed_track", "rotate_track", "track_key"}}};
@@ -150,6 +152,7 @@ class Page {
   void write(const Group& group) {
     out_ += "\n## " + group.title + "\n";
     if (!group.about.empty()) out_ += "\n" + group.about + "\n";
+    if (!group.choice.empty()) out_ += "\n" + words_.meaning(kinds_.at(group.choice)) + "\n";
     if (!group.common.empty()) {
       out_ += "\n### " + group.common_title + "\n";
       write_table(group.model, group.common);
