@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
 
+#include "base/arguments.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/image_compare.h"
@@ -223,15 +223,14 @@ int run(Options options) {
 
 int main(int argc, char** argv) {
   sundog::Options options;
-  CLI::App app{"Times whole frames of sundog and POV-Ray in turn"};
+  sundog::Arguments app{"Times whole frames of sundog and POV-Ray in turn"};
   app.add_option("SCENE", options.scenes,
                  "scene files, or \"bunny\" (default: spheres, ice_boxes, ice_mesh, bunny)");
   app.add_option("--bunny", options.bunny, "model that becomes glass");
-  app.add_option("--width", options.width)->check(CLI::PositiveNumber);
-  app.add_option("--height", options.height)->check(CLI::PositiveNumber);
-  app.add_option("--repeat", options.repeat, "runs of each")->check(CLI::PositiveNumber);
-  app.add_option("--threads", options.threads, "of each (default: the machine's)")
-      ->check(CLI::PositiveNumber);
+  app.add_option("--width", options.width)->positive();
+  app.add_option("--height", options.height)->positive();
+  app.add_option("--repeat", options.repeat, "runs of each")->positive();
+  app.add_option("--threads", options.threads, "of each (default: the machine's)")->positive();
   app.add_option("--tolerance", options.tolerance, "mean difference up to which pictures are alike");
   app.add_option("--json", options.json, "file for the figures");
   app.add_option("--folder", options.folder, "for the pictures and POV-Ray's files");
@@ -240,7 +239,7 @@ int main(int argc, char** argv) {
   app.add_flag("--media", options.media,
                "absorption as POV-Ray's media: right everywhere, but slower than fading");
   app.add_flag("--wall", options.wall, "wall clock; without it processor time over threads");
-  CLI11_PARSE(app, argc, argv);
+  app.parse_or_exit(argc, argv);
   try {
     return sundog::run(options);
   } catch (const std::exception& error) {

@@ -65,7 +65,7 @@ nlohmann::json compare_model(const Options& options, const std::string& path) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{
+  Arguments app{
       "The BVH's build, sundog's (with --spatial against Embree's high quality) and Embree's, in turn"};
   add_peer_options(app, options);
   app.add_option("--threads", options.threads, "numbers of threads to try");

@@ -170,11 +170,11 @@ nlohmann::json compare_frames(const Options& options, const std::string& model) 
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"A whole Whitted frame by sundog and by plain C++ over Embree, in turn"};
+  Arguments app{"A whole Whitted frame by sundog and by plain C++ over Embree, in turn"};
   add_peer_options(app, options);
   app.add_option("--threads", options.threads, "numbers of threads to try");
-  app.add_option("--size", options.size, "pixels along each side of the image")->check(CLI::PositiveNumber);
-  app.add_option("--depth", options.depth, "surfaces along a path")->check(CLI::PositiveNumber);
+  app.add_option("--size", options.size, "pixels along each side of the image")->positive();
+  app.add_option("--depth", options.depth, "surfaces along a path")->positive();
   app.add_option("--device", options.device, "SPEC of the device");
   app.add_option("--pictures", options.pictures, "folder for both pictures");
   app.add_flag("--filtered", options.filtered, "glass filters light; else it casts shadows");

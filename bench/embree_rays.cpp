@@ -152,7 +152,7 @@ nlohmann::json compare_model(const Options& options, const std::string& path) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"The same rays through sundog's tracer and through Embree, in turn"};
+  Arguments app{"The same rays through sundog's tracer and through Embree, in turn"};
   options.threads = 1;
   add_ray_options(app, options);
   app.add_option("--threads", options.threads, "compute units and Embree threads");

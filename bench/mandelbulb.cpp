@@ -3,12 +3,12 @@
 // processor time and the ratios. The pictures are compared before a time counts.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/arguments.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "bench/samples.h"
@@ -206,17 +206,17 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("A Mandelbulb by sundog's kernels and by hand-written C++, in turn, one thread each.");
+  Arguments app("A Mandelbulb by sundog's kernels and by hand-written C++, in turn, one thread each.");
   app.add_option("--device", options.device,
                  "the OpenCL device (a sub-device of one unit keeps it to one thread)");
-  app.add_option("--size", options.size, "pixels a side, a multiple of 4")->check(CLI::Range(16, 4096));
-  app.add_option("--repeats", options.repeats)->check(CLI::Range(1, 1000));
+  app.add_option("--size", options.size, "pixels a side, a multiple of 4")->range(16, 4096);
+  app.add_option("--repeats", options.repeats)->range(1, 1000);
   app.add_option("--json", options.json);
   app.add_option("--image", options.image, "write the picture as .pgm");
   app.add_flag("--exact", options.exact,
                "the kernels use the derivative that is a proven bound (their picture then differs, and is "
                "not held against)");
-  CLI11_PARSE(app, argc, argv);
+  app.parse_or_exit(argc, argv);
   try {
     return run(options);
   } catch (const std::exception& error) {

@@ -9,19 +9,19 @@
 
 namespace sundog {
 
-void add_peer_options(CLI::App& app, PeerOptions& options) {
+void add_peer_options(Arguments& app, PeerOptions& options) {
   app.add_option("models", options.models,
                  ".obj, .ply, .stl, .gltf, also .gz; .json scenes of meshes, with Embree also of balls")
       ->required();
-  app.add_option("--repeats", options.repeats, "pairs of measurements")->check(CLI::PositiveNumber);
+  app.add_option("--repeats", options.repeats, "pairs of measurements")->positive();
   app.add_option("--json", options.json, "file for the figures");
   app.add_flag("--wall", options.wall, "wall clock, not processor time over threads");
   app.add_flag("--spatial", options.spatial_splits, "sundog's BVH with spatial splits");
 }
 
-int run_peer_program(CLI::App& app, int argc, char** argv, const PeerOptions& options,
+int run_peer_program(Arguments& app, int argc, char** argv, const PeerOptions& options,
                      const std::function<nlohmann::json(const std::string& model)>& measure) {
-  CLI11_PARSE(app, argc, argv);
+  app.parse_or_exit(argc, argv);
   try {
     nlohmann::json results = nlohmann::json::array();
     for (const std::string& model : options.models) results.push_back(measure(model));

@@ -1,11 +1,12 @@
 // The common frame of the programs that measure in turn with a peer: MODEL... and the same options on the
 // command line, a result for each model, all of them as JSON.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "base/arguments.h"
 
 namespace sundog {
 
@@ -18,11 +19,11 @@ struct PeerOptions {
 };
 
 /// MODEL... --repeats --json --wall --spatial.
-void add_peer_options(CLI::App& app, PeerOptions& options);
+void add_peer_options(Arguments& app, PeerOptions& options);
 
 /// Parses, runs `measure` for each model and writes what it returned; main()'s result. Errors are one line on
 /// stderr.
-int run_peer_program(CLI::App& app, int argc, char** argv, const PeerOptions& options,
+int run_peer_program(Arguments& app, int argc, char** argv, const PeerOptions& options,
                      const std::function<nlohmann::json(const std::string& model)>& measure);
 
 }  // namespace sundog

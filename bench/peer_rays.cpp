@@ -38,12 +38,12 @@ KernelDefines kernel_defines(const std::vector<std::string>& texts) {
 
 }  // namespace
 
-void add_ray_options(CLI::App& app, RayOptions& options) {
+void add_ray_options(Arguments& app, RayOptions& options) {
   add_peer_options(app, options);
   app.add_option("--device", options.device, "SPEC of the device");
   app.add_option("--from", options.from, "direction from the model to the camera")->expected(3);
   app.add_option("--size", options.size, "pixels along each side of the image");
-  app.add_option("--kinds", options.kinds, "kinds of rays; all without it")->check(CLI::IsMember(ray_kinds));
+  app.add_option("--kinds", options.kinds, "kinds of rays; all without it")->one_of(ray_kinds);
 }
 
 PeerModel::PeerModel(const std::string& model, const RayOptions& options)

@@ -2,6 +2,7 @@
 // rays by kind.
 #pragma once
 
+#include "base/arguments.h"
 #include "bench/ray_sets.h"
 #include "bench/ray_tracer.h"
 #include "peer_program.h"
@@ -20,7 +21,7 @@ struct RayOptions : PeerOptions {
 };
 
 /// add_peer_options() and --device --from --size --kinds.
-void add_ray_options(CLI::App& app, RayOptions& options);
+void add_ray_options(Arguments& app, RayOptions& options);
 
 /// A model, compiled, and sundog's tracer of it on the device that the options name.
 struct PeerModel {

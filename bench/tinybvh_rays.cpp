@@ -160,16 +160,15 @@ nlohmann::json compare_model(const Options& options, const std::string& path) {
 int main(int argc, char** argv) {
   Options options;
   options.peer.folder = TINYBVH_FOLDER;
-  CLI::App app{"The same rays through sundog's tracer and through tinybvh's OpenCL kernels, in turn"};
+  Arguments app{"The same rays through sundog's tracer and through tinybvh's OpenCL kernels, in turn"};
   options.device = "gpu";
   add_ray_options(app, options);
   app.add_option("--tracer", options.tracer, "sundog's: auto, wide or compact")
-      ->check(CLI::IsMember({"auto", "wide", "compact"}));
+      ->one_of({"auto", "wide", "compact"});
   app.add_option("--tinybvh", options.peer.folder, "its checkout, for the kernels' text");
   app.add_option("--peer-options", options.peer.build, "build options of its kernels");
   app.add_option("--define", options.peer.defines, "NAME[=VALUE] for its kernels, such as USE_VLOAD_VSTORE");
-  app.add_option("--group", options.peer.group, "work-items of a group of its kernels")
-      ->check(CLI::PositiveNumber);
+  app.add_option("--group", options.peer.group, "work-items of a group of its kernels")->positive();
   return run_peer_program(app, argc, argv, options,
                           [&](const std::string& model) { return compare_model(options, model); });
 }

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "base/arguments.h"
 #include "base/file.h"
 
 namespace sundog {
@@ -13,13 +13,13 @@ namespace sundog {
 int run_whole_runs(const std::string& about, int argc, char** argv, WholeRuns& options,
                    const std::function<nlohmann::json()>& measure) {
   namespace fs = std::filesystem;
-  CLI::App app(about);
-  app.add_option("--size", options.size, "pixels a side")->check(CLI::Range(16, 4096));
-  app.add_option("--repeats", options.repeats)->check(CLI::Range(1, 100));
+  Arguments app(about);
+  app.add_option("--size", options.size, "pixels a side")->range(16, 4096);
+  app.add_option("--repeats", options.repeats)->range(1, 100);
   app.add_option("--device", options.device, "sundog's OpenCL device");
   app.add_option("--folder", options.folder, "for scenes, pictures and caches");
   app.add_option("--json", options.json, "file for the figures");
-  CLI11_PARSE(app, argc, argv);
+  app.parse_or_exit(argc, argv);
   try {
     options.folder = fs::absolute(options.folder).string();
     fs::create_directories(options.folder);

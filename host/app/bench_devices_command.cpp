@@ -36,9 +36,9 @@ int bench_devices_command(const BenchOptions& asked) {
 
 }  // namespace
 
-void add_bench_devices(CLI::App& bench, Command& chosen) {
+void add_bench_devices(Arguments& bench, Command& chosen) {
   const auto options = std::make_shared<BenchOptions>();
-  CLI::App* app =
+  Arguments* app =
       bench.add_subcommand("devices", "Rank devices and their combinations, with the share of each");
   add_bench_options(app, *options);
   app->callback(

@@ -89,9 +89,9 @@ int bench_kernels(const BenchOptions& options) {
 
 }  // namespace
 
-void add_bench_kernels(CLI::App& bench, Command& chosen) {
+void add_bench_kernels(Arguments& bench, Command& chosen) {
   const auto options = std::make_shared<BenchOptions>();
-  CLI::App* app =
+  Arguments* app =
       bench.add_subcommand("kernels", "Work-group limits, memory and registers of each kernel of a scene");
   add_bench_options(app, *options);
   app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_kernels(*options); }}; });

@@ -24,13 +24,13 @@
 
 namespace sundog {
 
-void add_bench_options(CLI::App* app, BenchOptions& options) {
+void add_bench_options(Arguments* app, BenchOptions& options) {
   value(app, "SCENE", "FILE", options.scenes, std::string(scene_help) + "; several may be given")->required();
   values(app, "--device", "SPEC", options.devices, device_help);
   values(app, "--set", "POINTER=VALUE", options.overrides, "change the scenes, as in /camera/fov=30");
   app->add_option("--repeat", options.repeat, "runs of each measurement, in turn with the others (default 5)")
       ->type_name("N")
-      ->check(CLI::Range(1, 10000));
+      ->range(1, 10000);
   value(app, "--json", "FILE", options.json, "write the measurements as JSON");
   value(app, "--csv", "FILE", options.csv, "write the measurements as CSV");
   value(app, "--html", "FILE", options.html, "write the report as one page with plots");
@@ -102,8 +102,9 @@ std::vector<int> parse_list(const char* option, const std::string& text, int low
   return numbers;
 }
 
-void add_bench(CLI::App& root, Command& chosen) {
-  CLI::App* bench = root.add_subcommand("bench", "Measure, and write tables, JSON, CSV or a page with plots");
+void add_bench(Arguments& root, Command& chosen) {
+  Arguments* bench =
+      root.add_subcommand("bench", "Measure, and write tables, JSON, CSV or a page with plots");
   bench->require_subcommand(1);
   add_bench_workgroup(*bench, chosen);
   add_bench_threads(*bench, chosen);

@@ -1,9 +1,9 @@
 // What all `sundog bench` commands share: their options, the scenes, and where a report goes.
 //
-// A further benchmark is a function `void add_bench_NAME(CLI::App& bench, Command& chosen)` in a file of its
+// A further benchmark is a function `void add_bench_NAME(Arguments& bench, Command& chosen)` in a file of its
 // own:
 //
-//     CLI::App* app = bench.add_subcommand("rays", "Rays a second by kind");
+//     Arguments* app = bench.add_subcommand("rays", "Rays a second by kind");
 //     const auto options = std::make_shared<BenchOptions>();
 //     add_bench_options(app, *options);
 //     app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_rays(*options); }}; });
@@ -14,11 +14,9 @@
 #include "bench/report.h"
 #include "compile/compiled_scene.h"
 
-namespace CLI {
-class App;
-}
-
 namespace sundog {
+
+class Arguments;
 
 struct BenchOptions {
   std::vector<std::string> scenes, devices, overrides;
@@ -28,7 +26,7 @@ struct BenchOptions {
 };
 
 /// SCENE... --device --set --repeat --json --csv --html --quiet.
-void add_bench_options(CLI::App* app, BenchOptions& options);
+void add_bench_options(Arguments* app, BenchOptions& options);
 
 /// `name` is the benchmark's. Facts: version, machine. Throws IoError when a file of the options cannot be
 /// written.
@@ -53,12 +51,12 @@ std::vector<DeviceInfo> bench_devices(const BenchOptions& options);
 /// "1,2,4": whole numbers within [low, high], ascending and without doubles. Throws UsageError.
 std::vector<int> parse_list(const char* option, const std::string& text, int low, int high);
 
-void add_bench(CLI::App& root, Command& chosen);
-void add_bench_threads(CLI::App& bench, Command& chosen);
-void add_bench_devices(CLI::App& bench, Command& chosen);
-void add_bench_kernels(CLI::App& bench, Command& chosen);
-void add_bench_workgroup(CLI::App& bench, Command& chosen);
-void add_bench_rays(CLI::App& bench, Command& chosen);
-void add_bench_samples(CLI::App& bench, Command& chosen);
+void add_bench(Arguments& root, Command& chosen);
+void add_bench_threads(Arguments& bench, Command& chosen);
+void add_bench_devices(Arguments& bench, Command& chosen);
+void add_bench_kernels(Arguments& bench, Command& chosen);
+void add_bench_workgroup(Arguments& bench, Command& chosen);
+void add_bench_rays(Arguments& bench, Command& chosen);
+void add_bench_samples(Arguments& bench, Command& chosen);
 
 }  // namespace sundog

@@ -166,9 +166,9 @@ int bench_rays(const RaysOptions& options) {
 
 }  // namespace
 
-void add_bench_rays(CLI::App& bench, Command& chosen) {
+void add_bench_rays(Arguments& bench, Command& chosen) {
   const auto options = std::make_shared<RaysOptions>();
-  CLI::App* app =
+  Arguments* app =
       bench.add_subcommand("rays", "Rays a second by kind: camera, shadow, bounce, reflection, glass");
   add_bench_options(app, *options);
   value(app, "--size", "N", options->size, "pixels a side of the camera's rays (default 1024)");

@@ -52,15 +52,15 @@ int bench_samples(const SamplesOptions& options) {
 
 }  // namespace
 
-void add_bench_samples(CLI::App& bench, Command& chosen) {
+void add_bench_samples(Arguments& bench, Command& chosen) {
   const auto options = std::make_shared<SamplesOptions>();
-  CLI::App* app = bench.add_subcommand("samples", "Time and error by samples a pixel");
+  Arguments* app = bench.add_subcommand("samples", "Time and error by samples a pixel");
   add_bench_options(app, *options);
   value(app, "--counts", "LIST", options->counts, "samples a pixel (default 1,2,4,8,16,32)");
   app->add_option("--reference", options->reference,
                   "samples of the picture that counts as right (default: four times the most)")
       ->type_name("N")
-      ->check(CLI::Range(2, 1 << 18));
+      ->range(2, 1 << 18);
   app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_samples(*options); }}; });
 }
 

@@ -93,9 +93,9 @@ int bench_threads(const ThreadsOptions& options) {
 
 }  // namespace
 
-void add_bench_threads(CLI::App& bench, Command& chosen) {
+void add_bench_threads(Arguments& bench, Command& chosen) {
   const auto options = std::make_shared<ThreadsOptions>();
-  CLI::App* app =
+  Arguments* app =
       bench.add_subcommand("threads", "Times by image size and number of threads, speed-up, efficiency");
   add_bench_options(app, *options);
   value(app, "--sizes", "N,N...", options->sizes, "pixels a side (default 128,256,352,448,512,640)");

@@ -113,15 +113,15 @@ int bench_workgroup(const WorkgroupOptions& options) {
 
 }  // namespace
 
-void add_bench_workgroup(CLI::App& bench, Command& chosen) {
+void add_bench_workgroup(Arguments& bench, Command& chosen) {
   const auto options = std::make_shared<WorkgroupOptions>();
-  CLI::App* app = bench.add_subcommand("workgroup", "Times of each kernel by work-group size");
+  Arguments* app = bench.add_subcommand("workgroup", "Times of each kernel by work-group size");
   add_bench_options(app, *options);
   values(app, "--kernel", "NAME", options->kernels,
          fmt::format("one of {} (default: all)", fmt::join(kernel_names, ", ")));
   app->add_option("--rays", options->rays, "camera rays a side for the tracer's kernels (default 512)")
       ->type_name("N")
-      ->check(CLI::Range(16, 16384));
+      ->range(16, 16384);
   app->callback([options, &chosen] {
     for (const std::string& name : options->kernels)
       if (std::ranges::count(kernel_names, name) == 0)

@@ -204,9 +204,9 @@ int check(const CheckOptions& options) {
 
 }  // namespace
 
-void add_check(CLI::App& root, Command& chosen) {
+void add_check(Arguments& root, Command& chosen) {
   const auto options = std::make_shared<CheckOptions>();
-  CLI::App* app =
+  Arguments* app =
       root.add_subcommand("check", "Check drivers, caches and devices; exit status 6 when a picture differs");
   values(
       app, "--device", "SPEC", options->devices,
@@ -214,9 +214,9 @@ void add_check(CLI::App& root, Command& chosen) {
       "compute units (default: SUNDOG_DEVICE, or every device)");
   app->add_option("--timeout", options->timeout, "seconds that one device may take (default 600)")
       ->type_name("N")
-      ->check(CLI::Range(1, 86400));
+      ->range(1, 86400);
   app->add_flag("--json", options->json, "as JSON");
-  app->add_option("--worker", options->worker)->group("");
+  app->add_option("--worker", options->worker)->hidden();
   app->callback([options, &chosen] {
     if (options->devices.empty()) options->devices = devices_of_environment();
     chosen =

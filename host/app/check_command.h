@@ -2,12 +2,10 @@
 #pragma once
 #include "app/options.h"
 
-namespace CLI {
-class App;
-}
-
 namespace sundog {
 
-void add_check(CLI::App& root, Command& chosen);
+class Arguments;
+
+void add_check(Arguments& root, Command& chosen);
 
 }  // namespace sundog

@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/option_helpers.h"
 #include "scene/formula/functions.h"
 #include "scene/formula/list.h"
 
@@ -63,8 +63,8 @@ std::string list_json() {
 
 }  // namespace
 
-void add_formulas(CLI::App& root, Command& chosen) {
-  CLI::App* app =
+void add_formulas(Arguments& root, Command& chosen) {
+  Arguments* app =
       root.add_subcommand("formulas", "List the fractals and solids that are marched, with their parameters");
   const auto json = std::make_shared<bool>(false);
   app->add_flag("--json", *json, "as JSON");

@@ -3,13 +3,11 @@
 #pragma once
 #include "app/options.h"
 
-namespace CLI {
-class App;
-}
-
 namespace sundog {
 
+class Arguments;
+
 /// Declares the command: prints the list as text, or with --json as an object of schema 1.
-void add_formulas(CLI::App& root, Command& chosen);
+void add_formulas(Arguments& root, Command& chosen);
 
 }  // namespace sundog

@@ -1,9 +1,9 @@
-// Short ways to declare options, the same in every command. For the files that declare options only: CLI11 is
-// a large header.
+// Short ways to declare options, the same in every command.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+#include "base/arguments.h"
 
 namespace sundog {
 
@@ -13,17 +13,14 @@ inline constexpr const char* device_help =
     "(default: SUNDOG_DEVICE, or the fastest)";
 
 template <class T>
-CLI::Option* value(CLI::App* app, const char* name, const char* type, T& target, const std::string& help) {
+Option* value(Arguments* app, const char* name, const char* type, T& target, const std::string& help) {
   return app->add_option(name, target, help)->type_name(type);
 }
 
 /// An option that may be given several times, each time with one value.
-inline void values(CLI::App* app, const char* name, const char* type, std::vector<std::string>& target,
+inline void values(Arguments* app, const char* name, const char* type, std::vector<std::string>& target,
                    const std::string& help) {
-  value(app, name, type, target, help + "; repeatable")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  value(app, name, type, target, help + "; repeatable")->one_value_each();
 }
 
 /// SPECs of SUNDOG_DEVICE, separated by commas.

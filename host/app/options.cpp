@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <memory>
 
@@ -57,10 +58,10 @@ RenderCommand checked(const TypedRender& typed) {
   return command;
 }
 
-void add_render(CLI::App& root, Command& chosen) {
+void add_render(Arguments& root, Command& chosen) {
   const auto typed = std::make_shared<TypedRender>();
   RenderCommand& command = typed->command;
-  CLI::App* app = root.add_subcommand(
+  Arguments* app = root.add_subcommand(
       "render", "Render a scene to an image file; under mpirun, on the devices of all its processes");
   value(app, "SCENE", "FILE", command.scene, scene_help)->required();
   value(app, "-o,--out", "FILE", command.out, "image file: .png, .exr, .hdr or .pfm")->required();
@@ -97,16 +98,16 @@ void add_render(CLI::App& root, Command& chosen) {
   app->callback([typed, &chosen] { chosen = checked(*typed); });
 }
 
-void add_devices(CLI::App& root, Command& chosen) {
+void add_devices(Arguments& root, Command& chosen) {
   const auto command = std::make_shared<DevicesOptions>();
-  CLI::App* app = root.add_subcommand("devices", "List every OpenCL platform and device");
+  Arguments* app = root.add_subcommand("devices", "List every OpenCL platform and device");
   app->add_flag("--json", command->json, "as JSON");
   app->callback([command, &chosen] { chosen = *command; });
 }
 
-void add_info(CLI::App& root, Command& chosen) {
+void add_info(Arguments& root, Command& chosen) {
   const auto command = std::make_shared<InfoCommand>();
-  CLI::App* app = root.add_subcommand("info", "What a scene holds: triangles, lights, BVH figures, bytes");
+  Arguments* app = root.add_subcommand("info", "What a scene holds: triangles, lights, BVH figures, bytes");
   value(app, "SCENE", "FILE", command->scene, scene_help)->required();
   values(app, "--set", "POINTER=VALUE", command->overrides,
          "change the scene, as in /render/spatial_splits=true");
@@ -114,10 +115,10 @@ void add_info(CLI::App& root, Command& chosen) {
   app->callback([command, &chosen] { chosen = *command; });
 }
 
-void add_compare(CLI::App& root, Command& chosen) {
+void add_compare(Arguments& root, Command& chosen) {
   const auto command = std::make_shared<CompareCommand>();
   const auto tolerance = std::make_shared<std::string>("0");
-  CLI::App* app = root.add_subcommand("compare", "Compare two images; exit status 6 when they differ");
+  Arguments* app = root.add_subcommand("compare", "Compare two images; exit status 6 when they differ");
   value(app, "A", "FILE", command->a, "image file: .png, .jpg, .exr, .hdr or .pfm")->required();
   value(app, "B", "FILE", command->b, "image file")->required();
   value(app, "--tolerance", "T", *tolerance,
@@ -130,9 +131,9 @@ void add_compare(CLI::App& root, Command& chosen) {
   });
 }
 
-void add_merge(CLI::App& root, Command& chosen) {
+void add_merge(Arguments& root, Command& chosen) {
   const auto command = std::make_shared<MergeCommand>();
-  CLI::App* app = root.add_subcommand("merge", "Join the parts that render --tiles has written");
+  Arguments* app = root.add_subcommand("merge", "Join the parts that render --tiles has written");
   app->add_option("PART", command->parts, "files that render --tiles has written")
       ->required()
       ->type_name("FILE");
@@ -187,19 +188,20 @@ std::vector<std::string> devices_of_environment() {
 }
 
 Command parse_command_line(int argc, const char* const* argv) {
-  CLI::App root("sundog renders scenes with OpenCL, on any device there is.", "sundog");
+  Arguments arguments("sundog renders scenes with OpenCL, on any device there is.", "sundog");
+  CLI::App& root = arguments.parser();
   root.set_version_flag("--version", "sundog " SUNDOG_VERSION);
   root.require_subcommand(1);
   Command chosen;
-  add_render(root, chosen);
-  add_devices(root, chosen);
-  add_formulas(root, chosen);
-  add_info(root, chosen);
-  add_compare(root, chosen);
-  add_check(root, chosen);
-  add_tune(root, chosen);
-  add_merge(root, chosen);
-  add_bench(root, chosen);
+  add_render(arguments, chosen);
+  add_devices(arguments, chosen);
+  add_formulas(arguments, chosen);
+  add_info(arguments, chosen);
+  add_compare(arguments, chosen);
+  add_check(arguments, chosen);
+  add_tune(arguments, chosen);
+  add_merge(arguments, chosen);
+  add_bench(arguments, chosen);
   check_command_name(root, argc, argv);
   check_values_given(root, argc, argv);
   try {

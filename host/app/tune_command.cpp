@@ -189,9 +189,9 @@ int run_tune(const TuneOptions& options) {
 
 }  // namespace
 
-void add_tune(CLI::App& root, Command& chosen) {
+void add_tune(Arguments& root, Command& chosen) {
   const auto options = std::make_shared<TuneOptions>();
-  CLI::App* app = root.add_subcommand("tune", "Find and keep what is fastest on a device; `render` uses it");
+  Arguments* app = root.add_subcommand("tune", "Find and keep what is fastest on a device; `render` uses it");
   value(app, "SCENE", "FILE", options->bench.scenes,
         std::string(scene_help) + " (default: two that are built in)");
   values(app, "--device", "SPEC", options->bench.devices, device_help);

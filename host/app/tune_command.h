@@ -3,12 +3,10 @@
 #pragma once
 #include "app/options.h"
 
-namespace CLI {
-class App;
-}
-
 namespace sundog {
 
-void add_tune(CLI::App& root, Command& chosen);
+class Arguments;
+
+void add_tune(Arguments& root, Command& chosen);
 
 }  // namespace sundog
