@@ -19,6 +19,7 @@
 #include "base/file.h"
 #include "bench/machine.h"
 #include "bench/self_check.h"
+#include "device/machine_topology.h"
 
 namespace sundog {
 namespace {
@@ -77,6 +78,15 @@ json list_devices(const std::vector<std::string>& variables, double seconds, std
   return json::array();
 }
 
+/// What may be advised depends on whether something else works.
+void add_advice(json& rows, const auto& advice_on, const auto& is_sound) {
+  const bool others = std::ranges::any_of(rows, is_sound);
+  for (json& row : rows) {
+    const json& problem = row.at("problem");
+    row["advice"] = problem.is_string() ? json(advice_on(problem, others)) : json(nullptr);
+  }
+}
+
 fs::path vendors_folder() {
   const char* own = std::getenv("OCL_ICD_VENDORS");
   return own && *own ? own : "/etc/OpenCL/vendors";
@@ -99,9 +109,10 @@ json check_drivers(const fs::path& folder, double seconds) {
     drivers.push_back({{"file", file.filename().string()},
                        {"library", library},
                        {"devices", devices},
-                       {"problem", problem.empty() ? json(nullptr) : json(problem)},
-                       {"advice", problem.empty() ? json(nullptr) : json(advice(problem))}});
+                       {"problem", problem.empty() ? json(nullptr) : json(problem)}});
   }
+  add_advice(drivers, driver_advice,
+             [](const json& driver) { return driver.at("devices") > 0 && driver.at("problem").is_null(); });
   return drivers;
 }
 
@@ -167,11 +178,10 @@ json check_devices(const json& rows, const CheckOptions& options) {
     } else {
       device.update({{"status", "not usable"}, {"problem", row.at("problem")}});
     }
-    const json& problem = device.at("problem");
-    device["advice"] = problem.is_string() ? json(advice(problem)) : json(nullptr);
     devices.push_back(std::move(device));
   }
   if (!options.json && isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K");
+  add_advice(devices, advice, [](const json& device) { return device.at("status") == "ok"; });
   return devices;
 }
 
@@ -192,6 +202,7 @@ int check(const CheckOptions& options) {
                  {"sundog", SUNDOG_VERSION},
                  {"compiler", compiler_text()},
                  {"vendors", folder.string()},
+                 {"note", topology_note()},
                  {"drivers", check_drivers(folder, options.timeout)},
                  {"caches", cache_figures()},
                  {"devices", check_devices(wanted, options)},

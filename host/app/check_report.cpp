@@ -86,6 +86,7 @@ std::string check_text(const json& report) {
                         driver.at("devices").get<int>(), driver.at("devices") == 1 ? "" : "s",
                         problem_text(driver));
   if (report.at("drivers").empty()) text += "  none: install one (Debian: pocl-opencl-icd)\n";
+  if (const std::string note = text_of(report, "note"); !note.empty()) text += "  " + note + "\n";
   text += "\nCaches\n";
   for (const json& cache : report.at("caches"))
     text += fmt::format(

@@ -27,6 +27,10 @@ struct SelfCheck {
 SelfCheck check_device(const DeviceInfo& device, const std::function<void(const std::string&)>& on_stage);
 
 /// What a person can do about a problem of a driver, by what it says.
-std::string advice(const std::string& problem);
+/// `others`: another device is sound, so this one can be left out.
+std::string advice(const std::string& problem, bool others);
+
+/// The same of a driver whose devices were listed alone; `others`: another driver has devices.
+std::string driver_advice(const std::string& problem, bool others);
 
 }  // namespace sundog

@@ -16,6 +16,7 @@
 #include "device/cl_status.h"
 #include "device/devices.h"
 #include "device/estimate.h"
+#include "device/machine_topology.h"
 #include "device/pocl_folder.h"
 
 namespace sundog {
@@ -198,6 +199,7 @@ void prepare_drivers() {
     setenv("PATH", "/usr/local/bin:/usr/bin:/bin", 0);  // PoCL ends a process in which it finds no linker
     if (!build_log_folder().empty()) bypass_driver_caches();
     give_pocl_a_folder();
+    describe_machine_to_drivers();
     enlarge_thread_stacks();
   });
 }

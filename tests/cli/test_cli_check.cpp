@@ -1,5 +1,6 @@
 // `sundog check`: sound devices pass, wrong pictures and crashing drivers are found and never end it.
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
@@ -12,11 +13,13 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The report with these drivers alone, and the exit status.
-json check(const std::vector<std::string>& libraries, int& status, const std::string& kernels = "") {
+json check(const std::vector<std::string>& libraries, int& status, const std::string& kernels = "",
+           const std::map<std::string, std::string>& environment = {}) {
   const TemporaryFolder vendors;
   for (std::size_t i = 0; i < libraries.size(); ++i)
     vendors.write("driver" + std::to_string(i) + ".icd", libraries[i] + "\n");
   CommandOptions options;
+  options.environment = environment;
   options.environment["OCL_ICD_VENDORS"] = vendors.path().string() + "/";
   options.environment["SUNDOG_KERNEL_DIR"] = kernels;
   const CommandResult result = run_sundog({"check", "--json"}, options);
@@ -94,5 +97,31 @@ TEST_CASE("check finds a device whose picture is wrong, and one whose kernels do
     CHECK(row.at("status") == "failed");
     CHECK_THAT(row.at("problem").get<std::string>(), ContainsSubstring("did not build"));
     CHECK(row.at("log").is_string());
+  }
+}
+
+TEST_CASE("check does not advise to leave out the only driver or device") {
+  int status = -1;
+  SECTION("a device that crashes when it is used") {
+    const json crashed = row_of(check({SUNDOG_FAKE_DRIVER}, status), "Fake crashing");
+    CHECK(status == 4);
+    const std::string advice = crashed.at("advice");
+    CHECK_THAT(advice, !ContainsSubstring("leave it out"));
+    CHECK_THAT(advice, ContainsSubstring("install another driver"));
+  }
+  SECTION("a driver that ends the process when it is loaded") {
+    const json report = check({SUNDOG_FAKE_DRIVER}, status, "", {{"FAKE_DRIVER_ABORTS", "1"}});
+    CHECK(status == 4);
+    const json driver = report.at("drivers").at(0);
+    CHECK_THAT(driver.at("problem").get<std::string>(), ContainsSubstring("crashed (signal 6"));
+    const std::string advice = driver.at("advice");
+    CHECK_THAT(advice, !ContainsSubstring("leave it out"));
+    CHECK_THAT(advice, ContainsSubstring("install another driver"));
+  }
+  SECTION("the same beside one that works") {
+    const json report = check({SUNDOG_FAKE_DRIVER, pocl}, status, "", {{"FAKE_DRIVER_ABORTS", "1"}});
+    CHECK_THAT(report.at("drivers").at(0).at("advice").get<std::string>(),
+               ContainsSubstring("OCL_ICD_VENDORS"));
+    CHECK(report.at("drivers").at(1).at("advice").is_null());
   }
 }

@@ -5,7 +5,8 @@
 //   "Fake old"       a device that speaks OpenCL C 1.1, and one that is big-endian
 //   "Fake empty"     no device
 //   "Fake crashing"  a device that looks usable, and crashes in the first call that uses it
-// With the variable FAKE_DRIVER_NEVER_ENDS its exit handler never comes back; with FAKE_DRIVER_TAKES_SIGNALS
+// With the variable FAKE_DRIVER_ABORTS it ends the process when it is asked for its platforms, with
+// FAKE_DRIVER_NEVER_ENDS its exit handler never comes back, with FAKE_DRIVER_TAKES_SIGNALS
 // it answers Ctrl-C itself.
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
@@ -61,6 +62,7 @@ cl_int answer_text(const char* text, size_t room, void* to, size_t* needed) {
 }
 
 cl_int CL_API_CALL get_platforms(cl_uint room, cl_platform_id* list, cl_uint* count) {
+  if (std::getenv("FAKE_DRIVER_ABORTS")) std::abort();
   if (count) *count = std::size(platforms);
   for (cl_uint i = 0; list && i < std::min<cl_uint>(room, std::size(platforms)); ++i) list[i] = &platforms[i];
   return CL_SUCCESS;

@@ -1,0 +1,80 @@
+// Where /sys is not mounted, as in a minimal chroot: PoCL would find no memory and end the process.
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "base/file.h"
+#include "catch.h"
+#include "cli_scene.h"
+
+using nlohmann::json;
+
+namespace {
+
+const std::string hide = "mount -t tmpfs none /sys && exec \"$@\"";
+
+/// `unshare` with what it takes to hide /sys from a command: root's own right, else a user's own namespace.
+/// Empty: this machine grants neither.
+std::vector<std::string> hider() {
+  for (const std::string flags : {"-m", "-Urm"}) {
+    const std::vector<std::string> command = {"unshare", flags, "sh", "-c", hide, "sh"};
+    std::vector<std::string> probe = command;
+    probe.push_back("true");
+    if (run_command(probe).status == 0) return command;
+  }
+  return {};
+}
+
+/// PoCL alone, without /sys.
+struct Hidden {
+  std::vector<std::string> command = hider();
+  TemporaryFolder vendors;
+  CommandOptions options;
+
+  Hidden() {
+    vendors.write("pocl.icd", "libpocl.so.2\n");
+    options.environment["OCL_ICD_VENDORS"] = vendors.path().string() + "/";
+    if (command.empty())
+      std::printf("/sys cannot be hidden here (unshare -m, -Urm): not tested without it\n");
+  }
+  CommandResult run(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> all = command;
+    all.emplace_back(SUNDOG_BINARY);
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    return run_command(all, options);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("without /sys PoCL has its device, with the machine's processors and memory") {
+  const Hidden hidden;
+  if (hidden.command.empty()) return;
+  const CommandResult result = hidden.run({"devices", "--json"});
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  const json list = json::parse(result.out).at("devices");
+  REQUIRE(list.size() == 1);
+  CHECK(list[0].at("usable") == true);
+  CHECK(list[0].at("compute_units") == std::thread::hardware_concurrency());
+  const CommandResult beside = run_sundog({"devices", "--json"}, hidden.options);
+  const json usual = json::parse(beside.out).at("devices").at(0);
+  CHECK(list[0].at("compute_units") == usual.at("compute_units"));
+  CHECK(list[0].at("global_memory").get<double>() ==
+        Approx(usual.at("global_memory").get<double>()).epsilon(0.1));
+}
+
+TEST_CASE("without /sys a picture has the bits that it has with it, and check names the mend") {
+  const Hidden hidden;
+  if (hidden.command.empty()) return;
+  const CliFolder folder;
+  const CommandResult result = hidden.run({"render", folder.scene, "-o", folder.file("hidden.pfm")});
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  REQUIRE(run_sundog({"render", folder.scene, "-o", folder.file("usual.pfm")}, hidden.options).status == 0);
+  CHECK(sundog::read_file(folder / "hidden.pfm") == sundog::read_file(folder / "usual.pfm"));
+  const CommandResult check = hidden.run({"check"});
+  CAPTURE(check.out);
+  CHECK(check.status == 0);
+  CHECK_THAT(check.out, ContainsSubstring("mount -t sysfs sysfs /sys"));
+}
