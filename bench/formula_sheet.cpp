@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -12,6 +12,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/arguments.h"
 #include "base/file.h"
 #include "base/image_io.h"
 #include "run_program.h"
@@ -180,14 +181,13 @@ void make(const Sheet& sheet) {
 
 int main(int argc, char** argv) {
   Sheet sheet;
-  CLI::App app("One picture of every surface of the list");
+  Arguments app("One picture of every surface of the list");
   app.add_option("-o,--out", sheet.out, "image file")->required();
   app.add_option("--device", sheet.device, "SPEC of sundog's (default cpu)");
-  app.add_option("--size", sheet.size, "pixels a side of each surface (default 200)")
-      ->check(CLI::Range(64, 2048));
-  app.add_option("--columns", sheet.columns, "surfaces in a row (default 8)")->check(CLI::Range(1, 32));
-  app.add_option("--samples", sheet.samples, "samples a pixel (default 9)")->check(CLI::Range(1, 4096));
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--size", sheet.size, "pixels a side of each surface (default 200)")->range(64, 2048);
+  app.add_option("--columns", sheet.columns, "surfaces in a row (default 8)")->range(1, 32);
+  app.add_option("--samples", sheet.samples, "samples a pixel (default 9)")->range(1, 4096);
+  app.parse_or_exit(argc, argv);
   try {
     make(sheet);
     return 0;
