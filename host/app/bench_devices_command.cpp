@@ -6,7 +6,6 @@
 #include "app/bench_options.h"
 #include "app/option_helpers.h"
 #include "bench/device_ranking.h"
-#include "bench/machine.h"
 
 namespace sundog {
 namespace {
@@ -17,7 +16,7 @@ int bench_devices_command(const BenchOptions& asked) {
   if (options.devices.empty()) options.devices = devices_of_environment();
   if (options.devices.empty()) options.devices = {"all"};
   const std::vector<DeviceInfo> devices = bench_devices(options);
-  for (const DeviceInfo& device : devices) report.facts.emplace_back("device", device_fact(device));
+  add_device_facts(report, devices);
   for (const std::string& file : options.scenes) {
     const auto on_step = [&](const std::string& step) { show_step(options, scene_name(file) + ", " + step); };
     add_device_tables(report, scene_name(file),

@@ -71,7 +71,7 @@ int bench_kernels(const BenchOptions& options) {
   report.measurements.columns = {{"scene", ""}, {"device", ""}, {"tracer", ""}};
   report.measurements.columns.insert(report.measurements.columns.end(), columns.begin(), columns.end());
   const std::vector<DeviceInfo> devices = bench_devices(options);
-  for (const DeviceInfo& device : devices) report.facts.emplace_back("device", device_fact(device));
+  add_device_facts(report, devices);
   for (const std::string& file : options.scenes) {
     const CompiledScene scene = bench_scene(file, options);
     for (const DeviceInfo& info : devices) {

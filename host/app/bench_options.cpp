@@ -14,15 +14,40 @@
 #include "app/option_values.h"
 #include "app/output_files.h"
 #include "app/pick_devices.h"
+#include "app/revision.h"
 #include "app/warnings.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "bench/machine.h"
 #include "device/build_options.h"
+#include "device/pocl_folder.h"
 #include "scene/json/override.h"
 #include "scene/load.h"
 
 namespace sundog {
+namespace {
+
+std::string& command_line() {
+  static std::string text;
+  return text;
+}
+
+/// As a shell takes it for one word.
+std::string quoted(std::string_view word) {
+  constexpr std::string_view plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string_view::npos) return std::string(word);
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+}  // namespace
+
+void remember_command_line(int argc, const char* const* argv) {
+  command_line().clear();
+  for (int i = 0; i < argc; ++i) command_line() += (i ? " " : "") + quoted(argv[i]);
+}
 
 void add_bench_options(Arguments* app, BenchOptions& options) {
   value(app, "SCENE", "FILE", options.scenes, std::string(scene_help) + "; several may be given")->required();
@@ -46,7 +71,9 @@ Report new_report(const std::string& name, const std::string& title, const Bench
   report.name = name;
   report.title = title;
   report.facts = machine_facts();
-  report.facts.insert(report.facts.begin(), {"sundog", SUNDOG_VERSION});
+  report.facts.insert(
+      report.facts.begin(),
+      {{"sundog", SUNDOG_VERSION}, {"revision", build_revision()}, {"command", command_line()}});
   if (!options.overrides.empty())
     report.facts.emplace_back("--set", fmt::format("{}", fmt::join(options.overrides, " ")));
   if (const std::string more = user_build_options(); !more.empty())
@@ -88,6 +115,11 @@ CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
 std::vector<DeviceInfo> bench_devices(const BenchOptions& options) {
   return pick_devices(enumerate_devices(),
                       options.devices.empty() ? devices_of_environment() : options.devices);
+}
+
+void add_device_facts(Report& report, const std::vector<DeviceInfo>& devices) {
+  for (const DeviceInfo& device : devices) report.facts.emplace_back("device", device_fact(device));
+  if (std::ranges::any_of(devices, is_pocl)) report.facts.emplace_back("PoCL", pocl_fact());
 }
 
 std::vector<int> parse_list(const char* option, const std::string& text, int low, int high) {

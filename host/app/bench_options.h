@@ -28,8 +28,8 @@ struct BenchOptions {
 /// SCENE... --device --set --repeat --json --csv --html --quiet.
 void add_bench_options(Arguments* app, BenchOptions& options);
 
-/// `name` is the benchmark's. Facts: version, machine. Throws IoError when a file of the options cannot be
-/// written.
+/// `name` is the benchmark's. Facts: version, revision, command line, machine. Throws IoError when a file of
+/// the options cannot be written.
 Report new_report(const std::string& name, const std::string& title, const BenchOptions& options);
 
 /// Prints the report as text and writes the files. Returns the exit status.
@@ -47,6 +47,12 @@ CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
 
 /// The devices that the options mean.
 std::vector<DeviceInfo> bench_devices(const BenchOptions& options);
+
+/// What the report must say of the devices that it is about.
+void add_device_facts(Report& report, const std::vector<DeviceInfo>& devices);
+
+/// Keeps the command line, as one could type it in a shell, for the reports' facts.
+void remember_command_line(int argc, const char* const* argv);
 
 /// "1,2,4": whole numbers within [low, high], ascending and without doubles. Throws UsageError.
 std::vector<int> parse_list(const char* option, const std::string& text, int low, int high);

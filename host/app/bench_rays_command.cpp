@@ -139,8 +139,7 @@ int bench_rays(const RaysOptions& options) {
                                  {"hits", ""},        {"checked", ""}, {"rounded", ""},      {"differ", ""},
                                  {"rate", "Mrays/s"}, {"tracer", ""},  {"kernel", "Mrays/s"}};
   const std::vector<DeviceInfo> devices = bench_devices(options);
-  for (const DeviceInfo& info : devices)
-    report.facts.emplace_back("device", info.label() + ", " + info.driver);
+  add_device_facts(report, devices);
   for (const std::string& file : options.scenes) {
     const CompiledScene scene = bench_scene(file, options);
     const std::string name = scene_name(file);

@@ -6,7 +6,6 @@
 #include "app/bench_options.h"
 #include "app/option_helpers.h"
 #include "base/error.h"
-#include "bench/machine.h"
 #include "bench/sample_scaling.h"
 
 namespace sundog {
@@ -25,7 +24,7 @@ int bench_samples(const SamplesOptions& options) {
                                  reference, counts.back()));
   Report report = new_report("samples", "Time and error by samples a pixel", options);
   const std::vector<DeviceInfo> devices = bench_devices(options);
-  for (const DeviceInfo& device : devices) report.facts.emplace_back("device", device_fact(device));
+  add_device_facts(report, devices);
   for (const std::string& file : options.scenes)
     for (const DeviceInfo& device : devices) {
       SampleScaling plan;

@@ -59,7 +59,7 @@ int bench_threads(const ThreadsOptions& options) {
   plan.plain = !options.no_plain;
   allow_threads(counts.back());
   plan.device = device_to_split(options);
-  report.facts.emplace_back("device", device_fact(plan.device));
+  add_device_facts(report, {plan.device});
   if (plan.plain) report.facts.emplace_back("plain C++", compiler_text() + ", one thread");
   for (const std::string& file : options.scenes) {
     plan.scene = scene_name(file);

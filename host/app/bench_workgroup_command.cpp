@@ -11,7 +11,6 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "bench/frame_runner.h"
-#include "bench/machine.h"
 #include "bench/ray_sets.h"
 #include "bench/ray_tracer.h"
 #include "bench/work_groups.h"
@@ -85,7 +84,7 @@ TimedKernel prepare(const std::string& name, const DeviceInfo& device, const Com
 int bench_workgroup(const WorkgroupOptions& options) {
   Report report = new_report("workgroup", "Times by work-group size", options);
   const std::vector<DeviceInfo> devices = bench_devices(options);
-  for (const DeviceInfo& device : devices) report.facts.emplace_back("device", device_fact(device));
+  add_device_facts(report, devices);
   for (const std::string& file : options.scenes) {
     const CompiledScene scene = bench_scene(file, options);
     for (const DeviceInfo& device : devices)

@@ -188,6 +188,7 @@ std::vector<std::string> devices_of_environment() {
 }
 
 Command parse_command_line(int argc, const char* const* argv) {
+  remember_command_line(argc, argv);
   Arguments arguments("sundog renders scenes with OpenCL, on any device there is.", "sundog");
   CLI::App& root = arguments.parser();
   root.set_version_flag("--version", "sundog " SUNDOG_VERSION);

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <string_view>
 #include <thread>
 
 namespace sundog {
@@ -66,6 +67,13 @@ std::string busy_note() {
 }
 
 std::string compiler_text() { return fmt::format("{} ({})", SUNDOG_COMPILER, SUNDOG_COMPILER_OPTIONS); }
+
+std::string pocl_fact() {
+  const char* value = std::getenv("POCL_WORK_GROUP_SPECIALIZATION");
+  const bool on = !value || std::string_view(value) != "0";  // PoCL's own default
+  return fmt::format("POCL_WORK_GROUP_SPECIALIZATION={}: a kernel is compiled {}", value ? value : "",
+                     on ? "again for each work-group size" : "once for all work-group sizes");
+}
 
 std::string device_fact(const DeviceInfo& device) {
   return fmt::format("{}, {} compute unit{}, driver {}", device.label(), device.compute_units,

@@ -20,6 +20,9 @@ std::string busy_note();
 /// The compiler of this program and its options, for figures of plain C++.
 std::string compiler_text();
 
+/// How PoCL compiles for work-group sizes, by the variable that it reads.
+std::string pocl_fact();
+
 /// "0:0 platform / name, 2 compute units, driver 3.1".
 std::string device_fact(const DeviceInfo& device);
 

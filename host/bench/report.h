@@ -86,7 +86,7 @@ struct Report {
 std::string report_text(const Report& report);
 
 /// {"schema": 1, "bench": name, "facts", "notes", "measurements": [{column: value}]}; a Spread is an object
-/// of median, min and max.
+/// of median, min, max and the runs.
 nlohmann::json report_json(const Report& report);
 
 /// The measurements alone, as RFC 4180 has it, with one line of names.

@@ -37,7 +37,7 @@ svg, .heat rect { -webkit-print-color-adjust: exact; print-color-adjust: exact; 
 .scroll { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: 4px 9px; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; }
 th { color: var(--soft); font-weight: 600; background: var(--fill); white-space: normal; vertical-align: bottom; } th.w, td.w { text-align: left; }
-th small { font-weight: 400; display: block; } td.w { white-space: normal; }
+th small { font-weight: 400; display: block; } td small { display: block; color: var(--soft); white-space: normal; min-width: 12em; } td.w { white-space: normal; }
 ul { padding-left: 20px; color: var(--soft); } details { margin-top: 36px; } summary { cursor: pointer; color: var(--soft); }
 )";
 
@@ -54,7 +54,16 @@ bool is_word_column(const Table& table, std::size_t column) {
   return false;
 }
 
-std::string table_html(const Table& table) {
+/// `raw`: with every run below the median.
+std::string cell_html(const Cell& cell, bool raw) {
+  std::string text = escape_html(cell_text(cell));
+  if (!raw || cell.kind != Cell::Kind::spread || cell.spread.runs.empty()) return text;
+  std::vector<std::string> runs;
+  for (const double run : cell.spread.runs) runs.push_back(number_text(run));
+  return text + fmt::format("<small>{}</small>", fmt::join(runs, " "));
+}
+
+std::string table_html(const Table& table, bool raw = false) {
   std::string head, body;
   std::vector<const char*> kinds;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -66,7 +75,7 @@ std::string table_html(const Table& table) {
   for (const auto& row : table.rows) {
     body += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i)
-      body += fmt::format("<td{}>{}</td>", kinds[i], escape_html(cell_text(row[i])));
+      body += fmt::format("<td{}>{}</td>", kinds[i], cell_html(row[i], raw));
     body += "</tr>\n";
   }
   return fmt::format(
@@ -122,7 +131,7 @@ std::string report_html(const Report& report) {
   for (const std::string& note : report.notes) body += "<li>" + escape_html(note) + "</li>\n";
   if (!report.notes.empty()) body += "</ul>\n";
   body += fmt::format("<details><summary>All {} measurements</summary>\n{}</details>\n",
-                      report.measurements.rows.size(), table_html(report.measurements));
+                      report.measurements.rows.size(), table_html(report.measurements, true));
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width, "

@@ -51,6 +51,26 @@ std::string table_text(const Table& table) {
   return text;
 }
 
+json spread_json(const Spread& spread) {
+  json values{{"median", spread.median}, {"min", spread.min}, {"max", spread.max}};
+  if (!spread.runs.empty()) values["runs"] = spread.runs;
+  return values;
+}
+
+/// A name that stands several times, as "device" may, has an array of what it holds.
+json facts_json(const Report& report) {
+  json facts = json::object();
+  for (const auto& [name, value] : report.facts) {
+    json& fact = facts[name];
+    if (fact.is_string()) fact = json::array({fact});
+    if (fact.is_array())
+      fact.push_back(value);
+    else
+      fact = value;
+  }
+  return facts;
+}
+
 json cell_json(const Cell& cell) {
   switch (cell.kind) {
     case Cell::Kind::word:
@@ -58,7 +78,7 @@ json cell_json(const Cell& cell) {
     case Cell::Kind::number:
       return cell.spread.median;
     case Cell::Kind::spread:
-      return {{"median", cell.spread.median}, {"min", cell.spread.min}, {"max", cell.spread.max}};
+      return spread_json(cell.spread);
     default:
       return nullptr;
   }
@@ -126,8 +146,7 @@ std::string report_text(const Report& report) {
 }
 
 json report_json(const Report& report) {
-  json facts = json::object(), rows = json::array();
-  for (const auto& [name, value] : report.facts) facts[name] = value;
+  json rows = json::array();
   for (const auto& row : report.measurements.rows) {
     json values = json::object();
     for (std::size_t i = 0; i < report.measurements.columns.size(); ++i) {
@@ -140,7 +159,7 @@ json report_json(const Report& report) {
   }
   return {{"schema", 1},
           {"bench", report.name},
-          {"facts", facts},
+          {"facts", facts_json(report)},
           {"notes", report.notes},
           {"measurements", rows}};
 }

@@ -7,12 +7,19 @@
 
 namespace sundog {
 
-Spread spread(std::vector<double> values) {
-  if (values.empty()) return {};
+Spread spread(const std::vector<double>& runs) {
+  if (runs.empty()) return {};
+  std::vector<double> values = runs;
   std::sort(values.begin(), values.end());
   const std::size_t middle = values.size() / 2;
   const double median = values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-  return {median, values.front(), values.back()};
+  return {median, values.front(), values.back(), runs};
+}
+
+Spread scaled(const Spread& spread, double factor) {
+  Spread result{factor * spread.median, factor * spread.min, factor * spread.max, spread.runs};
+  for (double& run : result.runs) run *= factor;
+  return result;
 }
 
 double processor_seconds() {

@@ -92,10 +92,6 @@ const ThreadTime* find(const std::vector<ThreadTime>& times, int size, unsigned 
 
 double milliseconds(double seconds) { return 1e3 * seconds; }
 
-Spread milliseconds(const Spread& spread) {
-  return {milliseconds(spread.median), milliseconds(spread.min), milliseconds(spread.max)};
-}
-
 /// How many times as fast as one thread; where the least count is greater, that one counts as ideal.
 std::optional<Spread> speed_up(const std::vector<ThreadTime>& times, const ThreadScaling& plan, int size,
                                unsigned count) {
@@ -146,7 +142,7 @@ void add_measurements(Table& table, const ThreadScaling& plan, const std::vector
     if (!time.problem.empty()) {
       row.resize(table.columns.size());
     } else {
-      row.insert(row.end(), {milliseconds(time.seconds), static_cast<double>(plan.repeat)});
+      row.insert(row.end(), {scaled(time.seconds, 1e3), static_cast<double>(plan.repeat)});
       const auto gain = speed_up(times, plan, time.size, time.threads);
       row.push_back(gain ? Cell(gain->median) : Cell());
       row.insert(row.end(), {time.cores, Cell()});

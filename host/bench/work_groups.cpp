@@ -35,8 +35,6 @@ const WorkGroupTime* best_time(const std::vector<WorkGroupTime>& times) {
   return best;
 }
 
-Spread milliseconds(const Spread& s) { return {1e3 * s.median, 1e3 * s.min, 1e3 * s.max}; }
-
 std::string title_of(const TimedKernel& kernel) {
   return fmt::format("{}, {} on {}", kernel.scene, kernel.name, kernel.device);
 }
@@ -66,7 +64,7 @@ BarPlot bars(const TimedKernel& kernel, const std::vector<WorkGroupTime>& times)
   const auto add = [&](const WorkGroupTime& time, const std::string& label) {
     const double ratio = time.seconds.median / best->seconds.median;
     plot.bars.push_back(
-        {label, milliseconds(time.seconds), &time == best ? "" : fmt::format("{:.2f} ×", ratio)});
+        {label, scaled(time.seconds, 1e3), &time == best ? "" : fmt::format("{:.2f} ×", ratio)});
   };
   add(*best, "best: " + work_group_text(best->group));
   for (const WorkGroupTime& time : times) {
@@ -89,7 +87,7 @@ Table table(const TimedKernel& kernel, const std::vector<WorkGroupTime>& times) 
   for (const WorkGroupTime& time : times) {
     std::vector<Cell> row{work_group_text(time.group)};
     if (time.problem.empty()) {
-      row.push_back(milliseconds(time.seconds));
+      row.push_back(scaled(time.seconds, 1e3));
       row.push_back(usual ? Cell(time.seconds.median / usual->seconds.median) : Cell());
       row.push_back(1e3 * time.first_run);
     }
@@ -163,7 +161,7 @@ void add_work_group_tables(Report& report, const TimedKernel& kernel, const std:
     const bool fixed_size = time.group.kind == fixed, good = time.problem.empty();
     row.push_back(fixed_size ? Cell(static_cast<double>(time.group.x)) : Cell());
     row.push_back(fixed_size ? Cell(static_cast<double>(time.group.y)) : Cell());
-    row.push_back(good ? Cell(milliseconds(time.seconds)) : Cell());
+    row.push_back(good ? Cell(scaled(time.seconds, 1e3)) : Cell());
     row.push_back(good ? Cell(static_cast<double>(repeat)) : Cell());
     row.push_back(good ? Cell(1e3 * time.first_run) : Cell());
     row.push_back(good ? Cell() : Cell(time.problem));

@@ -22,6 +22,11 @@ TEST_CASE("bench threads times every size and count on sub-devices, more than th
   const json report = json::parse(sundog::read_file(folder.file("t.json")));
   CHECK(report.at("bench") == "threads");
   CHECK_THAT(report.at("facts").at("device").get<std::string>(), ContainsSubstring("pthread"));
+  CHECK_THAT(report.at("facts").at("PoCL").get<std::string>(),
+             ContainsSubstring("POCL_WORK_GROUP_SPECIALIZATION=0"));
+  CHECK_FALSE(report.at("facts").at("revision").get<std::string>().empty());
+  CHECK_THAT(report.at("facts").at("command").get<std::string>(),
+             ContainsSubstring("sundog bench ") && ContainsSubstring(" --repeat "));
   const json& rows = report.at("measurements");
   REQUIRE(rows.size() == 8);  // with plain C++
   for (const json& row : rows) {

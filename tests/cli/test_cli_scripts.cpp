@@ -140,3 +140,37 @@ TEST_CASE("without apt the build goes on and says what it needs") {
   CHECK(contains(result.err, "libstb-dev"));
   CHECK(contains(tree.called(), "cmake --build"));
 }
+
+TEST_CASE("the build notes the git commit, whether files differ from it, and nothing outside git") {
+  const TemporaryFolder folder;
+  const std::string source = folder.write("tree/a.txt", "a").parent_path().string(),
+                    output = (folder / "revision.cpp").string();
+  const auto revision = [&] {
+    const CommandResult result = run_command({"cmake", "-DSOURCE=" + source, "-DOUTPUT=" + output, "-P",
+                                              SUNDOG_SOURCE_DIR "/cmake/GitRevision.cmake"});
+    CHECK(result.status == 0);
+    const std::string text = read_file(output);
+    const std::size_t start = text.find("return \"") + 8;
+    return text.substr(start, text.find('"', start) - start);
+  };
+  CHECK(revision() == "unknown");
+  const auto git = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"git", "-C", source, "-c", "user.name=a", "-c", "user.email=a@b"});
+    return run_command(arguments);
+  };
+  if (git({"init", "-q"}).status != 0) return;  // no git here
+  CHECK(revision() == "unknown");               // without a commit
+  git({"add", "a.txt"});
+  git({"commit", "-q", "-m", "first"});
+  const std::string commit = git({"rev-parse", "--short=12", "HEAD"}).out;
+  CHECK(revision() + "\n" == commit);
+  const auto written = fs::last_write_time(output);
+  CHECK(revision() + "\n" == commit);
+  CHECK(fs::last_write_time(output) == written);  // so nothing is compiled again
+  folder.write("tree/a.txt", "b");
+  CHECK(revision() + "\n" == commit.substr(0, 12) + " with changes\n");
+  fs::create_directory(folder / "tree/inner");  // a part of somebody else's checkout
+  const std::string whole = "-DSOURCE=" + source + "/inner";
+  run_command({"cmake", whole, "-DOUTPUT=" + output, "-P", SUNDOG_SOURCE_DIR "/cmake/GitRevision.cmake"});
+  CHECK(contains(read_file(output), "unknown"));
+}

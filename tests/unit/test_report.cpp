@@ -14,11 +14,11 @@ Report small_report() {
   Report report;
   report.name = "threads";
   report.title = "Times & <more>";
-  report.facts = {{"device", "a \"fast\" one"}};
+  report.facts = {{"device", "a \"fast\" one"}, {"driver", "1"}, {"driver", "2"}};
   report.notes = {"Median of 3."};
   report.measurements = {"",
                          {{"scene", ""}, {"time", "ms"}, {"runs", ""}},
-                         {{"ice, hollow", Spread{12.345, 12, 13}, 3.0}, {"say \"x\"", Cell(), Cell()}}};
+                         {{"ice, hollow", spread({13, 12, 12.345}), 3.0}, {"say \"x\"", Cell(), Cell()}}};
   return report;
 }
 
@@ -59,11 +59,14 @@ TEST_CASE("JSON holds facts and a row a measurement, with null for what was not 
   CHECK(json.at("schema") == 1);
   CHECK(json.at("bench") == "threads");
   CHECK(json.at("facts").at("device") == "a \"fast\" one");
+  CHECK(json.at("facts").at("driver") == nlohmann::json({"1", "2"}));  // one of several devices each
   CHECK(json.at("notes").at(0) == "Median of 3.");
   const auto& rows = json.at("measurements");
   REQUIRE(rows.size() == 2);
   CHECK(rows[0].at("time_ms").at("median") == 12.345);
   CHECK(rows[0].at("time_ms").at("max") == 13);
+  CHECK(rows[0].at("time_ms").at("runs") ==
+        nlohmann::json({13, 12, 12.345}));  // in the order they were taken
   CHECK(rows[0].at("runs") == 3);
   CHECK(rows[1].at("time_ms").is_null());
 }
@@ -100,6 +103,7 @@ TEST_CASE("a page stands alone: nothing to load, everything escaped, plots and m
     CHECK(count(page, outside) == 0);
   CHECK(count(page, "<svg") == 3);
   CHECK(count(page, "</svg>") == 3);
+  CHECK_THAT(page, ContainsSubstring("12.3 ±4%<small>13 12 12.3</small>"));  // raw runs, in the details alone
   CHECK(count(page, "class=\"cell") == 1);  // what was not measured has no cell
 }
 
