@@ -33,6 +33,8 @@ class FrameRunner {
   /// Of the last run: on the device, of all launches of a kernel; by the host's clock where the driver gives
   /// no times.
   double kernel_seconds(const std::string& kernel) const;
+  /// Of the last run, for each kernel.
+  const std::map<std::string, KernelTimes>& kernel_times() const { return device_.times(); }
   const Film& film() const { return film_; }
   Image image() const { return film_.develop(); }
   const RayCounts& counts() const { return counts_; }

@@ -63,11 +63,12 @@ struct BarPlot {
   std::vector<Bar> bars;
 };
 
-/// Times in two dimensions: the least is best. values[row][column]; empty: not measured.
+/// Times in two dimensions. values[row][column]; empty: not measured. With `has_best` the least is outlined.
 struct HeatMap {
   std::string title, unit, x_label, y_label;
   std::vector<std::string> columns, rows;
   std::vector<std::vector<std::optional<double>>> values;
+  bool has_best = false;
 };
 
 using Part = std::variant<Table, CurvePlot, BarPlot, HeatMap>;

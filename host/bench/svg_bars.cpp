@@ -117,7 +117,7 @@ std::string svg(const HeatMap& map) {
           "<g><title>{} × {}: {} {}</title><rect class=\"cell{}\" x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" "
           "height=\"{}\" style=\"fill:{}\"/><text class=\"mid {}\" x=\"{:.1f}\" y=\"{}\">{}</text></g>",
           escape_html(map.columns[c]), escape_html(map.rows[r]), number_text(value), escape_html(map.unit),
-          value == range.least ? " best" : "", x + 1, y + 1, cell_w - 2, cell_h - 2, heat_color(share),
+          map.has_best && value == range.least ? " best" : "", x + 1, y + 1, cell_w - 2, cell_h - 2, heat_color(share),
           share < 0.2 || share > 0.9 ? "on-dark" : "on-light", x + cell_w / 2, y + 18, number_text(value));
     }
   }

@@ -1,6 +1,7 @@
 // Times of a kernel for every sensible work-group size.
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,23 +22,45 @@ struct TimedKernel {
   std::size_t limit = 0;                        // work-items of a group
   std::function<double(const WorkGroup&)> run;  // seconds
   std::function<std::uint64_t()> result;        // of the last run
-  double build_seconds = 0;
-  bool cached = false;  // the build came from the binary cache
+  /// Of the last run: seconds that launches took by the host's clock beyond what the device's events say that
+  /// kernels ran. Nothing where the driver gives no times.
+  std::function<std::optional<double>()> beyond_events;
+  double build_seconds = 0;    // of the program, by the clock, before any run
+  std::optional<bool> cached;  // whether it came from the binary cache
 };
 
 struct WorkGroupTime {
   WorkGroup group;
   Spread seconds;
-  double first_run = 0;  // seconds beyond the median: what the driver still had to compile
-  std::string problem;   // not empty: no time counts, and why
+  /// Seconds that the driver compiled at the size's first launch: its time beyond the events, less that of a
+  /// later launch. Nothing where the driver gives no times.
+  std::optional<double> compile_seconds;
+  std::string problem;  // not empty: no time counts, and why
 };
+
+/// The size of the least median, run again in turn with the default.
+struct Duel {
+  WorkGroup group;
+  Spread usual, best;     // seconds
+  bool is_clear() const;  // every run of `best` is faster than every run of `usual`, of three or more each
+};
+
+struct WorkGroupTimes {
+  std::vector<WorkGroupTime> sizes;
+  std::optional<Duel> duel;  // nothing where no size has a lesser median than the default
+};
+
+/// How often something was measured, of how often it will be.
+using OnRun = std::function<void(std::size_t done, std::size_t of)>;
 
 /// Warms each size up, then times `repeat` runs of each in turn. A size whose result is not the default's to
 /// the bit, or that the driver refuses, has a problem.
-std::vector<WorkGroupTime> measure_work_groups(const TimedKernel& kernel, int repeat);
+WorkGroupTimes measure_work_groups(const TimedKernel& kernel, int repeat, const OnRun& on_run = {});
+
+/// "best: 8x8, 0.84 of the default's time (...)" or "no clear winner: ...".
+std::string verdict_text(const WorkGroupTimes& times);
 
 /// Adds the kernel's table, heat map and measurements.
-void add_work_group_tables(Report& report, const TimedKernel& kernel, const std::vector<WorkGroupTime>& times,
-                           int repeat);
+void add_work_group_tables(Report& report, const TimedKernel& kernel, const WorkGroupTimes& times);
 
 }  // namespace sundog
