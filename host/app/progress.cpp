@@ -14,7 +14,9 @@ namespace {
 
 constexpr double seconds_between_drawings = 0.1;
 
-bool is_terminal() {
+}  // namespace
+
+bool stderr_is_terminal() {
   const char* type = std::getenv("TERM");
   return ::isatty(STDERR_FILENO) == 1 && type && std::string_view(type) != "dumb";
 }
@@ -24,14 +26,20 @@ int terminal_columns() {
   return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-std::string time_text(double seconds) {
+std::string duration_text(double seconds) {
   const auto whole = static_cast<long>(std::min(seconds + 0.5, 1e9));
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
-}  // namespace
+std::string bar_line(double fraction, const std::string& text, int columns) {
+  const int bar =
+      std::min(40, columns - static_cast<int>(text.size()) - 3);  // two brackets, and the cursor's place
+  if (bar < 4) return text.substr(0, static_cast<std::size_t>(std::max(columns - 1, 0)));
+  const int filled = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * bar);
+  return fmt::format("[{:#<{}}{:.<{}}]{}", "", filled, "", bar - filled, text);
+}
 
 std::string progress_line(const RenderProgress& now, const RenderProgress& since, int columns) {
   const double total = static_cast<double>(std::max<std::uint64_t>(now.pixels_total, 1));
@@ -41,15 +49,11 @@ std::string progress_line(const RenderProgress& now, const RenderProgress& since
   std::string text = fmt::format(" {:3.0f} %", 100 * fraction);
   if (rate > 0)
     text += fmt::format("  {:.3g} Mpixel/s  {} left", rate / 1e6,
-                        time_text(static_cast<double>(now.pixels_total - now.pixels_done) / rate));
-  const int bar =
-      std::min(40, columns - static_cast<int>(text.size()) - 3);  // two brackets, and the cursor's place
-  if (bar < 4) return text.substr(0, static_cast<std::size_t>(std::max(columns - 1, 0)));
-  const int filled = static_cast<int>(fraction * bar);
-  return fmt::format("[{:#<{}}{:.<{}}]{}", "", filled, "", bar - filled, text);
+                        duration_text(static_cast<double>(now.pixels_total - now.pixels_done) / rate));
+  return bar_line(fraction, text, columns);
 }
 
-ProgressBar::ProgressBar(bool wanted) : shown_(wanted && is_terminal()) {}
+ProgressBar::ProgressBar(bool wanted) : shown_(wanted && stderr_is_terminal()) {}
 
 ProgressBar::~ProgressBar() { erase(); }
 

@@ -11,6 +11,16 @@ namespace sundog {
 /// with pixels that cost it nothing.
 std::string progress_line(const RenderProgress& now, const RenderProgress& since, int columns);
 
+/// "34 s", "2 min 05 s".
+std::string duration_text(double seconds);
+
+/// "[####......]" with `text` behind it, at most `columns` wide: the bar takes what room there is.
+std::string bar_line(double fraction, const std::string& text, int columns);
+
+/// True where a line on stderr can be drawn over.
+bool stderr_is_terminal();
+int terminal_columns();
+
 /// Draws on stderr at most ten times a second, and only when that is a terminal.
 class ProgressBar {
  public:

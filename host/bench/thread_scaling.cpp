@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "bench/frame_runner.h"
 #include "bench/plain/whitted.h"
+#include "bench/thread_budget.h"
 
 namespace sundog {
 namespace {
@@ -22,10 +23,16 @@ struct Runner {
   std::vector<double> seconds, cores;
 
   bool is_plain() const { return result.threads == 0; }
+  std::string name() const {
+    if (is_plain()) return "plain C++";
+    return fmt::format("{} thread{}", result.threads, result.threads == 1 ? "" : "s");
+  }
   void warm_up(const DeviceInfo& whole, const CompiledScene& scene) {
     try {
       is_plain() ? prepare_plain(scene) : prepare(whole, scene);
-      if (run) run();
+      if (!run) return;
+      // Plain C++ compiles nothing and may take minutes: its first frame is the one that counts.
+      is_plain() ? time() : void(run());
     } catch (const DeviceError& error) {
       fail(error.what());
     }
@@ -142,7 +149,7 @@ void add_measurements(Table& table, const ThreadScaling& plan, const std::vector
     if (!time.problem.empty()) {
       row.resize(table.columns.size());
     } else {
-      row.insert(row.end(), {scaled(time.seconds, 1e3), static_cast<double>(plan.repeat)});
+      row.insert(row.end(), {scaled(time.seconds, 1e3), static_cast<double>(time.seconds.runs.size())});
       const auto gain = speed_up(times, plan, time.size, time.threads);
       row.push_back(gain ? Cell(gain->median) : Cell());
       row.insert(row.end(), {time.cores, Cell()});
@@ -154,24 +161,59 @@ void add_measurements(Table& table, const ThreadScaling& plan, const std::vector
 
 }  // namespace
 
-std::vector<ThreadTime> measure_threads(const ThreadScaling& plan,
-                                        const std::function<void(const std::string&)>& on_step) {
+PixelCost pixel_cost(const ThreadScaling& plan) {
+  constexpr int greatest_side = 64;
+  const int side = std::min(greatest_side, plan.sizes.front());
+  const double pixels = static_cast<double>(side) * side;
+  PixelCost cost;
+  try {
+    const CompiledScene scene = plan.compile_for(side);
+    DeviceInfo part = plan.device;
+    part.sub_units = plan.counts.front();
+    if (part.sub_units <= part.compute_units) {
+      FrameRunner frames(part, scene);
+      frames.run();
+      frames.save_programs();
+      cost.device = frames.run() * std::min(part.sub_units, plan.cores) / pixels;
+    }
+    if (plan.plain && plain_refusal(scene).empty()) {
+      const Stopwatch clock;
+      render_plain(scene);
+      cost.plain = clock.seconds() / pixels;
+    }
+  } catch (const DeviceError&) {
+    return {};  // the measurement will say why
+  }
+  return cost;
+}
+
+std::vector<ThreadTime> measure_threads(const ThreadScaling& plan, const OnPart& on_part) {
+  const double expected = expected_seconds(plan);
+  double done = 0;
+  const auto tell = [&](int size, const std::string& what) {
+    on_part(fmt::format("{}, {}x{}, {}", plan.scene, size, size, what), expected > 0 ? done / expected : 0);
+  };
   std::vector<ThreadTime> times;
   for (const int size : plan.sizes) {
-    on_step(fmt::format("{}, {}x{}", plan.scene, size, size));
     const CompiledScene scene = plan.compile_for(size);
     std::vector<unsigned> counts = plan.counts;
-    if (plan.plain) counts.insert(counts.begin(), 0);
+    if (plan.plain && size <= plan.greatest_plain_size) counts.insert(counts.begin(), 0);
     std::vector<Runner> runners(counts.size());
     for (std::size_t i = 0; i < runners.size(); ++i) {
       runners[i].result.size = size;
       runners[i].result.threads = counts[i];
+      tell(size, runners[i].name());
       runners[i].warm_up(plan.device, scene);
+      done += counts[i] ? 2 * frame_seconds(plan, size, counts[i]) : plain_seconds(plan, size);
     }
     check_images(runners);
     for (int i = 0; i < plan.repeat; ++i)
-      for (Runner& runner : runners)
-        if (runner.run) runner.time();
+      for (Runner& runner : runners) {
+        if (!runner.run || runner.is_plain()) continue;
+        tell(size, runner.name());
+        runner.time();
+        done += frame_seconds(plan, size, runner.result.threads);
+      }
     for (Runner& runner : runners) {
       runner.result.seconds = spread(runner.seconds);
       runner.result.cores = spread(runner.cores).median;

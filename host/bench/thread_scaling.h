@@ -11,6 +11,11 @@
 
 namespace sundog {
 
+/// Seconds of a pixel, on one thread. Zeros: not known.
+struct PixelCost {
+  double device = 0, plain = 0;
+};
+
 struct ThreadScaling {
   std::string scene;  // its name, for the report
   /// The scene compiled for a square image of so many pixels a side.
@@ -19,7 +24,10 @@ struct ThreadScaling {
   std::vector<int> sizes{128, 256, 352, 448, 512, 640};
   std::vector<unsigned> counts{1, 2, 4, 8, 16};
   int repeat = 5;
-  bool plain = true;  // time the plain C++ integrator too
+  bool plain = true;  // time the plain C++ integrator too: one frame a size, up to this one
+  int greatest_plain_size = 1 << 16;
+  unsigned cores = 1;  // that the threads can have
+  PixelCost cost;      // by pixel_cost(), for estimates
 };
 
 /// One size and count; 0 threads: the plain C++ program. `cores` is processor seconds by wall second: what
@@ -32,11 +40,17 @@ struct ThreadTime {
   std::string problem;  // not empty: no time counts, and why
 };
 
-/// Warms up once, then times `repeat` frames of each count in turn; a count whose image is not that of the
-/// first one to the bit has a problem instead of a time, and so has the plain program when its image is
-/// another. `on_step` hears what is being measured.
-std::vector<ThreadTime> measure_threads(const ThreadScaling& plan,
-                                        const std::function<void(const std::string&)>& on_step);
+/// Times a small frame of the scene, which also compiles its kernels into the cache. Zeros where it cannot be
+/// drawn.
+PixelCost pixel_cost(const ThreadScaling& plan);
+
+/// What is being measured, and which part of the expected time is over, from 0 to 1.
+using OnPart = std::function<void(const std::string& step, double done)>;
+
+/// Warms up, then times `repeat` frames of each count in turn, and one frame of plain C++; a count whose
+/// image is not that of the first one to the bit has a problem instead of a time, and so has the plain
+/// program when its image is another.
+std::vector<ThreadTime> measure_threads(const ThreadScaling& plan, const OnPart& on_part);
 
 /// Adds the scene's tables (times, speed-up, efficiency), curves and measurements.
 void add_thread_tables(Report& report, const ThreadScaling& plan, const std::vector<ThreadTime>& times);

@@ -88,10 +88,11 @@ TEST_CASE("columns of a text are aligned, whatever bytes their letters take") {
 
 TEST_CASE("a page stands alone: nothing to load, everything escaped, plots and measurements in it") {
   Report report = small_report();
+  const Bar bar{"<bar>", spread({5, 4, 6}), "40 %"};
   report.parts = {
       CurvePlot{
           "Curves <1>", "threads", "times as fast", {{"a & b", {{1, {1, 1, 1}}, {4, {3, 2, 4}}}}}, true},
-      BarPlot{"Bars", "ms", {{"<bar>", {5, 4, 6}, "40 %"}}},
+      BarPlot{"Bars", "ms", {bar}},
       HeatMap{"Heat", "ms", "x", "y", {"1", "2"}, {"1"}, {{4.0, std::nullopt}}}};
   const std::string page = report_html(report);
   CHECK(page.starts_with("<!DOCTYPE html>"));
@@ -108,9 +109,11 @@ TEST_CASE("a page stands alone: nothing to load, everything escaped, plots and m
 }
 
 TEST_CASE("plots of nothing, of one point and of zeros are drawn without a number that is none") {
-  for (const std::string& text : {svg(CurvePlot{}), svg(CurvePlot{"", "", "", {{"one", {{4, {}}}}}, true}),
-                                  svg(BarPlot{}), svg(BarPlot{"", "", {{"zero", {}, ""}}}), svg(HeatMap{}),
-                                  svg(HeatMap{"", "", "", "", {"a"}, {"b"}, {{0.0}}})}) {
+  Bar zero;
+  zero.label = "zero";
+  for (const std::string& text :
+       {svg(CurvePlot{}), svg(CurvePlot{"", "", "", {{"one", {{4, {}}}}}, true}), svg(BarPlot{}),
+        svg(BarPlot{"", "", {zero}}), svg(HeatMap{}), svg(HeatMap{"", "", "", "", {"a"}, {"b"}, {{0.0}}})}) {
     CAPTURE(text);
     CHECK(count(text, "nan") == 0);
     CHECK(count(text, "inf") == 0);
