@@ -2,14 +2,17 @@
 #include "app/tune_command.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
 
 #include "app/bench_options.h"
+#include "app/bench_progress.h"
 #include "app/commands.h"
 #include "app/option_helpers.h"
+#include "app/progress.h"
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "bench/report.h"
@@ -58,29 +61,56 @@ void print_outcome(const DeviceInfo& device, const TuneOutcome& outcome) {
   const bool faster = entry.tuned_ms < entry.default_ms;
   fmt::print("{}, {} ({}), {}: {}\n", device.label(), entry.scene_class, entry.scene, entry.kernel,
              tuning_text(entry.tuning));
-  fmt::print("  {} ms with the defaults, {} ms tuned: {}; {} tried, {} rejected\n",
-             number_text(entry.default_ms), number_text(entry.tuned_ms),
-             faster ? fmt::format("{:.1f} % gained", 100 * (1 - entry.tuned_ms / entry.default_ms))
-                    : "nothing gained",
-             outcome.tried, outcome.rejected);
+  fmt::print(
+      "  {} ms with the defaults, {} ms tuned: {}; {} tried, {} rejected{}\n", number_text(entry.default_ms),
+      number_text(entry.tuned_ms),
+      faster ? fmt::format("{:.1f} % gained", 100 * (1 - entry.tuned_ms / entry.default_ms))
+             : "nothing gained",
+      outcome.tried, outcome.rejected,
+      outcome.left_out > 0 ? fmt::format(", at least {} left out for lack of time", outcome.left_out) : "");
+}
+
+/// What there was no time to begin.
+void print_left_out(const DeviceInfo& device, const std::vector<std::string>& names) {
+  if (!names.empty())
+    fmt::print("{}: not tuned for lack of time: {} (a longer --budget)\n", device.label(),
+               fmt::join(names, ", "));
+}
+
+/// The scenes in turn; each may take its share of what is left of the budget.
+void tune_on(const DeviceInfo& device, const std::vector<NamedScene>& scenes, const TuneOptions& options) {
+  const Stopwatch clock;
+  TuneCosts costs;
+  std::vector<std::string> left_out;
+  BenchProgress progress(!options.bench.quiet, options.budget);
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const NamedScene& named = scenes[i];
+    const double left = options.budget - clock.seconds();
+    if (i > 0 && left < costs.compile) {
+      left_out.push_back(named.name);
+      continue;
+    }
+    const auto on_step = [&](const std::string& step) {
+      const double done = options.budget > 0 ? clock.seconds() / options.budget : 1;
+      progress.update(fmt::format("{}, {}: {}", device.label(), named.name, step), done);
+    };
+    const auto outcomes = tune_device(device, named.scene, named.name,
+                                      left / static_cast<double>(scenes.size() - i), costs, on_step);
+    progress.erase();
+    for (const TuneOutcome& outcome : outcomes) {
+      print_outcome(device, outcome);
+      keep_tuning(device, outcome.entry);
+    }
+    if (outcomes.size() < 2) left_out.push_back(fmt::format("{} of {}", surfaces_kernel, named.name));
+  }
+  print_left_out(device, left_out);
+  fmt::print("{}: took {} of {}\n", device.label(), duration_text(clock.seconds()),
+             duration_text(options.budget));
 }
 
 int tune(const TuneOptions& options) {
   const std::vector<NamedScene> scenes = scenes_to_tune(options);
-  for (const DeviceInfo& device : bench_devices(options.bench))
-    for (const NamedScene& named : scenes) {
-      const auto on_step = [&](const std::string& step) {
-        show_step(options.bench, fmt::format("{}, {}: {}", device.label(), named.name, step));
-      };
-      const double budget = options.budget / static_cast<double>(scenes.size());
-      const auto outcomes = tune_device(device, named.scene, named.name, budget, on_step);
-      on_step("");
-      if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K");
-      for (const TuneOutcome& outcome : outcomes) {
-        print_outcome(device, outcome);
-        keep_tuning(device, outcome.entry);
-      }
-    }
+  for (const DeviceInfo& device : bench_devices(options.bench)) tune_on(device, scenes, options);
   return exit_done;
 }
 
@@ -196,7 +226,8 @@ void add_tune(Arguments& root, Command& chosen) {
         std::string(scene_help) + " (default: two that are built in)");
   values(app, "--device", "SPEC", options->bench.devices, device_help);
   values(app, "--set", "POINTER=VALUE", options->bench.overrides, "change the scenes, as in /camera/fov=30");
-  app->add_option("--budget", options->budget, "seconds for a device (default 60)")->type_name("SECONDS");
+  app->add_option("--budget", options->budget, "seconds for a device, with compilation (default 60)")
+      ->type_name("SECONDS");
   app->add_flag("--show", options->show, "print what is kept");
   app->add_flag("--forget", options->forget, "remove what is kept, of the --device or of all");
   value(app, "--export", "FILE", options->export_to, "write what is kept to this file");

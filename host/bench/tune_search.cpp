@@ -13,10 +13,15 @@ struct Search {
   TuneResult result;
   std::map<TunePoint, std::optional<double>> known;
 
-  /// Takes the point when it is faster; false when there is no time left.
-  bool offer(const TunePoint& point) {
-    if (known.count(point)) return true;
-    if (problem.out_of_time()) return false;
+  /// Takes the point when it is faster. A point that is not affordable is left out; a cheaper one may still
+  /// be.
+  void offer(const TunePoint& point) {
+    if (known.count(point)) return;
+    if (!problem.affordable(point)) {
+      known[point] = {};
+      ++result.left_out;
+      return;
+    }
     const std::optional<double> seconds = known[point] = problem.measure(point);
     ++result.tried;
     if (!seconds)
@@ -25,11 +30,10 @@ struct Search {
       result.best = point;
       result.best_seconds = *seconds;
     }
-    return true;
   }
 
   /// Every second value of an axis from the best point on, both ways, or with `fine` its neighbours.
-  bool sweep(std::size_t axis, bool fine) {
+  void sweep(std::size_t axis, bool fine) {
     const TunePoint from = result.best;
     const std::size_t here = from[axis], count = problem.axes[axis];
     for (std::size_t value = 0; value < count; ++value) {
@@ -37,9 +41,8 @@ struct Search {
       const bool wanted = fine ? away == 1 : away % 2 == 0 || value == 0 || value + 1 == count;
       TunePoint point = from;
       point[axis] = value;
-      if (wanted && !offer(point)) return false;
+      if (wanted) offer(point);
     }
-    return true;
   }
 };
 
@@ -56,13 +59,10 @@ TuneResult search_tuning(const TuneProblem& problem) {
     return result;
   }
   result.default_seconds = result.best_seconds = *usual;
-  bool time_left = true;
-  for (std::size_t axis = 0; time_left && axis < problem.axes.size(); ++axis)
-    time_left = search.sweep(axis, false);
-  for (bool better = true; time_left && better;) {
+  for (std::size_t axis = 0; axis < problem.axes.size(); ++axis) search.sweep(axis, false);
+  for (bool better = true; better;) {
     const TunePoint before = result.best;
-    for (std::size_t axis = 0; time_left && axis < problem.axes.size(); ++axis)
-      time_left = search.sweep(axis, true);
+    for (std::size_t axis = 0; axis < problem.axes.size(); ++axis) search.sweep(axis, true);
     better = result.best != before;
   }
   if (result.best == problem.start) return result;

@@ -18,13 +18,15 @@ struct TuneProblem {
   std::function<std::optional<double>(const TunePoint&)> measure;
   /// Seconds of two points, measured again in turn: the default, and what won.
   std::function<std::pair<double, double>(const TunePoint& usual, const TunePoint& best)> measure_again;
-  std::function<bool()> out_of_time;
+  /// Whether there is time to measure a point, and to measure the winner again after it.
+  std::function<bool(const TunePoint&)> affordable;
 };
 
 struct TuneResult {
   TunePoint best;  // the default, when nothing is faster in the end
   double default_seconds = 0, best_seconds = 0;
   std::size_t tried = 0, rejected = 0;
+  std::size_t left_out = 0;  // not affordable
 };
 
 /// A point must be 2 % faster than the best so far to take its place. Each point is measured once.

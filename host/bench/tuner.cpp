@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 
 #include "base/clock.h"
 #include "base/error.h"
@@ -78,9 +79,16 @@ class Candidate {
     RenderOptions options;
     options.tuning = [tuning = choices.at(point)](const DeviceInfo&) { return tuning; };
     if (kernel_ == surfaces_kernel) options.aovs = aov_names();
+    const Stopwatch clock;
     frames_ = std::make_unique<FrameRunner>(device, scene, options);
     frames_->run();
     frames_->save_programs();
+    start_seconds_ = clock.seconds();
+  }
+  /// Adds what its start took.
+  void add_to(TuneCosts& costs) const {
+    double& most = frames_->times().cached ? costs.open : costs.compile;
+    most = std::max(most, start_seconds_);
   }
   /// Seconds: the frame's, or of the kernel that it is about, which takes too little to be seen in the frame.
   double run() {
@@ -98,6 +106,7 @@ class Candidate {
  private:
   std::string kernel_;
   std::unique_ptr<FrameRunner> frames_;
+  double start_seconds_ = 0;
 };
 
 /// To the bit.
@@ -120,26 +129,64 @@ std::pair<double, double> duel(Candidate& a, Candidate& b, int count) {
 
 using OnStep = std::function<void(const std::string&)>;
 
+/// What is left of the time for a kernel, and what measuring a point will take of it.
+class TimeLeft {
+ public:
+  TimeLeft(double budget, TuneCosts& costs) : budget_(budget), costs_(costs) {}
+
+  bool has_started_in_time(double frame_seconds) {
+    frame_ = frame_seconds;
+    return left() > 0;
+  }
+  /// `program`: the part of a point that makes another program.
+  bool is_enough_for(const std::pair<std::size_t, std::size_t>& program) const {
+    constexpr double caution = 1.25, slower = 1.5;
+    const double start = built_.count(program) ? open() : compile();
+    const double again = open() + 2 * runs_at_the_end * frame_;
+    return left() > caution * start + slower * 2 * runs * frame_ + again;
+  }
+  void add(const Candidate& candidate, const std::pair<std::size_t, std::size_t>& program) {
+    candidate.add_to(costs_);
+    built_.insert(program);
+  }
+
+ private:
+  double left() const { return budget_ - clock_.seconds(); }
+  double open() const { return costs_.open > 0 ? costs_.open : 0.5; }
+  /// Where everything so far came from the cache, a compilation is taken to be ten times as slow.
+  double compile() const { return costs_.compile > 0 ? costs_.compile : std::max(3.0, 10 * open()); }
+
+  double budget_, frame_ = 0;
+  TuneCosts& costs_;
+  std::set<std::pair<std::size_t, std::size_t>> built_;
+  Stopwatch clock_;
+};
+
 TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, const std::string& scene_name,
-                        Choices choices, double budget, const OnStep& on_step) {
-  const Stopwatch clock;
+                        Choices choices, double budget, TuneCosts& costs, const OnStep& on_step) {
+  TimeLeft time(budget, costs);
   const auto tell = [&](const std::string& what) { on_step(choices.kernel + ": " + what); };
+  const auto program_of = [](const TunePoint& point) { return std::pair(point[1], point[2]); };
   tell("the defaults");
   TuneProblem problem;
   problem.start.assign(choices.sizes().size(), 0);
   Candidate usual(device, scene, choices, problem.start);
+  time.add(usual, program_of(problem.start));
   // Only the built kernels tell how large their groups may be.
   std::erase_if(choices.groups, [most = usual.greatest_group()](const WorkGroup& group) {
     return most > 0 && group.kind == fixed && group.x * group.y > most;
   });
   problem.axes = choices.sizes();
   const Film expected = usual.film();
-  const double default_seconds = usual.median(runs);
+  const double first_seconds = usual.run();
+  const double default_seconds = time.has_started_in_time(first_seconds) ? usual.median(runs) : first_seconds;
+  problem.affordable = [&](const TunePoint& point) { return time.is_enough_for(program_of(point)); };
   problem.measure = [&](const TunePoint& point) -> std::optional<double> {
     if (point == problem.start) return default_seconds;
     tell(tuning_text(choices.at(point)));
     try {
       Candidate candidate(device, scene, choices, point);
+      time.add(candidate, program_of(point));
       if (!are_same(candidate.film(), expected)) return {};
       // The default beside it: a machine that has become slower meanwhile slows both.
       const auto [own, beside] = duel(candidate, usual, runs);
@@ -155,24 +202,28 @@ TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, co
     Candidate winner(device, scene, choices, best);
     return duel(usual, winner, runs_at_the_end);
   };
-  problem.out_of_time = [&] { return clock.seconds() > budget; };
   const TuneResult found = search_tuning(problem);
   return {{choices.kernel, scene_class(scene), scene_name, choices.at(found.best),
            1e3 * found.default_seconds, 1e3 * found.best_seconds},
           found.tried,
-          found.rejected};
+          found.rejected,
+          found.left_out};
 }
 
 }  // namespace
 
 std::vector<TuneOutcome> tune_device(const DeviceInfo& device, const CompiledScene& scene,
-                                     const std::string& scene_name, double budget, const OnStep& on_step) {
+                                     const std::string& scene_name, double budget, TuneCosts& costs,
+                                     const OnStep& on_step) {
+  const Stopwatch clock;
   std::vector<TuneOutcome> outcomes{tune_kernel(device, scene, scene_name, choices_of_frame(device, scene),
-                                                (1 - budget_of_surfaces) * budget, on_step)};
+                                                (1 - budget_of_surfaces) * budget, costs, on_step)};
+  const double left = budget - clock.seconds();
+  if (left < std::max(costs.compile, costs.open)) return outcomes;
   CompiledScene one_sample = scene;  // the AOVs are made once, however many samples the image has
   one_sample.info.samples = 1;
-  outcomes.push_back(tune_kernel(device, one_sample, scene_name, choices_of_surfaces(device, scene),
-                                 budget_of_surfaces * budget, on_step));
+  outcomes.push_back(
+      tune_kernel(device, one_sample, scene_name, choices_of_surfaces(device, scene), left, costs, on_step));
   return outcomes;
 }
 

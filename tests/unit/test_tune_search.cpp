@@ -34,7 +34,7 @@ struct Bowl {
     result.measure_again = [this](const TunePoint& usual, const TunePoint& best) {
       return std::pair(seconds(usual), seconds(best));
     };
-    result.out_of_time = [this] { return measured.size() >= budget; };
+    result.affordable = [this](const TunePoint&) { return measured.size() < budget; };
     return result;
   }
 };
@@ -73,8 +73,19 @@ TEST_CASE("the search ends with its time, and keeps what it found so far") {
     bowl.budget = budget;
     const TuneResult result = search_tuning(bowl.problem());
     CHECK(result.tried <= budget);
+    CHECK(result.left_out > 0);
     CHECK(result.best_seconds <= result.default_seconds);
   }
+}
+
+TEST_CASE("points that cost too much are left out, and cheaper ones still measured") {
+  Bowl bowl;
+  TuneProblem problem = bowl.problem();
+  problem.affordable = [](const TunePoint& at) { return at[1] == 0; };  // as if each step of it were compiled
+  const TuneResult result = search_tuning(problem);
+  CHECK(result.best == TunePoint{6, 0, 2});
+  CHECK(result.left_out > 0);
+  for (const TunePoint& at : bowl.measured) CHECK(at[1] == 0);
 }
 
 TEST_CASE("a winner that is no faster when it is measured again gives way to the default") {
