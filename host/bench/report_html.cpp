@@ -27,6 +27,7 @@ body { margin: 0 auto; max-width: 860px; padding: 32px 24px 64px; background: va
 h1 { font-size: 1.6em; line-height: 1.25; margin: 0 0 16px; } h2 { font-size: 1.1em; margin: 36px 0 8px; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 2px 16px; margin: 0; }
 dt { color: var(--soft); } dd { margin: 0; overflow-wrap: anywhere; }
+li, h1, h2 { overflow-wrap: anywhere; }
 figure { margin: 0; } svg { display: block; width: 100%; height: auto; font: 13px system-ui, "DejaVu Sans", sans-serif; }
 svg text { fill: var(--ink); } svg .mid { text-anchor: middle; } svg .end { text-anchor: end; } svg .axis { fill: var(--soft); }
 svg .grid { stroke: var(--line); } svg .l { fill: none; stroke-width: 2; } svg .ideal { fill: none; stroke: var(--soft); stroke-dasharray: 2 4; stroke-width: 1.5; }
@@ -38,6 +39,9 @@ svg, .heat rect { -webkit-print-color-adjust: exact; print-color-adjust: exact; 
 th, td { padding: 4px 9px; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; }
 th { color: var(--soft); font-weight: 600; background: var(--fill); white-space: normal; vertical-align: bottom; } th.w, td.w { text-align: left; }
 th small { font-weight: 400; display: block; } td small { display: block; color: var(--soft); white-space: normal; min-width: 12em; } td.w { white-space: normal; }
+/* On a phone: plots no smaller than their letters can be read, they scroll in their box as tables do. */
+@media screen and (max-width: 640px) { body { padding: 20px 14px 40px; } h1 { font-size: 1.4em; } th, td { padding: 4px 6px; font-size: 14px; }
+  dl { display: block; } dd { margin-bottom: 6px; } figure { overflow-x: auto; } svg { min-width: calc(.85 * var(--width)); } }
 ul { padding-left: 20px; color: var(--soft); } details { margin-top: 36px; } summary { cursor: pointer; color: var(--soft); }
 )";
 

@@ -62,8 +62,9 @@ std::string svg(const BarPlot& plot) {
   const double height = row * static_cast<double>(plot.bars.size()) + 44;
   const double length = width - left - right, end = axis_ticks(most > 0 ? most : 1).back();
   const auto x = [&](double value) { return left + value / end * length; };
-  std::string text = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", width, height,
-                                 escape_html(plot.title));
+  std::string text =
+      fmt::format("<svg viewBox=\"0 0 {0} {1}\" style=\"--width:{0}px\" role=\"img\" aria-label=\"{2}\">",
+                  width, height, escape_html(plot.title));
   for (const double tick : axis_ticks(end))
     text += fmt::format(
         "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"4\" y2=\"{1}\"/><text class=\"mid\" "
@@ -95,9 +96,9 @@ std::string svg(const HeatMap& map) {
   const double width = left + cell_w * static_cast<double>(map.columns.size()) + 4,
                height = top + cell_h * static_cast<double>(map.rows.size()) + 4;
   const Range range = range_of(map);
-  std::string text =
-      fmt::format("<svg viewBox=\"0 0 {0} {1}\" style=\"max-width:{0}px\" role=\"img\" aria-label=\"{2}\">",
-                  width, height, escape_html(map.title));
+  std::string text = fmt::format(
+      "<svg viewBox=\"0 0 {0} {1}\" style=\"--width:{0}px;max-width:{0}px\" role=\"img\" aria-label=\"{2}\">",
+      width, height, escape_html(map.title));
   text += fmt::format("<text class=\"mid axis\" x=\"{}\" y=\"14\">{}</text>", (left + width) / 2,
                       escape_html(map.x_label));
   text += fmt::format("<text class=\"mid axis\" transform=\"translate(14 {}) rotate(-90)\">{}</text>",
@@ -117,8 +118,9 @@ std::string svg(const HeatMap& map) {
           "<g><title>{} × {}: {} {}</title><rect class=\"cell{}\" x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" "
           "height=\"{}\" style=\"fill:{}\"/><text class=\"mid {}\" x=\"{:.1f}\" y=\"{}\">{}</text></g>",
           escape_html(map.columns[c]), escape_html(map.rows[r]), number_text(value), escape_html(map.unit),
-          map.has_best && value == range.least ? " best" : "", x + 1, y + 1, cell_w - 2, cell_h - 2, heat_color(share),
-          share < 0.2 || share > 0.9 ? "on-dark" : "on-light", x + cell_w / 2, y + 18, number_text(value));
+          map.has_best && value == range.least ? " best" : "", x + 1, y + 1, cell_w - 2, cell_h - 2,
+          heat_color(share), share < 0.2 || share > 0.9 ? "on-dark" : "on-light", x + cell_w / 2, y + 18,
+          number_text(value));
     }
   }
   return text + "</svg>";

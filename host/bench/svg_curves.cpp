@@ -141,8 +141,9 @@ std::vector<double> axis_ticks(double most, int count) {
 
 std::string svg(const CurvePlot& plot) {
   const Axes axes = make_axes(plot);
-  std::string text = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", width, height,
-                                 escape_html(plot.title));
+  std::string text =
+      fmt::format("<svg viewBox=\"0 0 {0} {1}\" style=\"--width:{0}px\" role=\"img\" aria-label=\"{2}\">",
+                  width, height, escape_html(plot.title));
   text += frame(plot, axes);
   if (plot.ideal) text += ideal_line(axes);
   for (std::size_t i = 0; i < plot.curves.size(); ++i) text += draw(plot.curves[i], i, axes);

@@ -103,6 +103,9 @@ TEST_CASE("a page stands alone: nothing to load, everything escaped, plots and m
   for (const char* outside : {"<script", "http:", "https:", "src=", "href=", "url("})
     CHECK(count(page, outside) == 0);
   CHECK(count(page, "<svg") == 3);
+  // On a narrow screen plots keep a width at which they can be read, and scroll like tables.
+  CHECK(count(page, "style=\"--width:") == 3);
+  CHECK_THAT(page, ContainsSubstring("max-width: 640px") && ContainsSubstring("calc(.85 * var(--width))"));
   CHECK(count(page, "</svg>") == 3);
   CHECK_THAT(page, ContainsSubstring("12.3 ±4%<small>13 12 12.3</small>"));  // raw runs, in the details alone
   CHECK(count(page, "class=\"cell") == 1);  // what was not measured has no cell
