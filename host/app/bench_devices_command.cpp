@@ -23,13 +23,15 @@ int bench_devices_command(const BenchOptions& asked) {
                       measure_devices(bench_scene(file, options), devices, options.repeat, on_step),
                       options.repeat);
   }
-  report.notes.push_back(fmt::format(
-      "Median of {} frames, after one to warm up, in turn; without building kernels. Shares are of the "
-      "picture's "
-      "pixels. A pixel differs when it is more than 0.02 (linear colour) off the first device's; more than "
-      "one in 200 "
-      "is a problem. Efficiency is the work done over what the devices could have done in the time.",
-      options.repeat));
+  report.notes.push_back(
+      fmt::format("Median of {} frames after one to warm up; the combinations take turns, and building "
+                  "kernels does not count. "
+                  "A share is a part of the picture's pixels. A pixel differs if it is more than 0.02 "
+                  "(linear color) from the "
+                  "first device's; more than one pixel in 200 is a problem. Efficiency is the work completed "
+                  "divided by the "
+                  "devices' capacity.",
+                  options.repeat));
   return publish(report, options);
 }
 

@@ -12,7 +12,7 @@
 namespace sundog {
 namespace {
 
-/// Nothing where nobody tells: 0 would be a figure.
+/// Nothing where it is not known: 0 would be a figure.
 template <class T>
 Cell told(const std::optional<T>& value) {
   return value ? Cell(static_cast<double>(*value)) : Cell();
@@ -59,15 +59,17 @@ void add_device(Report& report, const std::string& name, const CompiledScene& sc
   report.parts.emplace_back(std::move(table));
   if (const auto limits = device.nvidia())
     report.notes.push_back(fmt::format(
-        "{}: `threads`: how many a multiprocessor holds, by the kernel's registers alone: {} registers, a "
-        "quarter for each of four schedulers, given to warps of {} in steps of 256; at most {} threads at "
-        "compute capability {}.{} (`occupancy`: the part of them).",
+        "{}: `threads` is how many threads a multiprocessor can hold if only the kernel's registers limit "
+        "them: {} "
+        "registers, a quarter for each of four schedulers, allocated to warps of {} in steps of 256; at most "
+        "{} "
+        "threads at compute capability {}.{}. `occupancy` is the share of that maximum.",
         info.label(), limits->registers, limits->warp, limits->threads(), limits->major, limits->minor));
 }
 
 int bench_kernels(const BenchOptions& options) {
   bypass_driver_caches();
-  Report report = new_report("kernels", "What the compiler made of the kernels", options);
+  Report report = new_report("kernels", "Resources of the compiled kernels", options);
   report.measurements.columns = {{"scene", ""}, {"device", ""}, {"tracer", ""}};
   report.measurements.columns.insert(report.measurements.columns.end(), columns.begin(), columns.end());
   const std::vector<DeviceInfo> devices = bench_devices(options);
@@ -80,10 +82,10 @@ int bench_kernels(const BenchOptions& options) {
     }
   }
   report.notes.push_back(
-      "`group given`: the most work-items that sundog gives a group. `group limit`, `multiple`, `private` (a "
-      "work-item) and `local` (a group) are the driver's words; registers, stack and spills stand in the "
+      "`group given` is the largest work-group that sundog uses. `group limit`, `multiple`, `private` (for a "
+      "work-item) and `local` (for a group) come from the driver. Registers, stack and spills come from the "
       "build "
-      "log of NVIDIA's compiler alone. An empty cell: nobody tells.");
+      "log of NVIDIA's compiler; other drivers do not report them. An empty cell: not known.");
   return publish(report, options);
 }
 

@@ -66,7 +66,7 @@ RayTimes time_rays(const std::string& name, const CompiledScene& scene, const Ra
   tracer.run({set.any, set.coherent});
   times.check = check_hits(scene, set, answers_of(tracer, set));
   if (times.check.differ > 0)
-    throw DeviceError(fmt::format("{}: {} of {} {} rays have wrong answers: no time counts", name,
+    throw DeviceError(fmt::format("{}: {} of {} {} rays have wrong answers, so nothing was timed", name,
                                   times.check.differ, times.check.checked, set.kind));
   const double millions = 1e-6 * static_cast<double>(set.rays.size());
   std::vector<double> rates, kernel_rates;
@@ -122,11 +122,11 @@ void add_rows(Report& report, const std::string& scene, const DeviceInfo& device
 /// What the report says of a scene before any time.
 std::string describe(const CompiledScene& scene) {
   const u32 fields = scene.info.field_end - scene.info.instance_count;
-  const std::string left_out = fields ? fmt::format("{} distance field{}: marched, not traced, and left out",
+  const std::string left_out = fields ? fmt::format("{} distance field{} left out: marched, not traced",
                                                     fields, fields == 1 ? "" : "s")
                                       : "";
   if (scene.info.instance_count == 0)
-    return (left_out.empty() ? "an empty scene" : left_out) + "; so there is nothing to time";
+    return (left_out.empty() ? "an empty scene" : left_out) + "; nothing to time";
   return fmt::format("{} triangles, BVH built in {:.1f} ms, SAH cost {:.2f}{}{}", scene.figures.triangles,
                      scene.figures.build_seconds * 1e3, scene.figures.sah_cost, fields ? "; " : "", left_out);
 }
@@ -151,15 +151,17 @@ int bench_rays(const RaysOptions& options) {
       add_rows(report, name, info, tracer, time_scene(scene, device, options, wanted, name));
     }
   }
-  report.notes.push_back(fmt::format(
-      "Median of {} launches by the wall clock, each waited for; `kernel`: by the device's events, where "
-      "its driver gives times. Shadow rays ask for any hit, the others for "
-      "the nearest. Distance fields are marched, not traced, and left out: `bench threads` and `bench "
-      "devices` "
-      "time their frames. Every answer is checked by the host's own tracer, and in double precision where "
-      "the "
-      "two differ; `by rounding`: those that are right both ways.",
-      options.repeat));
+  report.notes.push_back(
+      fmt::format("Median of {} launches by the wall clock, each waited for; `kernel` is by the device's "
+                  "events, if its driver "
+                  "gives times. Shadow rays ask for any hit, the others for the nearest. Distance fields are "
+                  "marched, not "
+                  "traced, and left out; `bench threads` and `bench devices` time their frames. Every answer "
+                  "is checked by the "
+                  "host's own tracer and, where the two differ, in double precision. `by rounding` counts "
+                  "the answers that "
+                  "differ and are right.",
+                  options.repeat));
   return publish(report, options);
 }
 

@@ -1,4 +1,4 @@
-// `sundog bench samples`: what samples cost, and what they buy.
+// `sundog bench samples`: time and error by samples a pixel.
 #include <fmt/format.h>
 
 #include <memory>
@@ -20,7 +20,7 @@ int bench_samples(const SamplesOptions& options) {
   const std::vector<int> counts = parse_list("--counts", options.counts, 1, 65536);
   const int reference = options.reference > 0 ? options.reference : 4 * counts.back();
   if (reference <= counts.back())
-    throw UsageError(fmt::format("--reference {}: wanted more samples than the {} that are compared with it",
+    throw UsageError(fmt::format("--reference {}: wanted more than the {} samples that are compared with it",
                                  reference, counts.back()));
   Report report = new_report("samples", "Time and error by samples a pixel", options);
   const std::vector<DeviceInfo> devices = bench_devices(options);
@@ -39,13 +39,17 @@ int bench_samples(const SamplesOptions& options) {
       const auto on_step = [&](const std::string& step) { show_step(options, step); };
       add_sample_tables(report, plan, measure_samples(plan, on_step));
     }
-  report.notes.push_back(fmt::format(
-      "Median of {} frames, after one to warm up, all counts in turn; the image of each run was "
-      "compared to the bit before its time counted. The error is the root mean square difference "
-      "from the same device's picture with {} samples, in linear color; a pixel is visibly off "
-      "beyond 0.02. Independent samples would leave \"error x sqrt(samples)\" as it is; these are "
-      "spread evenly over the pixel and do better.",
-      options.repeat, reference));
+  report.notes.push_back(
+      fmt::format("Median of {} frames after one to warm up; the counts take turns, and the image of each "
+                  "run was compared to "
+                  "the bit before its time counted. The error is the root mean square difference from the "
+                  "same device's picture "
+                  "with {} samples, in linear color; a pixel is visibly wrong if it is off by more than "
+                  "0.02. With independent "
+                  "samples \"error x sqrt(samples)\" would stay constant; these samples are spread evenly "
+                  "over the pixel and do "
+                  "better.",
+                  options.repeat, reference));
   return publish(report, options);
 }
 

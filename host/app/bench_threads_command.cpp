@@ -42,11 +42,12 @@ DeviceInfo device_to_split(const BenchOptions& options) {
     for (const DeviceInfo& row : enumerate_devices())
       if (row.usable() && row.max_sub_devices > 0) devices.push_back(row);
     if (devices.empty())
-      throw DeviceError("no device here splits into sub-devices (PoCL's do: Debian's pocl-opencl-icd)");
+      throw DeviceError(
+          "no device here can be split into sub-devices (PoCL's can: Debian's pocl-opencl-icd)");
     devices = {*std::ranges::max_element(devices, {}, &DeviceInfo::estimate)};
   }
   if (devices.size() > 1)
-    throw UsageError(fmt::format("bench threads takes one device, --device means {}: {} and {}",
+    throw UsageError(fmt::format("bench threads takes one device, but --device matches {}: {} and {}",
                                  devices.size(), devices[0].label(), devices[1].label()));
   if (devices[0].max_sub_devices == 0)
     throw DeviceError(

@@ -64,8 +64,7 @@ void print_outcome(const DeviceInfo& device, const TuneOutcome& outcome) {
   fmt::print(
       "  {} ms with the defaults, {} ms tuned: {}; {} tried, {} rejected{}\n", number_text(entry.default_ms),
       number_text(entry.tuned_ms),
-      faster ? fmt::format("{:.1f} % gained", 100 * (1 - entry.tuned_ms / entry.default_ms))
-             : "nothing gained",
+      faster ? fmt::format("{:.1f} % less time", 100 * (1 - entry.tuned_ms / entry.default_ms)) : "no gain",
       outcome.tried, outcome.rejected,
       outcome.left_out > 0 ? fmt::format(", at least {} left out for lack of time", outcome.left_out) : "");
 }
@@ -142,11 +141,11 @@ std::string label(const TuningFile& file) {
 
 int show() {
   const std::vector<TuningFile> files = kept();
-  if (files.empty()) fmt::print("Nothing is kept in {}.\n", tuning_folder().string());
+  if (files.empty()) fmt::print("There are no results in {}.\n", tuning_folder().string());
   const std::string kernels = kernels_hash();
   for (const TuningFile& file : files) {
     fmt::print("{}, driver {}{}\n", label(file), file.driver,
-               file.kernels == kernels ? "" : ": of other kernels, not used");
+               file.kernels == kernels ? "" : ": for other kernels, not used");
     for (const TuningEntry& entry : file.entries)
       fmt::print("  {:<14} {}: {}: {} ms, {} ms with the defaults ({})\n", entry.scene_class, entry.kernel,
                  tuning_text(entry.tuning), number_text(entry.tuned_ms), number_text(entry.default_ms),
@@ -180,7 +179,8 @@ int export_all(const std::string& path) {
   return exit_done;
 }
 
-/// Only what is for a device of this machine, with the same driver, is of use: the others are told.
+/// Only what is for a device of this machine, with the same driver, is of use: the others are skipped, with
+/// the reason.
 int import_all(const std::string& path) {
   const JsonContext context{.file = path};
   const json list = read_json_file(path);
@@ -194,15 +194,15 @@ int import_all(const std::string& path) {
       return device.platform_name == file.platform && device.name == file.device &&
              device.driver == file.driver;
     });
-    const std::string why = file.kernels != kernels ? "it is of other kernels"
-                            : here == devices.end() ? "there is no such device here"
+    const std::string why = file.kernels != kernels ? "it was measured with other kernels"
+                            : here == devices.end() ? "there is no such device on this machine"
                                                     : "";
     if (why.empty()) {
       DeviceInfo device = *here;
       device.sub_units = file.units;
       for (const TuningEntry& entry : file.entries) keep_tuning(device, entry);
     }
-    fmt::print("{}: {}\n", label(file), why.empty() ? "imported" : "left out: " + why);
+    fmt::print("{}: {}\n", label(file), why.empty() ? "imported" : "skipped: " + why);
   }
   return exit_done;
 }
@@ -221,18 +221,19 @@ int run_tune(const TuneOptions& options) {
 
 void add_tune(Arguments& root, Command& chosen) {
   const auto options = std::make_shared<TuneOptions>();
-  Arguments* app = root.add_subcommand("tune", "Find and keep what is fastest on a device; `render` uses it");
+  Arguments* app =
+      root.add_subcommand("tune", "Find the fastest settings of a device and keep them; `render` uses them");
   value(app, "SCENE", "FILE", options->bench.scenes,
-        std::string(scene_help) + " (default: two that are built in)");
+        std::string(scene_help) + " (default: two built-in scenes)");
   values(app, "--device", "SPEC", options->bench.devices, device_help);
   values(app, "--set", "POINTER=VALUE", options->bench.overrides, "change the scenes, as in /camera/fov=30");
   app->add_option("--budget", options->budget, "seconds for a device, with compilation (default 60)")
       ->type_name("SECONDS");
-  app->add_flag("--show", options->show, "print what is kept");
-  app->add_flag("--forget", options->forget, "remove what is kept, of the --device or of all");
-  value(app, "--export", "FILE", options->export_to, "write what is kept to this file");
+  app->add_flag("--show", options->show, "print the results that are kept");
+  app->add_flag("--forget", options->forget, "remove the results of --device, or all");
+  value(app, "--export", "FILE", options->export_to, "write all results to this file");
   value(app, "--import", "FILE", options->import_from,
-        "keep what --export wrote elsewhere, for devices that are here");
+        "read results that --export wrote, for devices of this machine");
   app->callback([options, &chosen] { chosen = RunLater{[options] { return run_tune(*options); }}; });
 }
 

@@ -60,9 +60,9 @@ std::string busy_note() {
   std::array<double, 1> load{};
   if (::getloadavg(load.data(), 1) != 1 || load[0] < disturbing * cores) return {};
   return fmt::format(
-      "Before it began the machine was busy with other work (a load of {:.1f} on {} logical cores): times "
-      "and "
-      "speed-ups may be worse than they would be, and are spread more.",
+      "Other programs were using the machine before the start (load {:.1f} on {} logical cores): times may "
+      "be longer "
+      "and vary more than on an idle machine.",
       load[0], cores);
 }
 

@@ -80,13 +80,13 @@ void check_images(std::vector<Runner>& runners) {
       first = &runner;
       expected = image;
     } else if (image.data != expected.data) {
-      runner.fail(fmt::format("its image is not that of {} threads", first->result.threads));
+      runner.fail(fmt::format("its image differs from that of {} threads", first->result.threads));
     }
   }
   for (Runner& runner : runners) {
     if (!runner.run || !runner.is_plain()) continue;
     const std::string why =
-        first ? plain_difference(runner.image(), expected) : "no device's image to compare with";
+        first ? plain_difference(runner.image(), expected) : "there is no device image to compare it with";
     if (!why.empty()) runner.fail(why);
   }
 }

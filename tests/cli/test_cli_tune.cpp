@@ -58,7 +58,7 @@ TEST_CASE("what tune finds is kept in one file a device, and a render with it gi
   surfaces["surfaces_group"] = "8";
   folder.write("kept.json", kept.dump());
   CHECK_THAT(folder.run({"--forget"}).out, ContainsSubstring("1 file removed"));
-  CHECK_THAT(folder.run({"--show"}).out, ContainsSubstring("Nothing is kept"));
+  CHECK_THAT(folder.run({"--show"}).out, ContainsSubstring("There are no results in "));
   CHECK_THAT(folder.run({"--import", folder.file("kept.json")}).out, ContainsSubstring("imported"));
   CHECK_THAT(folder.run({"--show"}).out,
              ContainsSubstring("work-group 2x2, launches of 10 ms, tiles of 5 ms"));
@@ -81,7 +81,7 @@ TEST_CASE("what tune finds is kept in one file a device, and a render with it gi
   kept[0]["kernels"] = "of other sources";
   folder.write("kept.json", kept.dump());
   CHECK_THAT(folder.run({"--import", folder.file("kept.json")}).out,
-             ContainsSubstring("left out: it is of other kernels"));
+             ContainsSubstring("skipped: it was measured with other kernels"));
 }
 
 TEST_CASE(
