@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
-#include <optional>
 #include <thread>
 
 #include "app/bench_options.h"
@@ -20,8 +19,8 @@ namespace sundog {
 namespace {
 
 struct ThreadsOptions : BenchOptions {
-  std::string sizes, counts;     // empty: the usual ones
-  std::optional<double> budget;  // seconds; 0: no limit
+  std::string sizes, counts;  // empty: the usual ones
+  double budget = -1;         // seconds; 0: no limit; below: not given
   bool no_plain = false;
 };
 
@@ -82,7 +81,7 @@ std::vector<ThreadScaling> make_plans(const ThreadsOptions& options, const Threa
     show_step(options, plan.scene + ", a small frame for the estimate");
     plan.cost = pixel_cost(plan);
     // Who names the sizes wants them all.
-    const double budget = options.budget.value_or(options.sizes.empty() ? 100.0 : 0.0);
+    const double budget = options.budget >= 0 ? options.budget : options.sizes.empty() ? 100.0 : 0.0;
     if (budget > 0) {
       const auto left_out = fit_into(plan, budget / static_cast<double>(options.scenes.size()));
       if (!left_out.empty())
@@ -175,7 +174,7 @@ void add_bench_threads(Arguments& bench, Command& chosen) {
          "about how long it may take: larger sizes of plain C++, frames, then larger images are left out "
          "(default 100, or no limit with --sizes)")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, 1e6));
+      ->range(0, 1e6);
   app->add_flag("--no-plain", options->no_plain, "without the column of plain single-threaded C++");
   app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_threads(*options); }}; });
 }
