@@ -45,8 +45,12 @@ std::string quoted(std::string_view word) {
 }  // namespace
 
 void remember_command_line(int argc, const char* const* argv) {
-  command_line().clear();
-  for (int i = 0; i < argc; ++i) command_line() += (i ? " " : "") + quoted(argv[i]);
+  std::string& text = command_line();
+  text.clear();
+  for (int i = 0; i < argc; ++i) {
+    if (i > 0) text += ' ';
+    text += quoted(argv[i]);
+  }
 }
 
 void add_bench_options(Arguments* app, BenchOptions& options) {
