@@ -58,8 +58,12 @@ json table_bytes(const CompiledScene& flat) {
 json bounds(const CompiledScene& flat) {
   const Bounds& box = flat.figures.box;
   if (box.empty()) return nullptr;
-  return {{"min", {box.lower[0], box.lower[1], box.lower[2]}},
-          {"max", {box.upper[0], box.upper[1], box.upper[2]}}};
+  json corners[2];
+  for (int axis = 0; axis < 3; ++axis) {
+    corners[0].push_back(double(box.lower[axis]) + flat.origin[axis]);
+    corners[1].push_back(double(box.upper[axis]) + flat.origin[axis]);
+  }
+  return {{"min", corners[0]}, {"max", corners[1]}};
 }
 
 /// The intervals of the fields, each as far as it is cut and placed.

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "compile/local_origin.h"
 
 namespace sundog {
 namespace {
@@ -31,7 +32,7 @@ std::string text(const dvec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, 
 
 }  // namespace
 
-void set_camera(const SceneDescription& scene, SceneInfo& info) {
+void set_camera(const SceneDescription& scene, const dvec3& origin, SceneInfo& info) {
   const Camera& camera = scene.camera;
   const ImageSettings& image = scene.image;
   if (image.width < 1 || image.height < 1)
@@ -48,7 +49,7 @@ void set_camera(const SceneDescription& scene, SceneInfo& info) {
   const dvec3 right = glm::normalize(side), screen_up = glm::cross(right, forward);
 
   const double pixel = 2 * std::tan(camera.fov * std::numbers::pi / 360) / image.height;
-  info.camera_position = pack(camera.position);
+  info.camera_position = pack(camera.position - origin);
   info.camera_corner =
       pack(forward - right * (pixel * image.width / 2) + screen_up * (pixel * image.height / 2));
   info.camera_dx = pack(right * pixel);
@@ -57,6 +58,9 @@ void set_camera(const SceneDescription& scene, SceneInfo& info) {
   info.background_bottom = pack(image.background_bottom, camera.far);
   info.background_top = pack(image.background_top);
   info.up = pack(up);
+  const SplitPoint place = split_point(origin);
+  info.origin = place.high;
+  info.origin_rest = place.low;
   if (!is_frame_size(image.width, image.height))
     fail(scene, "/image",
          fmt::format("wanted at most {} pixels in all, found {} x {}", most_pixels, image.width,

@@ -4,8 +4,8 @@
 
 namespace sundog {
 
-/// Fills the camera, background, size and settings of `info`.
+/// Fills the camera, background, size and settings of `info`; its positions count from `origin`.
 /// Throws SceneError for an empty image, and for a view without a direction or an up that lies along it.
-void set_camera(const SceneDescription& scene, SceneInfo& info);
+void set_camera(const SceneDescription& scene, const dvec3& origin, SceneInfo& info);
 
 }  // namespace sundog

@@ -9,6 +9,7 @@
 #include "compile/camera.h"
 #include "compile/compiled_scene.h"
 #include "compile/instances.h"
+#include "compile/local_origin.h"
 #include "compile/materials.h"
 #include "compile/mesh_bvh.h"
 
@@ -96,7 +97,8 @@ CompiledScene compile(const SceneDescription& scene) {
   CompiledScene out;
   out.tracer = scene.render.tracer;
   check_objects(scene);
-  set_camera(scene, out.info);
+  out.origin = local_origin(scene.camera);
+  set_camera(scene, out.origin, out.info);
   add_lights(scene, out);
   const u32 default_material = add_materials(scene, out);
   out.features.media = absorbs(out.media[0]);

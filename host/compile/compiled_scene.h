@@ -39,11 +39,12 @@ struct BvhFigures {
   double build_seconds = 0;    // not part of the pure result's bytes
   double mean_block_fill = 0;  // triangles in a block, 1..8; a cut triangle counts in each
   std::size_t bytes = 0;
-  Bounds box = Bounds::none();  // of all instances but planes and fields
+  Bounds box = Bounds::none();  // of all instances but planes and fields, from CompiledScene::origin
 };
 
 struct CompiledScene {
   SceneInfo info{};
+  dvec3 origin{0};  // where the tables' coordinates begin in the world; SceneInfo has it in floats
   std::vector<Bvh8Node> nodes;
   std::vector<TriangleBlock> blocks;
   std::vector<TriangleShading> triangles;

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "compile/instance_bounds.h"
+#include "compile/local_origin.h"
 #include "compile/shapes.h"
 #include "compile/wide_bvh.h"
 
@@ -111,12 +112,35 @@ class Placer {
  private:
   void set_place(const Object& object, const UnitShape& unit, std::span<const Bounds> boxes, Placed& placed) {
     const dmat4 scale(glm::dmat3(unit.scale.x, 0, 0, 0, unit.scale.y, 0, 0, 0, unit.scale.z));
-    const dmat4 world_from_unit =
-        set_transform(scene_, object, object.world_from_object * scale, placed.instance);
+    dmat4 local_from_object = object.world_from_object;
+    local_from_object[3] -= glm::dvec4(out_.origin, 0);
+    if (!placed.bounded()) local_from_object = nearer_plane(object, local_from_object);
+    const dmat4 world_from_unit = set_transform(scene_, object, local_from_object * scale, placed.instance);
     if (!placed.bounded()) return;
     const bool exact = placed.instance.flags & INSTANCE_IDENTITY;
     placed.box = world_bounds(unit, boxes, world_from_unit, exact);
     placed.instance.world_center = sphere_around(placed.box);
+  }
+
+  /// A plane moved along itself, so that the middle of its own space is near: by whole periods of its
+  /// pattern.
+  dmat4 nearer_plane(const Object& object, const dmat4& local_from_object) const {
+    const dvec3 here(glm::inverse(local_from_object)[3]);
+    dmat4 result = local_from_object;
+    for (const int axis : {0, 2}) {
+      const dvec3 along(local_from_object[axis]);
+      const double length = glm::length(along), period = 2 * checker_size(object);
+      result[3] +=
+          glm::dvec4(far_part(here[axis] * length, period * length, scene_.camera) / length * along, 0);
+    }
+    return result;
+  }
+
+  /// Of the object's material; 0 without a checker.
+  double checker_size(const Object& object) const {
+    if (object.material < 0) return 0;
+    const MaterialDescription& material = scene_.materials[static_cast<std::size_t>(object.material)];
+    return material.checker ? material.checker_size : 0;
   }
 
   void set_surface(const Object& object, const PlacedMesh* mesh, Instance& instance) {
@@ -227,7 +251,7 @@ void add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>&
     }
     const Placed placed = placer.place(object, static_cast<u32>(i));
     out.features.shapes[placed.instance.shape] = true;
-    out.features.camera_inside |= may_contain(placed, scene.camera.position);
+    out.features.camera_inside |= may_contain(placed, scene.camera.position - out.origin);
     (placed.instance.shape == SHAPE_SDF ? fields : placed.bounded() ? bounded : unbounded).push_back(placed);
   }
   for (const Placed& placed : bounded) out.figures.box.extend(placed.box);

@@ -122,7 +122,7 @@ void add_lights(const SceneDescription& scene, CompiledScene& out) {
     }
     Light packed{};
     packed.kind = LIGHT_POINT;
-    packed.position = pack(light.position);
+    packed.position = pack(light.position - out.origin);
     packed.color = pack(color);
     packed.falloff_constant = static_cast<float>(light.falloff.x);
     packed.falloff_linear = static_cast<float>(light.falloff.y);

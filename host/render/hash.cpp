@@ -27,6 +27,7 @@ std::uint64_t hash_scene(const CompiledScene& scene) {
   const auto mix = [&](const auto& table) {
     state = hash_bytes(table.data(), table.size() * sizeof table[0], state);
   };
+  state = hash_bytes(&scene.origin, sizeof scene.origin, state);
   state = hash_bytes(&scene.tracer, sizeof scene.tracer, state);
   mix(scene.nodes);
   mix(scene.blocks);

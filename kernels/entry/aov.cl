@@ -27,6 +27,7 @@ NEVER_INLINE void first_surfaces_item(TRACE_PARAMETERS, SHADE_PARAMETERS,
   next_surfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lanes, true, &met, counts);
   const MASK hit = lanes & hit_anything(&met.hit);
   interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays.o, rays.d, &met.hit, &met.face, hit, &s);
+  const REAL3 world = add3(add3(s.p, all3(info->origin_rest.xyz)), all3(info->origin.xyz));
   const REAL depth = met.hit.t * dot3(rays.d, all3(info->camera_forward.xyz));
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
@@ -38,14 +39,14 @@ NEVER_INLINE void first_surfaces_item(TRACE_PARAMETERS, SHADE_PARAMETERS,
       continue;
     }
     out[0] = (float4)(get3(&s.ns, i), REAL_LANE(depth, i));
-    out[1] = (float4)(get3(&s.p, i), (float)instances[MASK_LANE(met.hit.instance, i)].object);
+    out[1] = (float4)(get3(&world, i), (float)instances[MASK_LANE(met.hit.instance, i)].object);
     out[2] = (float4)(get3(&s.diffuse, i), (float)MASK_LANE(met.face.material, i));
   }
   add_finished(counters, lane_count(lanes), pixel_count);
 }
 
 // Reads the scene; writes three float4 a pixel of the rectangle, through the pixel's centre: (normal, depth
-// along the view), (position, object), (albedo, material). Where nothing is seen depth is infinite, object
+// along the view), (position in the world, object), (albedo, material). Where nothing is seen depth is infinite, object
 // and material are -1, the rest is 0; adds the pixels finished to counters. A work-item takes BATCH pixels in
 // a row.
 __kernel void first_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const u32* restrict camera_media,

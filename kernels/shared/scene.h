@@ -60,7 +60,8 @@ typedef struct Light {
 } Light;
 SUNDOG_SHARED_SIZE(Light, 64)
 
-// 240 bytes: the scene's constants. The pixel (x, y), y down, sample offset (a, b) in [0, 1)^2, looks along
+// 272 bytes: the scene's constants. Positions in all tables count from a point of the world, `origin` plus `origin_rest`,
+// near what the camera looks at (host/compile/local_origin.h). The pixel (x, y), y down, sample offset (a, b) in [0, 1)^2, looks along
 // camera_corner + (x + a) camera_dx + (y + b) camera_dy, which has length 1 along camera_forward.
 typedef struct SceneInfo {
   float4 camera_position;
@@ -86,8 +87,10 @@ typedef struct SceneInfo {
   float4 fog;                // colour of the world's fog; w = its density per unit of length (0: none)
   u32 field_end;             // instances [instance_count, field_end) place distance fields
   u32 pad0, pad1, pad2;
+  float4 origin;             // of the tables' coordinates, in the world
+  float4 origin_rest;        // what its floats leave out
 } SceneInfo;
-SUNDOG_SHARED_SIZE(SceneInfo, 240)
+SUNDOG_SHARED_SIZE(SceneInfo, 272)
 
 // Ray counts of a launch, added with integer atomics (any order gives the same sum).
 #define COUNT_PRIMARY 0
