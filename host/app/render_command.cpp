@@ -153,7 +153,7 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
     const json stats = stats_json(command, scene.description, *scene.flat, result, times);
     write_file(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   }
-  tell_result(command, result, times);
+  tell_result(command, scene.description, result, times);
   return conclude(command, result, told);
 }
 

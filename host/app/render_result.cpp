@@ -48,8 +48,8 @@ std::string part_text(const RenderCommand& command, const RenderResult& result) 
                      command.resume.empty() ? "" : "; the same command goes on from there");
 }
 
-void warn(const RenderResult& result) {
-  print_warnings(losses(result.counts));
+void warn(const SceneDescription& scene, const RenderResult& result) {
+  print_warnings(losses(result.counts, scene));
   for (const DeviceReport& report : result.devices) print_warnings(failures_text(report));
 }
 
@@ -86,8 +86,9 @@ void tell_kept(const RenderResult& result, const std::string& checkpoint) {
       percent_done(result), checkpoint, checkpoint);
 }
 
-void tell_result(const RenderCommand& command, const RenderResult& result, const TimeLedger& times) {
-  warn(result);
+void tell_result(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result,
+                 const TimeLedger& times) {
+  warn(scene, result);
   summarise(command, result, times);
 }
 

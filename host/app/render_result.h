@@ -18,7 +18,8 @@ void save_result(const RenderCommand& command, const CompiledScene& scene, const
 void tell_kept(const RenderResult& result, const std::string& checkpoint);
 
 /// Warnings of what was lost on stderr, and the frame's figures on stdout.
-void tell_result(const RenderCommand& command, const RenderResult& result, const TimeLedger& times);
+void tell_result(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result,
+                 const TimeLedger& times);
 
 /// The exit status of a frame of which what there is has been saved. An interrupt is told of, if it was not
 /// yet `told`. Throws the failure of a frame for which every device failed.

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "app/scene_figures.h"
+#include "app/stray_exits.h"
 
 namespace sundog {
 namespace {
@@ -126,7 +127,7 @@ std::uint64_t ray_count(const RayCounts& counts) {
   return counts[COUNT_PRIMARY] + counts[COUNT_REFLECTION] + counts[COUNT_REFRACTION] + counts[COUNT_SHADOW];
 }
 
-std::vector<std::string> losses(const RayCounts& counts) {
+std::vector<std::string> losses(const RayCounts& counts, const SceneDescription& scene) {
   struct Loss {
     int counter;
     const char* what;
@@ -138,19 +139,17 @@ std::vector<std::string> losses(const RayCounts& counts) {
       {COUNT_MARCH_BUDGET,
        "marches through a field were not made because the pixels had cost too much: lower its iterations, "
        "step_limit or max_depth"},
-      {COUNT_NON_FINITE, "samples were dropped because they were not finite"},
-      {COUNT_STRAY_EXIT,
-       "rays left a solid that they had not entered: a mesh with an interior may not be closed, or surfaces "
-       "coincide"}};
+      {COUNT_NON_FINITE, "samples were dropped because they were not finite"}};
+  std::vector<std::string> sentences;
+  for (const Loss& kind : kinds)
+    if (const std::uint64_t count = counts[static_cast<std::size_t>(kind.counter)])
+      sentences.push_back(fmt::format("{} {}", count, kind.what));
   // A handful of stray exits comes from rays that start within rounding of an edge of a closed mesh; an open
   // mesh gives many more.
   constexpr std::uint64_t rays_per_stray = 1'000'000;
-  std::vector<std::string> sentences;
-  for (const Loss& kind : kinds) {
-    const std::uint64_t count = counts[static_cast<std::size_t>(kind.counter)];
-    const bool negligible = kind.counter == COUNT_STRAY_EXIT && count * rays_per_stray < ray_count(counts);
-    if (count > 0 && !negligible) sentences.push_back(fmt::format("{} {}", count, kind.what));
-  }
+  const std::uint64_t strays = counts[COUNT_STRAY_EXIT];
+  if (strays > 0 && strays * rays_per_stray >= ray_count(counts))
+    for (std::string& sentence : explain_stray_exits(strays, scene)) sentences.push_back(std::move(sentence));
   return sentences;
 }
 

@@ -27,8 +27,9 @@ nlohmann::json stats_json(const RenderCommand& command, const SceneDescription& 
 /// Rays of all kinds: primary, reflection, refraction and shadow.
 std::uint64_t ray_count(const RayCounts& counts);
 
-/// One sentence for each kind of loss that a picture may suffer (full stacks, dropped samples); empty: none.
-std::vector<std::string> losses(const RayCounts& counts);
+/// One sentence for each kind of loss that a picture may suffer (full stacks, dropped samples), and why rays
+/// left solids of `scene` that they had not entered; empty: none.
+std::vector<std::string> losses(const RayCounts& counts, const SceneDescription& scene);
 
 /// A sentence for each failure of the device that others, or another try, made good.
 std::vector<std::string> failures_text(const DeviceReport& report);

@@ -53,8 +53,9 @@ static inline REAL highlight(REAL x, float e) {
   return result;
 }
 
-// kd (n.l) + ks (r.v)^beta, or (n.h)^beta for Blinn, for the lanes of `lanes`. d are the rays' directions, so
-// the viewer is along -d.
+// kd (n.l) + ks max(r.v, 0)^beta, or max(n.h, 0)^beta for Blinn, where 0^0 is 1: with a beta of
+// 0 a highlight is the same from everywhere. For the lanes of `lanes`. d are the rays' directions, so the
+// viewer is along -d.
 static inline REAL3 local_reflection(__global const Material* restrict materials, const Faces* faces,
                                      const Surfaces* s, REAL3 d, REAL3 wi, MASK lanes) {
   const REAL n_dot_l = dot3(s->ns, wi);
@@ -68,7 +69,8 @@ static inline REAL3 local_reflection(__global const Material* restrict materials
                             ? dot3(s->ns, safe_unit3(subtract3(wi, d)))
                             : dot3(subtract3(wi, scale3(s->ns, 2.0f * n_dot_l)), d);
     const REAL shine = highlight(real_clamp(cosine, (REAL)(0.0f), (REAL)(1.0f)), specular.w);
-    sum = select3(sum, along3(sum, shine, all3(specular.xyz)), mine & MASK_OF(cosine > 0.0f));
+    const MASK shines = specular.w == 0.0f ? mine : mine & MASK_OF(cosine > 0.0f);
+    sum = select3(sum, along3(sum, shine, all3(specular.xyz)), shines);
   }
   return sum;
 }

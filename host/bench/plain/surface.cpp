@@ -117,7 +117,9 @@ vec3 local_reflection(const Surface& surface, const vec3& d, const vec3& wi) {
   const float cosine =
       blinn ? glm::dot(surface.ns, glm::normalize(wi - d)) : glm::dot(2 * n_dot_l * surface.ns - wi, -d);
   vec3 sum = surface.diffuse * n_dot_l;
-  if (cosine > 0) sum += rgb(material.specular) * power(std::min(cosine, 1.0f), material.specular.w);
+  const float exponent = material.specular.w;
+  if (cosine > 0 || exponent == 0)
+    sum += rgb(material.specular) * power(std::clamp(cosine, 0.0f, 1.0f), exponent);
   return sum;
 }
 
