@@ -4,21 +4,24 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <new>
 #include <stdexcept>
 #include <string>
 
 #include "base/error.h"
+#include "scene/models/far_mesh.h"
 #include "scene/models/readers.h"
 
 namespace sundog {
 namespace models {
 
-void add_mesh(Model& model, Mesh mesh) {
+void add_mesh(Model& model, Mesh mesh, const dvec3& origin) {
   if (mesh.triangles.empty()) return;
   Object object;
   object.name = mesh.name;
   object.shape = MeshShape{static_cast<int>(model.meshes.size())};
+  object.world_from_object = glm::translate(dmat4(1), origin);
   model.objects.push_back(std::move(object));
   model.meshes.push_back(std::move(mesh));
 }
@@ -55,7 +58,9 @@ Model load_model(const std::filesystem::path& path, const ModelOptions& options)
         path.string(), "",
         "not a model file: the name must end in .gltf .glb .obj .ply .stl or .nff (or that and .gz)");
   try {
-    return load(models::read_source(path), models::model_extension(path), options);
+    Model model = load(models::read_source(path), models::model_extension(path), options);
+    models::bring_near(model);
+    return model;
   } catch (const std::length_error& error) {
     throw SceneError(path.string(), "", std::string("the model is too large: ") + error.what());
   } catch (const std::bad_alloc&) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "scene/models/far_mesh.h"
 #include "scene/models/mtl.h"
 #include "scene/models/normals.h"
 #include "scene/models/polygon.h"
@@ -34,7 +35,12 @@ class ObjReader {
     if (positions_.empty()) text_.fail("no vertices: not an OBJ file");
   }
 
+  // The mesh, its positions counted from origin().
   Mesh take_mesh(double crease_degrees) {
+    origin_ = near_origin(positions_);
+    if (origin_ != dvec3(0))
+      for (std::size_t i = 0; i < made_.size(); ++i)
+        mesh_.positions[i] = glm::vec3(positions_[made_[i].position] - origin_);
     mesh_.name = path_.stem().string();
     mesh_.source_vertex_count = positions_.size();
     if (!any_uv_) mesh_.uvs.clear();
@@ -43,6 +49,8 @@ class ObjReader {
     complete_normals(mesh_, std::move(has_normal_), crease_degrees, std::move(points_));
     return std::move(mesh_);
   }
+
+  const dvec3& origin() const { return origin_; }
 
  private:
   void read_statement(std::string_view key) {
@@ -65,7 +73,7 @@ class ObjReader {
 
   // "v x y z", "v x y z w", or "v x y z r g b".
   void read_position() {
-    const float x = text_.real("x"), y = text_.real("y"), z = text_.real("z");
+    const double x = text_.bounded("x"), y = text_.bounded("y"), z = text_.bounded("z");
     positions_.emplace_back(x, y, z);
     glm::vec3 color{1};
     if (!text_.at_line_end()) {
@@ -112,17 +120,21 @@ class ObjReader {
 
   void read_face() {
     corners_.clear();
+    outline_.clear();
     places_.clear();
     pieces_.clear();
     while (!text_.at_line_end()) {
       corners_.push_back(read_corner(text_.word()));
-      places_.push_back(positions_[corners_.back().position]);
+      outline_.push_back(positions_[corners_.back().position]);
     }
     if (corners_.empty()) text_.fail("a face without corners");
     if (corners_.size() < 3) {
       ++model_.dropped_polygons;
       return;
     }
+    constexpr double few_bits = 4096;  // so many sizes away floats hold too little of a polygon's shape
+    const dvec3 origin = corners_.size() > 3 ? near_origin(outline_, few_bits) : dvec3(0);
+    for (const dvec3& p : outline_) places_.emplace_back(p - origin);
     if (!triangulate(places_, pieces_))
       text_.fail(fmt::format("a concave polygon of {} corners; at most {} are triangulated", corners_.size(),
                              most_concave_corners));
@@ -146,7 +158,7 @@ class ObjReader {
     older_.push_back(sibling);
     newest_[corner.position] = created;
     made_.push_back(corner);
-    mesh_.positions.push_back(positions_[corner.position]);
+    mesh_.positions.emplace_back(positions_[corner.position]);
     mesh_.colors.push_back(colors_[corner.position]);
     mesh_.uvs.push_back(corner.uv == none ? glm::vec2(0) : uvs_[corner.uv]);
     mesh_.normals.push_back(corner.normal == none ? glm::vec3(0) : normals_[corner.normal]);
@@ -180,15 +192,18 @@ class ObjReader {
   Model& model_;
   MaterialLibrary library_;
   int material_ = -1;
-  std::vector<glm::vec3> positions_, normals_, colors_;  // as the file lists them
+  std::vector<dvec3> positions_;  // as the file lists them
+  std::vector<glm::vec3> normals_, colors_;
   std::vector<glm::vec2> uvs_;
   Mesh mesh_;
+  dvec3 origin_{0};
   std::vector<Corner> made_;                   // per mesh vertex: its indices in the file
   std::vector<std::uint32_t> newest_, older_;  // chains of mesh vertices: by file vertex, by mesh vertex
   std::vector<std::uint32_t> points_;          // per mesh vertex: the first one of the same file vertex
   std::vector<bool> has_normal_;
   bool any_uv_ = false, any_color_ = false;
   std::vector<Corner> corners_;  // of the face at hand
+  std::vector<dvec3> outline_;
   std::vector<glm::vec3> places_;
   std::vector<glm::uvec3> pieces_;
   std::vector<std::uint32_t> vertices_;
@@ -200,7 +215,8 @@ Model load_obj(const Source& source, const ModelOptions& options) {
   Model model;
   ObjReader reader(source, model);
   reader.read();
-  add_mesh(model, reader.take_mesh(options.crease_angle.value_or(45)));
+  Mesh mesh = reader.take_mesh(options.crease_angle.value_or(45));
+  add_mesh(model, std::move(mesh), reader.origin());
   return model;
 }
 

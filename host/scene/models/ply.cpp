@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 
+#include "scene/models/far_mesh.h"
 #include "scene/models/normals.h"
 #include "scene/models/ply_cursor.h"
 #include "scene/models/polygon.h"
@@ -78,6 +79,7 @@ glm::vec3 color_of(const Values& values) {
 // What the file's elements become, while they are read.
 struct Content {
   Mesh mesh;
+  dvec3 origin{0};                     // of its positions
   std::vector<glm::vec3> face_colors;  // per triangle, when faces have colours and vertices have none
   std::size_t dropped = 0;
 };
@@ -120,11 +122,12 @@ class DataReader {
       cursor_.fail(fmt::format("{} of '{}' are too many", element.count, element.name));
   }
 
-  float narrow(double value) const {
+  double bounded(double value) const {
     if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
       cursor_.fail(fmt::format("{} is beyond single precision's range", value));
-    return static_cast<float>(value);
+    return value;
   }
+  float narrow(double value) const { return static_cast<float>(bounded(value)); }
 
   // Reads one element's scalars into `values`; hands each list's items to `item(property number, value)`.
   template <class Item>
@@ -158,16 +161,20 @@ class DataReader {
       cursor_.fail("a vertex needs the properties x, y and z");
     if (!content_.mesh.positions.empty()) cursor_.fail("a second element 'vertex'");
     Mesh& mesh = content_.mesh;
-    mesh.positions.reserve(element.count);
+    std::vector<dvec3> positions;
+    positions.reserve(element.count);
     mesh.source_vertex_count = element.count;
     Values v{};
     for (std::uint64_t i = 0; i < element.count; ++i) {
       read_element(element, layout, v, [](std::size_t, double) {});
-      mesh.positions.emplace_back(narrow(v[px]), narrow(v[py]), narrow(v[pz]));
+      positions.emplace_back(bounded(v[px]), bounded(v[py]), bounded(v[pz]));
       if (layout.normals()) mesh.normals.emplace_back(narrow(v[nx]), narrow(v[ny]), narrow(v[nz]));
       if (layout.uvs()) mesh.uvs.emplace_back(narrow(v[tu]), narrow(v[tv]));
       if (layout.colors()) mesh.colors.push_back(color_of(v));
     }
+    content_.origin = near_origin(positions);
+    mesh.positions.reserve(positions.size());
+    for (const dvec3& p : positions) mesh.positions.emplace_back(p - content_.origin);
   }
 
   void read_faces(const PlyElement& element) {
@@ -296,7 +303,7 @@ Model load_ply(const Source& source, const ModelOptions& options) {
     model.materials.push_back(material);
     mesh.materials.assign(mesh.triangles.size(), 0);
   }
-  add_mesh(model, std::move(mesh));
+  add_mesh(model, std::move(mesh), content.origin);
   return model;
 }
 

@@ -11,8 +11,9 @@ Model load_stl(const Source& source, const ModelOptions& options);
 Model load_gltf(const Source& source, const ModelOptions& options);
 Model load_nff(const Source& source);
 
-/// Adds `mesh` and an object that places it, unless it has no triangles.
-void add_mesh(Model& model, Mesh mesh);
+/// Adds `mesh`, whose positions count from `origin`, and an object that places it, unless it has no
+/// triangles.
+void add_mesh(Model& model, Mesh mesh, const dvec3& origin = dvec3(0));
 
 /// An 8-bit colour channel, taken as sRGB (IEC 61966-2-1), as a linear one.
 float linear_from_srgb(double value);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "scene/models/far_mesh.h"
 #include "scene/models/normals.h"
 #include "scene/models/readers.h"
 #include "scene/models/text.h"
@@ -35,8 +36,8 @@ bool is_binary(const Source& source) {
 }
 
 void add_triangle(Mesh& mesh) {
-  const auto n = static_cast<std::uint32_t>(mesh.positions.size());
-  mesh.triangles.emplace_back(n - 3, n - 2, n - 1);
+  const auto n = static_cast<std::uint32_t>(3 * mesh.triangles.size());
+  mesh.triangles.emplace_back(n, n + 1, n + 2);
 }
 
 void read_binary(const Source& source, Mesh& mesh) {
@@ -63,14 +64,16 @@ void read_binary(const Source& source, Mesh& mesh) {
   }
 }
 
-void read_corner(TextReader& text, Mesh& mesh) {
-  const float x = text.real("x"), y = text.real("y"), z = text.real("z");
+dvec3 read_corner(TextReader& text) {
+  const double x = text.bounded("x"), y = text.bounded("y"), z = text.bounded("z");
   text.expect_line_end("a vertex");
-  mesh.positions.emplace_back(x, y, z);
+  return {x, y, z};
 }
 
-void read_ascii(const Source& source, Mesh& mesh) {
+/// Returns where the mesh's positions count from.
+dvec3 read_ascii(const Source& source, Mesh& mesh) {
   TextReader text(source, {.hash_comments = false, .continuations = false});
+  std::vector<dvec3> positions;
   std::size_t corners = 0;
   bool in_loop = false, ended = false;
   while (text.next_line()) {
@@ -81,7 +84,7 @@ void read_ascii(const Source& source, Mesh& mesh) {
       corners = 0;
     } else if (word == "vertex") {
       if (!in_loop || ++corners > 3) text.fail("a vertex outside a facet's loop of three");
-      read_corner(text, mesh);
+      positions.push_back(read_corner(text));
     } else if (word == "endloop") {
       if (!in_loop || corners != 3) text.fail(fmt::format("a facet needs three vertices, found {}", corners));
       in_loop = false;
@@ -91,6 +94,9 @@ void read_ascii(const Source& source, Mesh& mesh) {
     }
   }
   if (!ended) text.fail("the file ends without 'endsolid'");
+  const dvec3 origin = near_origin(positions);
+  for (const dvec3& p : positions) mesh.positions.emplace_back(p - origin);
+  return origin;
 }
 
 }  // namespace
@@ -98,12 +104,16 @@ void read_ascii(const Source& source, Mesh& mesh) {
 Model load_stl(const Source& source, const ModelOptions& options) {
   Mesh mesh;
   mesh.name = source.path.stem().string();
-  is_binary(source) ? read_binary(source, mesh) : read_ascii(source, mesh);
+  dvec3 origin(0);
+  if (is_binary(source))
+    read_binary(source, mesh);
+  else
+    origin = read_ascii(source, mesh);
   mesh.source_vertex_count = mesh.positions.size();
   const double crease = options.crease_angle.value_or(0);
   complete_normals(mesh, {}, crease, crease > 0 ? weld_positions(mesh) : std::vector<std::uint32_t>());
   Model model;
-  add_mesh(model, std::move(mesh));
+  add_mesh(model, std::move(mesh), origin);
   return model;
 }
 

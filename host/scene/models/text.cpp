@@ -96,11 +96,11 @@ double TextReader::number(std::string_view what) {
   return value;
 }
 
-float TextReader::real(std::string_view what) {
+double TextReader::bounded(std::string_view what) {
   const double value = number(what);
   if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
     fail(fmt::format("{}: {} is beyond single precision's range", what, value));
-  return static_cast<float>(value);
+  return value;
 }
 
 std::int64_t TextReader::integer(std::string_view what) {

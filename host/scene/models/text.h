@@ -31,7 +31,8 @@ class TextReader {
   /// The next word as a finite number; `what` names it in the error.
   double number(std::string_view what);
   /// As number(), within float's range.
-  float real(std::string_view what);
+  double bounded(std::string_view what);
+  float real(std::string_view what) { return static_cast<float>(bounded(what)); }
   std::int64_t integer(std::string_view what);
   std::uint64_t count(std::string_view what);
   /// Fails when words are left on the line.
