@@ -22,7 +22,7 @@ double view_step(double length) {
 }  // namespace
 
 dvec3 local_origin(const Camera& camera) {
-  const double length = glm::length(camera.target - camera.position), step = view_step(length) / 8;
+  const double length = glm::length(camera.target - camera.position), step = view_step(length) / 2;
   dvec3 origin(0);
   for (int axis = 0; axis < 3; ++axis)
     if (step > 0 && std::abs(camera.target[axis]) > far_lengths * length)
@@ -31,7 +31,7 @@ dvec3 local_origin(const Camera& camera) {
 }
 
 double far_part(double offset, double period, const Camera& camera) {
-  const double length = glm::length(camera.target - camera.position), step = view_step(length) / 8;
+  const double length = glm::length(camera.target - camera.position), step = view_step(length) / 2;
   if (!(step > 0) || !(std::abs(offset) > far_lengths * length)) return 0;
   return rounded_to(offset, period > 0 ? period : step);
 }

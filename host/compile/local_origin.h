@@ -6,8 +6,8 @@
 namespace sundog {
 
 /// The point of the world that the tables take for their origin. Along each axis it is 0 while the camera's
-/// target lies within two lengths of the view (position to target) of it, else the target to an eighth of
-/// that length: a round number, so that a scene that is moved by one keeps its bits.
+/// target lies within two lengths of the view (position to target) of it, else the target to about
+/// half that length: a round number, so that a scene that is moved by one keeps its bits.
 dvec3 local_origin(const Camera& camera);
 
 /// `offset` counted in whole multiples of `period` from which a pattern repeats, where it is far beside the

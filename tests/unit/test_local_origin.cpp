@@ -69,7 +69,7 @@ TEST_CASE("the origin lies beside the target, however near the camera is to it")
     camera.position = camera.target + dvec3(0, 0, length);
     const dvec3 origin = local_origin(camera);
     for (int axis = 0; axis < 3; ++axis) CHECK(std::abs(camera.target[axis] - origin[axis]) <= 2 * length);
-    CHECK(std::abs(camera.target.x - origin.x) <= length / 16);
+    CHECK(std::abs(camera.target.x - origin.x) <= length / 4);
   }
 }
 
