@@ -32,7 +32,7 @@ SceneDescription still_life() {
       {"type": "round_box", "half": [0.6, 0.5, 0.3], "radius": 0.1, "center": [-0.9, -0.6, 1], "material": "tea"},
       {"type": "sphere", "radius": 0.5, "center": [-1.3, 0.8, 0], "material": "mirror"},
       {"type": "torus", "center": [0.9, -0.8, 1.2], "major_radius": 0.4, "material": "tea"},
-      {"type": "mandelbulb", "iterations": 5, "material": "matte",
+      {"type": "fractal", "formula": "mandelbulb", "iterations": 5, "material": "matte",
        "transform": [{"scale": 0.6}, {"translate": [0.3, 0, 0]}]}]})",
                                              "test.json");
   const JsonContext context{"test.json"};
