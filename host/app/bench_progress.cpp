@@ -11,7 +11,7 @@
 namespace sundog {
 namespace {
 
-constexpr double seconds_between_lines = 10;
+constexpr double seconds_between_lines = 10, seconds_between_drawings = 0.1;
 
 }  // namespace
 
@@ -25,11 +25,13 @@ void BenchProgress::update(const std::string& step, double done) {
   if (!wanted_) return;
   done = std::clamp(done, 0.0, 1.0);
   const double now = clock_.seconds();
+  if (drawn_ && now - last_drawn_ < seconds_between_drawings) return;
   const std::string text =
       fmt::format("{:3.0f} %, about {} left: {}", 100 * done, duration_text(seconds_left(done)), step);
   if (stderr_is_terminal()) {
     fmt::print(stderr, "\r{}\033[K", bar_line(done, " " + text, terminal_columns()));
     drawn_ = true;
+    last_drawn_ = now;
   } else if (now - last_line_ >= seconds_between_lines) {
     fmt::print(stderr, "sundog: {}\n", text.substr(text.find_first_not_of(' ')));
     last_line_ = now;

@@ -23,7 +23,7 @@ class BenchProgress {
   double seconds_left(double done) const;
 
   bool wanted_, drawn_ = false;
-  double expected_, last_line_ = 0;
+  double expected_, last_line_ = 0, last_drawn_ = 0;
   Stopwatch clock_;
 };
 

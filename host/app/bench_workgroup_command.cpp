@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/bench_options.h"
+#include "app/bench_progress.h"
 #include "app/option_helpers.h"
 #include "base/clock.h"
 #include "base/error.h"
@@ -94,6 +95,25 @@ TimedKernel prepare(const std::string& name, const DeviceInfo& device, const Com
   return kernel;
 }
 
+void add_kernel(Report& report, const WorkgroupOptions& options, const std::string& file,
+                const std::string& name, const DeviceInfo& device, const CompiledScene& scene) {
+  const std::string step = fmt::format("{}, {} on {}", scene_name(file), name, device.label());
+  show_step(options, step);
+  TimedKernel kernel = prepare(name, device, scene, options.rays);
+  kernel.scene = scene_name(file);
+  BenchProgress progress(!options.quiet, 0);
+  const auto on_run = [&](std::size_t done, std::size_t of) {
+    progress.update(step, static_cast<double>(done) / static_cast<double>(of));
+  };
+  add_work_group_tables(report, kernel, measure_work_groups(kernel, options.repeat, on_run));
+  const char* origin = !kernel.cached   ? "built or loaded from the cache"
+                       : *kernel.cached ? "loaded from the cache"
+                                        : "built";
+  report.notes.push_back(fmt::format("{}, {} on {}: the program was {} in {} ms, before any run.",
+                                     kernel.scene, name, kernel.device, origin,
+                                     number_text(1e3 * kernel.build_seconds)));
+}
+
 int bench_workgroup(const WorkgroupOptions& options) {
   Report report = new_report("workgroup", "Times by work-group size", options);
   const std::vector<DeviceInfo> devices = bench_devices(options);
@@ -101,19 +121,7 @@ int bench_workgroup(const WorkgroupOptions& options) {
   for (const std::string& file : options.scenes) {
     const CompiledScene scene = bench_scene(file, options);
     for (const DeviceInfo& device : devices)
-      for (const std::string& name : options.kernels) {
-        const std::string step = fmt::format("{}, {} on {}", scene_name(file), name, device.label());
-        show_step(options, step);
-        TimedKernel kernel = prepare(name, device, scene, options.rays);
-        kernel.scene = scene_name(file);
-        add_work_group_tables(report, kernel, measure_work_groups(kernel, options.repeat));
-        report.notes.push_back(fmt::format("{}, {} on {}: the program was {} in {} ms, before any run.",
-                                           kernel.scene, name, kernel.device,
-                                           !kernel.cached   ? "built or loaded from the cache"
-                                           : *kernel.cached ? "loaded from the cache"
-                                                            : "built",
-                                           number_text(1e3 * kernel.build_seconds)));
-      }
+      for (const std::string& name : options.kernels) add_kernel(report, options, file, name, device, scene);
   }
   report.notes.push_back(
       fmt::format("Median of {} runs after one to warm up, all sizes in shuffled turn. render_whitted is a "

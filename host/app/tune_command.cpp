@@ -103,8 +103,10 @@ void tune_on(const DeviceInfo& device, const std::vector<NamedScene>& scenes, co
     if (outcomes.size() < 2) left_out.push_back(fmt::format("{} of {}", surfaces_kernel, named.name));
   }
   print_left_out(device, left_out);
-  fmt::print("{}: took {} of {}\n", device.label(), duration_text(clock.seconds()),
-             duration_text(options.budget));
+  const bool is_over = clock.seconds() > options.budget && costs.compile > 0.5 * options.budget;
+  fmt::print("{}: took {} of {}{}\n", device.label(), duration_text(clock.seconds()),
+             duration_text(options.budget),
+             is_over ? fmt::format("; one compilation alone took {}", duration_text(costs.compile)) : "");
 }
 
 int tune(const TuneOptions& options) {
