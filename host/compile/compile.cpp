@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "compile/camera.h"
@@ -12,6 +13,7 @@
 #include "compile/local_origin.h"
 #include "compile/materials.h"
 #include "compile/mesh_bvh.h"
+#include "compile/sdf_deep.h"
 
 namespace sundog {
 namespace {
@@ -38,10 +40,49 @@ void check_objects(const SceneDescription& scene) {
                        "material \"" + material.name + "\" names a medium that does not exist");
 }
 
+/// The fields' views, an object each that is one.
+std::vector<FieldView> views_of(const SceneDescription& scene) {
+  std::vector<FieldView> views(scene.objects.size());
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (std::holds_alternative<FieldShape>(scene.objects[i].shape))
+      views[i] = view_of_field(scene, scene.objects[i]);
+  return views;
+}
+
+/// In a deep view each placed field is one of its own, which counts from the tables' origin.
+CompiledFields deep_fields(const SceneDescription& scene, const std::vector<FieldView>& views,
+                           CompiledScene& out) {
+  std::vector<DeepField> fields;
+  for (u32 i = out.info.instance_count; i < out.info.field_end; ++i) {
+    Instance& instance = out.instances[i];
+    const Object& object = scene.objects[instance.object];
+    fields.push_back({near_description(scene.fields[instance.root], views[instance.object]),
+                      dvec3(glm::inverse(object.world_from_object) * glm::dvec4(out.origin, 1))});
+    instance.root = static_cast<u32>(fields.size() - 1);
+  }
+  return compile_deep_fields(fields);
+}
+
+/// Each as its nearest view wants it.
+CompiledFields near_fields(const SceneDescription& scene, const std::vector<FieldView>& views) {
+  std::vector<SdfDescription> fields = scene.fields;
+  std::vector<double> nearest(fields.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const auto* shape = std::get_if<FieldShape>(&scene.objects[i].shape);
+    if (!shape) continue;
+    const auto field = static_cast<std::size_t>(shape->field);
+    if (!(views[i].footprint < nearest[field])) continue;
+    nearest[field] = views[i].footprint;
+    fields[field] = near_description(scene.fields[field], views[i]);
+  }
+  return compile_fields(fields);
+}
+
 /// Reading has checked each formula; what is left to fail is their number and how they are put together.
-CompiledFields fields_of(const SceneDescription& scene) {
+CompiledFields fields_of(const SceneDescription& scene, const std::vector<FieldView>& views,
+                         CompiledScene& out) {
   try {
-    return compile_fields(scene.fields);
+    return std::ranges::any_of(views, is_deep) ? deep_fields(scene, views, out) : near_fields(scene, views);
   } catch (const FormulaError& error) {
     throw SceneError(scene.file.string(), "", error.what());
   }
@@ -97,7 +138,8 @@ CompiledScene compile(const SceneDescription& scene) {
   CompiledScene out;
   out.tracer = scene.render.tracer;
   check_objects(scene);
-  out.origin = local_origin(scene.camera);
+  const std::vector<FieldView> views = views_of(scene);
+  out.origin = std::ranges::any_of(views, is_deep) ? scene.camera.position : local_origin(scene.camera);
   set_camera(scene, out.origin, out.info);
   add_lights(scene, out);
   const u32 default_material = add_materials(scene, out);
@@ -106,7 +148,7 @@ CompiledScene compile(const SceneDescription& scene) {
   out.features.fractional_exponents = std::ranges::any_of(out.materials, has_fractional_exponent);
   const std::vector<PlacedMesh> meshes = add_meshes(scene, default_material, out);
   add_instances(scene, meshes, default_material, out);
-  out.fields = fields_of(scene);
+  out.fields = fields_of(scene, views, out);
   add_field_features(out);
   add_fog(scene, out);
   set_counts(out);

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 
+#include "compile/sdf_deep.h"
 #include "compile/sdf_leaf.h"
 #include "compile/sdf_scale.h"
 
@@ -15,9 +17,9 @@ namespace {
 constexpr const char* file_head = R"(// Written by the host for the fields of one scene.
 #ifndef SUNDOG_GENERATED_SDF_CL
 #define SUNDOG_GENERATED_SDF_CL
-#include "lib/sdf/compose.cl"
-
 )";
+constexpr const char* deep_head = "#include \"lib/sdf/deep_begin.h\"\n";
+constexpr const char* compose_head = "#include \"lib/sdf/compose.cl\"\n\n";
 
 class FieldsEmitter {
  public:
@@ -28,7 +30,36 @@ class FieldsEmitter {
       add_field(leveled);
       out_.fields.push_back(record(leveled));
     }
-    if (!fields.empty()) out_.source = file_head + leaves_ + fields_ + dispatch() + "#endif\n";
+    const std::string code = compose_head + leaves_ + fields_;
+    if (!fields.empty())
+      out_.source = file_head + code + dispatch("sdf_", "__global const float* restrict") + "#endif\n";
+    return std::move(out_);
+  }
+
+  CompiledFields run_deep(std::span<const DeepField> fields) {
+    for (const DeepField& deep : fields) {
+      SdfDescription field = deep.field;
+      level_scales(field.root);
+      add_field(field);
+      field.lower -= deep.origin;
+      field.upper -= deep.origin;
+      if (field.sphere) *field.sphere -= glm::dvec4(deep.origin, 0);
+      out_.fields.push_back(record(field));
+    }
+    std::size_t origins = out_.parameters.size();
+    for (const DeepField& deep : fields) table({deep.origin.x, deep.origin.y, deep.origin.z});
+    const std::string code = file_head + std::string(deep_head) + compose_head + leaves_ + fields_ +
+                             dispatch("deep_", "SDF_TABLE");
+    if (out_.parameters.size() % 2) table({0});
+    out_.source = code +
+                  fmt::format("#define SDF_DOUBLES_AT {}u\n#define SDF_ORIGINS {}u\n", out_.parameters.size(),
+                              origins) +
+                  "#include \"lib/sdf/deep_end.h\"\n" + shallow_functions() + "#endif\n";
+    for (const double value : exact_) {
+      float halves[2];
+      std::memcpy(halves, &value, sizeof value);
+      out_.parameters.insert(out_.parameters.end(), halves, halves + 2);
+    }
     return std::move(out_);
   }
 
@@ -44,6 +75,7 @@ class FieldsEmitter {
   std::size_t table(const std::vector<double>& values) {
     const std::size_t first = out_.parameters.size();
     for (const double value : values) out_.parameters.push_back(static_cast<float>(value));
+    exact_.insert(exact_.end(), values.begin(), values.end());
     return first;
   }
 
@@ -111,9 +143,7 @@ class FieldsEmitter {
       leaves_ += text;
     }
     leaf_of_place_.push_back(found->second);
-    const std::size_t first = out_.parameters.size();
-    out_.parameters.insert(out_.parameters.end(), code.parameters.begin(), code.parameters.end());
-    return first;
+    return table(code.parameters);
   }
 
   std::size_t place_transform(const SdfNode& node) {
@@ -138,7 +168,7 @@ class FieldsEmitter {
       body_.clear();
       const std::string value = visit(field.root, "p", kind == 1);
       fields_ += fmt::format(
-          "static inline {} field{}_{}(REAL3 p, MASK active, __global const float* restrict q) {{\n{}    "
+          "static inline {} field{}_{}(REAL3 p, MASK active, SDF_TABLE q) {{\n{}    "
           "return {};\n}}\n\n",
           kinds[kind].type, index, kinds[kind].suffix, body_, value);
     }
@@ -223,20 +253,36 @@ class FieldsEmitter {
     return result;
   }
 
-  std::string dispatch() const {
+  /// `prefix` names the functions; `q` is their table's type.
+  std::string dispatch(const char* prefix, const char* q) const {
     std::string out;
     const bool near = std::find(uneven_.begin(), uneven_.end(), true) != uneven_.end();
     if (near) out += uneven_fields();
     for (int kind = 0; kind < (near ? 4 : 3); ++kind) {
-      out += fmt::format(
-          "static inline {} sdf_{}(u32 field, REAL3 p, {}__global const float* restrict q) {{\n  switch "
-          "(field) {{\n",
-          kinds[kind].type, kinds[kind].suffix, kind == 2 ? "" : "MASK active, ");
+      out += fmt::format("static inline {} {}{}(u32 field, REAL3 p, {}{} q) {{\n  switch (field) {{\n",
+                         kinds[kind].type, prefix, kinds[kind].suffix, kind == 2 ? "" : "MASK active, ", q);
       for (std::size_t i = 0; i + 1 < out_.fields.size(); ++i)
         out += fmt::format("    case {}u: return field{}_{}(p, {}, q);\n", i, i, suffix_of(i, kind),
                            kind == 2 ? "ALL_LANES" : "active");
       out += fmt::format("    default: return field{}_{}(p, {}, q);\n  }}\n}}\n\n", out_.fields.size() - 1,
                          suffix_of(out_.fields.size() - 1, kind), kind == 2 ? "ALL_LANES" : "active");
+    }
+    return out;
+  }
+
+  /// What marching calls where the fields themselves are in doubles.
+  std::string shallow_functions() const {
+    std::string out =
+        "static inline REAL3 sdf_place(u32 field, REAL3 p, __global const float* restrict q) {\n  const u32 "
+        "o "
+        "= SDF_ORIGINS + 3u * field;\n  return real3(p.x + q[o], p.y + q[o + 1u], p.z + q[o + 2u]);\n}\n\n";
+    for (int kind = 0; kind < 4; ++kind) {
+      if (kind == 3 && std::find(uneven_.begin(), uneven_.end(), true) == uneven_.end()) break;
+      out += fmt::format(
+          "static inline {0} sdf_{1}(u32 field, REAL3 p, {2}__global const float* restrict q) {{\n  return "
+          "{3}(deep_{1}(field, deep_place(p, q, SDF_ORIGINS + 3u * field), {4}DEEP_TABLE(q)));\n}}\n\n",
+          kinds[kind].type, kinds[kind].suffix, kind == 2 ? "" : "MASK active, ",
+          kind == 2 ? "shallow_sample" : "DEEP_TO", kind == 2 ? "" : "DEEP_FROM_MASK(active), ");
     }
     return out;
   }
@@ -297,6 +343,7 @@ class FieldsEmitter {
   }
 
   CompiledFields out_;
+  std::vector<double> exact_;  // the parameters in double precision
   std::map<std::string, std::string> leaf_names_;
   std::string leaves_, fields_, body_;
   std::vector<std::size_t> places_;
@@ -309,5 +356,9 @@ class FieldsEmitter {
 }  // namespace
 
 CompiledFields compile_fields(std::span<const SdfDescription> fields) { return FieldsEmitter().run(fields); }
+
+CompiledFields compile_deep_fields(std::span<const DeepField> fields) {
+  return FieldsEmitter().run_deep(fields);
+}
 
 }  // namespace sundog

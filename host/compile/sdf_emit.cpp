@@ -14,6 +14,7 @@ bool is_condition(Op op) {
 }  // namespace
 
 std::string literal(double value) {
+  if (value != static_cast<float>(value)) return fmt::format("(REAL)(LITERAL({:#.17g}))", value);
   std::string text = fmt::format("{:.9g}", static_cast<float>(value));
   if (text.find_first_of(".en") == std::string::npos) text += ".0";
   return "(REAL)(" + text + "f)";

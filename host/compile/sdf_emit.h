@@ -36,7 +36,7 @@ class GraphPrinter {
   std::string statement(NodeId id) const;
 };
 
-/// A float as an OpenCL C literal.
+/// A number as an OpenCL C literal, by LITERAL() where a float does not hold it.
 std::string literal(double value);
 
 }  // namespace sundog

@@ -30,9 +30,8 @@ void check(const FormulaField& field) {
 std::string LeafEmitter::function() {
   static const char* const names[] = {"distance", "signed", "sample"};
   const bool sample = variant_ == Variant::sample;
-  std::string out =
-      fmt::format("static inline {} NAME_{}(REAL3 p, MASK active, __global const float* restrict q) {{\n",
-                  sample ? "SdfSample" : "REAL", names[static_cast<int>(variant_)]);
+  std::string out = fmt::format("static inline {} NAME_{}(REAL3 p, MASK active, SDF_TABLE q) {{\n",
+                                sample ? "SdfSample" : "REAL", names[static_cast<int>(variant_)]);
   out += last_->kind == FormulaKind::direct ? direct() : iterated();
   return out + "}\n\n";
 }
@@ -129,9 +128,9 @@ LeafCode leaf_code(const FormulaField& field) {
                            : field.bailout;
   for (const double value : {double(field.iterations), field.bailout * field.bailout, inside, field.safety,
                              last.inside_safety, level})
-    code.parameters.push_back(static_cast<float>(value));
+    code.parameters.push_back(value);
   for (const FormulaStep& step : field.steps)
-    for (const double value : step.values) code.parameters.push_back(static_cast<float>(value));
+    for (const double value : step.values) code.parameters.push_back(value);
   return code;
 }
 

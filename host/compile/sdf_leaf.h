@@ -10,7 +10,7 @@ namespace sundog {
 
 struct LeafCode {
   std::string functions;  // <name>_distance, <name>_signed, <name>_sample; NAME stands for the name
-  std::vector<float> parameters;
+  std::vector<double> parameters;
 };
 
 /// The functions take (p, active, q), q the first of `parameters`. Throws FormulaError.

@@ -14,7 +14,7 @@ NEVER_INLINE REAL field_openness(TRACE_PARAMETERS, SHADE_PARAMETERS, const Scene
     const float reach = sdf_fields[instances[index].root].occlusion_reach;
     const MASK mine = lanes & MASK_OF(hits->instance == (int)index);
     if (!(reach > 0.0f) || !any_lane(mine)) continue;
-    const REAL3 o = object_points(instances + index, rays->o), d = object_vectors(instances + index, rays->d);
+    const REAL3 o = field_points(instances + index, rays->o), d = object_vectors(instances + index, rays->d);
     const REAL value = sdf_openness(SDF_ARGUMENTS, instances[index].root, along3(o, hits->t, d),
                                     unit3(hits->ng), reach, mine);
     open = select(open, value, mine);

@@ -8,6 +8,15 @@
 #include "lib/transform.cl"
 
 #if HAS_SDF
+// A point as marching counts it: in the field's space, in deep views from the place of the world's origin.
+static inline REAL3 field_points(__global const Instance* instance, REAL3 p) {
+#ifdef SDF_DEEP
+  return object_vectors(instance, p);
+#else
+  return object_points(instance, p);
+#endif
+}
+
 // The rays of a batch as marching sees them.
 typedef struct RayLanes {
   REAL3 o, d;  // world
@@ -55,7 +64,7 @@ static inline MarchRays march_from(SDF_PARAMETERS, __global const SceneInfo* res
                                    const RayLanes* lanes) {
   __global const Instance* instance = instances + index;
   MarchRays rays;
-  rays.origin = object_points(instance, lanes->o);
+  rays.origin = field_points(instance, lanes->o);
   rays.direction = object_vectors(instance, lanes->d);
   rays.t_min = lanes->t_min;
   rays.t_max = lanes->t_best;
@@ -131,7 +140,7 @@ static inline void shade_lanes(SDF_PARAMETERS, __global const Instance* restrict
                                const RayLanes* lanes, Hits* hits) {
   const MASK mine = MASK_OF(lanes->winner == (int)index);
   if (!any_lane(mine)) return;
-  const REAL3 o = object_points(instances + index, lanes->o), d = object_vectors(instances + index, lanes->d);
+  const REAL3 o = field_points(instances + index, lanes->o), d = object_vectors(instances + index, lanes->d);
   const SdfSurface surface = sdf_surface(SDF_ARGUMENTS, instances[index].root, along3(o, lanes->t_best, d),
                                          lanes->threshold, mine, lanes->cut);
   // A normal must not contradict the side that the ray comes from: it is bent as far as the silhouette.

@@ -5,20 +5,20 @@
 #include "lib/sdf/sample.h"
 
 // A moved field's table: rows of the rotation's transpose, the offset, the scale and its inverse.
-static inline REAL3 into_child(REAL3 p, __global const float* restrict q) {
+static inline REAL3 into_child(REAL3 p, SDF_TABLE q) {
   const REAL3 d = real3((p.x - q[9]) * q[13], (p.y - q[10]) * q[13], (p.z - q[11]) * q[13]);
   return real3(fma(d.x, (REAL)(q[0]), fma(d.y, (REAL)(q[1]), d.z * q[2])),
                fma(d.x, (REAL)(q[3]), fma(d.y, (REAL)(q[4]), d.z * q[5])),
                fma(d.x, (REAL)(q[6]), fma(d.y, (REAL)(q[7]), d.z * q[8])));
 }
-static inline REAL3 out_of_child(REAL3 g, __global const float* restrict q) {
+static inline REAL3 out_of_child(REAL3 g, SDF_TABLE q) {
   return real3(fma(g.x, (REAL)(q[0]), fma(g.y, (REAL)(q[3]), g.z * q[6])),
                fma(g.x, (REAL)(q[1]), fma(g.y, (REAL)(q[4]), g.z * q[7])),
                fma(g.x, (REAL)(q[2]), fma(g.y, (REAL)(q[5]), g.z * q[8])));
 }
 
-static inline REAL out_of_child_distance(REAL d, __global const float* restrict q) { return d * q[12]; }
-static inline SdfSample out_of_child_sample(SdfSample s, __global const float* restrict q) {
+static inline REAL out_of_child_distance(REAL d, SDF_TABLE q) { return d * q[12]; }
+static inline SdfSample out_of_child_sample(SdfSample s, SDF_TABLE q) {
   s.distance *= q[12];
   s.gradient = out_of_child(s.gradient, q);
   return s;
@@ -26,7 +26,7 @@ static inline SdfSample out_of_child_sample(SdfSample s, __global const float* r
 
 // Place in the nearest cell (neighbour = 0) or in the next nearest along the axis, so that a child which fits
 // its cell is never missed. Table: three periods, three counts.
-static inline REAL cell_coordinate(REAL x, float period, float count, u32 neighbour) {
+static inline REAL cell_coordinate(REAL x, SCALAR period, SCALAR count, u32 neighbour) {
   if (!(period > 0.0f)) return x;
   const REAL cell = floor(x / period + 0.5f), inside = x - cell * period;
   const REAL next = cell + select((REAL)(-1.0f), (REAL)(1.0f), MASK_OF(inside > 0.0f));
@@ -34,7 +34,7 @@ static inline REAL cell_coordinate(REAL x, float period, float count, u32 neighb
   if (count > 0.0f) chosen = clamp(chosen, (REAL)(-count), (REAL)(count));
   return x - chosen * period;
 }
-static inline REAL3 repeat_cell(REAL3 p, __global const float* restrict q, u32 neighbours) {
+static inline REAL3 repeat_cell(REAL3 p, SDF_TABLE q, u32 neighbours) {
   return real3(cell_coordinate(p.x, q[0], q[3], neighbours & 1u),
                cell_coordinate(p.y, q[1], q[4], neighbours & 2u),
                cell_coordinate(p.z, q[2], q[5], neighbours & 4u));
@@ -42,7 +42,7 @@ static inline REAL3 repeat_cell(REAL3 p, __global const float* restrict q, u32 n
 
 // The smooth minimum of a and b, and in `share` the part that b has in it: quadratic, equal to the plain one
 // where they differ by k.
-static inline REAL smooth_minimum(REAL a, REAL b, float k, REAL* share) {
+static inline REAL smooth_minimum(REAL a, REAL b, SCALAR k, REAL* share) {
   const REAL h = fmax(1.0f - fabs(a - b) / k, 0.0f);
   const REAL less = 0.5f * h;
   const MASK second = MASK_OF(b < a);
@@ -50,13 +50,13 @@ static inline REAL smooth_minimum(REAL a, REAL b, float k, REAL* share) {
   return real_min(a, b) - h * h * (0.25f * k);
 }
 
-static inline REAL unite(REAL a, REAL b, float smooth) {
+static inline REAL unite(REAL a, REAL b, SCALAR smooth) {
   if (!(smooth > 0.0f)) return real_min(a, b);
   REAL share;
   return smooth_minimum(a, b, smooth, &share);
 }
-static inline REAL intersect(REAL a, REAL b, float smooth) { return -unite(-a, -b, smooth); }
-static inline REAL subtract_from(REAL a, REAL b, float smooth) { return -unite(-a, b, smooth); }
+static inline REAL intersect(REAL a, REAL b, SCALAR smooth) { return -unite(-a, -b, smooth); }
+static inline REAL subtract_from(REAL a, REAL b, SCALAR smooth) { return -unite(-a, b, smooth); }
 
 static inline SdfSample negated_sample(SdfSample a) {
   a.distance = -a.distance;
@@ -64,7 +64,7 @@ static inline SdfSample negated_sample(SdfSample a) {
   return a;
 }
 // Exact for closed forms, whose gradients are those of their distances; of fractals they are not used.
-static inline SdfSample unite_samples(SdfSample a, SdfSample b, float smooth) {
+static inline SdfSample unite_samples(SdfSample a, SdfSample b, SCALAR smooth) {
   SdfSample r = select_sample(a, b, MASK_OF(b.distance < a.distance));
   if (!(smooth > 0.0f)) return r;
   REAL share;
@@ -72,20 +72,20 @@ static inline SdfSample unite_samples(SdfSample a, SdfSample b, float smooth) {
   r.gradient = along3(scale3(a.gradient, 1.0f - share), share, b.gradient);
   return r;
 }
-static inline SdfSample intersect_samples(SdfSample a, SdfSample b, float smooth) {
+static inline SdfSample intersect_samples(SdfSample a, SdfSample b, SCALAR smooth) {
   return negated_sample(unite_samples(negated_sample(a), negated_sample(b), smooth));
 }
-static inline SdfSample subtract_samples(SdfSample a, SdfSample b, float smooth) {
+static inline SdfSample subtract_samples(SdfSample a, SdfSample b, SCALAR smooth) {
   return negated_sample(unite_samples(negated_sample(a), b, smooth));
 }
 
-static inline REAL thicken(REAL d, float amount) { return d - amount; }
-static inline REAL shell(REAL d, float amount) { return fabs(d) - 0.5f * amount; }
-static inline SdfSample thicken_sample(SdfSample s, float amount) {
+static inline REAL thicken(REAL d, SCALAR amount) { return d - amount; }
+static inline REAL shell(REAL d, SCALAR amount) { return fabs(d) - 0.5f * amount; }
+static inline SdfSample thicken_sample(SdfSample s, SCALAR amount) {
   s.distance -= amount;
   return s;
 }
-static inline SdfSample shell_sample(SdfSample s, float amount) {
+static inline SdfSample shell_sample(SdfSample s, SCALAR amount) {
   s = select_sample(s, negated_sample(s), MASK_OF(s.distance < 0.0f));
   s.distance -= 0.5f * amount;
   return s;

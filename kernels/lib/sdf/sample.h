@@ -8,6 +8,13 @@
   __global const SdfField *restrict sdf_fields, __global const float *restrict sdf_parameters
 #define SDF_ARGUMENTS sdf_fields, sdf_parameters
 
+// Tables of a formula's numbers, one of them, and one in the code: doubles in deep views (deep_begin.h).
+#ifndef SDF_TABLE
+#define SDF_TABLE __global const float* restrict
+#define SCALAR float
+#define LITERAL(x) x##f
+#endif
+
 // A distance with its gradient (of fractals only a direction, of any length) and the orbit's traps.
 typedef struct SdfSample {
   REAL distance;

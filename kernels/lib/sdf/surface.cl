@@ -62,7 +62,12 @@ static inline SdfSurface sdf_surface(SDF_PARAMETERS, u32 index, REAL3 p, REAL th
   if (exact || colored) {
     const SdfSample s = sdf_sample(index, p, sdf_parameters);
     gradient = s.gradient;
-    if (colored) surface.color = palette_color(SDF_ARGUMENTS, field, trap_value(field->color_by, s, p));
+#ifdef SDF_DEEP
+    const REAL3 place = sdf_place(index, p, sdf_parameters);
+#else
+    const REAL3 place = p;
+#endif
+    if (colored) surface.color = palette_color(SDF_ARGUMENTS, field, trap_value(field->color_by, s, place));
   }
   // On its edges, and where a minimum changes over on the surface itself, a closed form may have no gradient.
   const MASK lost = exact ? hit & MASK_OF(dot3(gradient, gradient) < 1e-20f) : hit;

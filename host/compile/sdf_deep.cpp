@@ -1,0 +1,128 @@
+// See sdf_deep.h. The code of deep fields is written in sdf.cpp.
+#include "compile/sdf_deep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scene/formula/evaluate.h"
+
+namespace sundog {
+namespace {
+
+// In units of the greatest coordinate: estimates in floats are off by a few 1e-7.
+constexpr double float_footprint = 4e-6;
+constexpr double default_least = 3e-5;  // of half the interval's diagonal, as read
+
+double at_repeated(const SdfNode& node, const dvec3& p, double unknown);
+
+/// The estimate at `p`, -unknown where there is no more to say than that it is inside, and unknown where the
+/// code is the user's own.
+double distance_at(const SdfNode& node, const dvec3& p, double unknown) {
+  using Kind = SdfNode::Kind;
+  const auto child = [&](std::size_t i) { return distance_at(node.children[i], p, unknown); };
+  switch (node.kind) {
+    case Kind::formula: {
+      const FieldValue value = FormulaEvaluator(node.formula).at(p);
+      return value.inside && !(value.distance < 0) ? -unknown : value.distance;
+    }
+    case Kind::native:
+      return unknown;
+    case Kind::transform:
+      return node.scale * distance_at(node.children[0],
+                                      glm::transpose(node.rotation) * (p - node.offset) / node.scale,
+                                      unknown / node.scale);
+    case Kind::repeat:
+      return at_repeated(node, p, unknown);
+    case Kind::thicken:
+      return child(0) - node.amount;
+    case Kind::shell:
+      return std::abs(child(0)) - node.amount / 2;
+    default:
+      break;
+  }
+  double value = child(0);
+  for (std::size_t i = 1; i < node.children.size(); ++i)
+    value = node.kind == Kind::unite       ? std::min(value, child(i))
+            : node.kind == Kind::intersect ? std::max(value, child(i))
+                                           : std::max(value, -child(i));
+  return value;
+}
+
+/// In the nearest cell and those next to it.
+double at_repeated(const SdfNode& node, const dvec3& p, double unknown) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int neighbour = 0; neighbour < 27; ++neighbour) {
+    const int step[3] = {neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1};
+    dvec3 at = p;
+    bool used = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(node.period[axis] > 0)) {
+        used &= step[axis] == 0;
+        continue;
+      }
+      double cell = std::floor(p[axis] / node.period[axis] + 0.5) + step[axis];
+      if (node.count[axis] > 0) cell = std::clamp(cell, -node.count[axis], node.count[axis]);
+      at[axis] -= cell * node.period[axis];
+    }
+    if (used) least = std::min(least, distance_at(node.children[0], at, unknown));
+  }
+  return least;
+}
+
+/// How far `p` is outside the interval; 0 inside.
+double beside_interval(const SdfDescription& field, const dvec3& p) {
+  double away = glm::length(glm::max(glm::max(field.lower - p, p - field.upper), dvec3(0)));
+  if (field.sphere) away = std::max(away, glm::length(p - dvec3(*field.sphere)) - field.sphere->w);
+  return away;
+}
+
+/// Each doubling of what is seen asks for as much as another iteration of a map of degree 2.
+void add_iterations(SdfNode& node, int more) {
+  FormulaField& formula = node.formula;
+  if (node.kind == SdfNode::Kind::formula) {
+    const FormulaDefinition& last = formula.steps.back().definition;
+    if (last.kind != FormulaKind::direct && formula.iterations == last.iterations)
+      formula.iterations = std::min(formula.iterations + more, FormulaDefinition::max_iterations);
+  }
+  for (SdfNode& child : node.children) add_iterations(child, more);
+}
+
+bool has_default_least(const SdfDescription& field) {
+  return field.least == default_least * (glm::length(field.upper - field.lower) / 2);
+}
+
+}  // namespace
+
+FieldView view_of_field(const SceneDescription& scene, const Object& object) {
+  const SdfDescription& field =
+      scene.fields[static_cast<std::size_t>(std::get<FieldShape>(object.shape).field)];
+  const glm::dmat4 object_from_world = glm::inverse(object.world_from_object);
+  const Camera& camera = scene.camera;
+  FieldView view;
+  view.place = dvec3(object_from_world * glm::dvec4(camera.position, 1));
+  const double ahead = glm::length(glm::dmat3(object_from_world) * (camera.target - camera.position));
+  double distance = std::max(distance_at(field.root, view.place, ahead), beside_interval(field, view.place));
+  if (!(distance > 0)) distance = ahead;  // inside
+  view.footprint =
+      distance * 2 * std::tan(camera.fov * std::numbers::pi / 360) / std::max(scene.image.height, 1);
+  return view;
+}
+
+bool is_deep(const FieldView& view) {
+  const double size = std::max({1.0, std::abs(view.place.x), std::abs(view.place.y), std::abs(view.place.z)});
+  return view.footprint > 0 && view.footprint < float_footprint * size;
+}
+
+SdfDescription near_description(SdfDescription field, const FieldView& view) {
+  const bool deep = is_deep(view);
+  if (!(view.footprint > 0)) return field;
+  const double size = glm::length(field.upper - field.lower) / 2;
+  const double wanted = 0.25 * view.footprint * field.detail.value_or(0.05);
+  if (has_default_least(field))
+    field.least = std::min(field.least, deep ? wanted : std::max(wanted, 1e-6 * size));
+  if (deep) add_iterations(field.root, static_cast<int>(std::ceil(std::log2(1e-3 * size / view.footprint))));
+  return field;
+}
+
+}  // namespace sundog
