@@ -26,6 +26,7 @@
 #include "base/file.h"
 #include "base/image_io.h"
 #include "render/hash.h"
+#include "render/view_warnings.h"
 #include "scene/json/override.h"
 #include "scene/load.h"
 
@@ -127,6 +128,7 @@ std::vector<ServerPlan> plan_servers(const RenderCommand& command, const LoadedS
 int render_one(const RenderCommand& command, const LoadedScene& scene, const Setup& setup,
                const Stopwatch& clock, TimeLedger& times) {
   setup.stop.asks();
+  print_warnings(view_warnings(*scene.flat, setup.devices));
   ProgressBar bar(!command.quiet);
   RenderOptions options = render_options(command);
   const std::string checkpoint = checkpoint_file(command, setup);
