@@ -102,6 +102,24 @@ std::vector<float> depths(Device& device, const CompiledFields& fields, const st
   return found;
 }
 
+const char* const distance_kernel = R"(
+#include "lib/sdf/march.cl"
+__kernel void distances(__global const float* q, __global const float4* points, __global float* found,
+                        u32 fields, u32 count) {
+  const u32 item = get_global_id(0);
+  if (item * LANES >= count) return;
+  REAL3 p;
+  for (u32 i = 0; i < LANES; ++i) {
+    const float4 at = points[item * LANES + i];
+    REAL_LANE(p.x, i) = at.x; REAL_LANE(p.y, i) = at.y; REAL_LANE(p.z, i) = at.z;
+  }
+  for (u32 field = 0; field < fields; ++field) {
+    const REAL d = sdf_distance(field, p, ALL_LANES, q);
+    for (u32 i = 0; i < LANES; ++i) found[field * count + item * LANES + i] = REAL_LANE(d, i);
+  }
+}
+)";
+
 bool has_doubles(const DeviceInfo& device) {
   return device.extensions.find("cl_khr_fp64") != std::string::npos;
 }
@@ -181,5 +199,41 @@ TEST_CASE("a deep view is rendered sharp, with its shadows") {
       const double mean = sum / (size * size);
       CHECK(std::sqrt(squares / (size * size) - mean * mean) > 0.05);
       CHECK(result.counts[COUNT_MARCH_LIMIT] < 100);
+    }
+}
+
+TEST_CASE("every surface of the list is evaluated in doubles where a view asks for it") {
+  std::vector<DeepField> fields;
+  const dvec3 origin(0.31, 0.42, -0.57);
+  for (const SdfDescription& field : listed_fields()) fields.push_back({field, origin});
+  const CompiledFields compiled = compile_deep_fields(fields);
+  std::vector<float4> points;  // steps that floats about the origin would lose
+  for (int i = 0; i < 64; ++i) points.push_back({1e-9f * float(i % 8), 2e-9f * float(i / 8), 1e-9f, 0});
+  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
+      if (!has_doubles(info) || !is_quick(info)) continue;
+      Device device(info);
+      auto kernel = build_fields(device, distance_kernel, compiled, 4)
+                        .kernel<Buffer<float>, Buffer<float4>, Buffer<float>, u32, u32>("distances");
+      const auto q = device.upload<float>(compiled.parameters);
+      const auto in = device.upload<float4>(points);
+      auto out = device.make<float>(points.size() * fields.size());
+      device.run(kernel, {.x = points.size() / 4, .local_x = 4}, q, in, out, static_cast<u32>(fields.size()),
+                 static_cast<u32>(points.size()));
+      std::vector<float> found(points.size() * fields.size());
+      device.read(out, std::span<float>(found));
+      device.finish();
+      for (std::size_t f = 0; f < fields.size(); ++f) {
+        FormulaEvaluator wanted(fields[f].field.root.formula);
+        int compared = 0;
+        double worst = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          const FieldValue value = wanted.at(origin + dvec3(points[i].x, points[i].y, points[i].z));
+          if (value.inside) continue;
+          ++compared;
+          worst = std::max(worst, std::abs(found[f * points.size() + i] - value.distance) / value.distance);
+        }
+        INFO(fields[f].field.root.formula.steps[0].definition.name << ", outside " << compared);
+        CHECK(worst < 1e-6);
+      }
     }
 }
