@@ -1,6 +1,6 @@
 #!/bin/bash
 # Makes build/release ready: `prepare.sh program` for sundog alone, `prepare.sh tests` for the tests too. Packages come from
-# apt, and only those that are missing. Quiet unless there is something to do.
+# apt, and only those that are missing. Quiet unless there is something to do; else it says first how much that is.
 set -eu
 goal=$1
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
@@ -11,6 +11,10 @@ needed=(g++ cmake ninja-build ocl-icd-opencl-dev opencl-clhpp-headers pocl-openc
   libopenexr-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtbb-dev zlib1g-dev catch2)
 # The tests compare with these where they are; Open MPI is what `mpirun sundog` needs.
 peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin)
+
+# Seconds that one core takes to build everything with an empty compiler cache (docs/building.md).
+program_work=290
+tests_work=780
 
 say() { echo "sundog: $*" >&2; }
 
@@ -32,6 +36,23 @@ as_root() {
   fi
 }
 
+# "75 packages, 210 MB to fetch, 900 MB on disk", of apt-get's own reckoning.
+size_of() {
+  LC_ALL=C apt-get install --assume-no --no-install-recommends "$@" 2>/dev/null | awk '
+    / newly installed/ { for (i = 2; i <= NF; i++) if ($i == "newly") out = $(i - 1) " packages" }
+    /^Need to get / { sub(/^Need to get /, ""); sub(/ of archives.*/, ""); sub(/.*\//, ""); out = out ", " $0 " to fetch" }
+    /^After this operation, / { sub(/^After this operation, /, ""); sub(/ of additional.*/, ""); out = out ", " $0 " on disk" }
+    END { print out }' || true
+}
+
+# "about 3 minutes on 2 cores" for so many seconds of one core.
+duration_of() {
+  local cores seconds
+  cores=$(nproc)
+  seconds=$(($1 / cores))
+  if ((seconds < 90)); then echo "about $seconds seconds on $cores cores"; else echo "about $(((seconds + 30) / 60)) minutes on $cores cores"; fi
+}
+
 # Installs the packages named that are missing; those this distribution does not have are left out.
 install_missing() {
   missing=$(missing_of "$@")
@@ -40,13 +61,14 @@ install_missing() {
     say "there is no apt-get here; make sure that the equivalents of these are installed: $missing"
     return 0
   fi
-  say "installing $missing"
+  say "packages are missing; asking apt for them"
   as_root apt-get update -qq
   local package available=()
   for package in $missing; do
     if apt-cache show "$package" >/dev/null 2>&1; then available+=("$package"); else say "no package $package here"; fi
   done
   [[ ${#available[@]} == 0 ]] && return 0
+  say "installing ${available[*]}: with what they need $(size_of "${available[@]}"); one to three minutes, mostly the download"
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${available[@]}"
 }
 
@@ -61,5 +83,8 @@ cd "$root"
 touch "$build/started"  # what changes during the build is built the next time
 cmake --preset release >"$build/configure.log" 2>&1 || { cat "$build/configure.log" >&2; exit 1; }
 if [[ $goal == tests ]]; then target=all; else target=sundog; fi
+if [[ ! -e $build/built-$goal ]]; then
+  say "building for the first time: $(duration_of "$([[ $goal == tests ]] && echo "$tests_work" || echo "$program_work")")"
+fi
 cmake --build "$build" --target "$target"
 touch -r "$build/started" "$build/built-program" "$build/built-$goal"
