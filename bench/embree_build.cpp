@@ -3,6 +3,7 @@
 // triangle blocks, vertices. Embree is charged for its commit, its buffers filled before.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
+#include <nlohmann/json.hpp>
 
 #include "bench_scenes.h"
 #include "compile/compiled_scene.h"

@@ -1,6 +1,8 @@
 // See peer_rays.h.
 #include "peer_rays.h"
 
+#include <nlohmann/json.hpp>
+
 #include "bench_scenes.h"
 #include "crowd.h"
 #include "render/kernel_config.h"

@@ -1,6 +1,6 @@
 // What `sundog check` prints.
 #pragma once
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace sundog {

@@ -1,5 +1,7 @@
 #include "app/remote_devices.h"
 
+#include <nlohmann/json.hpp>
+
 #include <fmt/format.h>
 
 #include "base/error.h"

@@ -1,6 +1,6 @@
 // What a scene holds, in numbers: for `sundog info` and the statistics of a render.
 #pragma once
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "compile/compiled_scene.h"
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "app/scene_figures.h"
 #include "app/stray_exits.h"

@@ -1,6 +1,6 @@
 // What a render did, for --stats and --verbose.
 #pragma once
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "app/options.h"
 #include "compile/compiled_scene.h"

@@ -1,7 +1,7 @@
 // What a benchmark found, as plain values. A benchmark fills a Report; the writers below turn any Report into
 // text, JSON, CSV or a page, and know no benchmark.
 #pragma once
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>

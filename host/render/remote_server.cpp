@@ -1,5 +1,7 @@
 #include "render/remote_server.h"
 
+#include <nlohmann/json.hpp>
+
 #include <fmt/format.h>
 
 #include "render/remote_values.h"

@@ -1,6 +1,7 @@
 #include "render/remote_values.h"
 
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "render/tiles.h"

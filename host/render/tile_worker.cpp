@@ -1,6 +1,7 @@
 #include "render/tile_worker.h"
 
 #include <sched.h>
+#include <nlohmann/json.hpp>
 
 #include "render/remote_values.h"
 

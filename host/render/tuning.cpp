@@ -1,6 +1,8 @@
 // See tuning.h.
 #include "render/tuning.h"
 
+#include <nlohmann/json.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,7 +1,7 @@
 // Animation: values of a scene document keyed over frames ("animate").
 #pragma once
 #include <glm/glm.hpp>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

@@ -1,7 +1,7 @@
 // A model file as a scene by itself: the document that sundog makes up around it.
 #pragma once
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 
 #include "scene/model.h"

@@ -1,6 +1,7 @@
 // What goes wrong with devices, drivers and disks costs time, not the frame. The faults are asked for by
 // SUNDOG_FAULTS (host/base/faults.h).
 #include <base/file.h>
+#include <nlohmann/json.hpp>
 
 #include "catch.h"
 #include "faulty_folder.h"

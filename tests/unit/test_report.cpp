@@ -1,5 +1,6 @@
 // Reports: the same figures as text, JSON, CSV and a page.
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "bench/report.h"
 #include "bench/samples.h"

@@ -1,5 +1,6 @@
 // What a scene file may not hold: each error names the place, what was wanted and what was found.
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,7 @@
 // Models: as scenes by themselves, as meshes with a name, and as objects.
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "catch.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "scene/formula/evaluate.h"
 #include "scene/formula/survey.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -90,9 +91,8 @@ class Step {
   /// there.
   void may_add(json& parent, std::size_t depth) const {
     const std::string& token = tokens_[depth];
-    const bool named =
-        depth == 1 && (tokens_[0] == "materials" || tokens_[0] == "media" || tokens_[0] == "meshes" ||
-                       tokens_[0] == "fields");
+    const bool named = depth == 1 && (tokens_[0] == "materials" || tokens_[0] == "media" ||
+                                      tokens_[0] == "meshes" || tokens_[0] == "fields");
     if (named || tokens_[depth + 1] == "-" || array_index(tokens_[depth + 1])) {
       std::vector<std::string> known;
       for (const auto& [key, value] : parent.items()) known.push_back(key);

@@ -1,7 +1,7 @@
 // Overrides: "--set /camera/fov=30" changes one value of a JSON document.
 #pragma once
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 

@@ -2,7 +2,7 @@
 // not UTF-8 and absurd nesting are errors, each with its place.
 #pragma once
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string_view>
 
 namespace sundog {

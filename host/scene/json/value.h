@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
 #include <span>

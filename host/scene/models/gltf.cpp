@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_access.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>

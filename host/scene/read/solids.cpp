@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "scene/read/parts.h"
