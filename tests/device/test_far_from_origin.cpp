@@ -1,5 +1,6 @@
 // A scene looks the same wherever it lies.
 #include <glm/gtc/matrix_transform.hpp>
+#include <nlohmann/json.hpp>
 
 #include "base/image_compare.h"
 #include "bench/plain/whitted.h"
