@@ -18,6 +18,7 @@ struct SceneFeatures {
   std::array<bool, SHAPE_COUNT> shapes{};
   bool secondary_rays = false;  // some material reflects or transmits
   bool media = false;           // some material has an interior medium, or the world's absorbs
+  bool touching = false;        // surfaces of solids with media may lie on others
   bool shadow_filters = false;  // shadow rays must look through transmissive things
   bool camera_inside = false;
   bool unbounded = false;         // there are planes

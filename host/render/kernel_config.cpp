@@ -35,6 +35,7 @@ void define_features(const SceneFeatures& features, const Define& define) {
   for (unsigned shape = 0; shape < SHAPE_SDF; ++shape) define(shape_names[shape], features.shapes[shape]);
   define("HAS_SECONDARY", features.secondary_rays);
   define("HAS_MEDIA", features.media);
+  define("HAS_TOUCHING", features.touching);
   define("HAS_SHADOW_FILTERS", features.shadow_filters);
   define("HAS_SDF", features.shapes[SHAPE_SDF]);
   define("SDF_TWO_SIDED", features.two_sided_fields);

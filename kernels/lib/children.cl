@@ -132,7 +132,10 @@ static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const Surf
   child.o = along3(s->p, -s->offset, s->ng);
   state.throughput = multiply3(paths->throughput, split.kt);
   start_on_hits(info, &child, &met->hit, faces->entering, transmits);
-#if HAS_MEDIA
+#if HAS_TOUCHING
+  child.media_low = select(child.media_low, met->behind_low, transmits);
+  child.media_high = select(child.media_high, met->behind_high, transmits);
+#elif HAS_MEDIA
   for (u32 bits = lane_bits(bends); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     MediaStack crossed = get_media(rays, i);
@@ -168,6 +171,9 @@ static inline MASK look_around(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRa
   seen = select3(seen, add3(seen, background), ended & ~hit);
   if (any_lane(hit)) {
     interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->o, rays->d, &met->hit, &met->face, hit, s);
+#if HAS_TOUCHING
+    s->offset = real_max(s->offset, met->apart);
+#endif
     REAL3 own = multiply3(s->ambient, all3(info->ambient.xyz));
 #if HAS_OCCLUSION
     own = scale3(own, field_openness(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, &met->hit, hit));

@@ -130,6 +130,10 @@
 #ifndef HAS_MEDIA
 #define HAS_MEDIA 1
 #endif
+// Surfaces of solids with media may lie in one place with others.
+#ifndef HAS_TOUCHING
+#define HAS_TOUCHING HAS_MEDIA
+#endif
 #ifndef HAS_ABSORPTION
 #define HAS_ABSORPTION 1
 #endif

@@ -7,6 +7,7 @@
 #include "lib/nearest.cl"
 #include "lib/optics.cl"
 #include "lib/surface.cl"
+#include "lib/touching.cl"
 
 // What rays meet. `before` and `after` are the media on the two sides as a ray crosses; equal where nothing
 // is crossed.
@@ -15,26 +16,66 @@ typedef struct Encounters {
   Faces face;
   MASK before, after;
   REAL3 absorbed;  // factor on the ray's light from its start to the hit
+#if HAS_TOUCHING
+  MASK behind_low, behind_high;  // the words of the MediaStack behind
+  REAL apart;                    // how far the faces that touch there may be apart
+#endif
 } Encounters;
 
 #if HAS_MEDIA
-// Lane i at an interface. There is nothing to see where both sides are one medium, nor where a clear material
-// parts media of equal index; then the ray's stack becomes the one behind. Returns whether that is so.
+// Lane i at an interface behind which the media are `crossed`. There is nothing to see where both sides are
+// one medium, nor where a clear material parts media of equal index; then the ray's stack becomes the one
+// behind. Returns whether that is so.
 static inline bool cross_if_unseen(__global const Medium* restrict media, SceneRays* rays, Encounters* met,
-                                   u32 i, u32* counts) {
-  const bool entering = MASK_LANE(met->face.entering, i);
-  const u32 before = (u32)MASK_LANE(met->before, i);
-  MediaStack crossed = get_media(rays, i);
-  if (!cross_boundary(&crossed, (u32)MASK_LANE(met->face.medium, i), entering))
-    counts[entering ? COUNT_MEDIA_STACK_OVERFLOW : COUNT_STRAY_EXIT] += 1u;
-  const u32 after = current_medium(media, crossed);
+                                   u32 i, MediaStack crossed) {
+  const u32 before = (u32)MASK_LANE(met->before, i), after = current_medium(media, crossed);
   MASK_LANE(met->after, i) = (int)after;
+#if HAS_TOUCHING
+  MASK_LANE(met->behind_low, i) = (int)crossed;
+  MASK_LANE(met->behind_high, i) = (int)(crossed >> 32);
+#endif
   const bool clear = (u32)MASK_LANE(met->face.flags, i) & MATERIAL_CLEAR;
   const bool unseen = after == before || (clear && media[after].absorption.w == media[before].absorption.w);
   if (!unseen || MASK_LANE(rays->crossings, i) >= MAX_CROSSINGS) return false;
   set_media(rays, i, crossed);
   return true;
 }
+
+// The stack of media behind the interface that lane i has met.
+static inline MediaStack media_behind(const SceneRays* rays, const Encounters* met, u32 i, u32* counts) {
+  const bool entering = MASK_LANE(met->face.entering, i);
+  MediaStack crossed = get_media(rays, i);
+  if (!cross_boundary(&crossed, (u32)MASK_LANE(met->face.medium, i), entering))
+    counts[entering ? COUNT_MEDIA_STACK_OVERFLOW : COUNT_STRAY_EXIT] += 1u;
+  return crossed;
+}
+
+#define INTERFACE (MATERIAL_TRANSMITS | MATERIAL_THIN)  // flags to look at: an interface only transmits
+
+#if HAS_TOUCHING
+// The lanes of `lanes`, whose faces may touch others. Returns those that go on, as in cross_unseen().
+static inline MASK cross_touching(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, Encounters* met,
+                                  MASK lanes, u32* counts) {
+  MASK unseen = NO_LANES;
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    Seen seen;
+    float apart;
+    const float end = meet_touching(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, i, MATERIAL_TRANSMITS, &met->hit,
+                                    &met->face, &seen, &apart);
+    REAL_LANE(met->apart, i) = apart;
+    MASK_LANE(met->behind_low, i) = (int)seen.behind;
+    MASK_LANE(met->behind_high, i) = (int)(seen.behind >> 32);
+    counts[COUNT_MEDIA_STACK_OVERFLOW] += seen.overflows;
+    counts[COUNT_STRAY_EXIT] += seen.strays;
+    if (((u32)MASK_LANE(met->face.flags, i) & INTERFACE) != MATERIAL_TRANSMITS) continue;
+    if (!cross_if_unseen(media, rays, met, i, seen.behind)) continue;
+    MASK_LANE(unseen, i) = -1;
+    REAL_LANE(met->hit.t, i) = end;
+  }
+  return unseen;
+}
+#endif
 
 // The lanes of `waiting` at their next hits. Returns those that go on through invisible interfaces: their
 // rays are then what holds behind.
@@ -50,19 +91,27 @@ static inline MASK cross_unseen(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* r
   met->face.material = select(met->face.material, faces.material, hit);
   met->face.flags = select(met->face.flags, faces.flags, hit);
   met->face.medium = select(met->face.medium, faces.medium, hit);
-  const int kind = (int)(MATERIAL_TRANSMITS | MATERIAL_THIN);
-  const MASK interface = hit & MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
+  MASK interface = hit & MASK_OF((faces.flags & (int)INTERFACE) == (int)MATERIAL_TRANSMITS);
   MASK unseen = NO_LANES;
+#if HAS_TOUCHING
+  met->behind_low = select(met->behind_low, rays->media_low, waiting);
+  met->behind_high = select(met->behind_high, rays->media_high, waiting);
+  met->apart = select(met->apart, (REAL)(0.0f), waiting);
+  const MASK touching =
+      may_touch(instances, &met->hit, hit & MASK_OF((faces.flags & (int)MATERIAL_TRANSMITS) != 0));
+  interface &= ~touching;
+  unseen |= cross_touching(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, met, touching, counts);
+#endif
   for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    if (cross_if_unseen(media, rays, met, i, counts)) MASK_LANE(unseen, i) = -1;
+    if (cross_if_unseen(media, rays, met, i, media_behind(rays, met, i, counts))) MASK_LANE(unseen, i) = -1;
   }
   const MASK leaves = (waiting & ~unseen) | (unseen & MASK_OF(met->after != met->before));
   const REAL3 kept = absorb(media, here, met->hit.t - rays->since, leaves);
   met->absorbed = multiply3(met->absorbed, kept);
   if (any_lane(unseen)) {
     rays->since = select(rays->since, met->hit.t, unseen & leaves);
-    continue_behind(info, rays, &met->hit, faces.entering, unseen);
+    continue_behind(info, rays, &met->hit, met->face.entering, unseen);
   }
   return unseen;
 }
@@ -82,6 +131,11 @@ static inline MASK reach_interfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay
   met->face.material = NO_LANES;
   met->face.flags = NO_LANES;
   met->face.medium = NO_LANES;
+#if HAS_TOUCHING
+  met->behind_low = NO_LANES;
+  met->behind_high = NO_LANES;
+  met->apart = (REAL)(0.0f);
+#endif
   return cross_unseen(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, met, active, counts);
 #else
   met->face =

@@ -37,14 +37,36 @@ static inline void filter_light(__global const Material* restrict materials,
   *through = select3(*through, scale3(*through, kept), dielectric);
 }
 
+#if HAS_TOUCHING
+// The lanes of `lanes`, whose faces may touch others: hits and faces become those of what touches there, the
+// media of `behind` those behind it.
+static inline void pass_touching(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRays* rays, Hits* hits,
+                                 Faces* faces, SceneRays* behind, MASK lanes) {
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    Seen seen;
+    float apart;
+    REAL_LANE(hits->t, i) = meet_touching(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, i,
+                                          MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE, hits, faces, &seen, &apart);
+    set_media(behind, i, seen.behind);
+  }
+}
+#endif
+
 // The lanes of `waiting` at their next hits. Returns those that go on to the light, of which `light` is left.
-static inline MASK pass_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, const Hits* hits,
+static inline MASK pass_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, Hits* hits,
                                 MASK waiting, REAL3* light) {
   const MASK hit = waiting & hit_anything(hits);
   const MASK here = current_media(media, rays, waiting);
-  const Faces faces = hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->d, hits, hit);
+  Faces faces = hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->d, hits, hit);
   const int kind = (int)(MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE);
-  const MASK passing = hit & MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
+  MASK passing = hit & MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
+#if HAS_TOUCHING
+  SceneRays behind = *rays;
+  const MASK touching = may_touch(instances, hits, passing);
+  pass_touching(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, hits, &faces, &behind, touching);
+  passing &= MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
+#endif
   *light = select3(*light, all3((float3)(0.0f)), hit & ~passing);
   MASK through = passing;
 #if HAS_MEDIA
@@ -53,10 +75,19 @@ static inline MASK pass_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* r
   for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     MediaStack stack = get_media(rays, i);
-    cross_boundary(&stack, (u32)MASK_LANE(faces.medium, i), MASK_LANE(faces.entering, i));
+#if HAS_TOUCHING
+    if (MASK_LANE(touching, i))
+      stack = get_media(&behind, i);
+    else
+#endif
+      cross_boundary(&stack, (u32)MASK_LANE(faces.medium, i), MASK_LANE(faces.entering, i));
     set_media(rays, i, stack);
     MASK_LANE(there, i) = (int)current_medium(media, stack);
   }
+#if HAS_TOUCHING
+  rays->media_low = select(rays->media_low, behind.media_low, touching & passing);
+  rays->media_high = select(rays->media_high, behind.media_high, touching & passing);
+#endif
   const MASK changes = interface & MASK_OF(there != here);
   const REAL3 kept = absorb(media, here, hits->t - rays->since, (waiting & ~hit) | changes);
   *light = multiply3(*light, kept);
@@ -75,7 +106,7 @@ static inline MASK pass_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* r
 // The shadow rays of `lanes` at what they met: what reaches the lights is added to the pixels. Returns those
 // that go on.
 static inline MASK reach_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, PathStates* paths,
-                                 const Hits* hits, MASK lanes, float4* radiance, u32* counts) {
+                                 Hits* hits, MASK lanes, float4* radiance, u32* counts) {
 #if HAS_SHADOW_FILTERS
   const MASK passing = pass_filters(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, hits, lanes, &paths->throughput);
   const MASK too_many = passing & MASK_OF(rays->crossings >= MAX_FILTERS);

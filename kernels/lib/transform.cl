@@ -45,4 +45,11 @@ static inline REAL3 world_normals(__global const Instance* instance, REAL3 n) {
                fma((REAL)(r0.z), n.x, fma((REAL)(r1.z), n.y, r2.z * n.z)));
 }
 
+static inline float3 world_normal(__global const Instance* instance, float3 n) {
+  const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
+               r2 = instance->object_from_world[2];
+  return (float3)(fma(r0.x, n.x, fma(r1.x, n.y, r2.x * n.z)), fma(r0.y, n.x, fma(r1.y, n.y, r2.y * n.z)),
+                  fma(r0.z, n.x, fma(r1.z, n.y, r2.z * n.z)));
+}
+
 #endif

@@ -107,7 +107,8 @@ typedef struct Instance {
   u32 material;  // of a solid; a mesh's triangles carry their own unless material != NO_MATERIAL
   u32 flags;     // INSTANCE_*
   u32 object;    // index of the scene object it came from, for AOVs and messages
-  u32 pad0, pad1, pad2;
+  float touch;   // above 0 where surfaces of it may lie on others' or its own: how far rounding may part them
+  u32 pad0, pad1;
   float4 world_center;   // of the bounds; w = half the diagonal (0 when unbounded)
   float4 pattern_scale;  // xyz: object space times this is the scene file's object space, where patterns are measured
 } Instance;

@@ -1,0 +1,269 @@
+// See touching.h. A flat face lies on a convex solid where its plane is one that the solid leans against;
+// triangles are compared with triangles; round surfaces are looked at in ever smaller cells.
+#include "compile/touching.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "compile/round_surfaces.h"
+#include "compile/shapes.h"
+#include "compile/touching_triangles.h"
+
+namespace sundog {
+namespace {
+
+struct Face {
+  dvec3 normal;  // unit
+  double at;     // normal . p of its points
+  Bounds box;
+};
+
+struct Body {
+  Instance* instance;
+  Bounds box;
+  UnitShape unit;
+  dmat4 world_from_unit;
+  const Mesh* mesh;
+  double size;  // greatest coordinate, which rounding is relative to
+  bool transmits, plane;
+  std::vector<Face> faces;  // flat ones of a solid
+};
+
+bool overlap(const Bounds& a, const Bounds& b, double slack) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (double(a.lower[axis]) > double(b.upper[axis]) + slack ||
+        double(b.lower[axis]) > double(a.upper[axis]) + slack)
+      return false;
+  return true;
+}
+
+double greatest(const Bounds& box) {
+  double most = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    most = std::max({most, std::abs(double(box.lower[axis])), std::abs(double(box.upper[axis]))});
+  return most;
+}
+
+/// How far the solid reaches along `n`.
+double farthest(const Body& body, const dvec3& n) {
+  const glm::dmat3 linear(body.world_from_unit);
+  return glm::dot(n, dvec3(body.world_from_unit[3])) + reach(body.unit, glm::transpose(linear) * n);
+}
+
+/// The flat face with the normal `n` in unit space through `p`, spanned by `u` and `v` (a parallelogram that
+/// holds it).
+void add_face(Body& body, const dvec3& n, const dvec3& p, const dvec3& u, const dvec3& v) {
+  const glm::dmat3 linear(body.world_from_unit);
+  Face face;
+  face.normal = glm::normalize(glm::transpose(glm::inverse(linear)) * n);
+  face.at = glm::dot(face.normal, dvec3(body.world_from_unit * glm::dvec4(p, 1)));
+  face.box = Bounds::none();
+  for (const double a : {-1.0, 1.0})
+    for (const double b : {-1.0, 1.0}) {
+      const dvec3 corner(body.world_from_unit * glm::dvec4(p + a * u + b * v, 1));
+      face.box.extend(Lanes{float(corner.x), float(corner.y), float(corner.z), 0});
+    }
+  body.faces.push_back(face);
+}
+
+void add_faces_along_y(Body& body, double bottom_radius, double top_radius) {
+  const dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  if (bottom_radius > 0) add_face(body, y, -y, bottom_radius * x, bottom_radius * z);
+  if (top_radius > 0) add_face(body, y, y, top_radius * x, top_radius * z);
+}
+
+void add_box_faces(Body& body, const dvec3& half, double round) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      dvec3 n(0), u(0), v(0);
+      const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+      n[axis] = 1;
+      u[next] = half[next] - round;
+      v[last] = half[last] - round;
+      add_face(body, n, side * half[axis] * n, u, v);
+    }
+}
+
+void add_faces(Body& body) {
+  const float4& p = body.unit.parameters;
+  switch (body.unit.shape) {
+    case SHAPE_PLANE: {
+      add_face(body, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1});
+      const float inf = std::numeric_limits<float>::infinity();
+      body.faces.back().box = {lanes(-inf), lanes(inf)};
+      break;
+    }
+    case SHAPE_BOX:
+      return add_box_faces(body, dvec3(1), 0);
+    case SHAPE_ROUNDBOX:
+      return add_box_faces(body, {p.x, p.y, p.z}, p.w);
+    case SHAPE_CYLINDER:
+      return add_faces_along_y(body, p.x != 0 ? 1 : 0, p.x != 0 ? 1 : 0);
+    case SHAPE_CONE:
+      return add_faces_along_y(body, p.z != 0 ? double(p.x) : 0, p.z != 0 ? double(p.y) : 0);
+    case SHAPE_DISK:
+      return add_face(body, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1});
+    default:
+      break;
+  }
+}
+
+Body make_body(const SceneDescription& scene, const PlacedBody& placed) {
+  const Object& object = scene.objects[placed.instance->object];
+  Body body{placed.instance, placed.box, unit_shape(scene, object), object.world_from_object, nullptr, 0,
+            (placed.instance->flags & INSTANCE_TRANSMITS) != 0,
+            placed.instance->shape == SHAPE_PLANE, {}};
+  if (const auto* shape = std::get_if<MeshShape>(&object.shape))
+    body.mesh = &scene.meshes[static_cast<std::size_t>(shape->mesh)];
+  const dvec3& s = body.unit.scale;
+  body.world_from_unit = object.world_from_object * dmat4(glm::dmat3(s.x, 0, 0, 0, s.y, 0, 0, 0, s.z));
+  if (body.plane)
+    body.box = {lanes(-std::numeric_limits<float>::infinity()), lanes(std::numeric_limits<float>::infinity())};
+  else
+    body.size = greatest(body.box);
+  add_faces(body);
+  return body;
+}
+
+/// The body's triangles whose boxes overlap `box`.
+std::vector<PlacedTriangle> triangles_in(const Body& body, const Bounds& box, double slack) {
+  std::vector<dvec3> at;
+  at.reserve(body.mesh->positions.size());
+  for (const glm::vec3& p : body.mesh->positions)
+    at.push_back(dvec3(body.world_from_unit * glm::dvec4(dvec3(p), 1)));
+  std::vector<PlacedTriangle> found;
+  for (const glm::uvec3& t : body.mesh->triangles) {
+    const PlacedTriangle triangle{{at[t.x], at[t.y], at[t.z]}};
+    bool apart = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [low, high] = std::minmax({at[t.x][axis], at[t.y][axis], at[t.z][axis]});
+      apart |= low > double(box.upper[axis]) + slack || high < double(box.lower[axis]) - slack;
+    }
+    if (!apart) found.push_back(triangle);
+  }
+  return found;
+}
+
+bool leans_on(const Body& solid, const dvec3& normal, double at, double tolerance) {
+  return std::abs(farthest(solid, normal) - at) <= tolerance ||
+         std::abs(farthest(solid, -normal) + at) <= tolerance;
+}
+
+bool face_on_solid(const Body& a, const Body& solid, double tolerance) {
+  if (solid.plane) return false;  // its own face is looked at
+  return std::any_of(a.faces.begin(), a.faces.end(), [&](const Face& face) {
+    return overlap(face.box, solid.box, tolerance) && leans_on(solid, face.normal, face.at, tolerance);
+  });
+}
+
+bool planes_touch(const Face& a, const Face& b, double tolerance) {
+  const double along = glm::dot(a.normal, b.normal);
+  return std::abs(along) > 1 - 1e-9 && std::abs(a.at - std::copysign(b.at, along * b.at)) <= tolerance;
+}
+
+bool mesh_on_solid(const Body& mesh, const Body& solid, double tolerance) {
+  for (const PlacedTriangle& t : triangles_in(mesh, solid.box, tolerance)) {
+    const dvec3 normal = glm::cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
+    const double size = glm::length(normal);
+    if (!(size > 0)) continue;
+    if (!solid.plane) {
+      if (leans_on(solid, normal / size, glm::dot(normal, t.corner[0]) / size, tolerance)) return true;
+      continue;
+    }
+    const Face& face = solid.faces[0];
+    const auto on_plane = [&](const dvec3& p) { return std::abs(glm::dot(face.normal, p) - face.at) <= tolerance; };
+    if (on_plane(t.corner[0]) && on_plane(t.corner[1]) && on_plane(t.corner[2])) return true;
+  }
+  return false;
+}
+
+Bounds common(const Bounds& a, const Bounds& b) {
+  return {lanes_max(a.lower, b.lower), lanes_min(a.upper, b.upper)};
+}
+
+bool touch(const Body& a, const Body& b, double tolerance) {
+  if (a.mesh && b.mesh) {
+    const Bounds box = common(a.box, b.box);
+    const auto of_b = triangles_in(b, box, tolerance);
+    return !of_b.empty() && any_lies_on(triangles_in(a, box, tolerance), of_b, tolerance);
+  }
+  if (a.mesh) return mesh_on_solid(a, b, tolerance);
+  if (b.mesh) return mesh_on_solid(b, a, tolerance);
+  if (a.plane && b.plane) return planes_touch(a.faces[0], b.faces[0], tolerance);
+  if (face_on_solid(a, b, tolerance) || face_on_solid(b, a, tolerance)) return true;
+  return round_surfaces_touch({a.unit, a.world_from_unit}, {b.unit, b.world_from_unit}, common(a.box, b.box),
+                              tolerance);
+}
+
+/// Marks bodies as it finds them.
+class Search {
+ public:
+  Search(const SceneDescription& scene, std::span<PlacedBody> placed) {
+    const dvec3 camera = glm::abs(scene.camera.position);
+    camera_ = std::max({camera.x, camera.y, camera.z});
+    for (const PlacedBody& body : placed) bodies_.push_back(make_body(scene, body));
+  }
+
+  bool run() {
+    std::sort(bodies_.begin(), bodies_.end(),
+              [](const Body& a, const Body& b) { return a.box.lower[0] < b.box.lower[0]; });
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      look_within(bodies_[i]);
+      for (std::size_t k = i + 1; k < bodies_.size(); ++k) {
+        const double slack = tolerance(bodies_[i], bodies_[k]);
+        if (double(bodies_[k].box.lower[0]) > double(bodies_[i].box.upper[0]) + slack) break;
+        look_between(bodies_[i], bodies_[k], slack);
+      }
+    }
+    return found_;
+  }
+
+ private:
+  // Further rays start as far off a surface: see offset_distance() in kernels/lib/surface.cl.
+  double tolerance(const Body& a, const Body& b) const {
+    return 0x1p-19 * std::max({a.size, b.size, camera_, 1e-30});
+  }
+
+  void mark(Body& body, double size) {
+    body.instance->touch = std::max(body.instance->touch, std::max(float(size * 0x1p-21), 1e-30f));
+    found_ = true;
+  }
+
+  void look_within(Body& body) {
+    if (!body.mesh || !body.transmits) return;
+    const auto known = within_.find(body.mesh);
+    const bool touches = known != within_.end() ? known->second : any_lies_on_itself(body);
+    within_[body.mesh] = touches;
+    if (touches) mark(body, body.size);
+  }
+
+  bool any_lies_on_itself(const Body& body) const {
+    return any_lies_on(triangles_in(body, body.box, body.size), {}, tolerance(body, body));
+  }
+
+  void look_between(Body& a, Body& b, double slack) {
+    const double size = std::max(a.size, b.size);
+    const auto marked = [&](const Body& body) { return double(body.instance->touch) >= size * 0x1p-21 * 0.999 && body.instance->touch > 0; };
+    if (!(a.transmits || b.transmits) || (marked(a) && marked(b))) return;
+    if (!overlap(a.box, b.box, slack) || !touch(a, b, slack)) return;
+    mark(a, size);
+    mark(b, size);
+  }
+
+  std::vector<Body> bodies_;
+  std::map<const Mesh*, bool> within_;
+  double camera_ = 0;
+  bool found_ = false;
+};
+
+}  // namespace
+
+void mark_touching(const SceneDescription& scene, std::span<PlacedBody> bodies, SceneFeatures& features) {
+  features.touching = Search(scene, bodies).run();
+}
+
+}  // namespace sundog

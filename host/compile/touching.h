@@ -1,0 +1,22 @@
+// Which instances have faces in one place with others, exactly or to rounding.
+#pragma once
+#include <span>
+
+#include "compile/bounds.h"
+#include "compile/compiled_scene.h"
+#include "scene/description.h"
+
+namespace sundog {
+
+/// An instance that is no field, and its bounds in the world (a plane has none).
+struct PlacedBody {
+  Instance* instance;
+  Bounds box;
+};
+
+/// Sets Instance.touch of the bodies that may have a face on one of another, or of their own mesh, where at
+/// least one of the two has an interior medium. Errs on the safe side: what is marked only costs time. Sets
+/// features.touching when there are any.
+void mark_touching(const SceneDescription& scene, std::span<PlacedBody> bodies, SceneFeatures& features);
+
+}  // namespace sundog

@@ -1,0 +1,421 @@
+// Surfaces that touch. Where faces of several solids lie in one place, exactly or to rounding, a ray crosses
+// all of them at once: from the media before to the media behind, with one reflection and one refraction
+// between them. Were they crossed one after another, the next ray would start beyond those that it has not
+// met yet, or be turned back by a gap that is not there. The host marks the instances that may touch others.
+#ifndef SUNDOG_LIB_TOUCHING_CL
+#define SUNDOG_LIB_TOUCHING_CL
+#include "lib/config.h"
+#if HAS_TOUCHING
+#include "lib/media.cl"
+#include "lib/nodes.cl"
+#include "lib/surface.cl"
+#include "lib/traverse.cl"
+
+#define MOST_TOUCHING 16u
+
+// A short part of a ray, and all that it meets there in (from, to], in no order. Boxes are asked about more:
+// rounding may place a hit beside its box, by more than boxes are widened.
+typedef struct Stretch {
+  float3 o, d;
+  float from, to, box_from, box_to;
+  u32 count;
+  Hit hits[MOST_TOUCHING];
+} Stretch;
+
+static inline bool same_face(const Hit* a, const Hit* b) {
+  return a->instance == b->instance && a->prim == b->prim;
+}
+
+// A triangle may be in several leaves of its tree.
+static inline void note_hit(Stretch* stretch, const Hit* hit) {
+  for (u32 i = 0; i < stretch->count; ++i)
+    if (same_face(&stretch->hits[i], hit) && stretch->hits[i].t == hit->t) return;
+  if (stretch->count < MOST_TOUCHING) stretch->hits[stretch->count++] = *hit;
+}
+
+#if HAS_SOLID
+static inline void note_solid(__global const Instance* restrict instances, u32 index, Stretch* stretch) {
+  const REAL3 o = all3(stretch->o), d = all3(stretch->d);
+  REAL from = (REAL)(stretch->from);
+  for (u32 i = 0; i < 4u; ++i) {
+    Hits hits = no_hits((REAL)(stretch->to));
+    hit_solids(instances, index, index + 1u, &o, &d, &from, lanes_of(1u), false, &hits);
+    const Hit hit = get_hit(&hits, 0);
+    if (hit.instance == NO_INSTANCE) return;
+    note_hit(stretch, &hit);
+    from = (REAL)(hit.t);
+  }
+}
+#endif
+
+#if HAS_BVH
+// Pushes the children of a node that the stretch crosses. Returns the stack's new top.
+static inline u32 push_all_crossed(__global const u32* nodes, u32 word, const SlabRay* slabs,
+                                   const Stretch* stretch, u32* stack, u32 top) {
+  u32 keys[8];
+  __global const BvhNode* node = node_at(nodes, word);
+  for (u32 bits = cross_children(node, slabs, stretch->box_from, stretch->box_to, keys); bits; bits &= bits - 1u)
+    stack[top++] = child_word(node, lowest_bit(bits));
+  return top;
+}
+#endif
+
+#if HAS_MESH
+static inline void note_triangle(__global const TriangleBlock* restrict blocks, u32 place, float t, float u,
+                                 float v, u32 instance, Stretch* stretch) {
+  Hit hit;
+  hit.t = t;
+  hit.u = u;
+  hit.v = v;
+  hit.prim = place;
+  hit.instance = instance;
+  finish_triangle(blocks, &hit);
+  note_hit(stretch, &hit);
+}
+
+static inline void note_block(__global const TriangleBlock* restrict blocks, u32 index, const ShearRay* shear,
+                              u32 instance, Stretch* stretch) {
+#if WIDE_VECTORS
+  const BlockTest test = test_block(blocks + index, shear, stretch->from, stretch->to);
+  if (!test.lanes) return;
+  float t[8], u[8], v[8];
+  vstore8(test.t, 0, t);
+  vstore8(test.u, 0, u);
+  vstore8(test.v, 0, v);
+  for (u32 bits = test.lanes; bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    note_triangle(blocks, index * 8u + i, t[i], u[i], v[i], instance, stretch);
+  }
+#else
+  for (u32 i = 0; i < 8u && blocks[index].prim[i] != NO_PRIM; ++i) {
+    float t, u, v;
+    if (hits_triangle(blocks[index].v0_x + i, shear, stretch->from, stretch->to, &t, &u, &v))
+      note_triangle(blocks, index * 8u + i, t, u, v, instance, stretch);
+  }
+#endif
+}
+
+static inline void note_mesh(TRACE_PARAMETERS, u32 index, Stretch* stretch, u32* stack) {
+  __global const Instance* instance = instances + index;
+  float3 o = stretch->o, d = stretch->d;
+  if (!(instance->flags & INSTANCE_IDENTITY)) {
+    o = object_point(instance, o);
+    d = object_vector(instance, d);
+  }
+  const SlabRay slabs = make_slab_ray(o, d);
+  const ShearRay shear = make_shear_ray(o, d);
+  u32 top = 0;
+  stack[top++] = instance->root;
+  while (top) {
+    const u32 word = stack[--top];
+    if (word & BVH_LEAF) {
+      const u32 first = word & BVH_FIRST_MASK,
+                last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+      for (u32 i = first; i <= last; ++i) note_block(blocks, i, &shear, index, stretch);
+    } else
+      top = push_all_crossed(nodes, word, &slabs, stretch, stack, top);
+  }
+}
+#endif
+
+#if HAS_BVH
+static inline void note_bounded(TRACE_PARAMETERS, Stretch* stretch) {
+  u32 stack[BVH_STACK + 1];
+  u32 top = 0;
+  if (info->bounded_count) stack[top++] = info->bounded_count == 1u ? BVH_LEAF : info->tlas_root;
+  const SlabRay slabs = make_slab_ray(stretch->o, stretch->d);
+  while (top) {
+    const u32 word = stack[--top];
+    if (!(word & BVH_LEAF)) {
+      top = push_all_crossed(nodes, word, &slabs, stretch, stack, top);
+      continue;
+    }
+    const u32 first = word & BVH_FIRST_MASK,
+              last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+    for (u32 i = first; i <= last; ++i) {
+#if HAS_MESH
+      if (instances[i].shape == SHAPE_MESH) {
+        note_mesh(TRACE_ARGUMENTS, i, stretch, stack + top);
+        continue;
+      }
+#endif
+#if HAS_SOLID
+      note_solid(instances, i, stretch);
+#endif
+    }
+  }
+}
+#endif
+
+NEVER_INLINE void note_all(TRACE_PARAMETERS, Stretch* stretch) {
+  stretch->count = 0;
+#if HAS_BVH
+  note_bounded(TRACE_ARGUMENTS, stretch);
+  const u32 first = info->bounded_count;
+#else
+  const u32 first = 0;
+#endif
+#if HAS_SOLID
+  for (u32 i = first; i < info->instance_count; ++i) note_solid(instances, i, stretch);
+#endif
+}
+
+static inline float greatest_component(float3 a) { return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z))); }
+
+static inline float3 unit_normal(float3 n) {
+  const float size = greatest_component(n);
+  return size > 0.0f ? normalize(n / size) : n;
+}
+
+static inline float3 normal_of(const Hit* hit) { return (float3)(hit->ng_x, hit->ng_y, hit->ng_z); }
+
+// In world space, not normalised.
+static inline float3 outward_of(__global const Instance* restrict instances, const Hit* hit) {
+  return world_normal(instances + hit->instance, normal_of(hit));
+}
+
+// How far rounding may place a hit off its surface: `least` or what the size of the surface asks for. Twice
+// as much separates what are two surfaces from what is one.
+static inline float rounding_of(TRACE_PARAMETERS, __global const TriangleShading* restrict triangles,
+                                const Hit* hit, float3 outward, float least) {
+  __global const Instance* instance = instances + hit->instance;
+  float size = greatest_component(instance->world_center.xyz) + instance->world_center.w;
+#if HAS_MESH
+  if (instance->shape == SHAPE_MESH)
+    size = triangles[hit->prim].extent * greatest_component(normal_of(hit)) /
+           fmax(greatest_component(outward), FLT_MIN);
+#endif
+  return fmax(least, size * 0x1p-21f);
+}
+
+// The faces that a ray crosses together with one of them.
+typedef struct Touching {
+  Stretch met;
+  float end;    // t of the last one
+  float apart;  // how far the faces may be apart
+} Touching;
+
+// The faces that touch the one at `first`, itself among them.
+static inline void find_touching(TRACE_PARAMETERS, __global const TriangleShading* restrict triangles,
+                                 float3 o, float3 d, const Hit* first, Touching* touching) {
+  Stretch* met = &touching->met;
+  const float3 outward = outward_of(instances, first), p = o + first->t * d;
+  const float least = fmax(greatest_component(o), greatest_component(p)) * 0x1p-19f;
+  const float own = rounding_of(TRACE_ARGUMENTS, triangles, first, outward, least);
+  const float slope = fabs(dot(unit_normal(outward), d));
+  met->o = o;
+  met->d = d;
+  met->from = as_float(as_int(first->t) - 1);
+  const float reach = fmax(own, instances[first->instance].touch) / fmax(slope, 1e-3f);
+  met->to = first->t + reach;
+  met->box_from = fmax(first->t - reach, 0.0f);
+  met->box_to = met->to + reach;
+  note_all(TRACE_ARGUMENTS, met);
+  bool found = false;
+  for (u32 i = 0; i < met->count; ++i) found |= same_face(&met->hits[i], first);
+  if (!found) met->hits[min(met->count++, MOST_TOUCHING - 1u)] = *first;
+  met->count = min(met->count, MOST_TOUCHING);
+  touching->end = first->t;
+  touching->apart = own;
+  for (u32 i = 0; i < met->count; ++i) {
+    const Hit* hit = &met->hits[i];
+    const float3 other = outward_of(instances, hit);
+    const float limit = fmax(own, rounding_of(TRACE_ARGUMENTS, triangles, hit, other, least));
+    const float further = hit->t - first->t;
+    if (further * fmax(slope, fabs(dot(unit_normal(other), d))) > limit) continue;
+    touching->end = fmax(touching->end, hit->t);
+    touching->apart = fmax(touching->apart, limit);
+  }
+  u32 kept = 0;
+  for (u32 i = 0; i < met->count; ++i)
+    if (met->hits[i].t <= touching->end) met->hits[kept++] = met->hits[i];
+  met->count = kept;
+}
+
+static inline u32 material_of(__global const Instance* restrict instances,
+                              __global const TriangleShading* restrict triangles, const Hit* hit) {
+  const u32 material = instances[hit->instance].material;
+  return material != NO_MATERIAL ? material : triangles[hit->prim].material;
+}
+
+// Whether two hits are one, on an edge that two triangles of a mesh share.
+static inline bool on_shared_edge(__global const Instance* restrict instances, const Hit* a, const Hit* b) {
+  if (a->instance != b->instance || instances[a->instance].shape != SHAPE_MESH) return false;
+  const float near_a = fmin(fmin(a->u, a->v), 1.0f - a->u - a->v),
+              near_b = fmin(fmin(b->u, b->v), 1.0f - b->u - b->v);
+  return fmax(near_a, near_b) < 1e-5f && dot(normal_of(a), normal_of(b)) > 0.0f;
+}
+
+// What the faces of one crossing change: bits of `met` whose media are entered and left. A medium that is
+// left and entered again stays as it is.
+typedef struct Changes {
+  u32 entered, left;
+  u32 medium[MOST_TOUCHING];
+} Changes;
+
+static inline Changes media_changes(__global const Instance* restrict instances,
+                                    __global const TriangleShading* restrict triangles,
+                                    __global const Material* restrict materials, const Stretch* met) {
+  Changes changes;
+  changes.entered = 0;
+  changes.left = 0;
+  for (u32 i = 0; i < met->count; ++i) {
+    const Hit* hit = &met->hits[i];
+    __global const Material* material = materials + material_of(instances, triangles, hit);
+    changes.medium[i] = material->medium;
+    if ((material->flags & (MATERIAL_TRANSMITS | MATERIAL_THIN)) != MATERIAL_TRANSMITS) continue;
+    bool again = false;
+    for (u32 k = 0; k < i; ++k) again |= on_shared_edge(instances, &met->hits[k], hit);
+    if (again) continue;
+    const bool enters = dot(outward_of(instances, hit), met->d) < 0.0f;
+    u32* opposite = enters ? &changes.left : &changes.entered;
+    u32 pair = *opposite;
+    while (pair && changes.medium[lowest_bit(pair)] != material->medium) pair &= pair - 1u;
+    if (pair)
+      *opposite &= ~(1u << lowest_bit(pair));
+    else if (enters)
+      changes.entered |= 1u << i;
+    else
+      changes.left |= 1u << i;
+  }
+  return changes;
+}
+
+// Whether, of two solids that are entered in one place, the first counts as the outer one: the larger. Else
+// the media decide, so that the order in the file does not.
+static inline bool is_outer(__global const Instance* restrict instances, __global const Medium* restrict media,
+                            const Hit* a, u32 medium_a, const Hit* b, u32 medium_b) {
+  const float size_a = instances[a->instance].world_center.w, size_b = instances[b->instance].world_center.w;
+  if (size_a != size_b) return size_a == 0.0f || (size_b != 0.0f && size_a > size_b);
+  const float index_a = media[medium_a].absorption.w, index_b = media[medium_b].absorption.w;
+  return index_a != index_b ? index_a < index_b : medium_a < medium_b;
+}
+
+// Enters the media of `changes`, the outer ones first. Returns how many found no room.
+static inline u32 enter_all(__global const Instance* restrict instances, __global const Medium* restrict media,
+                            const Stretch* met, const Changes* changes, MediaStack* stack) {
+  u32 lost = 0;
+  for (u32 left = changes->entered; left;) {
+    u32 outer = lowest_bit(left);
+    for (u32 bits = left & (left - 1u); bits; bits &= bits - 1u) {
+      const u32 i = lowest_bit(bits);
+      if (is_outer(instances, media, &met->hits[i], changes->medium[i], &met->hits[outer],
+                   changes->medium[outer]))
+        outer = i;
+    }
+    left &= ~(1u << outer);
+    if (!cross_boundary(stack, changes->medium[outer], true)) ++lost;
+  }
+  return lost;
+}
+
+// Which of the faces that touch a ray sees.
+typedef struct Seen {
+  Hit hit;
+  u32 material;
+  MediaStack behind;  // the media behind all of them
+  u32 after;          // the one that light is in there
+  u32 overflows, strays;
+} Seen;
+
+static inline bool comes_first(const Hit* a, const Hit* b) {
+  if (a->t != b->t) return a->t < b->t;
+  return a->instance != b->instance ? a->instance < b->instance : a->prim < b->prim;
+}
+
+// How much a face has to say where two media meet: greater is seen. Nothing where it parts neither of them.
+static inline u32 say_of(__global const Material* restrict material, u32 before, u32 after) {
+  if (material->flags & MATERIAL_THIN) return 3u;
+  if (material->medium != before && material->medium != after) return 0u;
+  return material->flags & MATERIAL_CLEAR ? 1u : 2u;
+}
+
+// Whether face a is seen, and not b.
+static inline bool is_seen_before(SHADE_PARAMETERS, const Hit* a, u32 material_a, const Hit* b,
+                                  u32 material_b, u32 before, u32 after) {
+  __global const Material *ma = materials + material_a, *mb = materials + material_b;
+  const u32 say_a = say_of(ma, before, after), say_b = say_of(mb, before, after);
+  if (say_a != say_b) return say_a > say_b;
+  __global const Medium *inside_a = media + ma->medium, *inside_b = media + mb->medium;
+  if (inside_a->priority != inside_b->priority) return inside_a->priority > inside_b->priority;
+  if (inside_a->absorption.w != inside_b->absorption.w)
+    return inside_a->absorption.w > inside_b->absorption.w;
+  if (material_a != material_b) return material_a < material_b;
+  return comes_first(a, b);
+}
+
+// What a ray in the media `before` makes of faces that touch. Something opaque among them, whose flags are
+// not `passable` under `mask`, is seen from the media before: what lies at its surface, light does not enter.
+static inline void join_faces(TRACE_PARAMETERS, SHADE_PARAMETERS, const Touching* touching, u32 mask,
+                              MediaStack before, Seen* seen) {
+  const Stretch* met = &touching->met;
+  const u32 current = current_medium(media, before);
+  seen->behind = before;
+  seen->after = current;
+  seen->overflows = 0;
+  seen->strays = 0;
+  bool opaque = false;
+  for (u32 i = 0; i < met->count; ++i) {
+    const u32 material = material_of(instances, triangles, &met->hits[i]);
+    if ((materials[material].flags & mask) == MATERIAL_TRANSMITS) continue;
+    if (opaque && comes_first(&seen->hit, &met->hits[i])) continue;
+    opaque = true;
+    seen->hit = met->hits[i];
+    seen->material = material;
+  }
+  if (opaque) return;
+  const Changes changes = media_changes(instances, triangles, materials, met);
+  for (u32 left = changes.left; left; left &= left - 1u)
+    if (!cross_boundary(&seen->behind, changes.medium[lowest_bit(left)], false)) ++seen->strays;
+  seen->overflows = enter_all(instances, media, met, &changes, &seen->behind);
+  seen->after = current_medium(media, seen->behind);
+  seen->hit = met->hits[0];
+  seen->material = material_of(instances, triangles, &met->hits[0]);
+  for (u32 i = 1; i < met->count; ++i) {
+    const u32 material = material_of(instances, triangles, &met->hits[i]);
+    if (!is_seen_before(SHADE_ARGUMENTS, &met->hits[i], material, &seen->hit, seen->material, current,
+                        seen->after))
+      continue;
+    seen->hit = met->hits[i];
+    seen->material = material;
+  }
+}
+
+// Lane i of `rays`, which has met a face of an instance that may touch others: hit and face become those of
+// the face that is seen, `behind` and `after` what lies behind all that touch there. `mask`: as above. The
+// distance of what is seen stays that of the first face; returns that of the last, and in `apart` how far the
+// faces may be apart.
+NEVER_INLINE float meet_touching(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRays* rays, u32 i, u32 mask,
+                                 Hits* hits, Faces* faces, Seen* seen, float* apart) {
+  Touching touching;
+  const Hit first = get_hit(hits, i);
+  find_touching(TRACE_ARGUMENTS, triangles, get3(&rays->o, i), get3(&rays->d, i), &first, &touching);
+  join_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &touching, mask, get_media(rays, i), seen);
+  *apart = touching.apart;
+  seen->hit.t = first.t;
+  set_hit(hits, i, &seen->hit);
+  const float3 outward = outward_of(instances, &seen->hit);
+  set3(&faces->outward, i, outward);
+  MASK_LANE(faces->entering, i) = dot(outward, get3(&rays->d, i)) < 0.0f ? -1 : 0;
+  MASK_LANE(faces->material, i) = (int)seen->material;
+  u32 flags = materials[seen->material].flags;
+  // A thin surface on an interface bends like one.
+  if (seen->after != current_medium(media, get_media(rays, i))) flags &= ~MATERIAL_THIN;
+  MASK_LANE(faces->flags, i) = (int)flags;
+  MASK_LANE(faces->medium, i) = (int)materials[seen->material].medium;
+  return touching.end;
+}
+
+// The lanes of `lanes` whose hits are on instances that may touch others.
+static inline MASK may_touch(__global const Instance* restrict instances, const Hits* hits, MASK lanes) {
+  MASK found = NO_LANES;
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(hits->instance, &lanes, &index);
+    if (instances[index].touch > 0.0f) found |= mine;
+  }
+  return found;
+}
+#endif
+
+#endif

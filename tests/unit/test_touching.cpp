@@ -1,0 +1,89 @@
+// Which instances are marked as touching others: all that do, and none of the usual ones that do not.
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "catch.h"
+#include "compile/compiled_scene.h"
+#include "compile/touching_triangles.h"
+#include "scene/load.h"
+#include "scenes.h"
+#include "test_meshes.h"
+
+using namespace sundog;
+using glm::dmat4;
+using glm::dvec3;
+
+namespace {
+
+dmat4 at(dvec3 position) { return glm::translate(dmat4(1), position); }
+
+/// Two solids of glass, or the second one opaque.
+bool touch(const Shape& a, const dmat4& place_a, const Shape& b, const dmat4& place_b, bool opaque = false) {
+  SceneDescription scene = scenes::line_of_sight({0, 0, 9}, {0, 0, 0});
+  const int glass = scenes::add_dielectric(scene, 1.5), white = scenes::add_white(scene);
+  scene.meshes.push_back(bumpy_sphere(12));
+  scenes::place(scene, a, glass, place_a);
+  scenes::place(scene, b, opaque ? white : glass, place_b);
+  const CompiledScene flat = compile(scene);
+  const bool both = flat.instances[0].touch > 0 && flat.instances[1].touch > 0;
+  CHECK(both == (flat.instances[0].touch > 0 || flat.instances[1].touch > 0));
+  CHECK(flat.features.touching == both);
+  return both;
+}
+
+const Shape box = BoxShape{}, ball = SphereShape{1}, tin = CylinderShape{1, 1, true},
+            soft = RoundBoxShape{{1, 1, 1}, 0.2}, ring = TorusShape{1, 0.25}, mesh = MeshShape{0};
+
+}  // namespace
+
+TEST_CASE("solids with faces in one place are marked") {
+  CHECK(touch(box, dmat4(1), box, at({2, 0.3, 0})));
+  CHECK(touch(box, dmat4(1), box, at({2.0000002, 0.3, 0})));
+  CHECK(touch(box, dmat4(1), BoxShape{{0.5, 0.5, 0.5}}, at({0.5, 0, 0})));
+  CHECK(touch(box, dmat4(1), PlaneShape{}, at({0, -1, 0}), true));
+  CHECK(touch(tin, at({0, 2, 0}), box, dmat4(1)));
+  CHECK(touch(tin, dmat4(1), tin, at({0, 1, 0})));
+  CHECK(touch(tin, dmat4(1), CylinderShape{0.5, 1, true}, at({0.5, 1, 0})));
+  CHECK(touch(ball, dmat4(1), ball, dmat4(1)));
+  CHECK(touch(ball, dmat4(1), ball, at({2, 0, 0})));
+  CHECK(touch(ball, at({0, 1, 0}), PlaneShape{}, dmat4(1), true));
+  CHECK(touch(ball, dmat4(1), tin, dmat4(1)));
+  CHECK(touch(soft, dmat4(1), soft, at({0.3, 0, 0})));
+  CHECK(touch(ring, dmat4(1), ring, dmat4(1)));
+  CHECK(touch(mesh, dmat4(1), mesh, dmat4(1)));
+  const dmat4 turned = glm::rotate(dmat4(1), 0.5, dvec3(1, 2, 3));
+  CHECK(touch(box, turned, box, turned * at({2, 0, 0})));
+  CHECK(touch(mesh, turned, mesh, turned));
+}
+
+TEST_CASE("solids that only cross or lie inside of each other are not marked") {
+  CHECK_FALSE(touch(box, dmat4(1), box, at({0.3, 0.4, 0.5})));
+  CHECK_FALSE(touch(box, dmat4(1), BoxShape{{0.9, 0.8, 0.99}}, dmat4(1)));
+  CHECK_FALSE(touch(box, dmat4(1), box, at({2.001, 0, 0})));
+  CHECK_FALSE(touch(ball, dmat4(1), ball, at({1, 0, 0})));
+  CHECK_FALSE(touch(ball, dmat4(1), SphereShape{0.98}, dmat4(1)));
+  CHECK_FALSE(touch(ball, dmat4(1), PlaneShape{}, at({0, 0.2, 0}), true));
+  CHECK_FALSE(touch(soft, dmat4(1), SphereShape{0.1}, at({0.84, 0.45, 0.75})));
+  CHECK_FALSE(touch(soft, dmat4(1), BoxShape{{0.68, 0.56, 0.6}}, dmat4(1)));
+  CHECK_FALSE(touch(tin, dmat4(1), CylinderShape{0.9, 0.9, true}, dmat4(1)));
+  CHECK_FALSE(touch(mesh, dmat4(1), mesh, glm::rotate(dmat4(1), 0.5, dvec3(1, 2, 3))));
+  CHECK_FALSE(touch(mesh, dmat4(1), box, at({0.2, 0.3, 0.4})));
+}
+
+TEST_CASE("the scenes that come along touch nothing where glass is nested") {
+  for (const char* name : {"hollow_ice", "hollow_ice_exact", "nested_glass"}) {
+    INFO(name);
+    CHECK_FALSE(compile(load_scene(std::string(SUNDOG_SOURCE_DIR) + "/scenes/" + name + ".json")).features.touching);
+  }
+}
+
+TEST_CASE("triangles lie on others, but not on their neighbours") {
+  const auto triangle = [](dvec3 a, dvec3 b, dvec3 c) { return PlacedTriangle{{a, b, c}}; };
+  const PlacedTriangle t = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  CHECK(lies_on(t, t, 1e-6));
+  CHECK(lies_on(t, triangle({0.2, 0.2, 0}, {5, 0.2, 0}, {0.2, 5, 0}), 1e-6));
+  CHECK(lies_on(t, triangle({0.1, 0.1, 5e-7}, {0.1, 0.2, 5e-7}, {0.2, 0.1, 5e-7}), 1e-6));
+  CHECK_FALSE(lies_on(t, triangle({0.1, 0.1, 5e-6}, {0.1, 0.2, 5e-6}, {0.2, 0.1, 5e-6}), 1e-6));
+  CHECK_FALSE(lies_on(t, triangle({1, 0, 0}, {1, 1, 0}, {0, 1, 0}), 1e-6));
+  CHECK_FALSE(lies_on(t, triangle({0, 0, 0}, {1, 0, 0}, {0, -1, 0}), 1e-6));
+  CHECK_FALSE(lies_on(t, triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0.1}), 1e-6));
+}
