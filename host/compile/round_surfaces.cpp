@@ -148,7 +148,8 @@ struct Search {
 
 bool round_surfaces_touch(const RoundSolid& a, const RoundSolid& b, const Bounds& box, double tolerance) {
   if (!is_round(a.unit) || !is_round(b.unit)) return false;
-  const dvec3 lower(box.lower[0], box.lower[1], box.lower[2]), upper(box.upper[0], box.upper[1], box.upper[2]);
+  const dvec3 lower(box.lower[0], box.lower[1], box.lower[2]),
+      upper(box.upper[0], box.upper[1], box.upper[2]);
   const dvec3 half = 0.5 * glm::max(upper - lower, dvec3(0)) + tolerance;
   const Surface of_a = make_surface(a), of_b = make_surface(b);
   Search search{of_a, of_b, tolerance, 4 * tolerance + 1e-3 * glm::length(half)};

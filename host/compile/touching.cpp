@@ -114,15 +114,22 @@ void add_faces(Body& body) {
 
 Body make_body(const SceneDescription& scene, const PlacedBody& placed) {
   const Object& object = scene.objects[placed.instance->object];
-  Body body{placed.instance, placed.box, unit_shape(scene, object), object.world_from_object, nullptr, 0,
+  Body body{placed.instance,
+            placed.box,
+            unit_shape(scene, object),
+            object.world_from_object,
+            nullptr,
+            0,
             (placed.instance->flags & INSTANCE_TRANSMITS) != 0,
-            placed.instance->shape == SHAPE_PLANE, {}};
+            placed.instance->shape == SHAPE_PLANE,
+            {}};
   if (const auto* shape = std::get_if<MeshShape>(&object.shape))
     body.mesh = &scene.meshes[static_cast<std::size_t>(shape->mesh)];
   const dvec3& s = body.unit.scale;
   body.world_from_unit = object.world_from_object * dmat4(glm::dmat3(s.x, 0, 0, 0, s.y, 0, 0, 0, s.z));
   if (body.plane)
-    body.box = {lanes(-std::numeric_limits<float>::infinity()), lanes(std::numeric_limits<float>::infinity())};
+    body.box = {lanes(-std::numeric_limits<float>::infinity()),
+                lanes(std::numeric_limits<float>::infinity())};
   else
     body.size = greatest(body.box);
   add_faces(body);
@@ -175,7 +182,9 @@ bool mesh_on_solid(const Body& mesh, const Body& solid, double tolerance) {
       continue;
     }
     const Face& face = solid.faces[0];
-    const auto on_plane = [&](const dvec3& p) { return std::abs(glm::dot(face.normal, p) - face.at) <= tolerance; };
+    const auto on_plane = [&](const dvec3& p) {
+      return std::abs(glm::dot(face.normal, p) - face.at) <= tolerance;
+    };
     if (on_plane(t.corner[0]) && on_plane(t.corner[1]) && on_plane(t.corner[2])) return true;
   }
   return false;
@@ -247,7 +256,9 @@ class Search {
 
   void look_between(Body& a, Body& b, double slack) {
     const double size = std::max(a.size, b.size);
-    const auto marked = [&](const Body& body) { return double(body.instance->touch) >= size * 0x1p-21 * 0.999 && body.instance->touch > 0; };
+    const auto marked = [&](const Body& body) {
+      return double(body.instance->touch) >= size * 0x1p-21 * 0.999 && body.instance->touch > 0;
+    };
     if (!(a.transmits || b.transmits) || (marked(a) && marked(b))) return;
     if (!overlap(a.box, b.box, slack) || !touch(a, b, slack)) return;
     mark(a, size);

@@ -98,7 +98,8 @@ class Grid {
     constexpr double most_cells = 512;
     for (std::uint32_t i = 0; i < list.size(); ++i) {
       const DoubleBox box = box_of(list[i], tolerance_);
-      const dvec3 from = glm::floor(box.lower / cell_), to = glm::floor(box.upper / cell_), n = to - from + 1.0;
+      const dvec3 from = glm::floor(box.lower / cell_), to = glm::floor(box.upper / cell_),
+                  n = to - from + 1.0;
       if (n.x * n.y * n.z > most_cells) {
         large_.push_back({0, i, second});
         continue;

@@ -46,16 +46,17 @@ static inline void pass_touching(TRACE_PARAMETERS, SHADE_PARAMETERS, const Scene
     const u32 i = lowest_bit(bits);
     Seen seen;
     float apart;
-    REAL_LANE(hits->t, i) = meet_touching(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, i,
-                                          MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE, hits, faces, &seen, &apart);
+    REAL_LANE(hits->t, i) =
+        meet_touching(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, i, MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE,
+                      hits, faces, &seen, &apart);
     set_media(behind, i, seen.behind);
   }
 }
 #endif
 
 // The lanes of `waiting` at their next hits. Returns those that go on to the light, of which `light` is left.
-static inline MASK pass_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, Hits* hits,
-                                MASK waiting, REAL3* light) {
+static inline MASK pass_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, Hits* hits, MASK waiting,
+                                REAL3* light) {
   const MASK hit = waiting & hit_anything(hits);
   const MASK here = current_media(media, rays, waiting);
   Faces faces = hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->d, hits, hit);

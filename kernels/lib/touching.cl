@@ -54,7 +54,8 @@ static inline u32 push_all_crossed(__global const u32* nodes, u32 word, const Sl
                                    const Stretch* stretch, u32* stack, u32 top) {
   u32 keys[8];
   __global const BvhNode* node = node_at(nodes, word);
-  for (u32 bits = cross_children(node, slabs, stretch->box_from, stretch->box_to, keys); bits; bits &= bits - 1u)
+  for (u32 bits = cross_children(node, slabs, stretch->box_from, stretch->box_to, keys); bits;
+       bits &= bits - 1u)
     stack[top++] = child_word(node, lowest_bit(bits));
   return top;
 }
@@ -130,8 +131,7 @@ static inline void note_bounded(TRACE_PARAMETERS, Stretch* stretch) {
       top = push_all_crossed(nodes, word, &slabs, stretch, stack, top);
       continue;
     }
-    const u32 first = word & BVH_FIRST_MASK,
-              last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+    const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
     for (u32 i = first; i <= last; ++i) {
 #if HAS_MESH
       if (instances[i].shape == SHAPE_MESH) {
@@ -247,33 +247,28 @@ static inline bool on_shared_edge(__global const Instance* restrict instances, c
 }
 
 // What the faces of one crossing change: bits of `met` whose media are entered and left. A medium that is
-// left and entered again stays as it is.
+// left and entered again stays as it is, and neither face is seen.
 typedef struct Changes {
-  u32 entered, left;
-  u32 medium[MOST_TOUCHING];
+  u32 entered, left, thin;
+  u32 material[MOST_TOUCHING];
 } Changes;
 
-static inline Changes media_changes(__global const Instance* restrict instances,
-                                    __global const TriangleShading* restrict triangles,
-                                    __global const Material* restrict materials, const Stretch* met) {
+static inline Changes faces_of(__global const Instance* restrict instances,
+                               __global const TriangleShading* restrict triangles,
+                               __global const Material* restrict materials, const Stretch* met) {
   Changes changes;
   changes.entered = 0;
   changes.left = 0;
+  changes.thin = 0;
   for (u32 i = 0; i < met->count; ++i) {
     const Hit* hit = &met->hits[i];
-    __global const Material* material = materials + material_of(instances, triangles, hit);
-    changes.medium[i] = material->medium;
-    if ((material->flags & (MATERIAL_TRANSMITS | MATERIAL_THIN)) != MATERIAL_TRANSMITS) continue;
+    changes.material[i] = material_of(instances, triangles, hit);
     bool again = false;
     for (u32 k = 0; k < i; ++k) again |= on_shared_edge(instances, &met->hits[k], hit);
     if (again) continue;
-    const bool enters = dot(outward_of(instances, hit), met->d) < 0.0f;
-    u32* opposite = enters ? &changes.left : &changes.entered;
-    u32 pair = *opposite;
-    while (pair && changes.medium[lowest_bit(pair)] != material->medium) pair &= pair - 1u;
-    if (pair)
-      *opposite &= ~(1u << lowest_bit(pair));
-    else if (enters)
+    if (materials[changes.material[i]].flags & MATERIAL_THIN)
+      changes.thin |= 1u << i;
+    else if (dot(outward_of(instances, hit), met->d) < 0.0f)
       changes.entered |= 1u << i;
     else
       changes.left |= 1u << i;
@@ -281,10 +276,31 @@ static inline Changes media_changes(__global const Instance* restrict instances,
   return changes;
 }
 
+// Takes out faces that leave and enter the same medium, two by two; those that face each other first, so that
+// of a corner the right face is left.
+static inline void take_out_pairs(__global const Instance* restrict instances,
+                                  __global const Material* restrict materials, const Stretch* met,
+                                  Changes* changes) {
+  for (u32 facing = 2; facing-- > 0;)
+    for (u32 entered = changes->entered; entered; entered &= entered - 1u) {
+      const u32 i = lowest_bit(entered), medium = materials[changes->material[i]].medium;
+      const float3 normal = unit_normal(outward_of(instances, &met->hits[i]));
+      for (u32 left = changes->left; left; left &= left - 1u) {
+        const u32 k = lowest_bit(left);
+        if (materials[changes->material[k]].medium != medium) continue;
+        if (facing && dot(normal, unit_normal(outward_of(instances, &met->hits[k]))) > -0.9f) continue;
+        changes->entered &= ~(1u << i);
+        changes->left &= ~(1u << k);
+        break;
+      }
+    }
+}
+
 // Whether, of two solids that are entered in one place, the first counts as the outer one: the larger. Else
 // the media decide, so that the order in the file does not.
-static inline bool is_outer(__global const Instance* restrict instances, __global const Medium* restrict media,
-                            const Hit* a, u32 medium_a, const Hit* b, u32 medium_b) {
+static inline bool is_outer(__global const Instance* restrict instances,
+                            __global const Medium* restrict media, const Hit* a, u32 medium_a, const Hit* b,
+                            u32 medium_b) {
   const float size_a = instances[a->instance].world_center.w, size_b = instances[b->instance].world_center.w;
   if (size_a != size_b) return size_a == 0.0f || (size_b != 0.0f && size_a > size_b);
   const float index_a = media[medium_a].absorption.w, index_b = media[medium_b].absorption.w;
@@ -292,19 +308,21 @@ static inline bool is_outer(__global const Instance* restrict instances, __globa
 }
 
 // Enters the media of `changes`, the outer ones first. Returns how many found no room.
-static inline u32 enter_all(__global const Instance* restrict instances, __global const Medium* restrict media,
-                            const Stretch* met, const Changes* changes, MediaStack* stack) {
+static inline u32 enter_all(__global const Instance* restrict instances,
+                            __global const Material* restrict materials,
+                            __global const Medium* restrict media, const Stretch* met, const Changes* changes,
+                            MediaStack* stack) {
   u32 lost = 0;
   for (u32 left = changes->entered; left;) {
-    u32 outer = lowest_bit(left);
+    u32 outer = lowest_bit(left), medium = materials[changes->material[outer]].medium;
     for (u32 bits = left & (left - 1u); bits; bits &= bits - 1u) {
-      const u32 i = lowest_bit(bits);
-      if (is_outer(instances, media, &met->hits[i], changes->medium[i], &met->hits[outer],
-                   changes->medium[outer]))
-        outer = i;
+      const u32 i = lowest_bit(bits), other = materials[changes->material[i]].medium;
+      if (!is_outer(instances, media, &met->hits[i], other, &met->hits[outer], medium)) continue;
+      outer = i;
+      medium = other;
     }
     left &= ~(1u << outer);
-    if (!cross_boundary(stack, changes->medium[outer], true)) ++lost;
+    if (!cross_boundary(stack, medium, true)) ++lost;
   }
   return lost;
 }
@@ -364,21 +382,23 @@ static inline void join_faces(TRACE_PARAMETERS, SHADE_PARAMETERS, const Touching
     seen->material = material;
   }
   if (opaque) return;
-  const Changes changes = media_changes(instances, triangles, materials, met);
+  Changes changes = faces_of(instances, triangles, materials, met);
+  take_out_pairs(instances, materials, met, &changes);
   for (u32 left = changes.left; left; left &= left - 1u)
-    if (!cross_boundary(&seen->behind, changes.medium[lowest_bit(left)], false)) ++seen->strays;
-  seen->overflows = enter_all(instances, media, met, &changes, &seen->behind);
+    if (!cross_boundary(&seen->behind, materials[changes.material[lowest_bit(left)]].medium, false))
+      ++seen->strays;
+  seen->overflows = enter_all(instances, materials, media, met, &changes, &seen->behind);
   seen->after = current_medium(media, seen->behind);
-  seen->hit = met->hits[0];
-  seen->material = material_of(instances, triangles, &met->hits[0]);
-  for (u32 i = 1; i < met->count; ++i) {
-    const u32 material = material_of(instances, triangles, &met->hits[i]);
-    if (!is_seen_before(SHADE_ARGUMENTS, &met->hits[i], material, &seen->hit, seen->material, current,
-                        seen->after))
-      continue;
-    seen->hit = met->hits[i];
-    seen->material = material;
+  const u32 some = changes.thin | changes.entered | changes.left;
+  u32 best = some ? lowest_bit(some) : 0u;
+  for (u32 bits = some; bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    if (is_seen_before(SHADE_ARGUMENTS, &met->hits[i], changes.material[i], &met->hits[best],
+                       changes.material[best], current, seen->after))
+      best = i;
   }
+  seen->hit = met->hits[best];
+  seen->material = changes.material[best];
 }
 
 // Lane i of `rays`, which has met a face of an instance that may touch others: hit and face become those of

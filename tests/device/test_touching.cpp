@@ -99,7 +99,8 @@ void cut(const Piece& whole, std::mt19937& random, std::vector<Piece>& pieces) {
     return;
   }
   Piece first = whole, second = whole;
-  first.upper[axis] = second.lower[axis] = whole.lower[axis] + 0.4 * (1 + static_cast<int>(random() % static_cast<unsigned>(steps - 1)));
+  first.upper[axis] = second.lower[axis] =
+      whole.lower[axis] + 0.4 * (1 + static_cast<int>(random() % static_cast<unsigned>(steps - 1)));
   cut(first, random, pieces);
   cut(second, random, pieces);
 }
@@ -192,8 +193,9 @@ TEST_CASE("boxes and meshes on a lattice are one box, turned and scaled too") {
 }
 
 TEST_CASE("round solids in one place are one solid") {
-  const Shape shape = GENERATE(Shape(SphereShape{0.9}), Shape(CylinderShape{0.8, 0.9, true}),
-                               Shape(RoundBoxShape{{0.9, 0.8, 0.7}, 0.2}), Shape(ConeShape{0.9, 0.4, 0.8, true}));
+  const Shape shape =
+      GENERATE(Shape(SphereShape{0.9}), Shape(CylinderShape{0.8, 0.9, true}),
+               Shape(RoundBoxShape{{0.9, 0.8, 0.7}, 0.2}), Shape(ConeShape{0.9, 0.4, 0.8, true}));
   SceneDescription once = over_a_floor();
   const int glass = scenes::add_dielectric(once, 1.5, {0.3, 0.1, 0.05});
   scenes::place(once, shape, glass, glm::rotate(dmat4(1), 0.3, dvec3(1, 0, 0.5)));
@@ -234,7 +236,8 @@ TEST_CASE("where two media touch there is one interface") {
 }
 
 TEST_CASE("light that comes slantwise through touching media bends as their indices say") {
-  // Snell holds between the outer sides whatever lies between them; from glass to glass nothing is turned back.
+  // Snell holds between the outer sides whatever lies between them; from glass to glass nothing is turned
+  // back.
   SceneDescription whole = scenes::line_of_sight({0, 6, 1.5}, {0, 0, 0});
   whole.render.max_depth = 3;
   const int glass = scenes::add_dielectric(whole, 1.5, {0.4, 0.2, 0.1});
@@ -314,7 +317,8 @@ TEST_CASE("a camera inside touching solids of one medium sees as inside one") {
   SceneDescription parts = whole;
   place_pieces(whole, {whole_box}, glass);
   // Two lie on each other at the top: the line that leads out of the camera's box leaves both at once.
-  place_pieces(parts, {{{-1, -1, -1}, {1, 1, 1}}, {{0, -0.5, 0}, {0.8, 1, 0.8}}, {{-1, -1, -1}, {0, 1, 1}}}, glass);
+  place_pieces(parts, {{{-1, -1, -1}, {1, 1, 1}}, {{0, -0.5, 0}, {0.8, 1, 0.8}}, {{-1, -1, -1}, {0, 1, 1}}},
+               glass);
   with_each_tracer([&](const DeviceInfo& device, Tracer tracer) {
     CHECK(pixels_that_differ(picture(device, tracer, whole), picture(device, tracer, parts)) == 0);
   });

@@ -72,7 +72,8 @@ TEST_CASE("solids that only cross or lie inside of each other are not marked") {
 TEST_CASE("the scenes that come along touch nothing where glass is nested") {
   for (const char* name : {"hollow_ice", "hollow_ice_exact", "nested_glass"}) {
     INFO(name);
-    CHECK_FALSE(compile(load_scene(std::string(SUNDOG_SOURCE_DIR) + "/scenes/" + name + ".json")).features.touching);
+    CHECK_FALSE(
+        compile(load_scene(std::string(SUNDOG_SOURCE_DIR) + "/scenes/" + name + ".json")).features.touching);
   }
 }
 
