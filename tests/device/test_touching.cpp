@@ -23,27 +23,6 @@ struct Piece {
 
 constexpr int size = 40;
 
-/// A checkered floor at y = -1 under a light, seen from above.
-SceneDescription over_a_floor() {
-  SceneDescription scene = scenes::line_of_sight({2.4, 2.0, 4.6}, {0, 0, 0});
-  scene.camera.fov = 36;
-  scene.image.width = scene.image.height = size;
-  scene.image.background_bottom = {0.7, 0.75, 0.8};
-  scene.image.background_top = {0.15, 0.3, 0.6};
-  scene.render.max_depth = 8;
-  scene.render.cutoff = 1e-3;
-  LightDescription point;
-  point.position = {-4, 6, 4};
-  scene.lights.push_back(point);
-  const int floor = scenes::add_white(scene);
-  MaterialDescription& material = scene.materials[static_cast<std::size_t>(floor)];
-  material.checker = true;
-  material.checker_diffuse = {0.1, 0.15, 0.3};
-  material.checker_size = 0.55;
-  scenes::place(scene, PlaneShape{}, floor, at({0, -1.2, 0}));
-  return scene;
-}
-
 /// The box from (0, 0, 0) to (1, 1, 1).
 Mesh cube() {
   Mesh mesh;
@@ -65,12 +44,53 @@ void add_cube(Mesh& mesh, const Piece& piece) {
   for (const glm::uvec3& t : unit.triangles) mesh.triangles.push_back(t + first);
 }
 
+/// A mesh and one of each solid that is used here, far off: scenes of the same shapes share their kernels.
+void add_bystanders(SceneDescription& scene) {
+  scene.meshes.push_back(cube());
+  const int material = scenes::add_glow(scene, {0, 0, 0});
+  double x = 300;
+  for (const Shape& shape :
+       {Shape(MeshShape{0}), Shape(BoxShape{}), Shape(SphereShape{}), Shape(CylinderShape{}),
+        Shape(RoundBoxShape{}), Shape(ConeShape{}), Shape(DiskShape{})})
+    scenes::place(scene, shape, material, at({x += 5, 0, 300}));
+  scenes::place(scene, PlaneShape{}, material, at({0, -500, 0}));
+}
+
+/// A checkered floor at y = -1 under a light, seen from above.
+SceneDescription over_a_floor() {
+  SceneDescription scene = scenes::line_of_sight({2.4, 2.0, 4.6}, {0, 0, 0});
+  scene.camera.fov = 36;
+  scene.image.width = scene.image.height = size;
+  scene.image.background_bottom = {0.7, 0.75, 0.8};
+  scene.image.background_top = {0.15, 0.3, 0.6};
+  scene.render.max_depth = 8;
+  scene.render.cutoff = 1e-3;
+  LightDescription point;
+  point.position = {-4, 6, 4};
+  scene.lights.push_back(point);
+  const int floor = scenes::add_white(scene);
+  MaterialDescription& material = scene.materials[static_cast<std::size_t>(floor)];
+  material.checker = true;
+  material.checker_diffuse = {0.1, 0.15, 0.3};
+  material.checker_size = 0.55;
+  scenes::place(scene, PlaneShape{}, floor, at({0, -1.2, 0}));
+  add_bystanders(scene);
+  return scene;
+}
+
+/// The line of sight of a closed form.
+SceneDescription along(dvec3 from, dvec3 to, dvec3 up = {0, 1, 0}) {
+  SceneDescription scene = scenes::line_of_sight(from, to, up);
+  scene.render.max_depth = 4;  // what most of these need: the straight path through two media, without echoes
+  add_bystanders(scene);
+  return scene;
+}
+
 /// Places the pieces, meshes as scaled instances of one cube.
 void place_pieces(SceneDescription& scene, const std::vector<Piece>& pieces, int material,
                   const dmat4& turn = dmat4(1)) {
   for (const Piece& piece : pieces) {
     if (piece.mesh) {
-      if (scene.meshes.empty()) scene.meshes.push_back(cube());
       scenes::place(scene, MeshShape{0}, material,
                     turn * glm::scale(at(piece.lower), piece.upper - piece.lower));
     } else
@@ -174,8 +194,8 @@ TEST_CASE("eight touching cubes of one mesh are one box") {
   SceneDescription parts = whole;
   place_pieces(whole, {{whole_box.lower, whole_box.upper, true}}, glass);
   parts.meshes.emplace_back();
-  for (const Piece& piece : grid_of_cubes(true)) add_cube(parts.meshes[0], piece);
-  scenes::place(parts, MeshShape{0}, glass);
+  for (const Piece& piece : grid_of_cubes(true)) add_cube(parts.meshes.back(), piece);
+  scenes::place(parts, MeshShape{1}, glass);
   with_each_tracer([&](const DeviceInfo& device, Tracer tracer) {
     CHECK(pixels_that_differ(picture(device, tracer, whole), picture(device, tracer, parts)) == 0);
   });
@@ -193,14 +213,16 @@ TEST_CASE("boxes and meshes on a lattice are one box, turned and scaled too") {
 }
 
 TEST_CASE("round solids in one place are one solid") {
-  const Shape shape =
-      GENERATE(Shape(SphereShape{0.9}), Shape(CylinderShape{0.8, 0.9, true}),
-               Shape(RoundBoxShape{{0.9, 0.8, 0.7}, 0.2}), Shape(ConeShape{0.9, 0.4, 0.8, true}));
   SceneDescription once = over_a_floor();
   const int glass = scenes::add_dielectric(once, 1.5, {0.3, 0.1, 0.05});
-  scenes::place(once, shape, glass, glm::rotate(dmat4(1), 0.3, dvec3(1, 0, 0.5)));
+  const std::size_t first = once.objects.size();
+  const dmat4 turn = glm::rotate(dmat4(1), 0.3, dvec3(1, 0, 0.5));
+  scenes::place(once, SphereShape{0.5}, glass, at({-0.7, 0.5, 0}));
+  scenes::place(once, CylinderShape{0.45, 0.5, true}, glass, at({0.7, 0.5, 0}) * turn);
+  scenes::place(once, RoundBoxShape{{0.5, 0.45, 0.4}, 0.12}, glass, at({-0.7, -0.6, 0}) * turn);
+  scenes::place(once, ConeShape{0.5, 0.25, 0.4, true}, glass, at({0.7, -0.6, 0}) * turn);
   SceneDescription twice = once;
-  twice.objects.push_back(twice.objects.back());
+  twice.objects.insert(twice.objects.end(), once.objects.begin() + std::ptrdiff_t(first), once.objects.end());
   with_each_tracer([&](const DeviceInfo& device, Tracer tracer) {
     CHECK(pixels_that_differ(picture(device, tracer, once), picture(device, tracer, twice)) == 0);
   });
@@ -221,14 +243,13 @@ TEST_CASE("two halves of a cylinder, one on the other, are one") {
 TEST_CASE("where two media touch there is one interface") {
   const bool mesh = GENERATE(false, true);
   const auto passed = [](double a, double b) { return 1 - std::pow((a - b) / (a + b), 2); };
-  SceneDescription scene = scenes::line_of_sight({0, 0, 9}, {0, 0, 0});
+  SceneDescription scene = along({0, 0, 9}, {0, 0, 0});
   const int first = scenes::add_dielectric(scene, 1.5), second = scenes::add_dielectric(scene, 1.2);
   place_pieces(scene, {{{-5, -4, 0}, {5, 5, 2}, mesh}}, first);
   place_pieces(scene, {{{-5, -4, -3}, {5, 5, 0}, mesh}}, second);
   if (GENERATE(false, true)) std::reverse(scene.objects.begin(), scene.objects.end());
   scenes::place(scene, DiskShape{1, 0}, scenes::add_glow(scene, {1, 1, 1}),
                 glm::rotate(at({0, 0, -5}), glm::radians(90.0), dvec3(1, 0, 0)));
-  scene.render.max_depth = 4;  // the straight path alone: air, both media, air
   for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
       CHECK(scenes::pixel_on(device, scene).x ==
             Approx(passed(1, 1.5) * passed(1.5, 1.2) * passed(1.2, 1)).epsilon(1e-5));
@@ -238,11 +259,9 @@ TEST_CASE("where two media touch there is one interface") {
 TEST_CASE("light that comes slantwise through touching media bends as their indices say") {
   // Snell holds between the outer sides whatever lies between them; from glass to glass nothing is turned
   // back.
-  SceneDescription whole = scenes::line_of_sight({0, 6, 1.5}, {0, 0, 0});
-  whole.render.max_depth = 3;
+  SceneDescription whole = along({0, 6, 1.5}, {0, 0, 0});
   const int glass = scenes::add_dielectric(whole, 1.5, {0.4, 0.2, 0.1});
-  whole.image.background_bottom = {0, 0, 0};
-  whole.image.background_top = {0.5, 0.6, 0.7};
+  scenes::place(whole, PlaneShape{}, scenes::add_glow(whole, {0.5, 0.6, 0.7}), at({0, -3, 0}));
   SceneDescription halves = whole;
   place_pieces(whole, {{{-9, -2, -9}, {9, 2, 9}}}, glass);
   place_pieces(halves, {{{-9, -2, -9}, {9, 0, 9}}, {{-9, 0, -9}, {9, 2, 9}}}, glass);
@@ -250,6 +269,7 @@ TEST_CASE("light that comes slantwise through touching media bends as their indi
     whole.camera.position.y = halves.camera.position.y = height;
     for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label() << ", from " << height) {
         const dvec3 a = scenes::pixel_on(device, whole), b = scenes::pixel_on(device, halves);
+        CHECK(a.x > 0.01);
         CHECK(glm::length(a - b) <= 1e-6);
       }
   }
@@ -257,7 +277,7 @@ TEST_CASE("light that comes slantwise through touching media bends as their indi
 
 TEST_CASE("a light is filtered by one interface where two media touch") {
   const auto passed = [](double a, double b) { return 1 - std::pow((a - b) / (a + b), 2); };
-  SceneDescription scene = scenes::line_of_sight({3, 0.5, 0}, {0, 0, 0});
+  SceneDescription scene = along({3, 0.5, 0}, {0, 0, 0});
   LightDescription sun;
   sun.type = LightType::directional;
   sun.direction = {0, -1, 0};
@@ -292,7 +312,7 @@ TEST_CASE("glass that stands on the floor shows it as glass that is sunk into it
 TEST_CASE("liquid that is flush with the rim of its glass has one surface") {
   const bool mesh = GENERATE(false, true);
   const auto passed = [](double a, double b) { return 1 - std::pow((a - b) / (a + b), 2); };
-  SceneDescription scene = scenes::line_of_sight({0.1, 9, 0.2}, {0.1, 0, 0.2}, {0, 0, 1});
+  SceneDescription scene = along({0.1, 9, 0.2}, {0.1, 0, 0.2}, {0, 0, 1});
   const int priority = GENERATE(0, 1);
   const int glass = scenes::add_dielectric(scene, 1.5);
   const int liquid = scenes::add_dielectric(scene, 1.3, {0.5, 0.2, 0.1}, priority);
@@ -300,7 +320,6 @@ TEST_CASE("liquid that is flush with the rim of its glass has one surface") {
   place_pieces(scene, {{{-0.7, -0.5, -0.7}, {0.7, 1, 0.7}}}, liquid);
   if (GENERATE(false, true)) std::reverse(scene.objects.begin(), scene.objects.end());
   scenes::place(scene, PlaneShape{}, scenes::add_glow(scene, {1, 1, 1}), at({0, -2, 0}));
-  scene.render.max_depth = 4;
   const double clear = passed(1, 1.3) * passed(1.3, 1.5) * passed(1.5, 1);
   for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
       const dvec3 light = scenes::pixel_on(device, scene);

@@ -1,0 +1,160 @@
+// All that a ray meets in a short part of its way, where the tracer gives the nearest hit alone.
+#ifndef SUNDOG_LIB_STRETCH_CL
+#define SUNDOG_LIB_STRETCH_CL
+#include "lib/config.h"
+#if HAS_TOUCHING
+#include "lib/nodes.cl"
+#include "lib/tables.h"
+#include "lib/traverse.cl"
+
+#define MOST_TOUCHING 16u
+
+// A short part of a ray, and all that it meets there in (from, to], in no order. Boxes are asked about more:
+// rounding may place a hit beside its box, by more than boxes are widened.
+typedef struct Stretch {
+  float3 o, d;
+  float from, to, box_from, box_to;
+  u32 count;
+  Hit hits[MOST_TOUCHING];
+} Stretch;
+
+static inline bool same_face(const Hit* a, const Hit* b) {
+  return a->instance == b->instance && a->prim == b->prim;
+}
+
+// A triangle may be in several leaves of its tree.
+static inline void note_hit(Stretch* stretch, const Hit* hit) {
+  for (u32 i = 0; i < stretch->count; ++i)
+    if (same_face(&stretch->hits[i], hit) && stretch->hits[i].t == hit->t) return;
+  if (stretch->count < MOST_TOUCHING) stretch->hits[stretch->count++] = *hit;
+}
+
+#if HAS_SOLID
+static inline void note_solid(__global const Instance* restrict instances, u32 index, Stretch* stretch) {
+  const REAL3 o = all3(stretch->o), d = all3(stretch->d);
+  REAL from = (REAL)(stretch->from);
+  for (u32 i = 0; i < 4u; ++i) {
+    Hits hits = no_hits((REAL)(stretch->to));
+    hit_solids(instances, index, index + 1u, &o, &d, &from, lanes_of(1u), false, &hits);
+    const Hit hit = get_hit(&hits, 0);
+    if (hit.instance == NO_INSTANCE) return;
+    note_hit(stretch, &hit);
+    from = (REAL)(hit.t);
+  }
+}
+#endif
+
+#if HAS_BVH
+// Pushes the children of a node that the stretch crosses. Returns the stack's new top.
+static inline u32 push_all_crossed(__global const u32* nodes, u32 word, const SlabRay* slabs,
+                                   const Stretch* stretch, u32* stack, u32 top) {
+  u32 keys[8];
+  __global const BvhNode* node = node_at(nodes, word);
+  for (u32 bits = cross_children(node, slabs, stretch->box_from, stretch->box_to, keys); bits;
+       bits &= bits - 1u)
+    stack[top++] = child_word(node, lowest_bit(bits));
+  return top;
+}
+#endif
+
+#if HAS_MESH
+static inline void note_triangle(__global const TriangleBlock* restrict blocks, u32 place, float t, float u,
+                                 float v, u32 instance, Stretch* stretch) {
+  Hit hit;
+  hit.t = t;
+  hit.u = u;
+  hit.v = v;
+  hit.prim = place;
+  hit.instance = instance;
+  finish_triangle(blocks, &hit);
+  note_hit(stretch, &hit);
+}
+
+static inline void note_block(__global const TriangleBlock* restrict blocks, u32 index, const ShearRay* shear,
+                              u32 instance, Stretch* stretch) {
+#if WIDE_VECTORS
+  const BlockTest test = test_block(blocks + index, shear, stretch->from, stretch->to);
+  if (!test.lanes) return;
+  float t[8], u[8], v[8];
+  vstore8(test.t, 0, t);
+  vstore8(test.u, 0, u);
+  vstore8(test.v, 0, v);
+  for (u32 bits = test.lanes; bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    note_triangle(blocks, index * 8u + i, t[i], u[i], v[i], instance, stretch);
+  }
+#else
+  for (u32 i = 0; i < 8u && blocks[index].prim[i] != NO_PRIM; ++i) {
+    float t, u, v;
+    if (hits_triangle(blocks[index].v0_x + i, shear, stretch->from, stretch->to, &t, &u, &v))
+      note_triangle(blocks, index * 8u + i, t, u, v, instance, stretch);
+  }
+#endif
+}
+
+static inline void note_mesh(TRACE_PARAMETERS, u32 index, Stretch* stretch, u32* stack) {
+  __global const Instance* instance = instances + index;
+  float3 o = stretch->o, d = stretch->d;
+  if (!(instance->flags & INSTANCE_IDENTITY)) {
+    o = object_point(instance, o);
+    d = object_vector(instance, d);
+  }
+  const SlabRay slabs = make_slab_ray(o, d);
+  const ShearRay shear = make_shear_ray(o, d);
+  u32 top = 0;
+  stack[top++] = instance->root;
+  while (top) {
+    const u32 word = stack[--top];
+    if (word & BVH_LEAF) {
+      const u32 first = word & BVH_FIRST_MASK,
+                last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+      for (u32 i = first; i <= last; ++i) note_block(blocks, i, &shear, index, stretch);
+    } else
+      top = push_all_crossed(nodes, word, &slabs, stretch, stack, top);
+  }
+}
+#endif
+
+#if HAS_BVH
+static inline void note_bounded(TRACE_PARAMETERS, Stretch* stretch) {
+  u32 stack[BVH_STACK + 1];
+  u32 top = 0;
+  if (info->bounded_count) stack[top++] = info->bounded_count == 1u ? BVH_LEAF : info->tlas_root;
+  const SlabRay slabs = make_slab_ray(stretch->o, stretch->d);
+  while (top) {
+    const u32 word = stack[--top];
+    if (!(word & BVH_LEAF)) {
+      top = push_all_crossed(nodes, word, &slabs, stretch, stack, top);
+      continue;
+    }
+    const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+    for (u32 i = first; i <= last; ++i) {
+#if HAS_MESH
+      if (instances[i].shape == SHAPE_MESH) {
+        note_mesh(TRACE_ARGUMENTS, i, stretch, stack + top);
+        continue;
+      }
+#endif
+#if HAS_SOLID
+      note_solid(instances, i, stretch);
+#endif
+    }
+  }
+}
+#endif
+
+NEVER_INLINE void note_all(TRACE_PARAMETERS, Stretch* stretch) {
+  stretch->count = 0;
+#if HAS_BVH
+  note_bounded(TRACE_ARGUMENTS, stretch);
+  const u32 first = info->bounded_count;
+#else
+  const u32 first = 0;
+#endif
+#if HAS_SOLID
+  for (u32 i = first; i < info->instance_count; ++i) note_solid(instances, i, stretch);
+#endif
+}
+#endif
+
+#endif
