@@ -236,12 +236,12 @@ std::vector<Placed> take_large_solids(std::vector<Placed>& bounded, const Bounds
   return taken;
 }
 
-void find_touching(const SceneDescription& scene, std::vector<Placed>& bounded,
-                   std::vector<Placed>& unbounded, SceneFeatures& features) {
+void find_touching(const SceneDescription& scene, std::vector<Placed>& bounded, std::vector<Placed>& unbounded,
+                   const dvec3& origin, SceneFeatures& features) {
   std::vector<PlacedBody> bodies;
   for (std::vector<Placed>* list : {&bounded, &unbounded})
     for (Placed& placed : *list) bodies.push_back({&placed.instance, placed.box});
-  mark_touching(scene, bodies, features);
+  mark_touching(scene, bodies, origin, features);
 }
 
 }  // namespace
@@ -263,7 +263,7 @@ void add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>&
     out.features.camera_inside |= may_contain(placed, scene.camera.position - out.origin);
     (placed.instance.shape == SHAPE_SDF ? fields : placed.bounded() ? bounded : unbounded).push_back(placed);
   }
-  if (out.features.media) find_touching(scene, bounded, unbounded, out.features);
+  if (out.features.media) find_touching(scene, bounded, unbounded, out.origin, out.features);
   for (const Placed& placed : bounded) out.figures.box.extend(placed.box);
   out.info.scene_center = bounded.empty() ? float4{} : sphere_around(out.figures.box);
   const std::vector<Placed> large = take_large_solids(bounded, out.figures.box);

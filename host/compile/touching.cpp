@@ -112,7 +112,7 @@ void add_faces(Body& body) {
   }
 }
 
-Body make_body(const SceneDescription& scene, const PlacedBody& placed) {
+Body make_body(const SceneDescription& scene, const PlacedBody& placed, const dvec3& origin) {
   const Object& object = scene.objects[placed.instance->object];
   Body body{placed.instance,
             placed.box,
@@ -125,8 +125,9 @@ Body make_body(const SceneDescription& scene, const PlacedBody& placed) {
             {}};
   if (const auto* shape = std::get_if<MeshShape>(&object.shape))
     body.mesh = &scene.meshes[static_cast<std::size_t>(shape->mesh)];
+  body.world_from_unit[3] -= glm::dvec4(origin, 0);
   const dvec3& s = body.unit.scale;
-  body.world_from_unit = object.world_from_object * dmat4(glm::dmat3(s.x, 0, 0, 0, s.y, 0, 0, 0, s.z));
+  body.world_from_unit = body.world_from_unit * dmat4(glm::dmat3(s.x, 0, 0, 0, s.y, 0, 0, 0, s.z));
   if (body.plane)
     body.box = {lanes(-std::numeric_limits<float>::infinity()),
                 lanes(std::numeric_limits<float>::infinity())};
@@ -211,10 +212,10 @@ bool touch(const Body& a, const Body& b, double tolerance) {
 /// Marks bodies as it finds them.
 class Search {
  public:
-  Search(const SceneDescription& scene, std::span<PlacedBody> placed) {
-    const dvec3 camera = glm::abs(scene.camera.position);
+  Search(const SceneDescription& scene, std::span<PlacedBody> placed, const dvec3& origin) {
+    const dvec3 camera = glm::abs(scene.camera.position - origin);
     camera_ = std::max({camera.x, camera.y, camera.z});
-    for (const PlacedBody& body : placed) bodies_.push_back(make_body(scene, body));
+    for (const PlacedBody& body : placed) bodies_.push_back(make_body(scene, body, origin));
   }
 
   bool run() {
@@ -273,8 +274,9 @@ class Search {
 
 }  // namespace
 
-void mark_touching(const SceneDescription& scene, std::span<PlacedBody> bodies, SceneFeatures& features) {
-  features.touching = Search(scene, bodies).run();
+void mark_touching(const SceneDescription& scene, std::span<PlacedBody> bodies, const dvec3& origin,
+                   SceneFeatures& features) {
+  features.touching = Search(scene, bodies, origin).run();
 }
 
 }  // namespace sundog

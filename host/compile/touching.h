@@ -16,7 +16,8 @@ struct PlacedBody {
 
 /// Sets Instance.touch of the bodies that may have a face on one of another, or of their own mesh, where at
 /// least one of the two has an interior medium. Errs on the safe side: what is marked only costs time. Sets
-/// features.touching when there are any.
-void mark_touching(const SceneDescription& scene, std::span<PlacedBody> bodies, SceneFeatures& features);
+/// features.touching when there are any. Boxes count from `origin`.
+void mark_touching(const SceneDescription& scene, std::span<PlacedBody> bodies, const dvec3& origin,
+                   SceneFeatures& features);
 
 }  // namespace sundog
