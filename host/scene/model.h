@@ -27,7 +27,8 @@ struct Model {
   std::optional<Camera> camera;        // the first one of the default scene (glTF), or the view (NFF)
   std::optional<ImageSettings> image;  // NFF: resolution and background
   std::size_t dropped_polygons = 0;    // faces with fewer than three corners
-  std::vector<std::string> warnings;  // what was read past: missing material files, orthographic cameras, ...
+  std::vector<std::string> unread;     // features of the file that are not read, each named once
+  std::vector<std::string> warnings;   // of what was read past: unread features, missing material files, ...
 };
 
 struct ModelOptions {

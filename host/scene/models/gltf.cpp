@@ -11,6 +11,7 @@
 #include <set>
 
 #include "scene/models/gltf_meshes.h"
+#include "scene/models/gltf_unread.h"
 #include "scene/models/gltf_views.h"
 #include "scene/models/readers.h"
 
@@ -100,9 +101,6 @@ class GltfReader {
     if (const auto light = at.extension("KHR_lights_punctual"))
       node.light = light->member("light").index(lights_.size(), "light");
     if (const auto instances = at.extension("EXT_mesh_gpu_instancing")) read_instances(*instances, node);
-    if (at.find("skin"))
-      model_.warnings.push_back(
-          fmt::format("{}: the mesh's skin is left aside: it stands as it is stored", node.pointer));
   }
 
   const std::vector<float>* instance_attribute(const JsonAt& attributes, const char* name,
@@ -211,11 +209,8 @@ class GltfReader {
 
   void add_camera(const Node& node, const dmat4& world) {
     const GltfCamera& from = cameras_[*node.camera];
-    if (!from.perspective || from.fov >= std::numbers::pi || is_singular(world)) {
-      model_.warnings.push_back(
-          fmt::format("{}: only perspective cameras of less than 180 degrees are read", node.pointer));
-      return;
-    }
+    if (!from.perspective || from.fov >= std::numbers::pi || is_singular(world))
+      return leave_unread(model_, "cameras that are not perspective");
     if (model_.camera) return;
     Camera camera;
     camera.position = dvec3(world[3]);
@@ -279,7 +274,9 @@ Model load_gltf(const Source& source, const ModelOptions& options) {
   if (!version.starts_with("2."))
     fail(source, "/asset/version", fmt::format("glTF {}; 2.x is read", version));
   check_extensions(root);
-  return GltfReader(source, container, root, options.crease_angle.value_or(0)).read();
+  Model model = GltfReader(source, container, root, options.crease_angle.value_or(0)).read();
+  find_unread(json, model);
+  return model;
 }
 
 }  // namespace sundog::models

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <new>
@@ -26,6 +27,12 @@ void add_mesh(Model& model, Mesh mesh, const dvec3& origin) {
   model.meshes.push_back(std::move(mesh));
 }
 
+void leave_unread(Model& model, const std::string& feature) {
+  constexpr std::size_t most = 100;  // names of unknown extensions are the file's
+  const bool known = std::ranges::count(model.unread, feature) > 0;
+  if (!known && model.unread.size() < most) model.unread.push_back(feature);
+}
+
 float linear_from_srgb(double value) {
   return static_cast<float>(value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4));
 }
@@ -33,6 +40,18 @@ float linear_from_srgb(double value) {
 }  // namespace models
 
 namespace {
+
+/// "read without its skins, animations and 3 more features"
+std::string unread_text(const std::vector<std::string>& features) {
+  constexpr std::size_t shown = 8;
+  std::string text = "read without its ";
+  for (std::size_t i = 0; i < std::min(features.size(), shown); ++i) {
+    const bool last = i > 0 && i + 1 == features.size();
+    text += (i == 0 ? "" : last ? " and " : ", ") + features[i];
+  }
+  const std::size_t rest = features.size() - std::min(features.size(), shown);
+  return rest == 0 ? text : fmt::format("{} and {} more feature{}", text, rest, rest == 1 ? "" : "s");
+}
 
 Model load(const models::Source& source, const std::string& extension, const ModelOptions& options) {
   if (source.bytes.empty()) models::fail(source, "", "the file is empty");
@@ -60,6 +79,7 @@ Model load_model(const std::filesystem::path& path, const ModelOptions& options)
   try {
     Model model = load(models::read_source(path), models::model_extension(path), options);
     models::bring_near(model);
+    if (!model.unread.empty()) model.warnings.push_back(unread_text(model.unread));
     return model;
   } catch (const std::length_error& error) {
     throw SceneError(path.string(), "", std::string("the model is too large: ") + error.what());

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "scene/models/readers.h"
 #include "scene/models/text.h"
 
 namespace sundog::models {
@@ -30,6 +31,46 @@ std::optional<dvec3> read_color(TextReader& text) {
   if (text.at_line_end()) return glm::max(dvec3(red), dvec3(0));
   const double green = text.number("green"), blue = text.number("blue");
   return glm::max(dvec3(red, green, blue), dvec3(0));
+}
+
+/// Statements that would change the picture.
+constexpr std::pair<std::string_view, const char*> unread_statements[] = {{"map_Kd", "colour textures"},
+                                                                          {"map_Ka", "ambient textures"},
+                                                                          {"map_Ks", "specular textures"},
+                                                                          {"map_Ns", "specular textures"},
+                                                                          {"map_d", "alpha of textures"},
+                                                                          {"map_Tr", "alpha of textures"},
+                                                                          {"map_Ke", "emission textures"},
+                                                                          {"map_bump", "bump maps"},
+                                                                          {"map_Bump", "bump maps"},
+                                                                          {"bump", "bump maps"},
+                                                                          {"norm", "normal textures"},
+                                                                          {"map_Kn", "normal textures"},
+                                                                          {"disp", "displacement"},
+                                                                          {"map_disp", "displacement"},
+                                                                          {"decal", "decals"},
+                                                                          {"refl", "reflection maps"},
+                                                                          {"map_refl", "reflection maps"},
+                                                                          {"map_Pr", "roughness textures"},
+                                                                          {"map_Pm", "roughness textures"},
+                                                                          {"map_Ps", "sheen"},
+                                                                          {"Pr", "roughness"},
+                                                                          {"Pm", "metalness"},
+                                                                          {"Ps", "sheen"},
+                                                                          {"Pc", "clearcoat"},
+                                                                          {"aniso", "anisotropy"}};
+
+/// Numbers of 0 say that the feature is not used.
+void note_unread(TextReader text, std::string_view key, Model& model) {
+  const auto all_zero = [&] {
+    while (!text.at_line_end())
+      if (const std::string_view word = text.word(); word.find_first_not_of("0.+-") != word.npos)
+        return false;
+    return true;
+  };
+  if (key == "Ke" && !all_zero()) leave_unread(model, "emission");
+  for (const auto& [word, feature] : unread_statements)
+    if (key == word && !all_zero()) leave_unread(model, feature);
 }
 
 double read_opacity(TextReader& text) {
@@ -139,15 +180,29 @@ void MaterialLibrary::read(const fs::path& path) {
       if (material.name.empty()) text.fail("newmtl without a name");
     } else if (!material.name.empty()) {
       read_statement(text, key, material);
+      note_unread(text, key, model_);
     }
   }
   finish();
 }
 
+// One warning for all of them: without its library a file has none of its materials.
+void MaterialLibrary::warn_undefined(std::string_view name) {
+  constexpr std::size_t shown = 5;
+  if (++undefined_ == 1) {
+    warning_ = model_.warnings.size();
+    model_.warnings.emplace_back();
+  }
+  if (undefined_ <= shown) names_ += fmt::format("{}'{}'", undefined_ == 1 ? "" : ", ", name);
+  model_.warnings[warning_] =
+      fmt::format("not defined, and drawn with the default material: {}{}", names_,
+                  undefined_ > shown ? fmt::format(" and {} more", undefined_ - shown) : "");
+}
+
 int MaterialLibrary::find(std::string_view name) {
   if (const auto found = index_.find(name); found != index_.end()) return found->second;
   index_.emplace(name, -1);
-  model_.warnings.push_back(fmt::format("the material '{}' is not defined; the default one is used", name));
+  warn_undefined(name);
   return -1;
 }
 

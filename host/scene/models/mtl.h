@@ -17,14 +17,17 @@ class MaterialLibrary {
   /// Throws SceneError with the MTL file's line.
   void load(const std::filesystem::path& obj, std::string_view names);
 
-  /// The material's index; for an unknown name -1, and a warning at the first time.
+  /// The material's index; for an unknown name -1, and one warning that names all of these.
   int find(std::string_view name);
 
  private:
   void read(const std::filesystem::path& path);
+  void warn_undefined(std::string_view name);
 
   Model& model_;
   std::map<std::string, int, std::less<>> index_;
+  std::size_t undefined_ = 0, warning_ = 0;  // how many materials; the warning's place among the model's
+  std::string names_;                        // of the first ones
 };
 
 }  // namespace sundog::models

@@ -22,6 +22,14 @@ struct Corner {
   bool operator==(const Corner&) const = default;
 };
 
+/// Statements that would change the picture.
+constexpr std::pair<std::string_view, const char*> unread_statements[] = {{"l", "lines"},
+                                                                          {"p", "points"},
+                                                                          {"curv", "curves"},
+                                                                          {"curv2", "curves"},
+                                                                          {"surf", "free-form surfaces"},
+                                                                          {"usemap", "colour textures"}};
+
 class ObjReader {
  public:
   ObjReader(const Source& source, Model& model)
@@ -68,6 +76,9 @@ class ObjReader {
       material_ = library_.find(text_.rest());
     } else if (key == "mtllib") {
       library_.load(path_, text_.rest());
+    } else {
+      for (const auto& [word, feature] : unread_statements)
+        if (key == word) leave_unread(model_, feature);
     }
   }
 

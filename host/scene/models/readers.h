@@ -15,6 +15,9 @@ Model load_nff(const Source& source);
 /// triangles.
 void add_mesh(Model& model, Mesh mesh, const dvec3& origin = dvec3(0));
 
+/// Adds a feature to Model::unread, once.
+void leave_unread(Model& model, const std::string& feature);
+
 /// An 8-bit colour channel, taken as sRGB (IEC 61966-2-1), as a linear one.
 float linear_from_srgb(double value);
 

@@ -1,0 +1,109 @@
+// See gltf_unread.h. Whatever is not of the expected kind is passed by.
+#include "scene/models/gltf_unread.h"
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "scene/models/readers.h"
+
+namespace sundog::models {
+namespace {
+
+using nlohmann::json;
+
+/// The member, or null.
+const json& member(const json& value, const char* key) {
+  static const json none;
+  if (!value.is_object()) return none;
+  const auto found = value.find(key);
+  return found == value.end() ? none : *found;
+}
+
+/// The items of a member that is an array; else null, which has none.
+const json& items(const json& value, const char* key) {
+  static const json none = json::array();
+  const json& found = member(value, key);
+  return found.is_array() ? found : none;
+}
+
+struct Named {
+  std::string_view key;
+  const char* feature;
+};
+
+constexpr std::array textures{
+    Named{"baseColorTexture", "colour textures"}, Named{"metallicRoughnessTexture", "roughness textures"},
+    Named{"normalTexture", "normal textures"}, Named{"occlusionTexture", "occlusion textures"},
+    Named{"emissiveTexture", "emission textures"}};
+
+constexpr std::array material_extensions{
+    Named{"KHR_materials_ior", nullptr},  // read
+    Named{"KHR_materials_transmission", nullptr},
+    Named{"KHR_materials_volume", nullptr},
+    Named{"KHR_materials_emissive_strength", nullptr},  // of emission
+    Named{"KHR_materials_sheen", "sheen"},
+    Named{"KHR_materials_clearcoat", "clearcoat"},
+    Named{"KHR_materials_specular", "specular colour"},
+    Named{"KHR_materials_iridescence", "iridescence"},
+    Named{"KHR_materials_anisotropy", "anisotropy"},
+    Named{"KHR_materials_dispersion", "dispersion"},
+    Named{"KHR_materials_diffuse_transmission", "diffuse transmission"},
+    Named{"KHR_materials_unlit", "unlit materials"},
+    Named{"KHR_materials_pbrSpecularGlossiness", "specular-glossiness materials"}};
+
+void find_textures(const json& value, Model& model) {
+  if (!value.is_object()) return;
+  for (const auto& [key, inner] : value.items()) {
+    if (key == "extras") continue;
+    if (key.ends_with("Texture") && inner.is_object()) {
+      const char* feature = "other textures";
+      for (const Named& known : textures)
+        if (key == known.key) feature = known.feature;
+      leave_unread(model, feature);
+    } else {
+      find_textures(inner, model);
+    }
+  }
+}
+
+void find_in_material(const json& material, Model& model) {
+  find_textures(material, model);
+  const json& mode = member(material, "alphaMode");
+  if ((mode == "BLEND" || mode == "MASK") &&
+      member(member(material, "pbrMetallicRoughness"), "baseColorTexture").is_object())
+    leave_unread(model, "alpha of textures");
+  for (const json& factor : items(material, "emissiveFactor"))
+    if (factor.is_number() && factor > 0) leave_unread(model, "emission");
+  const json& extensions = member(material, "extensions");
+  if (!extensions.is_object()) return;
+  for (const auto& [name, extension] : extensions.items()) {
+    const char* feature = name.c_str();
+    for (const Named& known : material_extensions)
+      if (name == known.key) feature = known.feature;
+    if (feature) leave_unread(model, feature);
+  }
+}
+
+void find_in_mesh(const json& mesh, Model& model) {
+  for (const json& primitive : items(mesh, "primitives")) {
+    const json& mode = member(primitive, "mode");
+    if (mode == 0) leave_unread(model, "points");
+    if (mode == 1 || mode == 2 || mode == 3) leave_unread(model, "lines");
+    if (!items(primitive, "targets").empty()) leave_unread(model, "morph targets");
+    if (member(member(primitive, "extensions"), "KHR_materials_variants").is_object())
+      leave_unread(model, "material variants");
+  }
+}
+
+}  // namespace
+
+void find_unread(const json& document, Model& model) {
+  for (const json& material : items(document, "materials")) find_in_material(material, model);
+  for (const json& mesh : items(document, "meshes")) find_in_mesh(mesh, model);
+  for (const json& node : items(document, "nodes"))
+    if (node.contains("skin")) leave_unread(model, "skins");
+  if (!items(document, "animations").empty()) leave_unread(model, "animations");
+}
+
+}  // namespace sundog::models

@@ -1,0 +1,61 @@
+// What of a model file is not read is reported in one warning.
+#include <scene/model.h>
+
+#include "catch.h"
+#include "gltf_text.h"
+#include "model_files.h"
+
+using namespace sundog;
+using Features = std::vector<std::string>;
+
+TEST_CASE("a glTF's unread features are one warning, each named once", "[models]") {
+  const std::string material = R"({"alphaMode":"BLEND","emissiveFactor":[0,0.5,0],
+    "pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":0}},
+    "normalTexture":{"index":0},"extensions":{"KHR_materials_sheen":{"sheenColorTexture":{"index":0}},
+    "KHR_materials_ior":{"ior":1.4},"VENDOR_glow":{}}})";
+  const Model model =
+      load_text("a.gltf", quad(R"("materials":[)" + material + "," + material +
+                               R"(],"textures":[{}],"skins":[{"joints":[0]}],"animations":[{}],
+                     "nodes":[{"mesh":0,"skin":0},{"mesh":0,"skin":0}])"));
+  CHECK(model.unread == Features{"other textures", "normal textures", "colour textures", "roughness textures",
+                                 "alpha of textures", "emission", "sheen", "VENDOR_glow", "skins",
+                                 "animations"});
+  REQUIRE(model.warnings.size() == 1);
+  CHECK(model.warnings[0].starts_with("read without its "));
+  CHECK(model.warnings[0].ends_with(" and 2 more features"));
+}
+
+TEST_CASE("a glTF that uses what is read alone is without a warning", "[models]") {
+  const Model model = load_text("a.gltf", quad(R"("materials":[{"alphaMode":"BLEND","emissiveFactor":[0,0,0],
+    "pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5]},"extensions":{"KHR_materials_ior":{"ior":1.4}}}],)" +
+                                               one_node));
+  CHECK(model.warnings == Features{});
+}
+
+TEST_CASE("malformed parts that the picture does not use are passed by", "[models]") {
+  const Model model =
+      load_text(
+          "a.gltf", quad(R"("materials":[{"extras":{"xTexture":{}},"normalTexture":3,"emissiveFactor":["a"]}],
+      "animations":7,)" + one_node));
+  CHECK(model.unread == Features{});
+}
+
+TEST_CASE("what an OBJ and its materials have and is not read is one warning", "[models]") {
+  const TemporaryFolder folder;
+  folder.write("m.mtl",
+               "newmtl a\nKd 1 1 1\nmap_Kd a.png\nmap_Bump -bm 1 b.png\nKe 0 0 0\nPs 0\n"
+               "newmtl b\nmap_Kd c.png\nKe 1 0 0\nPm 1.0\n");
+  const Model model = load_model(
+      folder.write("a.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nl 1 2\np 1\n"));
+  CHECK(model.unread == Features{"colour textures", "bump maps", "emission", "metalness", "lines", "points"});
+  CHECK(model.warnings ==
+        Features{"read without its colour textures, bump maps, emission, metalness, lines and points"});
+}
+
+TEST_CASE("materials that are not defined are one warning", "[models]") {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 1; i <= 7; ++i) text += "usemtl m" + std::to_string(i) + "\nf 1 2 3\n";
+  CHECK(
+      load_text("a.obj", text).warnings ==
+      Features{"not defined, and drawn with the default material: 'm1', 'm2', 'm3', 'm4', 'm5' and 2 more"});
+}
