@@ -43,15 +43,72 @@ json to_json(const LightDescription& light) {
   return result;
 }
 
+double greatest(const dvec3& color) { return std::max({color.x, color.y, color.z}); }
+
+/// How much of each light the model's brightest material sends back when it faces the light.
+struct Brightness {
+  double of_ambient = 0, of_key = 0;
+};
+
+Brightness brightness_of(const Model& model) {
+  double vertex_color = 0;
+  for (const Mesh& mesh : model.meshes)
+    for (const glm::vec3& color : mesh.colors) vertex_color = std::max(vertex_color, greatest(dvec3(color)));
+  Brightness brightest;
+  const auto add = [&](const MaterialDescription& m) {
+    const double color = m.vertex_color ? vertex_color : 1;
+    const double broad = 20 / std::max(m.exponent, 20.0);  // a narrow highlight may be white
+    brightest.of_ambient = std::max(brightest.of_ambient, color * greatest(m.ambient));
+    brightest.of_key = std::max(brightest.of_key, color * greatest(m.diffuse) + broad * greatest(m.specular));
+  };
+  std::ranges::for_each(model.materials, add);
+  const auto is_grey = [&](const Object& object) {  // it gets a material that is made up
+    const auto* shape = std::get_if<MeshShape>(&object.shape);
+    return object.material < 0 &&
+           (!shape || model.meshes[static_cast<std::size_t>(shape->mesh)].materials.empty());
+  };
+  if (std::ranges::any_of(model.objects, is_grey)) add({});
+  return brightest;
+}
+
 /// A key light from above the camera's left shoulder, and an ambient one.
-json make_lights(const Camera& camera) {
+struct MadeUpLights {
+  dvec3 direction;
+  double ambient = 0, key = 0;  // intensities
+};
+
+/// The model's brightest material, where it faces the key light, is 0.18 + 0.66: all but white. Dark models
+/// get no more than half as much light again as grey ones.
+MadeUpLights expose(const Model& model, const Camera& camera) {
   const dvec3 forward = glm::normalize(camera.target - camera.position);
   const dvec3 right = glm::normalize(glm::cross(forward, camera.up));
   const dvec3 up = glm::cross(right, forward);
-  return {{{"type", "ambient"}, {"intensity", 1.0}},
-          {{"type", "directional"},
-           {"direction", to_json(forward + 0.6 * right - 0.7 * up)},
-           {"intensity", 0.9}}};
+  const Brightness brightness = brightness_of(model);
+  return {glm::normalize(forward + 0.6 * right - 0.7 * up), 0.18 / std::max(brightness.of_ambient, 0.07),
+          0.66 / std::max(brightness.of_key, 0.5)};
+}
+
+json to_json(const MadeUpLights& lights) {
+  return {{{"type", "ambient"}, {"intensity", lights.ambient}},
+          {{"type", "directional"}, {"direction", to_json(lights.direction)}, {"intensity", lights.key}}};
+}
+
+/// A matte plane just below the model, which takes its shadow. Lit, it has the background's colour at the
+/// horizon, and so no edge. Not for a camera from below.
+void add_ground(json& document, const Bounds& bounds, const Camera& camera, const ImageSettings& image,
+                const MadeUpLights& lights) {
+  constexpr double ambient = 0.2, diffuse = 0.8;
+  const double height = bounds.lower.y - 1e-3 * glm::length(bounds.upper - bounds.lower);
+  if (camera.position.y <= height || lights.direction.y >= 0) return;
+  const double lit = ambient * lights.ambient - diffuse * lights.key * lights.direction.y;
+  const dvec3 horizon = 0.5 * (image.background_bottom + image.background_top);
+  document["materials"]["ground"] = {
+      {"color", to_json(glm::min(horizon / lit, dvec3(1)))}, {"ambient", ambient}, {"diffuse", diffuse}};
+  const dvec3 centre = 0.5 * (bounds.lower + bounds.upper);
+  document["objects"].push_back({{"type", "plane"},
+                                 {"name", "ground"},
+                                 {"point", to_json(dvec3(centre.x, height, centre.z))},
+                                 {"material", "ground"}});
 }
 
 }  // namespace
@@ -61,20 +118,32 @@ json make_model_scene(const std::filesystem::path& file, const Model& model, std
   image.background_bottom = {0.75, 0.75, 0.75}, image.background_top = {0.35, 0.42, 0.5};
   image = model.image.value_or(image);
   const double fitted = aspect.value_or(static_cast<double>(image.width) / image.height);
-  const Camera camera =
-      model.camera ? *model.camera : frame(bounds_of(model.objects, model.meshes), fitted, {});
+  const Bounds bounds = bounds_of(model.objects, model.meshes);
+  const Camera camera = model.camera ? *model.camera : frame(bounds, fitted, {});
+  const MadeUpLights made_up = expose(model, camera);
   json lights = json::array();
   for (const LightDescription& light : model.lights) lights.push_back(to_json(light));
-  return {{"camera", to_json(camera)},
-          {"image",
-           {{"width", image.width},
-            {"height", image.height},
-            {"background",
-             {{"bottom", to_json(image.background_bottom)}, {"top", to_json(image.background_top)}}}}},
-          {"render", json::object()},
-          {"materials", json::object()},
-          {"lights", lights.empty() ? make_lights(camera) : lights},
-          {"objects", {{{"type", "model"}, {"file", file.filename().string()}}}}};
+  json document = {
+      {"camera", to_json(camera)},
+      {"image",
+       {{"width", image.width},
+        {"height", image.height},
+        {"background",
+         {{"bottom", to_json(image.background_bottom)}, {"top", to_json(image.background_top)}}}}},
+      {"render", json::object()},
+      {"materials", json::object()},
+      {"lights", lights.empty() ? to_json(made_up) : lights},
+      {"objects", {{{"type", "model"}, {"file", file.filename().string()}}}}};
+  if (!model.camera && lights.empty() && !bounds.empty())
+    add_ground(document, bounds, camera, image, made_up);
+  return document;
+}
+
+void take_ground_above(json& document, double height) {
+  json& objects = document["objects"];
+  if (objects.size() < 2 || objects[1]["point"][1].get<double>() < height) return;
+  objects.erase(1);
+  document["materials"].erase("ground");
 }
 
 }  // namespace sundog

@@ -45,11 +45,10 @@ SceneDescription read(const Model& model) {
 TEST_CASE("a bare model becomes a scene: seen whole, lit, and grey") {
   const TemporaryFolder folder;
   const SceneDescription scene = load_scene(folder.write("tetra.ply", tetrahedron_ply));
-  REQUIRE(scene.objects.size() == 1);
+  REQUIRE(scene.objects.size() == 2);  // with the ground
   REQUIRE(scene.meshes.size() == 1);
   CHECK(scene.meshes[0].triangles.size() == 4);
-  REQUIRE(scene.objects[0].material == 0);
-  CHECK(scene.materials.at(0).diffuse == dvec3(0.8));
+  CHECK(scene.materials.at(static_cast<std::size_t>(scene.objects[0].material)).diffuse == dvec3(0.8));
   CHECK(scene.camera.target == dvec3(0.5));
   CHECK(scene.camera.position.y > 0.5);
   CHECK(std::any_of(scene.lights.begin(), scene.lights.end(),
@@ -60,6 +59,73 @@ TEST_CASE("a bare model becomes a scene: seen whole, lit, and grey") {
   REQUIRE(key != scene.lights.end());
   CHECK(glm::dot(key->direction, scene.camera.target - scene.camera.position) > 0);
   CHECK(key->direction.y < 0);
+}
+
+namespace {
+
+/// The tetrahedron with a material of these colours, as a model by itself.
+SceneDescription lit(const dvec3& ambient, const dvec3& diffuse, double specular = 0, double exponent = 32) {
+  Model model = two_spheres();
+  model.materials = {{.name = "m",
+                      .ambient = ambient,
+                      .diffuse = diffuse,
+                      .specular = dvec3(specular),
+                      .exponent = exponent}};
+  for (Object& object : model.objects) object.material = 0;
+  return read(model);
+}
+
+/// The greatest value that a surface which faces the key light sends back.
+double brightest(const SceneDescription& scene) {
+  double most = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const MaterialDescription& m = scene.materials.at(static_cast<std::size_t>(scene.objects[i].material));
+    dvec3 sum = scene.lights[0].intensity * m.ambient + scene.lights[1].intensity * m.diffuse;
+    if (m.exponent < 20) sum += scene.lights[1].intensity * m.specular;
+    most = std::max({most, sum.x, sum.y, sum.z});
+  }
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("made-up lights leave no matte material white, and dark ones not black") {
+  CHECK(brightest(lit(dvec3(0.1), dvec3(1))) == Approx(0.84));
+  CHECK(brightest(lit(dvec3(1), dvec3(1))) == Approx(0.84));          // as OBJ's "Ka 1 1 1"
+  CHECK(brightest(lit(dvec3(0.1), dvec3(1), 1, 1)) == Approx(0.84));  // a rough metal's broad highlight
+  CHECK(brightest(lit(dvec3(0.1), dvec3(0.8))) == Approx(0.84));
+  const double dark = brightest(lit(dvec3(0.01), dvec3(0.1)));
+  CHECK(dark > 0.1);
+  CHECK(dark < 0.3);
+}
+
+TEST_CASE("a model without camera and lights stands on a matte ground of the horizon's colour") {
+  const SceneDescription scene = read(two_spheres());
+  const Object& ground = scene.objects.at(2);
+  REQUIRE(std::holds_alternative<PlaneShape>(ground.shape));
+  const Bounds bounds = bounds_of(scene.objects, scene.meshes);
+  CHECK(ground.world_from_object[3].y < bounds.lower.y);
+  CHECK(ground.world_from_object[3].y > bounds.lower.y - 0.01 * glm::length(bounds.upper - bounds.lower));
+  const MaterialDescription& m = scene.materials.at(static_cast<std::size_t>(ground.material));
+  CHECK(m.specular == dvec3(0));
+  const dvec3 lit_color = scene.lights[0].intensity * m.ambient -
+                          scene.lights[1].intensity * glm::normalize(scene.lights[1].direction).y * m.diffuse;
+  const dvec3 horizon = 0.5 * (scene.image.background_bottom + scene.image.background_top);
+  CHECK(glm::length(lit_color - horizon) < 1e-6);
+}
+
+TEST_CASE("a model with a camera or lights of its own, or seen from below, has no made-up ground") {
+  Model model = two_spheres();
+  model.camera = Camera{};
+  CHECK(read(model).objects.size() == 2);
+  model = two_spheres();
+  model.lights.emplace_back();
+  CHECK(read(model).objects.size() == 2);
+  const TemporaryFolder folder;
+  const auto file = folder.write("tetra.ply", tetrahedron_ply);
+  CHECK(load_scene(file, {"/camera/position=[1,0.5,3]"}).objects.size() == 2);
+  CHECK(load_scene(file, {"/camera/position=[1,-2,3]"}).objects.size() == 1);
+  CHECK(load_scene(file, {"/camera/position/1=-2", "/image/width=99"}).objects.size() == 1);
 }
 
 TEST_CASE("a model's own camera, lights and image go before made-up ones") {
@@ -98,7 +164,7 @@ TEST_CASE("a model's own camera, lights and image go before made-up ones") {
 
 TEST_CASE("a model's indices become the scene's") {
   const SceneDescription scene = read(two_spheres());
-  REQUIRE(scene.objects.size() == 2);
+  REQUIRE(scene.objects.size() == 3);  // with the ground
   REQUIRE(scene.media.size() == 2);
   CHECK(scene.media[1].ior == 1.5);
   const MaterialDescription& green = scene.materials.at(static_cast<std::size_t>(scene.objects[0].material));
