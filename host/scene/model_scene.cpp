@@ -103,7 +103,7 @@ void add_ground(json& document, const Bounds& bounds, const Camera& camera, cons
   const double lit = ambient * lights.ambient - diffuse * lights.key * lights.direction.y;
   const dvec3 horizon = 0.5 * (image.background_bottom + image.background_top);
   document["materials"]["ground"] = {
-      {"color", to_json(glm::min(horizon / lit, dvec3(1)))}, {"ambient", ambient}, {"diffuse", diffuse}};
+      {"color", to_json(horizon / lit)}, {"ambient", ambient}, {"diffuse", diffuse}};
   const dvec3 centre = 0.5 * (bounds.lower + bounds.upper);
   document["objects"].push_back({{"type", "plane"},
                                  {"name", "ground"},

@@ -100,7 +100,8 @@ TEST_CASE("made-up lights leave no matte material white, and dark ones not black
 }
 
 TEST_CASE("a model without camera and lights stands on a matte ground of the horizon's colour") {
-  const SceneDescription scene = read(two_spheres());
+  const bool metal = GENERATE(false, true);
+  const SceneDescription scene = metal ? lit(dvec3(0.1), dvec3(1), 1, 1) : read(two_spheres());
   const Object& ground = scene.objects.at(2);
   REQUIRE(std::holds_alternative<PlaneShape>(ground.shape));
   const Bounds bounds = bounds_of(scene.objects, scene.meshes);

@@ -52,8 +52,9 @@ constexpr std::array material_extensions{
     Named{"KHR_materials_unlit", "unlit materials"},
     Named{"KHR_materials_pbrSpecularGlossiness", "specular-glossiness materials"}};
 
-void find_textures(const json& value, Model& model) {
-  if (!value.is_object()) return;
+/// Extensions nest a few levels; a file may nest without end.
+void find_textures(const json& value, Model& model, int levels = 8) {
+  if (!value.is_object() || levels == 0) return;
   for (const auto& [key, inner] : value.items()) {
     if (key == "extras") continue;
     if (key.ends_with("Texture") && inner.is_object()) {
@@ -62,7 +63,7 @@ void find_textures(const json& value, Model& model) {
         if (key == known.key) feature = known.feature;
       leave_unread(model, feature);
     } else {
-      find_textures(inner, model);
+      find_textures(inner, model, levels - 1);
     }
   }
 }
@@ -74,7 +75,7 @@ void find_in_material(const json& material, Model& model) {
       member(member(material, "pbrMetallicRoughness"), "baseColorTexture").is_object())
     leave_unread(model, "alpha of textures");
   for (const json& factor : items(material, "emissiveFactor"))
-    if (factor.is_number() && factor > 0) leave_unread(model, "emission");
+    if (factor.is_number() && factor.get<double>() > 0) leave_unread(model, "emission");
   const json& extensions = member(material, "extensions");
   if (!extensions.is_object()) return;
   for (const auto& [name, extension] : extensions.items()) {
