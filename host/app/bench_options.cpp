@@ -112,7 +112,8 @@ CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
     return compile(load_scene(file, overrides));
   } catch (const SceneError& error) {
     for (const std::string& setting : overrides)
-      if (error.file == file && concerns(setting, error.place)) throw UsageError(error.what());
+      if (error.file == scene_file_name(file) && concerns(setting, error.place))
+        throw UsageError(error.what());
     throw;
   }
 }

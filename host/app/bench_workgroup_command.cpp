@@ -11,6 +11,7 @@
 #include "app/option_helpers.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/names.h"
 #include "bench/frame_runner.h"
 #include "bench/ray_sets.h"
 #include "bench/ray_tracer.h"
@@ -156,7 +157,10 @@ void add_bench_workgroup(Arguments& bench, Command& chosen) {
   app->callback([options, &chosen] {
     for (const std::string& name : options->kernels)
       if (std::ranges::count(kernel_names, name) == 0)
-        throw UsageError(fmt::format("--kernel {}: wanted one of {}", name, fmt::join(kernel_names, ", ")));
+        throw UsageError(
+            fmt::format("--kernel {}: {}", name,
+                        did_you_mean(name, {kernel_names.begin(), kernel_names.end()},
+                                     fmt::format("wanted one of {}", fmt::join(kernel_names, ", ")), "")));
     if (options->kernels.empty()) options->kernels.assign(kernel_names.begin(), kernel_names.end());
     chosen = RunLater{[options] { return bench_workgroup(*options); }};
   });

@@ -61,7 +61,8 @@ CompiledScene compile_overridden(const SceneDescription& scene, const InfoComman
     return compile(scene);
   } catch (const SceneError& error) {
     for (const std::string& setting : command.overrides)
-      if (error.file == command.scene && concerns(setting, error.place)) throw UsageError(error.what());
+      if (error.file == scene_file_name(command.scene) && concerns(setting, error.place))
+        throw UsageError(error.what());
     throw;
   }
 }

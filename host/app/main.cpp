@@ -28,8 +28,9 @@ int run(const CompareCommand& command) { return compare_command(command); }
 /// In a thread of its own: drivers that work in the caller's thread need more stack than the first one has.
 int run(const RunLater& command) { return std::async(std::launch::async, command.run).get(); }
 int run(const ShowText& command) {
-  fmt::print("{}", command.text);
-  return exit_done;
+  if (command.status == exit_done || job_rank() <= 0)
+    fmt::print(command.status == exit_done ? stdout : stderr, "{}", command.text);
+  return command.status;
 }
 
 int run_command_line(int argc, char** argv) {

@@ -7,23 +7,21 @@
 #include "app/output_files.h"
 #include "app/save_image.h"
 #include "base/error.h"
-#include "base/file.h"
+#include "base/standard_streams.h"
 #include "render/part.h"
 
 namespace sundog {
 
 int merge_command(const MergeCommand& command) {
-  if (command.full_floats && drops_alpha(command.out))
-    throw UsageError(fmt::format("{}: --float is for .exr files", command.out));
-  check_image_path(command.out, false);
   check_output_files({command.out}, command.parts);
-  check_writable(command.out);
+  check_picture(command, false);
+  if (is_standard_stream(command.out)) claim_standard_output();
   const PartFile whole = merge_parts({command.parts.begin(), command.parts.end()});
-  check_image_path(command.out, !whole.aovs.empty());
+  check_image_path(format_name(command), !whole.aovs.empty());
   const Image image = whole.film.develop();
   AovImages aovs;
   for (const std::string& name : whole.aovs) aovs[name] = whole.film.develop_aov(name);
-  save_image({image, aovs, whole.film, whole.key, {}, command.full_floats}, command.out);
+  save_image({image, aovs, whole.film, whole.key, {}, command.full_floats, command.format}, command.out);
   fmt::print("{}: {}x{} from {} parts\n", command.out, image.width, image.height, command.parts.size());
   return exit_done;
 }

@@ -7,7 +7,8 @@
 
 namespace sundog {
 
-inline constexpr const char* scene_help = "a .json scene, or a .gltf .glb .obj .ply .stl .nff model";
+inline constexpr const char* scene_help =
+    "a .json scene (-: from the standard input), or a .gltf .glb .obj .ply .stl .nff model";
 inline constexpr const char* device_help =
     "P:D, cpu, gpu, accelerator, all, part of a name, or !SPEC to take away; /N for N compute units "
     "(default: SUNDOG_DEVICE, or the fastest)";

@@ -9,16 +9,32 @@
 
 #include "app/bench_options.h"
 #include "app/check_command.h"
+#include "app/command_words.h"
+#include "app/commands.h"
 #include "app/formulas_command.h"
 #include "app/option_helpers.h"
 #include "app/option_values.h"
 #include "app/tune_command.h"
 #include "base/error.h"
+#include "base/image_io.h"
+#include "base/names.h"
+#include "base/standard_streams.h"
 
 namespace sundog {
 namespace {
 
-constexpr const char* more_help = "(sundog --help tells more)";
+constexpr const char* short_help =
+    R"(sundog renders scenes with OpenCL, on any device there is.
+
+  sundog render SCENE -o OUT.png   render a scene (.json) or a model (.gltf .glb .obj .ply .stl .nff)
+  sundog check                     check drivers, caches and devices
+  sundog devices                   list the devices, for --device
+  sundog info SCENE                what a scene holds
+  sundog formulas                  the fractals and solids that scenes may name
+
+All commands: {}.
+`sundog --help` describes all commands, `sundog COMMAND --help` a command's options.
+)";
 
 /// The options of `render` as typed, before they are checked.
 struct TypedRender {
@@ -43,8 +59,29 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
   return all;
 }
 
+void add_picture(Arguments* app, PictureOptions& picture) {
+  value(app, "-o,--out", "FILE", picture.out,
+        "image file: .png, .jpg, .exr, .hdr or .pfm; -: the standard output")
+      ->required();
+  value(app, "--format", "NAME", picture.format,
+        fmt::format("of the image that -o - writes: {} (default: png)", fmt::join(image_formats(), ", ")));
+  app->add_flag("--float", picture.full_floats, "keep an .exr's colours as 32-bit floats (default: half)");
+}
+
+void check_format(PictureOptions& picture) {
+  const auto& known = image_formats();
+  if (!picture.format.empty() && !is_standard_stream(picture.out))
+    throw UsageError("--format is for -o -: a file's name says its format");
+  if (!picture.format.empty() && std::ranges::count(known, picture.format) == 0)
+    throw UsageError(fmt::format(
+        "--format {}: {}", picture.format,
+        did_you_mean(picture.format, known, fmt::format("wanted one of {}", fmt::join(known, ", ")), "")));
+  if (picture.format.empty()) picture.format = "png";
+}
+
 RenderCommand checked(const TypedRender& typed) {
   RenderCommand command = typed.command;
+  check_format(command);
   command.overrides = collect_overrides(typed);
   command.work_group = parse_work_group(typed.work_group);
   command.split = parse_split(typed.split);
@@ -54,7 +91,10 @@ RenderCommand checked(const TypedRender& typed) {
   if (command.devices.empty()) command.devices = devices_of_environment();
   for (const std::string& name : command.aovs)
     if (std::ranges::count(aov_names(), name) == 0)
-      throw UsageError(fmt::format("--aov {}: wanted one of {}", name, fmt::join(aov_names(), ", ")));
+      throw UsageError(
+          fmt::format("--aov {}: {}", name,
+                      did_you_mean(name, aov_names(),
+                                   fmt::format("wanted one of {}", fmt::join(aov_names(), ", ")), "")));
   return command;
 }
 
@@ -64,7 +104,7 @@ void add_render(Arguments& root, Command& chosen) {
   Arguments* app = root.add_subcommand(
       "render", "Render a scene to an image file; under mpirun, on the devices of all its processes");
   value(app, "SCENE", "FILE", command.scene, scene_help)->required();
-  value(app, "-o,--out", "FILE", command.out, "image file: .png, .exr, .hdr or .pfm")->required();
+  add_picture(app, command);
   values(app, "--device", "SPEC", command.devices, device_help);
   value(app, "--tiles", "I/N", typed->part,
         "render part I of N only, into a .part file that `sundog merge` takes");
@@ -85,10 +125,10 @@ void add_render(Arguments& root, Command& chosen) {
   value(
       app, "--frames", "A..B", typed->frames,
       "render these frames of the scene's animation to numbered files (out_0001.png, or where OUT has ####)");
-  value(app, "--stats", "FILE", command.stats, "write rays, times and devices to this JSON file");
+  value(app, "--stats", "FILE", command.stats,
+        "write rays, times and devices to this JSON file; -: the standard output");
   values(app, "--aov", "NAME", command.aovs,
          fmt::format("an extra image in the .exr: {}", fmt::join(aov_names(), ", ")));
-  app->add_flag("--float", command.full_floats, "keep an .exr's colours as 32-bit floats (default: half)");
   value(app, "--resume", "FILE", command.resume,
         "checkpoint: written when interrupted, continued from when it is there");
   app->add_flag("--allow-native-code", command.native_code,
@@ -137,44 +177,25 @@ void add_merge(Arguments& root, Command& chosen) {
   app->add_option("PART", command->parts, "files that render --tiles has written")
       ->required()
       ->type_name("FILE");
-  value(app, "-o,--out", "FILE", command->out, "image file: .png, .exr, .hdr or .pfm")->required();
-  app->add_flag("--float", command->full_floats, "keep an .exr's colours as 32-bit floats (default: half)");
-  app->callback([command, &chosen] { chosen = *command; });
+  add_picture(app, *command);
+  app->callback([command, &chosen] {
+    check_format(*command);
+    chosen = *command;
+  });
 }
 
-/// The library's own message about an unknown command only asks for one. `at`: where its name stands.
-void check_command_name(const CLI::App& parent, int argc, const char* const* argv, int at = 1) {
-  std::vector<std::string> names;
-  const std::string wanted = argc > at ? argv[at] : "";
-  for (const CLI::App* command : parent.get_subcommands(nullptr)) {
-    names.push_back(command->get_name());
-    if (names.back() == wanted) return check_command_name(*command, argc, argv, at + 1);
-  }
-  if (!names.empty() && !wanted.starts_with('-'))
-    throw UsageError(fmt::format("wanted a {} ({}), found {} {}", at > 1 ? "benchmark" : "command",
-                                 fmt::join(names, ", "), wanted.empty() ? "none" : "'" + wanted + "'",
-                                 more_help));
-}
-
-/// The library takes whatever follows an option for its value: with a forgotten value, that is the next
-/// option. (What really begins like one goes as --stats=-o.)
-void check_values_given(const CLI::App& root, int argc, const char* const* argv) {
-  const CLI::App* command = &root;
-  for (int i = 1; i + 1 < argc && std::string_view(argv[i]) != "--"; ++i) {
-    for (const CLI::App* inner : command->get_subcommands(nullptr))
-      if (inner->get_name() == argv[i]) {
-        command = inner;
-        break;
-      }
-    if (argv[i][0] != '-') continue;
-    const CLI::Option* option = command->get_option_no_throw(argv[i]);
-    if (!option || option->get_items_expected_min() == 0) continue;
-    const std::string next = argv[++i];
+CommandWords words_of(const CLI::App& app, const std::string& before = "") {
+  CommandWords words{app.get_name(), before + app.get_name(), {}, {}};
+  for (const CLI::Option* option : app.get_options()) {
     const std::string type = option->get_type_name();  // with what it is checked for behind a colon
-    if (next.size() > 1 && next[0] == '-' && command->get_option_no_throw(next))
-      throw UsageError(fmt::format("{} wants a value ({}), found the option {} {}", argv[i - 1],
-                                   type.substr(0, type.find(':')), next, more_help));
+    OptionWords one{{}, option->get_items_expected_min() > 0, type.substr(0, type.find(':'))};
+    for (const std::string& name : option->get_lnames()) one.names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) one.names.push_back("-" + name);
+    words.options.push_back(one);
   }
+  for (const CLI::App* command : app.get_subcommands(nullptr))
+    words.commands.push_back(words_of(*command, words.line + " "));
+  return words;
 }
 
 }  // namespace
@@ -203,8 +224,9 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_tune(arguments, chosen);
   add_merge(arguments, chosen);
   add_bench(arguments, chosen);
-  check_command_name(root, argc, argv);
-  check_values_given(root, argc, argv);
+  const CommandWords words = words_of(root);
+  if (argc < 2) return ShowText{fmt::format(short_help, fmt::join(command_names(words), ", ")), exit_usage};
+  const CommandWords& named = check_words(words, argc, argv);
   try {
     root.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -213,9 +235,9 @@ Command parse_command_line(int argc, const char* const* argv) {
     return ShowText{std::string(version.what()) + "\n"};
   } catch (const CLI::ExtrasError&) {
     throw UsageError(
-        fmt::format("unknown option or argument: {} {}", fmt::join(root.remaining(true), " "), more_help));
+        fmt::format("unknown argument: {} {}", fmt::join(root.remaining(true), " "), see_help(named)));
   } catch (const CLI::ParseError& error) {
-    throw UsageError(fmt::format("{} {}", error.what(), more_help));
+    throw UsageError(fmt::format("{} {}", error.what(), see_help(named)));
   }
   return chosen;
 }

@@ -12,8 +12,15 @@
 
 namespace sundog {
 
-struct RenderCommand {
-  std::string scene, out;
+/// A picture that a command writes.
+struct PictureOptions {
+  std::string out;           // "-": the standard output
+  std::string format;        // of image_formats(), for the standard output
+  bool full_floats = false;  // an EXR's colours as 32-bit floats
+};
+
+struct RenderCommand : PictureOptions {
+  std::string scene;
   std::vector<std::string> devices;    // --device SPECs, or those of SUNDOG_DEVICE
   std::vector<std::string> overrides;  // "JSON_POINTER=VALUE", those of --size, --samples... among them
   WorkGroup work_group;
@@ -22,10 +29,9 @@ struct RenderCommand {
   int tile = 0;
   std::optional<FrameRange> frames;  // of an animation; the files are numbered
   std::optional<double> frame;       // the one of them that is rendered now
-  std::string stats, resume;  // files; empty: none
+  std::string stats, resume;         // files; empty: none
   std::vector<std::string> aovs;
   bool isolate = false;      // each device in a process of its own
-  bool full_floats = false;  // an EXR's colours as 32-bit floats
   bool native_code = false;  // the scene may carry OpenCL C
   bool quiet = false, verbose = false;
 };
@@ -42,15 +48,14 @@ struct CompareCommand {
   bool json = false;
 };
 
-struct MergeCommand {
+struct MergeCommand : PictureOptions {
   std::vector<std::string> parts;
-  std::string out;
-  bool full_floats = false;
 };
 
-/// --help or --version: a text for stdout.
+/// --help or --version: a text for stdout. Without a command: the short help, for stderr.
 struct ShowText {
   std::string text;
+  int status = 0;  // exit status
 };
 
 /// A command that needs no value here: its own file declares its options and does its work.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/standard_streams.h"
 #include "render/device_server.h"
 #include "render/hash.h"
 #include "render/remote_server.h"
@@ -35,6 +36,7 @@ DeviceInfo find_device(const DeviceInfo& wanted) {
 
 json remote_settings(const RenderCommand& command, const DeviceInfo& device) {
   return {{"scene", command.scene},
+          {"scene_text", is_standard_stream(command.scene) ? json(standard_input()) : json()},
           {"overrides", command.overrides},
           {"frame", command.frame ? json(*command.frame) : json()},
           {"native_code", command.native_code},
@@ -48,6 +50,7 @@ namespace {
 
 std::shared_ptr<const CompiledScene> load_flat(const json& settings) {
   const auto overrides = settings.at("overrides").get<std::vector<std::string>>();
+  if (settings.at("scene_text").is_string()) set_standard_input(settings["scene_text"].get<std::string>());
   LoadOptions options{std::nullopt, settings.at("native_code").get<bool>()};
   if (settings.at("frame").is_number()) options.frame = settings["frame"].get<double>();
   return std::make_shared<const CompiledScene>(
@@ -57,7 +60,8 @@ std::shared_ptr<const CompiledScene> load_flat(const json& settings) {
 /// The devices of one process render the same scene: it is loaded once.
 std::shared_ptr<const CompiledScene> load_once(const json& settings, KeptOpen& kept) {
   json of_scene;
-  for (const char* key : {"scene", "overrides", "native_code", "frame"}) of_scene[key] = settings.at(key);
+  for (const char* key : {"scene", "scene_text", "overrides", "native_code", "frame"})
+    of_scene[key] = settings.at(key);
   const std::lock_guard lock(kept.mutex);
   if (kept.scene_settings != of_scene.dump()) kept.scene = load_flat(settings);
   kept.scene_settings = of_scene.dump();

@@ -25,7 +25,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "base/image_io.h"
+#include "base/standard_streams.h"
 #include "render/hash.h"
 #include "render/view_warnings.h"
 #include "scene/json/override.h"
@@ -48,13 +48,23 @@ void check_outputs(const RenderCommand& command) {
   if (command.part && !command.out.ends_with(".part"))
     throw UsageError(
         fmt::format("{}: with --tiles, OUT is a part of the frame and ends in .part", command.out));
-  if (!command.part) check_image_path(command.out, !command.aovs.empty());
-  if (command.full_floats && !command.part && drops_alpha(command.out))
-    throw UsageError(fmt::format("{}: --float is for .exr files", command.out));
+  if (job_rank() >= 0 && is_standard_stream(command.out))
+    throw UsageError("-o -: under mpirun, whose standard output is for text, a picture wants a file");
+  if (is_standard_stream(command.resume)) throw UsageError("--resume -: a checkpoint wants a file");
   check_output_files({command.out, command.stats, command.resume}, {command.scene});
-  check_writable(command.out);
+  if (command.part)
+    check_writable(command.out);
+  else
+    check_picture(command, !command.aovs.empty());
   for (const std::string& file : {command.stats, command.resume})
-    if (!file.empty()) check_writable(file);
+    if (!file.empty() && !is_standard_stream(file)) check_writable(file);
+}
+
+/// Frames are files of their own.
+void check_frames(const RenderCommand& command) {
+  for (const std::string& file : {command.out, command.stats})
+    if (command.frames && is_standard_stream(file))
+      throw UsageError("--frames writes numbered files: wanted a name for them, found -");
 }
 
 /// An error at a place that an option changed is the command line's.
@@ -62,7 +72,7 @@ SceneDescription load(const RenderCommand& command) {
   try {
     return load_scene(command.scene, command.overrides, {command.frame, command.native_code});
   } catch (const SceneError& error) {
-    if (error.file == command.scene)
+    if (error.file == scene_file_name(command.scene))
       for (const std::string& setting : command.overrides)
         if (concerns(setting, error.place)) throw UsageError(error.what());
     throw;
@@ -93,7 +103,8 @@ struct Setup {
 
 /// In a job there always is one: mpirun kills all ranks when one dies.
 std::string checkpoint_file(const RenderCommand& command, const Setup& setup) {
-  return setup.job && command.resume.empty() ? command.out + ".checkpoint" : command.resume;
+  const std::string name = is_standard_stream(command.out) ? "sundog" : command.out;
+  return setup.job && command.resume.empty() ? name + ".checkpoint" : command.resume;
 }
 
 /// Until the frame begins there is nothing to save. (In a job the other ranks want to be told.)
@@ -154,7 +165,7 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
   if (!command.stats.empty()) {
     using nlohmann::json;
     const json stats = stats_json(command, scene.description, *scene.flat, result, times);
-    write_file(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+    write_output(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   }
   tell_result(command, scene.description, result, times);
   return conclude(command, result, told);
@@ -197,7 +208,9 @@ std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* jo
 int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox* job) {
   const Stopwatch clock;
   Setup setup{stop, job, {}, {}};
+  check_frames(command);
   check_outputs(command.frames ? frame_command(command, command.frames->first) : command);
+  if (is_standard_stream(command.out) || is_standard_stream(command.stats)) claim_standard_output();
   TimeLedger times;
   std::optional<LoadedScene> scene;
   if (!command.frames) {

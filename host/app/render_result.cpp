@@ -67,7 +67,8 @@ void summarise(const RenderCommand& command, const RenderResult& result, const T
 
 void save_result(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result,
                  const std::string& checkpoint) {
-  Picture picture{result.image, result.aovs, result.film, result.key, checkpoint, command.full_floats};
+  Picture picture{result.image, result.aovs,         result.film,   result.key,
+                  checkpoint,   command.full_floats, command.format};
   if (picture.key == 0) picture.key = hash_scene(scene);
   if (!command.part)
     save_image(picture, command.out);

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/standard_streams.h"
 
 namespace sundog {
 namespace {
@@ -17,9 +18,15 @@ Image without_alpha(const Image& image) {
   return opaque;
 }
 
+/// The path, whose extension is the format.
+fs::path named(const Picture& picture, const fs::path& path) {
+  return is_standard_stream(path) ? fs::path("picture." + picture.format) : path;
+}
+
 void write(const Picture& picture, const fs::path& path) {
-  write_image(drops_alpha(path) ? without_alpha(picture.image) : picture.image, path, picture.aovs,
-              picture.full_floats ? ExrColor::full : ExrColor::half);
+  const fs::path name = named(picture, path);
+  write_output(path, encode_image(drops_alpha(name) ? without_alpha(picture.image) : picture.image, name,
+                                  picture.aovs, picture.full_floats ? ExrColor::full : ExrColor::half));
 }
 
 bool keep_checkpoint(const Picture& picture) {
@@ -39,7 +46,8 @@ std::string rescue(const Picture& picture, const fs::path& path) {
                        picture.checkpoint.string());
   std::error_code none;
   const fs::path elsewhere =
-      fs::temp_directory_path(none) / fmt::format("sundog-{}-{}", ::getpid(), path.filename().string());
+      fs::temp_directory_path(none) /
+      fmt::format("sundog-{}-{}", ::getpid(), named(picture, path).filename().string());
   try {
     write(picture, elsewhere);
     return fmt::format("; the image is in {}", elsewhere.string());

@@ -16,13 +16,14 @@ struct Picture {
   std::uint64_t key = 0;             // of the scene, for a checkpoint
   std::filesystem::path checkpoint;  // may be used in need; empty: none was asked for
   bool full_floats = false;
+  std::string format = "png";  // of image_formats(), where the path is "-"
 };
 
 /// True where a program would show an alpha channel of coverage as holes.
 bool drops_alpha(const std::filesystem::path& path);
 
-/// Writes `path`. When that fails the frame is kept as a checkpoint, or as an image in the folder for
-/// temporary files: IoError says what happened and where it is.
+/// Writes `path`; "-" is the standard output. When that fails the frame is kept as a checkpoint, or as an
+/// image in the folder for temporary files: IoError says what happened and where it is.
 void save_image(const Picture& picture, const std::filesystem::path& path);
 
 }  // namespace sundog

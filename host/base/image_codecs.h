@@ -11,6 +11,8 @@ namespace sundog {
 
 /// 8 bits a channel, colours as sRGB, alpha as it is.
 std::string encode_png(const Image& image);
+/// Likewise, without alpha; colours in full resolution.
+std::string encode_jpeg(const Image& image);
 /// PNG (8 or 16 bits) and JPEG as linear RGBA. A PNG's gAMA chunk is honoured when it has no sRGB or iCCP
 /// one.
 Image decode_png_or_jpeg(std::string_view bytes);

@@ -62,31 +62,42 @@ float linear_from_srgb(float srgb) {
 void check_image_path(const fs::path& path, bool with_aovs) {
   const std::string extension = lower_extension(path);
   if (extension == ".exr") return;
-  if (extension != ".png" && extension != ".hdr" && extension != ".pfm")
+  const auto& formats = image_formats();
+  if (extension.empty() || std::ranges::count(formats, extension.substr(1)) == 0)
     throw UsageError(
-        fmt::format("{}: wanted an image file name that ends in .png, .exr, .hdr or .pfm, found {}",
+        fmt::format("{}: wanted an image file name that ends in .png, .jpg, .exr, .hdr or .pfm, found {}",
                     path.string(), extension.empty() ? "no extension" : extension));
   if (with_aovs)
     throw UsageError(
         fmt::format("{}: only .exr files hold AOVs; use an .exr name or no --aov", path.string()));
 }
 
-void write_image(const Image& image, const fs::path& path, const AovImages& aovs, ExrColor color) {
+const std::vector<std::string>& image_formats() {
+  static const std::vector<std::string> formats = {"png", "jpg", "jpeg", "exr", "hdr", "pfm"};
+  return formats;
+}
+
+std::string encode_image(const Image& image, const fs::path& path, const AovImages& aovs, ExrColor color) {
   check_image_path(path, !aovs.empty());
   const std::string extension = lower_extension(path);
   const auto encode = [&] {
     if (extension == ".exr") return encode_exr(image, aovs, color);
     if (extension == ".hdr") return encode_hdr(image);
     if (extension == ".pfm") return encode_pfm(image);
+    if (extension == ".jpg" || extension == ".jpeg") return encode_jpeg(image);
     return encode_png(image);
   };
   try {
-    write_file(path, encode());
+    return encode();
   } catch (const IoError&) {
     throw;
   } catch (const std::exception& error) {
     throw IoError(fmt::format("{}: cannot be written: {}", path.string(), error.what()));
   }
+}
+
+void write_image(const Image& image, const fs::path& path, const AovImages& aovs, ExrColor color) {
+  write_file(path, encode_image(image, path, aovs, color));
 }
 
 Image read_image(const fs::path& path) { return read_named(path, decode); }

@@ -1,7 +1,9 @@
-// Reading and writing images: by file extension .png (8-bit sRGB), .exr, .hdr, .pfm are written; the same,
-// 16-bit PNG and JPEG are read, whatever the file's name.
+// Reading and writing images: by file extension .png and .jpg (8-bit sRGB), .exr, .hdr, .pfm are written; the
+// same and 16-bit PNG are read, whatever the file's name.
 #pragma once
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "base/image.h"
 
@@ -15,6 +17,13 @@ enum class ExrColor { half, full };
 /// formats refuse them. Throws UsageError for an unknown extension, IoError when the file cannot be written.
 void write_image(const Image& image, const std::filesystem::path& path, const AovImages& aovs = {},
                  ExrColor color = ExrColor::half);
+
+/// The bytes that `write_image` writes.
+std::string encode_image(const Image& image, const std::filesystem::path& path, const AovImages& aovs = {},
+                         ExrColor color = ExrColor::half);
+
+/// The extensions that are written, without the dot.
+const std::vector<std::string>& image_formats();
 
 /// Throws UsageError for an extension `write_image` would refuse: call it before a long render.
 void check_image_path(const std::filesystem::path& path, bool with_aovs);

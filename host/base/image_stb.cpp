@@ -67,6 +67,16 @@ std::uint8_t byte_from_unit(float value) {  // NaN becomes 0
   return static_cast<std::uint8_t>(std::lround(255 * (value > 0 ? std::min(value, 1.0f) : 0.0f)));
 }
 
+std::vector<std::uint8_t> srgb_samples(const Image& image) {
+  std::vector<std::uint8_t> samples(image.data.size());
+  const auto channels = static_cast<std::size_t>(image.channels);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const bool alpha = channels == 4 && i % channels == 3;
+    samples[i] = byte_from_unit(alpha ? image.data[i] : srgb_from_linear(image.data[i]));
+  }
+  return samples;
+}
+
 /// The linear value of each of `count` sample values.
 std::vector<float> decoding_table(std::size_t count, std::optional<float> exponent) {
   std::vector<float> table(count);
@@ -117,16 +127,25 @@ std::string encode_png(const Image& image) {
   const std::size_t row = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
   if ((row + 1) * static_cast<std::size_t>(image.height) > INT_MAX / 2)
     throw std::runtime_error("the image is too large for a PNG; use .exr");
-  std::vector<std::uint8_t> samples(image.data.size());
-  const auto channels = static_cast<std::size_t>(image.channels);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const bool alpha = channels == 4 && i % channels == 3;
-    samples[i] = byte_from_unit(alpha ? image.data[i] : srgb_from_linear(image.data[i]));
-  }
+  const std::vector<std::uint8_t> samples = srgb_samples(image);
   std::string bytes;
   if (!stbi_write_png_to_func(append, &bytes, image.width, image.height, image.channels, samples.data(),
                               static_cast<int>(row)))
     throw std::runtime_error("the PNG encoder failed");
+  return bytes;
+}
+
+std::string encode_jpeg(const Image& image) {
+  constexpr int greatest_side = 65535;
+  // From 91 on stb_image_write keeps the colours of each pixel, not of four at once.
+  constexpr int quality = 92;
+  if (std::max(image.width, image.height) > greatest_side)
+    throw std::runtime_error("the image is too large for a JPEG; use .png or .exr");
+  const std::vector<std::uint8_t> samples = srgb_samples(image);
+  std::string bytes;
+  if (!stbi_write_jpg_to_func(append, &bytes, image.width, image.height, image.channels, samples.data(),
+                              quality))
+    throw std::runtime_error("the JPEG encoder failed");
   return bytes;
 }
 

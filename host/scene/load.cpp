@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/standard_streams.h"
 #include "scene/animate.h"
 #include "scene/json/override.h"
 #include "scene/json/parse.h"
@@ -34,13 +35,18 @@ double aspect_of(const json& document) {
   return height > 0 ? std::max(size("/image/width"), 0.0) / height : 0;
 }
 
-/// The document made up around a model. Its camera fits the image that the overrides ask for.
+/// The document made up around a model. Its camera fits the image that the overrides ask for, and its ground
+/// the camera that they ask for.
 json make_scene(const fs::path& file, const Model& model, const std::vector<std::string>& overrides) {
-  const json document = make_model_scene(file, model);
+  json document = make_model_scene(file, model);
   json changed = document;
   apply_overrides(changed, file, overrides);
   const double aspect = aspect_of(changed);
-  return aspect > 0 && aspect != aspect_of(document) ? make_model_scene(file, model, aspect) : document;
+  if (aspect > 0 && aspect != aspect_of(document)) document = make_model_scene(file, model, aspect);
+  const json::json_pointer height("/camera/position/1");
+  if (changed.contains(height) && changed[height].is_number())
+    take_ground_above(document, changed[height].get<double>());
+  return document;
 }
 
 SceneDescription read_with_overrides(json document, const fs::path& file,
@@ -67,8 +73,16 @@ SceneDescription read_with_overrides(json document, const fs::path& file,
 
 }  // namespace
 
+std::string scene_file_name(const fs::path& path) {
+  return is_standard_stream(path) ? "standard input" : path.string();
+}
+
 SceneDescription load_scene(const fs::path& path, const std::vector<std::string>& overrides,
                             const LoadOptions& options) {
+  if (is_standard_stream(path)) {
+    const fs::path name = scene_file_name(path);
+    return read_with_overrides(parse_json(standard_input(), name), name, overrides, options, std::nullopt);
+  }
   require_readable(path, path, "");
   if (is_model_file(path)) {
     Model model = load_model(path);

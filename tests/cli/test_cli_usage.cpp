@@ -2,6 +2,8 @@
 #include <base/file.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "catch.h"
 #include "cli_scene.h"
 
@@ -18,33 +20,51 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
   const CliFolder folder;
   const std::string scene = folder.scene, out = folder.file("out.png");
   const std::vector<BadLine> lines = {
-      {{}, "wanted a command (render, devices, "},
-      {{""}, "found none"},
-      {{"frobnicate"}, "found 'frobnicate'"},
+      {{""}, "found ''"},
+      {{"frobnicate"}, "found 'frobnicate' (see sundog --help)"},
+      {{"rendr", scene}, "found 'rendr': did you mean 'render'? (see sundog --help)"},
       {{"bench"}, "wanted a benchmark (workgroup, threads, rays, samples, devices, kernels), found none"},
       {{"bench", "speed"}, "found 'speed'"},
-      {{"bench", "threads"}, "SCENE is required"},
+      {{"bench", "thraeds"}, "found 'thraeds': did you mean 'threads'? (see sundog bench --help)"},
+      {{"bench", "threads"}, "SCENE is required (see sundog bench threads --help)"},
       {{"bench", "workgroup", scene, "--kernel", "magic"}, "--kernel magic: wanted one of render_whitted"},
+      {{"bench", "workgroup", scene, "--kernel", "trace_ray"},
+       "--kernel trace_ray: did you mean trace_rays?"},
       {{"bench", "threads", scene, "--counts", "0"}, "--counts 0: wanted a whole number from 1"},
       {{"bench", "threads", scene, "--sizes", "8,,9"}, "--sizes : wanted"},
+      {{"bench", "devices", scene, "--size", "8"}, "--size 8: wanted WIDTHxHEIGHT"},
       {{"bench", "threads", scene, "--repeat", "0"}, "--repeat"},
       {{"bench", "threads", scene, "--set", "fov=3"}, "--set fov=3: wanted JSON_POINTER=VALUE"},
       {{"check", "--timeout", "0"}, "--timeout"},
-      {{"--frobnicate"}, "required"},
-      {{"render"}, "SCENE is required"},
+      {{"--frobnicate"}, "unknown option --frobnicate (see sundog --help)"},
+      {{"--vresion"}, "unknown option --vresion: did you mean --version?"},
+      {{"render"}, "SCENE is required (see sundog render --help)"},
       {{"render", scene}, "--out is required"},
       {{"render", scene, "-o"}, "--out"},
-      {{"render", scene, "-o", out, "surplus"}, "surplus"},
-      {{"render", scene, "-o", out, "--spilt", "static"}, "--spilt static"},
+      {{"render", scene, "-o", out, "surplus"}, "unknown argument: surplus (see sundog render --help)"},
+      {{"render", scene, "-o", out, "--spilt", "static"},
+       "unknown option --spilt: did you mean --split? (see sundog render --help)"},
+      {{"render", scene, "--ouput=x.png"}, "unknown option --ouput: did you mean --out?"},
+      {{"render", scene, "-o", out, "-x"}, "unknown option -x (see sundog render --help)"},
+      {{"render", scene, "-o", out, "-qx"}, "unknown option -x (see sundog render --help)"},
       {{"render", scene, "-o", out, "--split", "halves"}, "--split halves"},
       {{"render", scene, "-o", out, "--split", "1,-1"}, "--split 1,-1"},
       {{"render", scene, "-o", out, "--split", "0,0"}, "--split 0,0"},
       {{"render", scene, "-o", out, "--split", "1,2,3,4,5,6,7,8,9"}, "9 shares for "},
       {{"render", scene, "-o", folder.file("out")}, "no extension"},
-      {{"render", scene, "-o", folder.file("out.jpg")}, "found .jpg"},
+      {{"render", scene, "-o", folder.file("out.gif")}, "found .gif"},
+      {{"render", scene, "-o", out, "--format", "png"}, "--format is for -o -"},
+      {{"render", scene, "-o", "-", "--format", "pgn"}, "--format pgn: did you mean png?"},
+      {{"render", scene, "-o", "-", "--format", "gif"}, "--format gif: wanted one of png, jpg"},
+      {{"render", scene, "-o", "-", "--aov", "depth"}, "only .exr files hold AOVs"},
+      {{"render", scene, "-o", "-", "--stats", "-"}, "-: is the name of two outputs"},
+      {{"render", scene, "-o", out, "--resume", "-"}, "--resume -: a checkpoint wants a file"},
+      {{"render", scene, "-o", "-", "--frames", "1..2"}, "--frames writes numbered files"},
       {{"render", scene, "-o", out, "--aov", "depth"}, "only .exr files hold AOVs"},
       {{"render", scene, "-o", folder.file("out.exr"), "--aov", "beauty"},
        "--aov beauty: wanted one of depth"},
+      {{"render", scene, "-o", folder.file("out.exr"), "--aov", "nromal"},
+       "--aov nromal: did you mean normal?"},
       {{"render", scene, "-o", out, "--size", "640"}, "--size 640: wanted WIDTHxHEIGHT"},
       {{"render", scene, "-o", out, "--size", "0x5"}, "--size 0x5"},
       {{"render", scene, "-o", out, "--size", "5x"}, "--size 5x"},
@@ -78,7 +98,7 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
       {{"bench", "rays", scene, "--json", "--csv", out},
        "--json wants a value (FILE), found the option --csv"},
       {{"tune", "--budget", "--show"}, "--budget wants a value (SECONDS), found the option --show"},
-      {{"info"}, "SCENE is required"},
+      {{"info"}, "SCENE is required (see sundog info --help)"},
       {{"info", scene, scene}, scene},
       {{"devices", "all"}, "all"},
       {{"compare", out}, "B is required"},
@@ -96,6 +116,17 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
     CHECK(result.err.find(line.says) != std::string::npos);
   }
   CHECK(folder.entries() == 1);
+}
+
+// A missing command is a usage error: nothing on stdout that a script could take for a result.
+TEST_CASE("the program without a command prints a short help on stderr, with status 2") {
+  const CommandResult result = run_sundog({});
+  CHECK(result.status == 2);
+  CHECK(result.out.empty());
+  CHECK(std::ranges::count(result.err, '\n') <= 20);
+  for (const char* says :
+       {"sundog render SCENE -o OUT", "sundog check", "sundog --help", "sundog COMMAND --help"})
+    CHECK(result.err.find(says) != std::string::npos);
 }
 
 TEST_CASE("help and version go to stdout with status 0") {

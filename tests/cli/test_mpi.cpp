@@ -89,6 +89,23 @@ TEST_CASE("mpirun: one, two and three ranks make the bits of one process, each w
   }
 }
 
+TEST_CASE(
+    "mpirun: a scene from the standard input reaches all ranks; no picture goes to the standard output") {
+  const MpiFolder folder;
+  const auto render = [&](const std::string& out) {
+    const std::string line =
+        R"(exec mpirun -n 2 "$0" render - -o "$2" --size 160x120 --samples 4 --device 0:0/1 --split 1,1 <"$1")";
+    return run_command({"bash", "-c", line, SUNDOG_BINARY, folder.scene, out}, folder.options);
+  };
+  const CommandResult result = render(folder.file("a.pfm"));
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+  CHECK((read_file(folder / "a.pfm") == folder.plain));
+  const CommandResult refused = render("-");
+  CHECK(refused.status == 2);
+  CHECK(contains(refused.err, "-o -: under mpirun"));
+}
+
 TEST_CASE("mpirun: without --device the ranks of a machine divide its processor, and take tiles by speed") {
   const MpiFolder folder;
   const CommandResult result = folder.mpirun(2, folder.arguments({"--tile", "16", "-v"}));

@@ -100,7 +100,7 @@ TEST_CASE("division by what may be zero is kept finite") {
 }
 
 TEST_CASE("a place in the text is told by line and column") {
-  check_failure("z = z + q", 1, 9, "unknown name 'q'");
+  check_failure("z = z + q", 1, 9, "unknown name 'q': there are ");
   check_failure("t = 1\nz = z * (c +\n  y)", 3, 3, "unknown name 'y'");
   check_failure("z = z + ", 1, 9, "expected a value, found the statement's end");
   check_failure("z = (z + c", 1, 11, "expected ')'");
@@ -110,7 +110,9 @@ TEST_CASE("a place in the text is told by line and column") {
   check_failure("z = z < c ? z : c", 1, 7, "only numbers can be compared");
   check_failure("z = z.x", 1, 6, "'z' is a vec3, found a number");
   check_failure("z = z + c.w", 1, 10, "no component 'w'");
-  check_failure("z = foo(z)", 1, 5, "no function 'foo'");
+  check_failure("z = foo(z)", 1, 5, "no function 'foo': there are abs");
+  check_failure("z = lenght(z)", 1, 5, "no function 'lenght': did you mean 'length'?");
+  check_failure("total = 1\nz = z * totl", 2, 9, "unknown name 'totl': did you mean 'total'?");
   check_failure("z = abs(z, z)", 1, 5, "called as abs(x)");
   check_failure("c = z", 1, 1, "'c' cannot be set");
   check_failure("z = abs", 1, 5, "is a function");

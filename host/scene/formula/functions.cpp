@@ -7,6 +7,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "base/names.h"
+
 namespace sundog {
 namespace {
 
@@ -190,9 +192,13 @@ bool is_function(const std::string& name) { return functions().contains(name); }
 Value call_function(Values& values, const std::string& name, const std::vector<Value>& arguments) {
   const auto found = functions().find(name);
   if (found == functions().end()) {
+    std::vector<std::string> names;
     std::string known;
-    for (const auto& [each, function] : functions()) known += (known.empty() ? "" : ", ") + each;
-    throw std::invalid_argument("no function '" + name + "'; there are " + known);
+    for (const auto& [each, function] : functions()) {
+      names.push_back(each);
+      known += (known.empty() ? "there are " : ", ") + each;
+    }
+    throw std::invalid_argument("no function '" + name + "': " + did_you_mean(name, names, known, "'"));
   }
   const Function& f = found->second;
   require(

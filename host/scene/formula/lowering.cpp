@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "base/names.h"
 #include "scene/formula/error.h"
 #include "scene/formula/functions.h"
 #include "scene/formula/lower.h"
@@ -100,12 +101,16 @@ Value Lowering::lower(const Expression& e) {
 Value Lowering::named(const std::string& name) const {
   if (const auto found = variables_.find(name); found != variables_.end()) return found->second;
   if (const auto found = fixed_.find(name); found != fixed_.end()) return found->second;
-  std::string known;
-  for (const auto* names : {&variables_, &fixed_})
-    for (const auto& [each, value] : *names) known += (known.empty() ? "" : ", ") + each;
   if (is_function(name)) throw std::invalid_argument("'" + name + "' is a function: write " + name + "(...)");
   if (is_reserved_word(name)) throw std::invalid_argument("'" + name + "' is a reserved word");
-  throw std::invalid_argument("unknown name '" + name + "'; there are " + known);
+  std::vector<std::string> names;
+  std::string known;
+  for (const auto* table : {&variables_, &fixed_})
+    for (const auto& [each, value] : *table) {
+      names.push_back(each);
+      known += (known.empty() ? "there are " : ", ") + each;
+    }
+  throw std::invalid_argument("unknown name '" + name + "': " + did_you_mean(name, names, known, "'"));
 }
 
 Value Lowering::logical(const Expression& e) {

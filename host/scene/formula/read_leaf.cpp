@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/names.h"
 #include "scene/formula/list.h"
 #include "scene/formula/lower.h"
 #include "scene/formula/syntax.h"
@@ -150,9 +151,8 @@ FormulaDefinition read_listed(JsonObject& object) {
   if (!listed) {
     std::vector<std::string> names;
     for (const FormulaDefinition& d : formula_list()) names.push_back(d.name);
-    const auto nearest = nearest_name(name.text(), names);
-    name.fail(fmt::format("no surface \"{}\" in the list; {}", name.text(),
-                          nearest ? fmt::format("is \"{}\" meant?", *nearest) : "sundog formulas prints it"));
+    name.fail(fmt::format("no surface \"{}\" in the list: {}", name.text(),
+                          did_you_mean(name.text(), names, "sundog formulas prints it")));
   }
   FormulaDefinition d = *listed;
   read_arguments(object, d);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/names.h"
 #include "scene/json/parse.h"
 #include "scene/json/value.h"
 
@@ -96,9 +97,8 @@ class Step {
     if (named || tokens_[depth + 1] == "-" || array_index(tokens_[depth + 1])) {
       std::vector<std::string> known;
       for (const auto& [key, value] : parent.items()) known.push_back(key);
-      const auto near = nearest_name(token, known);
-      fail(depth, fmt::format("there is no {}{}", pointer(depth + 1),
-                              near ? fmt::format(": did you mean \"{}\"?", *near) : std::string()));
+      const std::string mend = did_you_mean(token, known);
+      fail(depth, fmt::format("there is no {}{}{}", pointer(depth + 1), mend.empty() ? "" : ": ", mend));
     }
     parent[token] = json::object();
   }

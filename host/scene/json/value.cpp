@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/names.h"
 
 namespace sundog {
 using nlohmann::json;
@@ -51,24 +52,6 @@ std::string describe(const Range& range) {
   return fmt::format("{} and {}", above, below);
 }
 
-/// Letters to add, drop or change, or neighbours to swap, to get from `a` to `b` (optimal string alignment).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) {
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      if (i == 0 || j == 0) {
-        d[i][j] = i + j;
-        continue;
-      }
-      const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  }
-  return d[a.size()][b.size()];
-}
-
 }  // namespace
 
 std::string join_pointer(std::string_view pointer, std::string_view key) {
@@ -84,18 +67,6 @@ std::string join_pointer(std::string_view pointer, std::string_view key) {
       result += c;
   }
   return result;
-}
-
-std::optional<std::string> nearest_name(std::string_view found, const std::vector<std::string>& names) {
-  std::optional<std::string> best;
-  if (found.size() > 100) return best;
-  std::size_t best_distance = 1 + (found.size() + 2) / 3;
-  for (const std::string& name : names)
-    if (const std::size_t distance = edit_distance(found, name); distance < best_distance) {
-      best_distance = distance;
-      best = name;
-    }
-  return best;
 }
 
 std::string list_names(Names names, std::string_view conjunction) {
@@ -282,9 +253,8 @@ void JsonObject::not_both(std::string_view first, std::string_view second) {
 void JsonObject::refuse_unasked() const {
   for (const auto& [name, value] : value_.json().items()) {
     if (asked_.contains(name)) continue;
-    const auto near = nearest_name(name, {asked_.begin(), asked_.end()});
     const std::string mend =
-        near ? fmt::format("did you mean \"{}\"?", *near) : fmt::format("wanted {}", fmt::join(asked_, ", "));
+        did_you_mean(name, {asked_.begin(), asked_.end()}, fmt::format("wanted {}", fmt::join(asked_, ", ")));
     value_.child(name, value).fail(fmt::format("unknown key {}: {}", json(name).dump(), mend));
   }
 }

@@ -133,9 +133,6 @@ class JsonObject {
 /// "a, b or c", each in quotes.
 std::string list_names(Names names, std::string_view conjunction = "or");
 
-/// The name most like `found` (a third of its letters may differ), or nothing.
-std::optional<std::string> nearest_name(std::string_view found, const std::vector<std::string>& names);
-
 /// `pointer` with one more reference token, escaped by RFC 6901.
 std::string join_pointer(std::string_view pointer, std::string_view key);
 

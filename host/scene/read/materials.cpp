@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/names.h"
 #include "scene/read/parts.h"
 
 namespace sundog {
@@ -116,10 +117,10 @@ int find_name(const JsonValue& name, const NameTable& table, std::string_view wh
   if (const auto found = table.find(text); found != table.end()) return found->second;
   std::vector<std::string> known;
   for (const auto& [key, index] : table) known.push_back(key);
-  const auto near = nearest_name(text, known);
-  const std::string mend = near            ? fmt::format("did you mean \"{}\"?", *near)
-                           : known.empty() ? fmt::format("the scene names no {}", what)
-                                           : fmt::format("the scene has \"{}\"", fmt::join(known, "\", \""));
+  const std::string mend =
+      did_you_mean(text, known,
+                   known.empty() ? fmt::format("the scene names no {}", what)
+                                 : fmt::format("the scene has \"{}\"", fmt::join(known, "\", \"")));
   name.wanted(fmt::format("the name of a {} of this scene ({})", what, mend));
 }
 

@@ -1,0 +1,79 @@
+// See standard_streams.h.
+#include "base/standard_streams.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <mutex>
+#include <optional>
+
+#include "base/error.h"
+#include "base/file.h"
+
+namespace sundog {
+namespace {
+
+constexpr std::size_t most_input = std::size_t{1} << 30;
+
+std::mutex mutex;
+std::optional<std::string> input;
+int output = STDOUT_FILENO;
+
+std::string read_standard_input() {
+  if (::isatty(STDIN_FILENO))
+    throw UsageError(
+        "-: wanted a scene through a pipe or from a file, found a terminal as the standard input");
+  std::string text;
+  std::array<char, 1 << 16> part;
+  while (true) {
+    const ssize_t size = ::read(STDIN_FILENO, part.data(), part.size());
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0) throw IoError(fmt::format("the standard input cannot be read: {}", std::strerror(errno)));
+    if (size == 0) return text;
+    text.append(part.data(), static_cast<std::size_t>(size));
+    if (text.size() > most_input) throw IoError("the standard input holds more than 1 GiB");
+  }
+}
+
+}  // namespace
+
+bool is_standard_stream(const std::filesystem::path& path) { return path == "-"; }
+
+const std::string& standard_input() {
+  const std::lock_guard lock(mutex);
+  if (!input) input = read_standard_input();
+  return *input;
+}
+
+void set_standard_input(std::string text) {
+  const std::lock_guard lock(mutex);
+  input = std::move(text);
+}
+
+void claim_standard_output() {
+  std::fflush(stdout);
+  const int kept = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+  if (kept < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
+    throw IoError(fmt::format("the standard output cannot be written: {}", std::strerror(errno)));
+  output = kept;
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+void write_output(const std::filesystem::path& path, std::string_view bytes) {
+  if (!is_standard_stream(path)) return write_file(path, bytes);
+  while (!bytes.empty()) {
+    const ssize_t size = ::write(output, bytes.data(), bytes.size());
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0)
+      throw IoError(fmt::format("the standard output cannot be written: {}", std::strerror(errno)));
+    bytes.remove_prefix(static_cast<std::size_t>(size));
+  }
+}
+
+}  // namespace sundog
