@@ -228,6 +228,8 @@ int main(int argc, char** argv) {
   app.add_option("SCENE", options.scenes,
                  "scene files, or \"bunny\" (default: spheres, ice_boxes, ice_mesh, bunny)");
   app.add_option("--bunny", options.bunny, "model that becomes glass");
+  int side = 0;
+  app.add_option("--size", side, "pixels a side (default 640)")->positive();
   app.add_option("--width", options.width)->positive();
   app.add_option("--height", options.height)->positive();
   app.add_option("--repeat", options.repeat, "runs of each")->positive();
@@ -241,6 +243,7 @@ int main(int argc, char** argv) {
                "absorption as POV-Ray's media: right everywhere, but slower than fading");
   app.add_flag("--wall", options.wall, "wall clock; without it processor time over threads");
   app.parse_or_exit(argc, argv);
+  if (side > 0) options.width = options.height = side;
   try {
     return sundog::run(options);
   } catch (const std::exception& error) {

@@ -35,7 +35,7 @@ bench=() rays=() groups=() peers=()
 if [[ $quick ]]; then
   bench=(--repeat 1)
   rays=(--size 32)
-  groups=(--rays 16 --kernel occluded_rays)
+  groups=(--size 16 --kernel occluded_rays)
   peers=(--repeats 1 --size 32)
 fi
 here=() failed=() missing=()

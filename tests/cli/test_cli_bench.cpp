@@ -69,7 +69,7 @@ TEST_CASE(
     "bench workgroup times each kernel with every size that the device takes, and the driver's choice") {
   const CliFolder folder;
   const CommandResult result =
-      run_sundog({"bench", "workgroup", folder.scene, "--device", "pthread", "--rays", "16", "--repeat", "1",
+      run_sundog({"bench", "workgroup", folder.scene, "--device", "pthread", "--size", "16", "--repeat", "1",
                   "--json", folder.file("w.json"), "--html", folder.file("w.html"), "--quiet"});
   CAPTURE(result.err);
   REQUIRE(result.status == 0);

@@ -193,7 +193,8 @@ TEST_CASE("the list has its surfaces, each with a source and parameters within t
                            "amazing_surf",
                            "gyroid",
                            "torus_knot",
-                           "rounded_box",
+                           "round_box",
+                           "rounded_box",  // as it was called
                            "blobs",
                            "lattice",
                            "sphere",

@@ -16,6 +16,7 @@ struct FormulaParameter {
   double minimum = -1e6, maximum = 1e6;
   bool whole = false;
   std::string meaning = {};
+  std::string old_name = {};  // is read as well
 };
 
 /// escape: the solid is what stays within the bailout radius; its distance comes from |z| and the derivative.
@@ -51,6 +52,7 @@ struct FormulaDefinition {
   double safety = 1;      // (0, 1]: the estimate times this is a bound, as measured by the tests
   double exceptions = 0;  // share of the interval in which it may fail (of triplex powers: near the poles)
   std::array<double, 6> bounds{-1.5, -1.5, -1.5, 1.5, 1.5, 1.5};  // default interval: lower, upper
+  std::string old_name = {};                                      // is read as well
   bool smooth = false;  // a surface without detail at every scale: hits are refined
   static constexpr int max_iterations = 1000;
   static constexpr std::size_t max_parameters = 32;

@@ -61,7 +61,7 @@ const std::vector<FormulaDefinition>& formula_list() {
 
 const FormulaDefinition* find_formula(const std::string& name) {
   for (const FormulaDefinition& d : formula_list())
-    if (d.name == name) return &d;
+    if (d.name == name || (d.old_name == name && !name.empty())) return &d;
   return nullptr;
 }
 

@@ -8,8 +8,12 @@ constexpr const char* hart = "J. Hart, Sphere tracing, The Visual Computer 12, 1
 constexpr const char* quilez = "I. Quilez, Distance functions (iquilezles.org/articles/distfunctions)";
 constexpr const char* box_distance = "length(max(q, 0)) + min(max(max(q.x, q.y), q.z), 0)";
 
-FormulaParameter length(const char* name, double value, const char* meaning = "") {
-  return {name, {value}, 0, 100, false, meaning};
+FormulaParameter length(const char* name, double value, const char* meaning = "", const char* old_name = "") {
+  return {name, {value}, 0, 100, false, meaning, old_name};
+}
+
+FormulaParameter half_sizes(std::vector<double> value, double least, double most, const char* meaning) {
+  return {"half", std::move(value), least, most, false, meaning, "size"};
 }
 
 FormulaDefinition solid(const char* name, const char* title, const char* source, const std::string& distance,
@@ -40,12 +44,12 @@ FormulaDefinition torus_knot() {
   FormulaDefinition d =
       solid("torus_knot", "Torus knot (windings, turns) as a tube",
             "after I. Quilez, Distance functions; nearest strand in the plane through the axis",
-            "u = length(p.x, p.z) - major\n"
+            "u = length(p.x, p.z) - major_radius\n"
             "w = wrap(atan(p.y, u) - atan(p.z, p.x) * turns / windings, 2 * pi / windings)\n"
             "s = length(u, p.y)\n"
-            "sqrt(s * s + minor * minor - 2 * s * minor * cos(w)) - tube",
-            {length("major", 1),
-             length("minor", 0.4),
+            "sqrt(s * s + minor_radius * minor_radius - 2 * s * minor_radius * cos(w)) - tube",
+            {length("major_radius", 1, "", "major"),
+             length("minor_radius", 0.4, "", "minor"),
              length("tube", 0.15),
              {"windings", {2}, 1, 16, true, "about the axis"},
              {"turns", {3}, 1, 16, true, "about the circle in it"}});
@@ -65,11 +69,20 @@ FormulaDefinition heart() {
   return d;
 }
 
+FormulaDefinition round_box(const FormulaParameter& half) {
+  FormulaDefinition d =
+      solid("round_box", "Box with rounded edges", quilez,
+            "q = abs(p) - half + radius\n" + std::string(box_distance) + " - radius",
+            {half, length("radius", 0.2, "of the edges, at most the least half size", "rounding")});
+  d.old_name = "rounded_box";
+  return d;
+}
+
 FormulaDefinition ellipsoid() {
   FormulaDefinition d = solid("ellipsoid", "Ellipsoid", quilez,
-                              "r0 = length(p / size); g = length(p / (size * size))\nr0 < 1e-3 ? "
-                              "-min(min(size.x, size.y), size.z) : r0 * (r0 - 1) / g",
-                              {{"size", {1, 0.6, 0.4}, 0.01, 100, false, "half axes"}});
+                              "r0 = length(p / half); g = length(p / (half * half))\nr0 < 1e-3 ? "
+                              "-min(min(half.x, half.y), half.z) : r0 * (r0 - 1) / g",
+                              {half_sizes({1, 0.6, 0.4}, 0.01, 100, "half axes")});
   d.safety = 0.8;
   return d;
 }
@@ -77,22 +90,21 @@ FormulaDefinition ellipsoid() {
 }  // namespace
 
 std::vector<FormulaDefinition> solid_formulas() {
-  const FormulaParameter size{"size", {1, 1, 1}, 0.001, 100, false, "half sizes"};
+  const FormulaParameter half = half_sizes({1, 1, 1}, 0.001, 100, "half sizes");
   return {
       solid("sphere", "Sphere", hart, "length(p) - radius", {length("radius", 1)}),
-      solid("box", "Box", quilez, "q = abs(p) - size\n" + std::string(box_distance), {size}),
-      solid("rounded_box", "Box with rounded edges", quilez,
-            "q = abs(p) - size + rounding\n" + std::string(box_distance) + " - rounding",
-            {size, length("rounding", 0.2, "at most the least half size")}),
-      solid("torus", "Torus about y", hart, "length(length(p.x, p.z) - major, p.y) - minor",
-            {length("major", 1), length("minor", 0.3)}),
-      solid("cylinder", "Cylinder about y", quilez,
-            "a = length(p.x, p.z) - radius; b = abs(p.y) - height\nmin(max(a, b), 0) + length(max(a, 0), "
-            "max(b, 0))",
-            {length("radius", 1), length("height", 1, "half")}),
+      solid("box", "Box", quilez, "q = abs(p) - half\n" + std::string(box_distance), {half}),
+      round_box(half),
+      solid("torus", "Torus about y", hart, "length(length(p.x, p.z) - major_radius, p.y) - minor_radius",
+            {length("major_radius", 1, "", "major"), length("minor_radius", 0.3, "", "minor")}),
+      solid(
+          "cylinder", "Cylinder about y", quilez,
+          "a = length(p.x, p.z) - radius; b = abs(p.y) - half_height\nmin(max(a, b), 0) + length(max(a, 0), "
+          "max(b, 0))",
+          {length("radius", 1), length("half_height", 1, "", "height")}),
       solid("capsule", "Capsule along y", quilez,
-            "length(p - vec3(0, clamp(p.y, -height, height), 0)) - radius",
-            {length("radius", 0.5), length("height", 0.7, "half, without the caps")}),
+            "length(p - vec3(0, clamp(p.y, -half_height, half_height), 0)) - radius",
+            {length("radius", 0.5), length("half_height", 0.7, "without the caps", "height")}),
       solid("octahedron", "Octahedron", quilez, "q = abs(p)\n(q.x + q.y + q.z - radius) / sqrt(3)",
             {length("radius", 1)}),
       ellipsoid(),
@@ -109,10 +121,10 @@ std::vector<FormulaDefinition> solid_formulas() {
             "d = length(p - vec3(0, 0.6, 0)) - radius\nsmooth_min(smooth_min(a, b, blend), d, blend)",
             {length("radius", 0.45), {"blend", {0.4}, 0, 10, false, "length over which they flow together"}}),
       solid("lattice", "Rounded boxes repeated through space", quilez,
-            "q = abs(wrap(p, cell)) - size + rounding\n" + std::string(box_distance) + " - rounding",
+            "q = abs(wrap(p, cell)) - half + radius\n" + std::string(box_distance) + " - radius",
             {{"cell", {1}, 0.01, 100, false, "period"},
-             {"size", {0.3, 0.3, 0.3}, 0.001, 50, false, "half sizes, less than half the cell"},
-             length("rounding", 0.05)}),
+             half_sizes({0.3, 0.3, 0.3}, 0.001, 50, "half sizes, less than half the cell"),
+             length("radius", 0.05, "of the edges", "rounding")}),
   };
 }
 

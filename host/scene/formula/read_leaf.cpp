@@ -2,6 +2,7 @@
 #include "scene/formula/read_leaf.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -53,13 +54,16 @@ void read_arguments(JsonObject& object, FormulaDefinition& d) {
   const auto given = object.find("parameters");
   if (!given) return;
   for (const auto& [name, value] : given->members("parameters")) {
-    const auto found = std::find_if(d.parameters.begin(), d.parameters.end(),
-                                    [&, key = name](const FormulaParameter& p) { return p.name == key; });
+    const auto found =
+        std::find_if(d.parameters.begin(), d.parameters.end(), [&, key = name](const FormulaParameter& p) {
+          return p.name == key || (p.old_name == key && !key.empty());
+        });
     if (found == d.parameters.end()) {
-      std::string known;
-      for (const FormulaParameter& p : d.parameters) known += (known.empty() ? "" : ", ") + p.name;
-      value.fail(
-          fmt::format("{} has no parameter \"{}\"; it has {}", d.name, name, known.empty() ? "none" : known));
+      std::vector<std::string> names;
+      for (const FormulaParameter& p : d.parameters) names.push_back(p.name);
+      const std::string all = fmt::format("it has {}", fmt::join(names, ", "));
+      value.fail(fmt::format("{} has no parameter \"{}\": {}", d.name, name,
+                             did_you_mean(name, names, names.empty() ? "it has none" : all)));
     }
     found->value =
         read_components(value, found->value.size(), {.low = found->minimum, .high = found->maximum});

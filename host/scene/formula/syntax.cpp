@@ -211,15 +211,15 @@ FormulaBody parse_body(std::string_view text) { return Parser(text).body(); }
 
 bool is_reserved_word(std::string_view word) {
   static constexpr std::string_view words[] = {
-      "kernel",  "global",    "local",     "constant",  "private",   "read_only", "write_only", "read_write",
-      "uniform", "pipe",      "image1d_t", "image2d_t", "image3d_t", "sampler_t", "event_t",    "queue_t",
-      "half",    "quad",      "complex",   "imaginary", "bool",      "char",      "uchar",      "short",
-      "ushort",  "int",       "uint",      "long",      "ulong",     "float",     "double",     "void",
-      "size_t",  "signed",    "unsigned",  "auto",      "break",     "case",      "const",      "continue",
-      "default", "do",        "else",      "enum",      "extern",    "for",       "goto",       "if",
-      "inline",  "register",  "restrict",  "return",    "sizeof",    "static",    "struct",     "switch",
-      "typedef", "union",     "volatile",  "while",     "include",   "define",    "pragma",     "asm",
-      "typeof",  "attribute", "vec3",      "quat",      "pi"};
+      "kernel",    "global",   "local",     "constant",  "private",   "read_only", "write_only", "read_write",
+      "uniform",   "pipe",     "image1d_t", "image2d_t", "image3d_t", "sampler_t", "event_t",    "queue_t",
+      "quad",      "complex",  "imaginary", "bool",      "char",      "uchar",     "short",      "ushort",
+      "int",       "uint",     "long",      "ulong",     "float",     "double",    "void",       "size_t",
+      "signed",    "unsigned", "auto",      "break",     "case",      "const",     "continue",   "default",
+      "do",        "else",     "enum",      "extern",    "for",       "goto",      "if",         "inline",
+      "register",  "restrict", "return",    "sizeof",    "static",    "struct",    "switch",     "typedef",
+      "union",     "volatile", "while",     "include",   "define",    "pragma",    "asm",        "typeof",
+      "attribute", "vec3",     "quat",      "pi"};
   for (const std::string_view reserved : words)
     if (word == reserved) return true;
   if (word.starts_with("__") || word.starts_with("get_global") || word.starts_with("get_local")) return true;
