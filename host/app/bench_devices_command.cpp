@@ -42,6 +42,7 @@ void add_bench_devices(Arguments& bench, Command& chosen) {
   Arguments* app =
       bench.add_subcommand("devices", "Rank devices and their combinations, with the share of each");
   add_bench_options(app, *options);
+  add_bench_size(app, *options);
   app->callback(
       [options, &chosen] { chosen = RunLater{[options] { return bench_devices_command(*options); }}; });
 }

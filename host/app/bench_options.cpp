@@ -67,6 +67,10 @@ void add_bench_options(Arguments* app, BenchOptions& options) {
   app->add_flag("-q,--quiet", options.quiet, "print nothing");
 }
 
+void add_bench_size(Arguments* app, BenchOptions& options) {
+  value(app, "--size", "WxH", options.size, "width and height in pixels (default: the scene's)");
+}
+
 Report new_report(const std::string& name, const std::string& title, const BenchOptions& options) {
   check_output_files({options.json, options.csv, options.html}, options.scenes);
   for (const std::string& file : {options.json, options.csv, options.html})
@@ -107,6 +111,8 @@ std::string scene_name(const std::string& file) { return std::filesystem::path(f
 CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
                           const std::vector<std::string>& more) {
   std::vector<std::string> overrides = more;
+  if (!options.size.empty())
+    for (const std::string& setting : parse_image_size(options.size)) overrides.push_back(setting);
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
   try {
     return compile(load_scene(file, overrides));

@@ -21,6 +21,7 @@ class Arguments;
 struct BenchOptions {
   std::vector<std::string> scenes, devices, overrides;
   std::string json, csv, html;  // files; empty: none
+  std::string size;             // "WxH" of the images; empty: the scenes'
   int repeat = 5;
   bool quiet = false;
 };
@@ -31,6 +32,9 @@ void add_bench_options(Arguments* app, BenchOptions& options);
 /// `name` is the benchmark's. Facts: version, revision, command line, machine. Throws IoError when a file of
 /// the options cannot be written.
 Report new_report(const std::string& name, const std::string& title, const BenchOptions& options);
+
+/// --size, for benchmarks that render frames of one size.
+void add_bench_size(Arguments* app, BenchOptions& options);
 
 /// Prints the report as text and writes the files. Returns the exit status.
 int publish(const Report& report, const BenchOptions& options);

@@ -59,6 +59,7 @@ void add_bench_samples(Arguments& bench, Command& chosen) {
   const auto options = std::make_shared<SamplesOptions>();
   Arguments* app = bench.add_subcommand("samples", "Time and error by samples a pixel");
   add_bench_options(app, *options);
+  add_bench_size(app, *options);
   value(app, "--counts", "LIST", options->counts, "samples a pixel (default 1,2,4,8,16,32)");
   app->add_option("--reference", options->reference,
                   "samples of the picture that counts as right (default: four times the most)")

@@ -11,7 +11,7 @@ using nlohmann::json;
 TEST_CASE("bench threads times every size and count on sub-devices, more than there are cores too") {
   const CliFolder folder;
   const CommandResult result =
-      run_sundog({"bench", "threads", folder.scene, "--device", "pthread", "--sizes", "24,16", "--counts",
+      run_sundog({"bench", "threads", folder.scene, "--device", "pthread", "--size", "24,16", "--counts",
                   "1,2,5", "--repeat", "2", "--json", folder.file("t.json"), "--csv", folder.file("t.csv"),
                   "--html", folder.file("t.html")});
   CAPTURE(result.out, result.err);
