@@ -9,6 +9,7 @@
 #include <string>
 
 #include "app/commands.h"
+#include "app/warnings.h"
 #include "base/error.h"
 
 namespace sundog {
@@ -19,7 +20,7 @@ void say(std::string message) {
   std::ranges::replace(message, '\n', ' ');
   std::ranges::replace_if(
       message, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
-  fmt::print(stderr, "sundog: {}\n", message);
+  tell(fmt::format("sundog: {}\n", message));
 }
 
 }  // namespace
@@ -39,8 +40,7 @@ int exit_status_of(const std::function<int()>& command, bool speaks) {
     return fail(exit_device, error.what());
   } catch (const BuildError& error) {
     fail(exit_build, error.what());
-    if (speaks && !error.log.empty())
-      fmt::print(stderr, "{}{}", error.log, error.log.ends_with('\n') ? "" : "\n");
+    if (speaks && !error.log.empty()) tell(error.log + (error.log.ends_with('\n') ? "" : "\n"));
     return exit_build;
   } catch (const std::bad_alloc&) {
     return fail(exit_failure, "out of memory");

@@ -5,9 +5,12 @@
 #include <charconv>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/image_io.h"
+#include "render/film.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -58,19 +61,66 @@ std::string frame_file(const std::string& out, int frame) {
   return (path.parent_path() / name).string();
 }
 
-FrameLog::FrameLog(std::string path) : path_(std::move(path)) {
-  if (path_.empty() || !fs::exists(path_)) return;
-  const json document = json::parse(read_file(path_), nullptr, false);
-  const auto done = document.find("frames");
-  if (document.value("schema", 0) != 1 || done == document.end() || !done->is_object())
-    throw IoError(fmt::format("{}: not the list of an animation's frames; remove it to begin anew", path_));
-  for (const auto& [frame, hash] : done->items())
-    hashes_[frame_number(frame, frame)] = hash.is_string() ? hash.get<std::string>() : "";
+namespace {
+
+/// The hashes of the frames that a list holds; none where it is no such list, or damaged.
+std::optional<std::map<int, std::string>> read_list(const std::string& text) {
+  const json document = json::parse(text, nullptr, false);
+  if (!document.is_object() || !document.contains("frames")) return std::nullopt;
+  const json &schema = document.value("schema", json()), &done = document["frames"];
+  if (schema != 1 || !done.is_object()) return std::nullopt;
+  std::map<int, std::string> hashes;
+  for (const auto& [name, hash] : done.items()) {
+    int frame = -1;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), frame);
+    if (error != std::errc() || end != name.data() + name.size() || frame < 0 || frame > most_frame ||
+        !hash.is_string())
+      return std::nullopt;
+    hashes[frame] = hash.get<std::string>();
+  }
+  return hashes;
 }
 
-bool FrameLog::done(int frame, std::uint64_t hash, const std::string& image) const {
-  const auto found = hashes_.find(frame);
-  return found != hashes_.end() && found->second == fmt::format("{:016x}", hash) && fs::exists(image);
+bool is_picture(const std::string& file, int width, int height) {
+  try {
+    const Image image = read_image(file);
+    return image.width == width && image.height == height;
+  } catch (const SceneError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+FrameLog::FrameLog(std::string path) : path_(std::move(path)) {
+  if (path_.empty() || !fs::exists(path_)) return;
+  if (auto hashes = read_list(read_file(path_))) {
+    hashes_ = std::move(*hashes);
+    return;
+  }
+  damaged_ = true;
+  const std::string aside = path_ + ".damaged";
+  fs::rename(path_, aside);
+  warnings_.push_back(fmt::format(
+      "{}: is no list of an animation's frames, or is damaged: it is now {}; frames whose pictures "
+      "are there, whole and newer than the scene, count as done",
+      path_, aside));
+}
+
+bool FrameLog::done(const FrameFiles& files, std::uint64_t hash) {
+  if (const auto found = hashes_.find(files.frame); found != hashes_.end())
+    return found->second == fmt::format("{:016x}", hash) && fs::exists(files.image);
+  if (!damaged_ || !has_picture(files, hash)) return false;
+  add(files.frame, hash);
+  return true;
+}
+
+bool FrameLog::has_picture(const FrameFiles& files, std::uint64_t hash) {
+  std::error_code failed;
+  const auto drawn = fs::last_write_time(files.image, failed);
+  if (failed || drawn < fs::last_write_time(files.scene, failed) || failed) return false;
+  if (checkpoint_key(files.checkpoint) == hash) return false;  // the picture holds a part of the frame
+  return is_picture(files.image, files.width, files.height);
 }
 
 void FrameLog::add(int frame, std::uint64_t hash) {

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "app/commands.h"
+#include "app/warnings.h"
 
 namespace sundog {
 namespace {
@@ -34,19 +35,28 @@ sigset_t set_of(std::initializer_list<int> signals) {
   return set;
 }
 
-void answer_stop(Waiting& state) {
+/// As nohup leaves SIGHUP.
+bool is_ignored(int signal) {
+  struct sigaction action {};
+  return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+/// A terminal that is closed may send SIGHUP twice, by itself and by its shell: that is not a second wish.
+void answer_stop(Waiting& state, bool hang_up) {
   const std::lock_guard lock(state.mutex);
-  if (state.answer == Answer::end) fmt::print(stderr, "sundog: interrupted: {}\n", state.why);
-  if (state.answer != Answer::ask || state.stop_asked.exchange(true)) ::_exit(exit_interrupted);
+  if (state.answer == Answer::end) tell(fmt::format("sundog: interrupted: {}\n", state.why));
+  if (state.answer == Answer::ask && (!state.stop_asked.exchange(true) || hang_up)) return;
+  ::_exit(exit_interrupted);
 }
 
 void wait_for_signals(Waiting& state) {
-  const sigset_t set = set_of({SIGINT, SIGTERM, SIGCONT});
+  sigset_t set = set_of({SIGINT, SIGTERM, SIGCONT});
+  if (!is_ignored(SIGHUP)) ::sigaddset(&set, SIGHUP);
   for (int signal = 0; ::sigwait(&set, &signal) == 0;) {
     if (signal == SIGCONT)
       state.was_continued = true;
     else
-      answer_stop(state);
+      answer_stop(state, signal == SIGHUP);
   }
 }
 
@@ -65,7 +75,7 @@ void hold_back(std::initializer_list<int> signals) {
 }
 
 StopOnSignal::StopOnSignal() {
-  hold_back({SIGINT, SIGTERM, SIGCONT});
+  hold_back({SIGINT, SIGTERM, SIGHUP, SIGCONT});
   waiting().stop_asked = waiting().was_continued = false;
   asks();
   static std::once_flag begun;

@@ -7,6 +7,7 @@
 #include "app/output_files.h"
 #include "app/save_image.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "base/standard_streams.h"
 #include "render/part.h"
 
@@ -16,6 +17,7 @@ int merge_command(const MergeCommand& command) {
   check_output_files({command.out}, command.parts);
   check_picture(command, false);
   if (is_standard_stream(command.out)) claim_standard_output();
+  remove_left_over(command.out);
   const PartFile whole = merge_parts({command.parts.begin(), command.parts.end()});
   check_image_path(format_name(command), !whole.aovs.empty());
   const Image image = whole.film.develop();

@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "app/warnings.h"
+
 namespace sundog {
 namespace {
 
@@ -64,13 +66,13 @@ void ProgressBar::update(const RenderProgress& progress) {
   if (!shown_ || (last_drawn_ >= 0 && now - last_drawn_ < seconds_between_drawings)) return;
   last_drawn_ = now;
   drawn_ = true;
-  fmt::print(stderr, "\r{}\033[K", progress_line(progress, first_, terminal_columns()));
+  tell(fmt::format("\r{}\033[K", progress_line(progress, first_, terminal_columns())));
   std::fflush(stderr);
 }
 
 void ProgressBar::erase() {
   if (!drawn_) return;
-  fmt::print(stderr, "\r\033[K");
+  tell("\r\033[K");
   std::fflush(stderr);
   drawn_ = false;
 }

@@ -141,6 +141,8 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
                const Stopwatch& clock, TimeLedger& times) {
   setup.stop.asks();
   print_warnings(view_warnings(*scene.flat, setup.devices));
+  for (const std::string& file : {command.out, command.stats, checkpoint_file(command, setup)})
+    if (!file.empty()) remove_left_over(file);
   ProgressBar bar(!command.quiet);
   RenderOptions options = render_options(command);
   const std::string checkpoint = checkpoint_file(command, setup);
@@ -182,6 +184,8 @@ RenderCommand frame_command(const RenderCommand& command, int frame) {
 
 int render_frames(const RenderCommand& command, const Setup& setup) {
   FrameLog log(command.resume.empty() ? "" : command.resume + ".frames");
+  print_warnings(log.warnings());
+  if (!command.resume.empty()) remove_left_over(command.resume + ".frames");
   for (int frame = command.frames->first; frame <= command.frames->last; ++frame) {
     const Stopwatch clock;
     TimeLedger times;
@@ -190,7 +194,10 @@ int render_frames(const RenderCommand& command, const Setup& setup) {
     const LoadedScene scene = load_and_compile(one, times);
     if (frame == command.frames->first) print_warnings(scene.description.warnings);
     const std::uint64_t hash = hash_scene(*scene.flat);
-    if (log.done(frame, hash, one.out)) continue;
+    if (log.done({frame, static_cast<int>(scene.flat->info.width), static_cast<int>(scene.flat->info.height),
+                  one.out, one.scene, checkpoint_file(one, setup)},
+                 hash))
+      continue;
     if (const int status = render_one(one, scene, setup, clock, times)) return status;
     log.add(frame, hash);
   }
@@ -230,7 +237,7 @@ int render_command(const RenderCommand& command) {
   // An interrupt reaches every process of a job; rank 0 decides.
   std::optional<StopOnSignal> stop;
   if (job_rank() > 0)
-    hold_back({SIGINT, SIGTERM});
+    hold_back({SIGINT, SIGTERM, SIGHUP});
   else
     stop.emplace();
   if (job_rank() < 0) return render_here(command, *stop, nullptr);

@@ -73,18 +73,17 @@ void save_result(const RenderCommand& command, const CompiledScene& scene, const
   if (!command.part)
     save_image(picture, command.out);
   else if (result.complete)
-    write_part(command.out, {*command.part, picture.key, command.scene, settings_of(command, scene),
-                             command.aovs, result.film});
+    save_part(picture, {*command.part, picture.key, command.scene, settings_of(command, scene), command.aovs},
+              command.out);
   if (!result.checkpoint_error.empty()) throw IoError(result.checkpoint_error);
   if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint);
 }
 
 void tell_kept(const RenderResult& result, const std::string& checkpoint) {
-  fmt::print(
-      stderr,
+  tell(fmt::format(
       "sundog: interrupted: {:.3g} % of the pixels are in {}; the same command with --resume {} goes on "
       "from there\n",
-      percent_done(result), checkpoint, checkpoint);
+      percent_done(result), checkpoint, checkpoint));
 }
 
 void tell_result(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result,
@@ -96,10 +95,10 @@ void tell_result(const RenderCommand& command, const SceneDescription& scene, co
 int conclude(const RenderCommand& command, const RenderResult& result, bool told) {
   if (result.complete) return exit_done;
   if (result.failure) {
-    fmt::print(stderr, "sundog: every device failed: {}\n", part_text(command, result));
+    tell(fmt::format("sundog: every device failed: {}\n", part_text(command, result)));
     std::rethrow_exception(result.failure);
   }
-  if (!told) fmt::print(stderr, "sundog: interrupted: {}\n", part_text(command, result));
+  if (!told) tell(fmt::format("sundog: interrupted: {}\n", part_text(command, result)));
   return exit_interrupted;
 }
 

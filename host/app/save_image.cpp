@@ -39,8 +39,10 @@ bool keep_checkpoint(const Picture& picture) {
   }
 }
 
-/// Where the frame went instead, as the end of an error message.
-std::string rescue(const Picture& picture, const fs::path& path) {
+/// Where the frame went instead, as the end of an error message. `write_to` writes the file that could not be
+/// written to another place.
+template <class Write>
+std::string rescue(const Picture& picture, const fs::path& path, const char* what, const Write& write_to) {
   if (keep_checkpoint(picture))
     return fmt::format("; all of it is in {}: make room and give the same command again",
                        picture.checkpoint.string());
@@ -49,10 +51,19 @@ std::string rescue(const Picture& picture, const fs::path& path) {
       fs::temp_directory_path(none) /
       fmt::format("sundog-{}-{}", ::getpid(), named(picture, path).filename().string());
   try {
-    write(picture, elsewhere);
-    return fmt::format("; the image is in {}", elsewhere.string());
+    write_to(elsewhere);
+    return fmt::format("; the {} is in {}", what, elsewhere.string());
   } catch (const IoError&) {
     return "; nor is there room for it elsewhere, and it is lost";
+  }
+}
+
+template <class Write>
+void save(const Picture& picture, const fs::path& path, const char* what, const Write& write_to) {
+  try {
+    write_to(path);
+  } catch (const IoError& error) {
+    throw IoError(error.what() + rescue(picture, path, what, write_to));
   }
 }
 
@@ -61,11 +72,11 @@ std::string rescue(const Picture& picture, const fs::path& path) {
 bool drops_alpha(const fs::path& path) { return path.extension() != ".exr" && path.extension() != ".EXR"; }
 
 void save_image(const Picture& picture, const fs::path& path) {
-  try {
-    write(picture, path);
-  } catch (const IoError& error) {
-    throw IoError(error.what() + rescue(picture, path));
-  }
+  save(picture, path, "image", [&](const fs::path& to) { write(picture, to); });
+}
+
+void save_part(const Picture& picture, const PartHeader& header, const fs::path& path) {
+  save(picture, path, "part", [&](const fs::path& to) { write_part(to, header, picture.film); });
 }
 
 }  // namespace sundog

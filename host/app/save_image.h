@@ -1,10 +1,12 @@
-// The end of a render: the image on disk, or, when the disk fails, kept where it can be.
+// The end of a render: the image, or a part of the frame, on disk, or, when the disk fails, kept where it can
+// be.
 #pragma once
 #include <filesystem>
 #include <string>
 
 #include "base/image_io.h"
 #include "render/film.h"
+#include "render/part.h"
 
 namespace sundog {
 
@@ -25,5 +27,8 @@ bool drops_alpha(const std::filesystem::path& path);
 /// Writes `path`; "-" is the standard output. When that fails the frame is kept as a checkpoint, or as an
 /// image in the folder for temporary files: IoError says what happened and where it is.
 void save_image(const Picture& picture, const std::filesystem::path& path);
+
+/// The same for a part of a frame.
+void save_part(const Picture& picture, const PartHeader& header, const std::filesystem::path& path);
 
 }  // namespace sundog

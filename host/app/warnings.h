@@ -1,4 +1,4 @@
-// Warnings: one line each on stderr, never on stdout.
+// What people are told: on stderr, never on stdout.
 #pragma once
 #include <fmt/format.h>
 
@@ -8,8 +8,11 @@
 
 namespace sundog {
 
+/// A terminal that is gone must not cost the frame: what nobody can read is no error.
+inline void tell(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
 inline void print_warnings(std::span<const std::string> warnings) {
-  for (const std::string& warning : warnings) fmt::print(stderr, "sundog: warning: {}\n", warning);
+  for (const std::string& warning : warnings) tell(fmt::format("sundog: warning: {}\n", warning));
 }
 
 }  // namespace sundog

@@ -18,8 +18,8 @@ namespace sundog {
 int worker_command(int argc, const char* const* argv) {
   const int descriptor = argc > 2 ? std::atoi(argv[2]) : -1;
   if (descriptor < 3) throw UsageError("worker is not a command for people: --isolate starts it");
-  // Ctrl-C goes to all of a terminal's processes; the one that has the frame decides.
-  hold_back({SIGINT});
+  // Ctrl-C and a hang-up go to all of a terminal's processes; the one that has the frame decides.
+  hold_back({SIGINT, SIGHUP});
   SocketChannel channel(descriptor);
   Orders orders(channel, [] { ::_exit(exit_failure); });
   const auto on_hang = [&](const std::string& what) {

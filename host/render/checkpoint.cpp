@@ -2,6 +2,7 @@
 // checksum, in the machine's own byte order (sundog runs on little-endian hosts).
 #include <bit>
 #include <cstring>
+#include <fstream>
 #include <string>
 
 #include "base/error.h"
@@ -52,6 +53,14 @@ void write_checkpoint(const std::filesystem::path& path, const Film& film, std::
   const std::uint64_t checksum = hash_bytes(bytes.data(), bytes.size());
   bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
   write_file(path, bytes);
+}
+
+std::optional<std::uint64_t> checkpoint_key(const std::filesystem::path& path) {
+  Header header{};
+  std::ifstream in(path, std::ios::binary);
+  if (!in.read(reinterpret_cast<char*>(&header), sizeof header)) return std::nullopt;
+  if (std::memcmp(header.magic, magic, sizeof magic) != 0) return std::nullopt;
+  return header.key;
 }
 
 void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_t key) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,6 +41,9 @@ struct Film {
 
 /// Writes the film for a later --resume; `key` identifies scene and settings. Throws IoError.
 void write_checkpoint(const std::filesystem::path& path, const Film& film, std::uint64_t key);
+
+/// The key of the checkpoint in that file; none where there is no file, or another one.
+std::optional<std::uint64_t> checkpoint_key(const std::filesystem::path& path);
 
 /// Reads a checkpoint into `film`, which has the frame's size. Throws UsageError when it belongs to another
 /// scene or setting, IoError when it is damaged.

@@ -19,17 +19,21 @@ struct PartOfFrame {
 /// more than there are bands have none.
 std::vector<RowRange> part_rows(int height, const PartOfFrame& part);
 
-struct PartFile {
+/// What a part's file holds besides its pixels.
+struct PartHeader {
   PartOfFrame part;
   std::uint64_t key = 0;                        // hash_scene(): of the scene with its settings
   std::string scene;                            // the scene's file, for messages
   std::map<std::string, std::string> settings;  // what was set and may differ, for messages
   std::vector<std::string> aovs;                // in the order they were asked for
-  Film film;                                    // its pixels are done
+};
+
+struct PartFile : PartHeader {
+  Film film;  // the part's pixels are done
 };
 
 /// Only pixels that are done take room. Throws IoError.
-void write_part(const std::filesystem::path& path, const PartFile& file);
+void write_part(const std::filesystem::path& path, const PartHeader& header, const Film& film);
 
 /// Throws IoError when it cannot be read, SceneError when it is no part or damaged.
 PartFile read_part(const std::filesystem::path& path);

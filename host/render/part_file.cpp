@@ -101,16 +101,17 @@ bool read_film(const std::string& bytes, std::size_t at, bool with_aovs, Film& f
 
 }  // namespace
 
-void write_part(const std::filesystem::path& path, const PartFile& file) {
-  const json head = {{"format", format_name},    {"part", file.part.index},    {"parts", file.part.count},
-                     {"key", file.key},          {"scene", file.scene},        {"aovs", file.aovs},
-                     {"width", file.film.width}, {"height", file.film.height}, {"settings", file.settings}};
+void write_part(const std::filesystem::path& path, const PartHeader& header, const Film& film) {
+  const json head = {{"format", format_name}, {"part", header.part.index}, {"parts", header.part.count},
+                     {"key", header.key},     {"scene", header.scene},     {"aovs", header.aovs},
+                     {"width", film.width},   {"height", film.height},     {"settings", header.settings}};
   std::string bytes = head.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
-  bytes.append(reinterpret_cast<const char*>(file.film.done.data()), file.film.done.size());
-  append_done(bytes, file.film.sums, file.film.done);
-  append_done(bytes, file.film.weights, file.film.done);
-  append_done(bytes, file.film.aovs, file.film.done);
-  write_file(path, bytes + checksum(bytes));
+  bytes.append(reinterpret_cast<const char*>(film.done.data()), film.done.size());
+  append_done(bytes, film.sums, film.done);
+  append_done(bytes, film.weights, film.done);
+  append_done(bytes, film.aovs, film.done);
+  bytes += checksum(bytes);
+  write_file(path, bytes);
 }
 
 PartFile read_part(const std::filesystem::path& path) {

@@ -60,6 +60,47 @@ TEST_CASE("a resumed animation renders only the frames that are not done, and th
   CHECK(!std::filesystem::exists(log));  // all are done
 }
 
+TEST_CASE("a damaged list of frames is set aside, and the animation goes on from its pictures") {
+  const CliFolder folder;
+  const std::string damage =
+      GENERATE("", "{", "[]", "\x01\x02", R"({"schema": 1})", R"({"frames": {}})",
+               R"({"schema": 1, "frames": {"x": "1"}})", R"({"schema": "one", "frames": {"0": 3}})");
+  CAPTURE(damage);
+  REQUIRE(render_frames(folder, "a.png", "0..1").status == 0);
+  const std::string first = read_file(folder / "a_0000.png"), second = read_file(folder / "a_0001.png");
+  folder.write("a_0000.png", second);  // whole: of another look, to be known by it
+  folder.write("a_0001.png", second.substr(0, second.size() / 2));  // not whole
+  folder.write("r.frames", damage);
+  // Written before the pictures, as a scene is.
+  const std::string scene = folder.file("moving.json");
+  const CommandResult result = run_sundog(
+      {"render", scene, "-o", folder.file("a.png"), "--frames", "0..2", "--resume", folder.file("r")});
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+  CHECK(result.err.starts_with("sundog: warning: " + folder.file("r.frames") + ": "));
+  CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+  CHECK(read_file(folder / "r.frames.damaged") == damage);
+  CHECK(read_file(folder / "a_0000.png") == second);
+  CHECK(read_file(folder / "a_0001.png") == second);
+  CHECK(std::filesystem::exists(folder / "a_0002.png"));
+  CHECK_FALSE(std::filesystem::exists(folder / "r.frames"));
+}
+
+TEST_CASE("pictures older than the scene do not count as done where the list of frames is damaged") {
+  const CliFolder folder;
+  REQUIRE(render_frames(folder, "a.png", "0..0").status == 0);
+  const std::string first = read_file(folder / "a_0000.png");
+  folder.write("a_0000.png", read_file(folder / "a_0000.png") + "more");
+  std::filesystem::last_write_time(
+      folder / "a_0000.png",
+      std::filesystem::last_write_time(folder / "moving.json") - std::chrono::hours(1));
+  folder.write("r.frames", "{");
+  REQUIRE(run_sundog({"render", folder.file("moving.json"), "-o", folder.file("a.png"), "--frames", "0",
+                      "--resume", folder.file("r")})
+              .status == 0);
+  CHECK(read_file(folder / "a_0000.png") == first);
+}
+
 TEST_CASE("frames that cannot be are refused") {
   const CliFolder folder;
   for (const char* frames : {"x", "3..1", "1..", "-1..2", "1...2", "1e3", "99999999"})

@@ -36,7 +36,7 @@ int dark_pixels(const Image& image) {
 }  // namespace
 
 TEST_CASE("an interrupt saves the part that is done, with status 130") {
-  const int signal = GENERATE(SIGINT, SIGTERM);
+  const int signal = GENERATE(SIGINT, SIGTERM, SIGHUP);
   const CliFolder folder;
   CommandOptions options = on_terminal();
   options.signal_at = "Mpixel/s";
@@ -52,6 +52,33 @@ TEST_CASE("an interrupt saves the part that is done, with status 130") {
   CHECK(dark > 0);
   CHECK(dark < 640 * 480);
   CHECK(folder.entries() == 2);
+}
+
+TEST_CASE("a terminal that is closed in the middle of a render costs nothing that is done") {
+  const CliFolder folder;
+  CommandOptions options = on_terminal();
+  options.signal_at = "Mpixel/s";
+  options.hang_up = true;  // SIGHUP, twice, and nobody reads any more
+  std::vector<std::string> command = long_render(folder, "a.png");
+  command.insert(command.end(), {"--resume", folder.file("c")});
+  const CommandResult result = run_sundog(command, options);
+  CHECK_FALSE(result.timed_out);
+  CHECK(result.status < 128 + 2 + 1);  // no signal ended it
+  const int dark = dark_pixels(read_image(folder / "a.png"));
+  CHECK(dark > 0);
+  CHECK(dark < 640 * 480);
+  CHECK(std::filesystem::exists(folder / "c"));
+}
+
+TEST_CASE("under nohup a closed terminal does not end a render") {
+  const CliFolder folder;
+  const CommandResult result = run_command({"sh", "-c",
+                                            "trap '' HUP; " $0 " render " $1 " -o " $2
+                                            " --samples 64 & kill -HUP $!; sleep 0.2; kill -HUP $!; wait $!",
+                                            SUNDOG_BINARY, folder.scene, folder.file("a.png")});
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+  CHECK(std::filesystem::exists(folder / "a.png"));
 }
 
 // The tile would take hours: an interrupt that waited for its end would not come back.
@@ -201,4 +228,25 @@ TEST_CASE("there is no progress bar where stderr is not a terminal, or a dumb on
                                           options);
   CHECK(result.status == 0);
   CHECK(result.err.empty());
+}
+
+TEST_CASE(
+    "what a writer killed within a checkpoint has left is removed by the next run, not what one writes") {
+  const CliFolder folder;
+  CommandOptions options;
+  options.folder = folder.path();
+  const CommandResult result = run_command(
+      {"sh", "-c",
+       "mkdir kept; touch kept/c.1.tmp; "
+       "SUNDOG_FAULTS=stall@c SUNDOG_CHECKPOINT_EVERY=0 \"$0\" render scene.json -o a.png --size 640x480 "
+       "--samples 2000 --tile 16 --resume kept/c & "
+       "until ls kept/c.*.*.0.tmp; do sleep 0.1; done >/dev/null 2>&1; sleep 0.1; "
+       "\"$0\" render scene.json -o b.png --quiet --resume kept/c; ls kept | wc -l; "
+       "kill -KILL $!; wait $!; ls kept | wc -l; "
+       "\"$0\" render scene.json -o b.png --quiet --resume kept/c; ls kept",
+       SUNDOG_BINARY},
+      options);
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+  CHECK(result.out == "2\n2\nc.1.tmp\n");
 }

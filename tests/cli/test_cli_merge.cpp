@@ -100,6 +100,34 @@ TEST_CASE("parts that do not make one frame are refused, with status 3 and the r
   }
 }
 
+TEST_CASE("a part for which the disk has no room is kept elsewhere, with status 1") {
+  const PartsFolder folder;
+  const std::string good =
+      (REQUIRE(folder.part("1/1", "good.part").status == 0), read_file(folder / "good.part"));
+  std::filesystem::create_directory(folder / "tmp");
+  CommandOptions options;
+  options.environment = {{"TMPDIR", folder.file("tmp")}, {"SUNDOG_FAULTS", "write@1.part"}};
+  std::vector<std::string> command = {"render",    folder.scene, "-o",     folder.file("1.part"),
+                                      "--tiles",   "1/1",        "--size", "50x70",
+                                      "--samples", "2",          "--quiet"};
+  CommandResult result = run_sundog(command, options);
+  CAPTURE(result.err);
+  CHECK(result.status == 1);
+  CHECK(is_one_error_line(result.err));
+  CHECK(contains(result.err, "No space left on device; the part is in " + folder.file("tmp") + "/"));
+  for (const auto& file : std::filesystem::directory_iterator(folder / "tmp"))
+    CHECK(read_file(file.path()) == good);
+  CHECK_FALSE(std::filesystem::is_empty(folder / "tmp"));
+  command.insert(command.end(), {"--resume", folder.file("c")});
+  result = run_sundog(command, options);
+  CHECK(result.status == 1);
+  CHECK(contains(result.err, "all of it is in " + folder.file("c")));
+  options.environment["SUNDOG_FAULTS"] = "build@0:0,build@0:1";  // nothing is drawn again
+  CHECK(run_sundog(command, options).status == 0);
+  CHECK(read_file(folder / "1.part") == good);
+  CHECK_FALSE(std::filesystem::exists(folder / "c"));
+}
+
 TEST_CASE("--tiles wants a part that there is, and a file for it") {
   const PartsFolder folder;
   for (const std::string which : {"0/2", "3/2", "1", "1/", "/2", "1/0", "a/b"}) {

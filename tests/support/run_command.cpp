@@ -12,6 +12,7 @@
 #include <array>
 #include <chrono>
 #include <stdexcept>
+#include <thread>
 
 namespace {
 
@@ -75,7 +76,8 @@ bool read_some(int descriptor, std::string& text) {
 
 class Watch {
  public:
-  Watch(pid_t child, const CommandOptions& options) : child_(child), options_(options) {}
+  Watch(pid_t child, const CommandOptions& options, pollfd& err)
+      : child_(child), options_(options), err_(err) {}
 
   void step(CommandResult& result) {
     const double seconds = seconds_since(start_);
@@ -87,13 +89,15 @@ class Watch {
                            !std::filesystem::is_empty(options_.signal_folder, none);
     if (!signalled_ && (text_seen || file_seen)) {
       signalled_ = true;
-      ::kill(child_, options_.signal);
+      options_.hang_up ? hang_up() : static_cast<void>(::kill(child_, options_.signal));
     }
     if (seconds > options_.timeout && !result.timed_out) {
       result.timed_out = true;
       ::kill(child_, SIGKILL);
     }
   }
+
+  bool has_hung_up() const { return signalled_ && options_.hang_up; }
 
   void finish(CommandResult& result) const {
     int status = 0;
@@ -103,8 +107,18 @@ class Watch {
   }
 
  private:
+  void hang_up() {
+    ::close(err_.fd);
+    err_.fd = -1;
+    for (int i = 0; i < 2; ++i) {
+      ::kill(child_, SIGHUP);
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  }
+
   pid_t child_;
   const CommandOptions& options_;
+  pollfd& err_;
   bool signalled_ = false;
   Clock::time_point start_ = Clock::now();
 };
@@ -119,8 +133,8 @@ CommandResult run_command(const std::vector<std::string>& arguments, const Comma
   ::close(out.child);
   ::close(err.child);
   CommandResult result;
-  Watch watch(child, options);
   std::array<pollfd, 2> streams = {pollfd{out.parent, POLLIN, 0}, pollfd{err.parent, POLLIN, 0}};
+  Watch watch(child, options, streams[1]);
   while (streams[0].fd >= 0 || streams[1].fd >= 0) {
     ::poll(streams.data(), streams.size(), 20);
     if (streams[0].revents != 0 && !read_some(out.parent, result.out)) streams[0].fd = -1;
@@ -129,7 +143,7 @@ CommandResult run_command(const std::vector<std::string>& arguments, const Comma
   }
   watch.finish(result);
   ::close(out.parent);
-  ::close(err.parent);
+  if (!watch.has_hung_up()) ::close(err.parent);
   return result;
 }
 
