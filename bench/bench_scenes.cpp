@@ -86,7 +86,7 @@ void stand_on_floor(Mesh& mesh) {
 
 SceneDescription scene_of_model(const std::string& path, bool spatial_splits) {
   if (path.ends_with(".json")) {
-    SceneDescription scene = load_scene(path);
+    SceneDescription scene = load_scene(path, {}, {.outside_files = true});
     if (spatial_splits) scene.render.spatial_splits = true;
     return scene;
   }
@@ -104,7 +104,8 @@ SceneDescription scene_of_model(const std::string& path, bool spatial_splits) {
 SceneDescription glass_scene(const std::string& model, std::vector<std::string> overrides) {
   const nlohmann::json file = std::filesystem::absolute(model).string();
   overrides.push_back("/meshes/model/file=" + file.dump());
-  SceneDescription scene = load_scene(SUNDOG_SOURCE_DIR "/bench/scenes/glass_model.json", overrides);
+  SceneDescription scene =
+      load_scene(SUNDOG_SOURCE_DIR "/bench/scenes/glass_model.json", overrides, {.outside_files = true});
   Mesh& mesh = scene.meshes.at(0);
   mesh.colors.clear();
   mesh.uvs.clear();

@@ -17,6 +17,7 @@
 #include "app/pick_devices.h"
 #include "app/revision.h"
 #include "app/warnings.h"
+#include "base/cache_folder.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "bench/machine.h"
@@ -64,6 +65,7 @@ void add_bench_options(Arguments* app, BenchOptions& options) {
   value(app, "--json", "FILE", options.json, "write the measurements as JSON");
   value(app, "--csv", "FILE", options.csv, "write the measurements as CSV");
   value(app, "--html", "FILE", options.html, "write the report as one page with plots");
+  outside_files(app, options.outside_files);
   app->add_flag("-q,--quiet", options.quiet, "print nothing");
 }
 
@@ -88,6 +90,7 @@ Report new_report(const std::string& name, const std::string& title, const Bench
   if (const std::string more = user_build_options(); !more.empty())
     report.facts.emplace_back("SUNDOG_BUILD_OPTIONS", more);
   if (const std::string note = busy_note(); !note.empty()) report.notes.push_back(note);
+  if (const std::string why = cache_refusal(); !why.empty()) report.notes.push_back(why);
   return report;
 }
 
@@ -115,7 +118,7 @@ CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
     for (const std::string& setting : parse_image_size(options.size)) overrides.push_back(setting);
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
   try {
-    return compile(load_scene(file, overrides));
+    return compile(load_scene(file, overrides, {.outside_files = options.outside_files}));
   } catch (const SceneError& error) {
     for (const std::string& setting : overrides)
       if (error.file == scene_file_name(file) && concerns(setting, error.place))

@@ -23,6 +23,7 @@ struct BenchOptions {
   std::string json, csv, html;  // files; empty: none
   std::string size;             // "WxH" of the images; empty: the scenes'
   int repeat = 5;
+  bool outside_files = false;  // as for render
   bool quiet = false;
 };
 

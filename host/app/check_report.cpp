@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "base/cache_folder.h"
 #include "base/file.h"
 
 namespace sundog {
@@ -95,6 +96,7 @@ std::string check_text(const json& report) {
         cache.at("files").get<std::uint64_t>(), cache.at("bytes").get<double>() / (1 << 20),
         cache.at("writable") == true ? "" : ", cannot be written: set XDG_CACHE_HOME to a folder that can",
         cache.value("off", false) ? ", off by SUNDOG_KERNEL_CACHE" : "");
+  if (const std::string why = cache_refusal(); !why.empty()) text += fmt::format("  {}\n", why);
   text += "\nDevices\n";
   for (const json& device : report.at("devices")) text += device_text(device);
   return text + problem_text(report);

@@ -71,7 +71,8 @@ CompiledScene compile_overridden(const SceneDescription& scene, const InfoComman
 
 int info_command(const InfoCommand& command) {
   for (const std::string& setting : command.overrides) check_override(setting);
-  const SceneDescription scene = load_scene(command.scene, command.overrides);
+  const SceneDescription scene =
+      load_scene(command.scene, command.overrides, {.outside_files = command.outside_files});
   print_warnings(scene.warnings);
   const CompiledScene flat = compile_overridden(scene, command);
   json figures = scene_figures(scene, flat);

@@ -24,6 +24,12 @@ inline void values(Arguments* app, const char* name, const char* type, std::vect
   value(app, name, type, target, help + "; repeatable")->one_value_each();
 }
 
+inline void outside_files(Arguments* app, bool& target) {
+  app->add_flag("--allow-outside-files", target,
+                "the scene and its models may name files outside their own folders; only for files that you "
+                "trust");
+}
+
 /// SPECs of SUNDOG_DEVICE, separated by commas.
 std::vector<std::string> devices_of_environment();
 

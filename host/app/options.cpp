@@ -133,6 +133,7 @@ void add_render(Arguments& root, Command& chosen) {
         "checkpoint: written when interrupted, continued from when it is there");
   app->add_flag("--allow-native-code", command.native_code,
                 "take OpenCL C that the scene carries (\"native\"); only for files that you trust");
+  outside_files(app, command.outside_files);
   app->add_flag("-q,--quiet", command.quiet, "no progress bar and no summary");
   app->add_flag("-v,--verbose", command.verbose, "tell more: times, rays, kernels");
   app->callback([typed, &chosen] { chosen = checked(*typed); });
@@ -151,6 +152,7 @@ void add_info(Arguments& root, Command& chosen) {
   value(app, "SCENE", "FILE", command->scene, scene_help)->required();
   values(app, "--set", "POINTER=VALUE", command->overrides,
          "change the scene, as in /render/spatial_splits=true");
+  outside_files(app, command->outside_files);
   app->add_flag("--json", command->json, "as JSON");
   app->callback([command, &chosen] { chosen = *command; });
 }

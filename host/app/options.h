@@ -31,13 +31,15 @@ struct RenderCommand : PictureOptions {
   std::optional<double> frame;       // the one of them that is rendered now
   std::string stats, resume;         // files; empty: none
   std::vector<std::string> aovs;
-  bool isolate = false;      // each device in a process of its own
-  bool native_code = false;  // the scene may carry OpenCL C
+  bool isolate = false;        // each device in a process of its own
+  bool native_code = false;    // the scene may carry OpenCL C
+  bool outside_files = false;  // the scene and its models may name files outside their folders
   bool quiet = false, verbose = false;
 };
 
 struct InfoCommand {
   std::string scene;
+  bool outside_files = false;          // as for render
   std::vector<std::string> overrides;  // "JSON_POINTER=VALUE"
   bool json = false;
 };

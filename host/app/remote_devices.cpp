@@ -40,6 +40,7 @@ json remote_settings(const RenderCommand& command, const DeviceInfo& device) {
           {"overrides", command.overrides},
           {"frame", command.frame ? json(*command.frame) : json()},
           {"native_code", command.native_code},
+          {"outside_files", command.outside_files},
           {"aovs", command.aovs},
           {"work_group", command.work_group},
           {"device", device},
@@ -51,7 +52,8 @@ namespace {
 std::shared_ptr<const CompiledScene> load_flat(const json& settings) {
   const auto overrides = settings.at("overrides").get<std::vector<std::string>>();
   if (settings.at("scene_text").is_string()) set_standard_input(settings["scene_text"].get<std::string>());
-  LoadOptions options{std::nullopt, settings.at("native_code").get<bool>()};
+  LoadOptions options{std::nullopt, settings.at("native_code").get<bool>(),
+                      settings.at("outside_files").get<bool>()};
   if (settings.at("frame").is_number()) options.frame = settings["frame"].get<double>();
   return std::make_shared<const CompiledScene>(
       compile(load_scene(settings.at("scene").get<std::string>(), overrides, options)));
@@ -60,7 +62,7 @@ std::shared_ptr<const CompiledScene> load_flat(const json& settings) {
 /// The devices of one process render the same scene: it is loaded once.
 std::shared_ptr<const CompiledScene> load_once(const json& settings, KeptOpen& kept) {
   json of_scene;
-  for (const char* key : {"scene", "scene_text", "overrides", "native_code", "frame"})
+  for (const char* key : {"scene", "scene_text", "overrides", "native_code", "outside_files", "frame"})
     of_scene[key] = settings.at(key);
   const std::lock_guard lock(kept.mutex);
   if (kept.scene_settings != of_scene.dump()) kept.scene = load_flat(settings);

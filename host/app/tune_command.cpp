@@ -13,6 +13,7 @@
 #include "app/commands.h"
 #include "app/option_helpers.h"
 #include "app/progress.h"
+#include "base/cache_folder.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -217,7 +218,9 @@ int run_tune(const TuneOptions& options) {
   if (!options.export_to.empty()) return export_all(options.export_to);
   if (options.forget) return forget(options);
   if (options.show) return show();
-  return options.import_from.empty() ? tune(options) : exit_done;
+  if (!options.import_from.empty()) return exit_done;
+  if (const std::string why = cache_refusal(); !why.empty()) throw IoError(why);
+  return tune(options);
 }
 
 }  // namespace
@@ -230,6 +233,7 @@ void add_tune(Arguments& root, Command& chosen) {
         std::string(scene_help) + " (default: two built-in scenes)");
   values(app, "--device", "SPEC", options->bench.devices, device_help);
   values(app, "--set", "POINTER=VALUE", options->bench.overrides, "change the scenes, as in /camera/fov=30");
+  outside_files(app, options->bench.outside_files);
   app->add_option("--budget", options->budget, "seconds for a device, with compilation (default 60)")
       ->type_name("SECONDS");
   app->add_flag("--show", options->show, "print the results that are kept");

@@ -23,6 +23,7 @@ namespace sundog {
 ///     stop@P:D            a launch stops the process, as SIGSTOP from outside does
 ///     write@NAME          a file of that name cannot be written, as on a full disk
 ///     room=KIBIBYTES@pocl no more can be written to the folder where PoCL writes
+///     hold@NAME           reading an opened file of that name never begins
 ///     stall@NAME          writing a file of that name never ends
 /// Returns VALUE (0 without one) where a fault strikes now. Throws UsageError for a variable that is none.
 std::optional<int> fault(std::string_view kind, std::string_view where, std::size_t size = 0);

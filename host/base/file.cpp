@@ -14,34 +14,16 @@
 #include <cstdlib>
 #include <cstring>
 #include <functional>
-#include <memory>
 #include <thread>
 
 #include "base/error.h"
 #include "base/faults.h"
+#include "base/input.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
 
-std::string read_file(const fs::path& path) {
-  std::error_code status;
-  if (fs::is_directory(path, status)) throw IoError(fmt::format("{}: is a directory", path.string()));
-  const auto fail = [&] {
-    throw IoError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-  };
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) fail();
-  std::string bytes;
-  const std::uintmax_t expected = fs::file_size(path, status);  // unknown for a pipe: read until it ends
-  std::size_t size = 0;
-  do {
-    bytes.resize(std::max<std::size_t>(size + (1 << 16), status ? 0 : expected + 1));
-    size += std::fread(bytes.data() + size, 1, bytes.size() - size, file.get());
-  } while (size == bytes.size());
-  if (std::ferror(file.get())) fail();
-  bytes.resize(size);
-  return bytes;
-}
+std::string read_file(const fs::path& path) { return read_regular_file(path); }
 
 namespace {
 

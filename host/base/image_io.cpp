@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "base/image_codecs.h"
 #include "base/input.h"
+#include "base/limits.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -37,7 +38,7 @@ Image decode(std::string_view bytes) {
 /// Calls `read(bytes)`; what goes wrong in it becomes a SceneError about the file.
 template <class Read>
 auto read_named(const fs::path& path, const Read& read) {
-  const std::string bytes = read_input(path);
+  const std::string bytes = read_input(path, most_frame_bytes);
   try {
     return read(std::string_view(bytes));
   } catch (const std::bad_alloc&) {

@@ -1,13 +1,83 @@
 #include "base/input.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
 #include "base/error.h"
-#include "base/file.h"
+#include "base/faults.h"
 
 namespace sundog {
+namespace {
 
-std::string read_input(const std::filesystem::path& path) {
+/// An open file that is closed at the end.
+struct File {
+  int descriptor = -1;
+  explicit File(const char* path) : descriptor(::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) {}
+  ~File() {
+    if (descriptor >= 0) ::close(descriptor);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+};
+
+bool is_own_stream(const std::string& path) {
+  return path == "/dev/stdin" || path.starts_with("/dev/fd/") || path.starts_with("/proc/self/fd/");
+}
+
+std::string size_text(std::uintmax_t bytes) {
+  return bytes % (1 << 20) == 0 ? fmt::format("{} MiB", bytes >> 20) : fmt::format("{} bytes", bytes);
+}
+
+/// Up to a byte more than `most`; none where reading fails.
+bool read_all(int descriptor, std::uintmax_t expected, std::uintmax_t most, std::string& bytes) {
+  constexpr std::size_t least_step = 1 << 16;
+  std::size_t size = 0;
+  bytes.resize(expected + 1);
+  while (size <= most) {
+    if (size == bytes.size()) bytes.resize(size + std::max(least_step, size / 2));
+    const ssize_t count = ::read(descriptor, bytes.data() + size, bytes.size() - size);
+    if (count == 0) break;
+    if (count < 0 && errno != EINTR) return false;
+    if (count > 0) size += static_cast<std::size_t>(count);
+  }
+  bytes.resize(size);
+  return true;
+}
+
+}  // namespace
+
+std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t most) {
+  const auto fail = [&](const std::string& what) {
+    throw IoError(fmt::format("{}: {}", path.string(), what));
+  };
+  const auto unreadable = [&] { fail(fmt::format("cannot be read: {}", std::strerror(errno))); };
+  const File file(path.c_str());
+  struct stat found {};
+  if (file.descriptor < 0 || ::fstat(file.descriptor, &found) != 0) unreadable();
+  if (S_ISDIR(found.st_mode)) fail("is a directory");
+  const bool stream = S_ISFIFO(found.st_mode) && is_own_stream(path.string());
+  if (!S_ISREG(found.st_mode) && !stream) fail("is no regular file, but a pipe or a device");
+  const auto size = S_ISREG(found.st_mode) ? static_cast<std::uintmax_t>(found.st_size) : 0;
+  if (size > most) fail(fmt::format("is larger than {}", size_text(most)));
+  ::fcntl(file.descriptor, F_SETFL, 0);  // a stream is waited for
+  while (fault("hold", path.filename().string())) std::this_thread::sleep_for(std::chrono::hours(1));
+  std::string bytes;
+  if (!read_all(file.descriptor, size, most, bytes)) unreadable();
+  if (bytes.size() > most) fail(fmt::format("is larger than {}", size_text(most)));
+  return bytes;
+}
+
+std::string read_input(const std::filesystem::path& path, std::uintmax_t most) {
   try {
-    return read_file(path);
+    return read_regular_file(path, most);
   } catch (const IoError& error) {  // its message opens with the path, as SceneError's does
     throw SceneError(path.string(), "", std::string(error.what()).substr(path.string().size() + 2));
   }

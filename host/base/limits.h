@@ -8,6 +8,9 @@ constexpr int most_edge = 65536;  // of width and height
 constexpr std::int64_t most_pixels = 1 << 28;
 constexpr int most_parts = 65536;  // of a frame, for machines that share nothing but a folder
 
+/// More than any file of a frame takes: sums, weights, AOVs and what is done, of most_pixels.
+constexpr std::uintmax_t most_frame_bytes = 80 * static_cast<std::uintmax_t>(most_pixels);
+
 /// Whether there may be a frame of these edges.
 constexpr bool is_frame_size(std::int64_t width, std::int64_t height) {
   return width >= 1 && width <= most_edge && height >= 1 && height <= most_edge &&

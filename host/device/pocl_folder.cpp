@@ -13,6 +13,8 @@
 #include <optional>
 #include <string>
 
+#include "base/cache_folder.h"
+#include "base/error.h"
 #include "base/faults.h"
 #include "base/file.h"
 
@@ -64,14 +66,21 @@ std::optional<std::uintmax_t> room_in(const fs::path& folder) {
   return space.available;
 }
 
+void try_to_make(const fs::path& folder) {
+  try {
+    make_cache_folder(folder);
+  } catch (const IoError&) {  // then another folder is used
+  }
+}
+
 /// A new folder in the cache, or where that cannot be written or is full, among the temporary files; empty:
 /// neither can.
 std::string make_folder() {
   std::error_code error;
-  const fs::path cache = cache_directory(), root = cache / "pocl";
-  if (!cache.empty() && (fs::create_directories(root, error), fs::is_directory(root, error)))
-    remove_left_over(root);
-  if (!cache.empty() && room_in(root).value_or(0) >= ample_room) {
+  const fs::path root = cache_folder("pocl");
+  if (!root.empty()) try_to_make(root);
+  if (!root.empty() && fs::is_directory(root, error)) remove_left_over(root);
+  if (!root.empty() && room_in(root).value_or(0) >= ample_room) {
     std::string folder = (root / "XXXXXX").string();
     if (::mkdtemp(folder.data())) return folder;
   }

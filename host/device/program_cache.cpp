@@ -13,14 +13,17 @@
 #include <sstream>
 #include <vector>
 
+#include "base/cache_folder.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/input.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view magic = "sundog kernel 1\n";
+constexpr std::uintmax_t most_bytes = std::uintmax_t{256} << 20;
 constexpr std::size_t checksum_size = 32, size_size = 20;
 
 std::string joined(const std::set<std::string>& lines) {
@@ -98,15 +101,15 @@ std::string hash128(std::string_view bytes) {
 
 fs::path program_cache_file(const std::string& key) {
   const char* setting = std::getenv("SUNDOG_KERNEL_CACHE");
-  const fs::path folder = cache_directory();
+  const fs::path folder = cache_folder("kernels");
   if (folder.empty() || (setting && std::string_view(setting) == "off")) return {};
-  return folder / "kernels" / (hash128(key) + ".bin");
+  return folder / (hash128(key) + ".bin");
 }
 
 std::optional<CachedProgram> load_program(const fs::path& file, const std::string& key) {
   std::string bytes;
   try {
-    bytes = read_file(file);
+    bytes = read_regular_file(file, most_bytes);
   } catch (const IoError&) {
     return std::nullopt;
   }
@@ -126,9 +129,11 @@ std::optional<CachedProgram> load_program(const fs::path& file, const std::strin
 
 std::optional<std::string> cannot_store(const fs::path& file) {
   const fs::path folder = file.parent_path();
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) return fmt::format("{}: cannot be made: {}", folder.string(), failed.message());
+  try {
+    make_cache_folder(folder);
+  } catch (const IoError& error) {
+    return error.what();
+  }
   if (::access(folder.c_str(), W_OK) != 0)
     return fmt::format("{}: {}", folder.string(), std::strerror(errno));
   return std::nullopt;
@@ -136,10 +141,7 @@ std::optional<std::string> cannot_store(const fs::path& file) {
 
 void store_program(const fs::path& file, const std::string& key, const CachedProgram& program,
                    std::uintmax_t folder_bytes) {
-  std::error_code failed;
-  fs::create_directories(file.parent_path(), failed);
-  if (failed)
-    throw IoError(fmt::format("{}: cannot be made: {}", file.parent_path().string(), failed.message()));
+  make_cache_folder(file.parent_path());
   const std::string variants = joined(program.variants);
   const std::string body = fmt::format("{:020}{:020}{:020}{}{}{}", key.size(), variants.size(),
                                        program.binary.size(), key, variants, program.binary);

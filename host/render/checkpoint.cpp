@@ -57,6 +57,8 @@ void write_checkpoint(const std::filesystem::path& path, const Film& film, std::
 
 std::optional<std::uint64_t> checkpoint_key(const std::filesystem::path& path) {
   Header header{};
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed)) return std::nullopt;
   std::ifstream in(path, std::ios::binary);
   if (!in.read(reinterpret_cast<char*>(&header), sizeof header)) return std::nullopt;
   if (std::memcmp(header.magic, magic, sizeof magic) != 0) return std::nullopt;
@@ -64,7 +66,7 @@ std::optional<std::uint64_t> checkpoint_key(const std::filesystem::path& path) {
 }
 
 void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_t key) {
-  const std::string bytes = read_input(path);
+  const std::string bytes = read_input(path, most_frame_bytes);
   Header header{};
   std::uint64_t checksum = 0;
   const SceneError damaged(path.string(), "",

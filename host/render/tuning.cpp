@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/cache_folder.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "device/embedded_kernels.h"
@@ -68,10 +69,7 @@ std::string kernels_hash() {
   return hash128(all);
 }
 
-std::filesystem::path tuning_folder() {
-  const std::filesystem::path cache = cache_directory();
-  return cache.empty() ? cache : cache / "tuning";
-}
+std::filesystem::path tuning_folder() { return cache_folder("tuning"); }
 
 std::filesystem::path tuning_path(const DeviceInfo& device) {
   const std::filesystem::path folder = tuning_folder();
@@ -102,15 +100,17 @@ std::optional<TuningFile> load_tuning(const DeviceInfo& device) {
 
 void keep_tuning(const DeviceInfo& device, const TuningEntry& entry) {
   const std::filesystem::path path = tuning_path(device);
-  if (path.empty()) throw IoError("there is no cache folder to keep the result in: set XDG_CACHE_HOME");
+  if (path.empty()) {
+    const std::string why = cache_refusal();
+    throw IoError(why.empty() ? "there is no cache folder to keep the result in: set XDG_CACHE_HOME" : why);
+  }
   TuningFile file = load_tuning(device).value_or(
       TuningFile{device.platform_name, device.name, device.driver, kernels_hash(), device.sub_units, {}});
   std::erase_if(file.entries, [&](const TuningEntry& old) {
     return old.kernel == entry.kernel && old.scene_class == entry.scene_class;
   });
   file.entries.push_back(entry);
-  std::error_code failed;
-  std::filesystem::create_directories(path.parent_path(), failed);
+  make_cache_folder(path.parent_path());
   write_file(path, to_json(file).dump(2) + "\n");
 }
 

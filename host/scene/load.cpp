@@ -54,7 +54,10 @@ SceneDescription read_with_overrides(json document, const fs::path& file,
                                      std::optional<Model> model) {
   apply_overrides(document, file, overrides);
   std::vector<std::string> warnings;
-  const JsonContext context{file, nullptr, options.native_code, &warnings};
+  const JsonContext context{.file = file,
+                            .native_code = options.native_code,
+                            .warnings = &warnings,
+                            .outside_files = options.outside_files};
   if (options.frame) apply_animation(document, *options.frame, context);
   try {
     SceneDescription scene = read_scene(JsonValue(document, context), std::move(model));
@@ -85,7 +88,7 @@ SceneDescription load_scene(const fs::path& path, const std::vector<std::string>
   }
   require_readable(path, path, "");
   if (is_model_file(path)) {
-    Model model = load_model(path);
+    Model model = load_model(path, {.outside_files = options.outside_files});
     json document = make_scene(path, model, overrides);
     return read_with_overrides(std::move(document), path, overrides, options, std::move(model));
   }

@@ -10,8 +10,9 @@
 namespace sundog {
 
 struct LoadOptions {
-  std::optional<double> frame;  // of the scene's animation; without it the scene stands as it is written
-  bool native_code = false;     // OpenCL C in the scene is taken: only for scenes that the user trusts
+  std::optional<double> frame = std::nullopt;  // of the animation; without it the scene is as it is written
+  bool native_code = false;    // OpenCL C in the scene is taken: only for scenes that the user trusts
+  bool outside_files = false;  // the scene, and the models in it, may name files outside their own folders
 };
 
 /// The name that errors give a scene's file: "standard input" for "-", else the path.

@@ -34,7 +34,8 @@ struct Model {
 struct ModelOptions {
   /// Angle in degrees up to which made-up normals are smoothed across an edge; nullopt: the format's own rule
   /// (glTF and STL flat, OBJ and PLY 45). 0 is flat.
-  std::optional<double> crease_angle;
+  std::optional<double> crease_angle = std::nullopt;
+  bool outside_files = false;  // files that the model names may lie outside its folder
 };
 
 /// Reads .gltf .glb .obj .ply .stl .nff, each also gzipped (.gz). Polygons come triangulated (n corners make

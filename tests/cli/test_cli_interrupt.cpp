@@ -96,18 +96,20 @@ TEST_CASE("an interrupt in the middle of the first tile leaves a file too") {
   CHECK(read_image(folder / "a.exr").width == 4096);
 }
 
-// The shell goes on when someone reads the scene: sundog, which would wait for its text for ever.
+// The scene's file is opened, and reading it never begins.
 TEST_CASE("an interrupt while the scene is loaded ends the program at once, and says so") {
   const std::string signal = GENERATE("INT", "TERM");
   const CliFolder folder;
   CommandOptions options;
   options.folder = folder.path();
-  const CommandResult result = run_command(
-      {"sh", "-c",
-       "mkfifo slow.json && { \"$0\" render slow.json -o a.png & } && exec 3>slow.json && kill -$1 $! && "
-       "wait $!",
-       SUNDOG_BINARY, signal},
-      options);
+  options.environment["SUNDOG_FAULTS"] = "hold@scene.json";
+  const CommandResult result =
+      run_command({"sh", "-c",
+                   "\"$0\" render scene.json -o a.png & "
+                   "until ls -l /proc/$!/fd | grep -q scene.json; do sleep 0.02; done 2>/dev/null; "
+                   "kill -$1 $!; wait $!",
+                   SUNDOG_BINARY, signal},
+                  options);
   CHECK(result.status == 130);
   CHECK(result.err == "sundog: interrupted: the frame was not yet begun; a.png is not written\n");
   CHECK_FALSE(std::filesystem::exists(folder / "a.png"));

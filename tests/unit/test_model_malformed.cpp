@@ -18,6 +18,7 @@ namespace {
 // skins, custom attributes, textures, extensions at the wrong place), or contradict nothing that is (missing
 // bounds, an empty list, a buffer view's hint of use).
 const std::set<std::string> not_read{"UNEXPECTED_EXTENSION_OBJECT",
+                                     "BUFFER_MISSING_GLB_DATA",
                                      "EMPTY_ENTITY",
                                      "BUFFER_VIEW_TARGET_OVERRIDE",
                                      "MESH_PRIMITIVE_ACCESSOR_WITHOUT_BYTESTRIDE",
@@ -37,7 +38,10 @@ bool must_be_refused(const fs::path& report) {
   const auto messages = nlohmann::json::parse(in).at("issues").at("messages");
   for (const auto& message : messages) {
     const bool in_targets = message.value("pointer", "").find("/targets/") != std::string::npos;
-    if (message.at("severity") == 0 && not_read.count(message.at("code")) == 0 && !in_targets) return true;
+    const bool lost_offset = message.value("pointer", "").ends_with("/byteOffset") &&
+                             message.at("code") == "UNSATISFIED_DEPENDENCY";  // only warned of
+    if (message.at("severity") == 0 && not_read.count(message.at("code")) == 0 && !in_targets && !lost_offset)
+      return true;
   }
   return false;
 }

@@ -91,7 +91,9 @@ TEST_CASE("a bad OBJ is refused with its line", "[models]") {
   CHECK_THAT(error("f 0 1 2"), ContainsSubstring("line 4: vertex 0"));
   CHECK_THAT(error("f -4 1 2"), ContainsSubstring("line 4"));
   CHECK_THAT(error("f 1/1 2/1 3/1"), ContainsSubstring("line 4: texture coordinate 1"));
-  CHECK_THAT(error("f 1//1 2//1 3//1"), ContainsSubstring("line 4: normal 1"));
+  CHECK_THAT(error("f 1//0 2//1 3//1"), ContainsSubstring("line 4: normal 0"));
+  CHECK_THAT(error("vn 0 0 1\nf 1//2 2//1 3//1"), ContainsSubstring("line 5: normal 2"));
+  CHECK_THAT(error("f 1//1 2//1 3//1\nvn 0 0 1"), ContainsSubstring("line 4: normal 1 does not exist: 0"));
   CHECK_THAT(error("f 1 2 99999999999999999999"), ContainsSubstring("line 4"));
   CHECK_THAT(error("f 1 2 x"), ContainsSubstring("line 4"));
   CHECK_THAT(error("f"), ContainsSubstring("line 4: a face without corners"));

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/file.h"
+#include "base/input.h"
 #include "scene/json/value.h"
 
 namespace sundog {
@@ -173,7 +173,7 @@ json parse_json(std::string_view text, const fs::path& file) {
 
 json read_json_file(const fs::path& file) {
   require_readable(file, file, "");
-  return parse_json(read_file(file), file);
+  return parse_json(read_input(file), file);
 }
 
 void require_readable(const fs::path& file, const fs::path& named_in, std::string_view place) {

@@ -34,7 +34,8 @@ struct JsonContext {
   std::map<std::string, std::set<std::string>, std::less<>>* asked = nullptr;
   bool native_code = false;                      // a scene may carry OpenCL C
   std::vector<std::string>* warnings = nullptr;  // when set, collects what the values were warned of
-  bool measures = true;  // formulas are tried out; who only checks keys and types need not
+  bool measures = true;        // formulas are tried out; who only checks keys and types need not
+  bool outside_files = false;  // a scene may name files outside its folder
 };
 
 /// Keys or choices; pass a static array of them.

@@ -75,6 +75,7 @@ class GltfReader {
       for (const JsonAt& at : extension->list("lights")) lights_.push_back(read_gltf_light(at));
     read_nodes();
     walk(scene_roots());
+    model_.warnings.insert(model_.warnings.end(), accessors_.warnings().begin(), accessors_.warnings().end());
     return std::move(model_);
   }
 
@@ -244,7 +245,8 @@ class GltfReader {
 void check_extensions(const JsonAt& root) {
   for (const JsonAt& at : root.list("extensionsRequired")) {
     const std::string name = at.text();
-    const bool known = name == "KHR_lights_punctual" || name == "EXT_mesh_gpu_instancing";
+    const bool known =
+        name == "KHR_lights_punctual" || name == "EXT_mesh_gpu_instancing" || name == "KHR_mesh_quantization";
     const bool color = name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
                        name.starts_with("EXT_texture_") || name.starts_with("MSFT_texture_");
     if (!known && !color) at.fail(fmt::format("the file requires the extension {}, which is not read", name));
@@ -273,6 +275,8 @@ Model load_gltf(const Source& source, const ModelOptions& options) {
   const std::string version = root.member("asset").member("version").text();
   if (!version.starts_with("2."))
     fail(source, "/asset/version", fmt::format("glTF {}; 2.x is read", version));
+  if (const auto least = root.member("asset").find("minVersion"))
+    if (least->text() != "2.0") least->fail(fmt::format("glTF {} at least; 2.0 is read", least->text()));
   check_extensions(root);
   Model model = GltfReader(source, container, root, options.crease_angle.value_or(0)).read();
   find_unread(json, model);

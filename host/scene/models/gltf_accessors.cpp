@@ -48,6 +48,13 @@ std::size_t element_size(const std::string& type, std::size_t component_size) {
   return components_of(type) * component_size;
 }
 
+// The bytes after a matrix' last column.
+std::size_t padding(const std::string& type, std::size_t component_size) {
+  if (!type.starts_with("MAT") || component_size == 0 || type.size() != 4) return 0;
+  const std::size_t column = static_cast<std::size_t>(type[3] - '0') * component_size;
+  return (column + 3) / 4 * 4 - column;
+}
+
 double component_at(const char* bytes, std::uint64_t component) {
   const auto take = [bytes](auto value) {
     std::memcpy(&value, bytes, sizeof value);  // little-endian, as every machine that OpenCL runs on
@@ -107,9 +114,8 @@ void GltfAccessors::read_buffer(const Source& source, const GltfContainer& conta
       buffer.present = true;
     }
   } else if (glb && index == 0) {
-    if (!container.binary) at.fail("the buffer is the GLB's BIN chunk, but there is none");
-    buffer.bytes = *container.binary;
-    buffer.present = true;
+    buffer.present = container.binary.has_value();
+    if (buffer.present) buffer.bytes = *container.binary;
   }
   if (buffer.present && buffer.bytes.size() < buffer.length)
     at.fail(fmt::format("a byteLength of {}, but the data has {} bytes", buffer.length, buffer.bytes.size()));
@@ -149,6 +155,7 @@ void GltfAccessors::read_accessor(const JsonAt& at) {
   // A type that this reader does not know makes the accessor unusable, not the file.
   accessor.dense.components = size == 0 ? 0 : components_of(accessor.type);
   accessor.dense.element_size = element_size(accessor.type, size);
+  accessor.dense.padding = padding(accessor.type, size);
   accessor.normalized = at.boolean("normalized", false);
   if (accessor.normalized && size == 4)
     at.member("normalized").fail("only integers of 8 and 16 bits are normalised");
@@ -158,7 +165,8 @@ void GltfAccessors::read_accessor(const JsonAt& at) {
     accessor.dense.offset = at.integer_or("byteOffset", 0);
     if (accessor.dense.components > 0) check_room(at, accessor.dense);
   } else if (const auto offset = at.find("byteOffset")) {
-    offset->fail("a byteOffset without a bufferView");
+    warnings_.push_back(
+        fmt::format("{}: a byteOffset without a bufferView is left aside", offset->pointer()));
   }
   if (const auto sparse = at.find("sparse")) read_sparse(*sparse, accessor);
   accessors_.push_back(std::move(accessor));
@@ -177,6 +185,7 @@ void GltfAccessors::read_sparse(const JsonAt& at, Accessor& accessor) {
   accessor.sparse_indices.element_size = size_of_component(component);
   accessor.sparse_values = part_of_sparse(values, accessor.dense.component, accessor.dense.components, count);
   accessor.sparse_values.element_size = accessor.dense.element_size;
+  accessor.sparse_values.padding = accessor.dense.padding;
   check_room(indices, accessor.sparse_indices);
   if (accessor.dense.components > 0) check_room(values, accessor.sparse_values);
 }
@@ -198,10 +207,11 @@ Elements GltfAccessors::part_of_sparse(const JsonAt& at, std::uint64_t component
 void GltfAccessors::check_room(const JsonAt& at, const Elements& elements) const {
   const BufferView& view = views_[elements.view];
   const std::size_t size = elements.element_size, stride = view.stride ? view.stride : size;
+  const std::size_t last = size - elements.padding;
   const std::size_t component = size_of_component(elements.component);
   if (stride < size) at.fail(fmt::format("elements of {} bytes in a view with a stride of {}", size, stride));
-  if (elements.offset > view.length || size > view.length - elements.offset ||
-      (elements.count - 1) > (view.length - elements.offset - size) / stride)
+  if (elements.offset > view.length || last > view.length - elements.offset ||
+      (elements.count - 1) > (view.length - elements.offset - last) / stride)
     at.fail(fmt::format("{} elements of {} bytes, {} apart, from byte {}: the view has {} bytes",
                         elements.count, size, stride, elements.offset, view.length));
   if (elements.offset % component != 0 || (view.offset + elements.offset) % component != 0)

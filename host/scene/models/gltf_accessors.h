@@ -28,8 +28,8 @@ enum ComponentType : std::uint64_t {
 struct Elements {
   std::size_t view = 0, offset = 0, count = 0;
   std::uint64_t component = component_float;
-  std::size_t components = 0;  // per element; 0: a type that the format does not know
-  std::size_t element_size = 0;
+  std::size_t components = 0;                 // per element; 0: a type that the format does not know
+  std::size_t element_size = 0, padding = 0;  // bytes at an element's end that the last one may do without
 };
 
 struct Accessor {
@@ -46,6 +46,7 @@ class GltfAccessors {
   GltfAccessors(const Source& source, const GltfContainer& container, const JsonAt& root);
 
   const Source& source() const { return source_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
   const std::vector<Accessor>& all() const { return accessors_; }
   const BufferView* view_of(const Accessor& accessor) const {
     return accessor.has_view ? &views_[accessor.dense.view] : nullptr;
@@ -82,6 +83,7 @@ class GltfAccessors {
   std::vector<std::string> storage_;  // what `bytes` points into, but for a GLB's own
   std::vector<BufferView> views_;
   std::vector<Accessor> accessors_;
+  std::vector<std::string> warnings_;
   std::map<std::size_t, std::vector<float>> floats_;
   std::map<std::size_t, std::vector<std::uint32_t>> indices_;
   std::size_t total_bytes_ = 0, spent_ = 0;

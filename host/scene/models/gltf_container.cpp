@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "base/error.h"
+#include "scene/inside.h"
 
 namespace sundog::models {
 namespace fs = std::filesystem;
@@ -139,6 +140,8 @@ std::optional<std::string> read_uri(const Source& source, const JsonAt& uri) {
   const std::size_t scheme = scheme_length(text, uri);
   if (scheme > 0) return text.starts_with("data:") ? std::optional(read_data_uri(text, uri)) : std::nullopt;
   const fs::path path = source.path.parent_path() / fs::path(decode_percent(text, uri));
+  if (!source.outside_files && leads_outside(source.path, path))
+    uri.fail(fmt::format("'{}' leads out of the model's folder: {}", text, outside_hint));
   try {
     return read_source(path).bytes;
   } catch (const SceneError& error) {

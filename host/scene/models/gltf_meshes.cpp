@@ -25,12 +25,28 @@ constexpr AttributeRule rules[] = {{"POSITION", "VEC3", "VEC3", false},
                                    {"TEXCOORD_0", "VEC2", "VEC2", true},
                                    {"COLOR_0", "VEC3", "VEC4", true}};
 
-bool fits(const AttributeRule& rule, const Accessor& accessor) {
+// What KHR_mesh_quantization adds: integers of 8 and 16 bits, for normals signed and normalised ones.
+bool fits_quantized(std::string_view name, const Accessor& accessor) {
+  const std::uint64_t component = accessor.dense.component;
+  const bool is_signed = component == component_byte || component == component_short;
+  const bool is_unsigned = component == component_unsigned_byte || component == component_unsigned_short;
+  if (name == "NORMAL") return is_signed && accessor.normalized;
+  return (name == "POSITION" || name == "TEXCOORD_0") && (is_signed || is_unsigned);
+}
+
+bool fits(const AttributeRule& rule, const Accessor& accessor, bool quantized) {
   if (accessor.type != rule.type && accessor.type != rule.other_type) return false;
   const std::uint64_t component = accessor.dense.component;
-  if (component == component_float) return true;
+  if (component == component_float || (quantized && fits_quantized(rule.name, accessor))) return true;
   const bool small = component == component_unsigned_byte || component == component_unsigned_short;
   return rule.normalized_integers && small && accessor.normalized;
+}
+
+bool names_extension(const JsonAt& root, const std::string& wanted) {
+  for (const char* list : {"extensionsUsed", "extensionsRequired"})
+    for (const JsonAt& name : root.list(list))
+      if (name.text() == wanted) return true;
+  return false;
 }
 
 std::vector<glm::uvec3> triangles_of(std::uint64_t mode, std::span<const std::uint32_t> v) {
@@ -56,7 +72,10 @@ Vector element(const std::vector<float>& values, std::size_t stride, std::size_t
 
 GltfMeshes::GltfMeshes(const JsonAt& root, GltfAccessors& accessors, GltfMaterials& materials,
                        double crease_degrees)
-    : accessors_(accessors), materials_(materials), crease_degrees_(crease_degrees) {
+    : accessors_(accessors),
+      materials_(materials),
+      crease_degrees_(crease_degrees),
+      quantized_(names_extension(root, "KHR_mesh_quantization")) {
   for (const JsonAt& at : root.list("meshes")) {
     Entry entry;
     entry.name = at.text("name");
@@ -72,7 +91,7 @@ std::optional<std::size_t> GltfMeshes::read_attribute(const JsonAt& attributes, 
   const std::size_t index = found->index(accessors_.all().size(), "accessor");
   const Accessor& accessor = accessors_.all()[index];
   for (const AttributeRule& rule : rules)
-    if (rule.name == name && !fits(rule, accessor))
+    if (rule.name == name && !fits(rule, accessor, quantized_))
       found->fail(fmt::format("accessor {} is a {} of type {}: {} of floats{} wanted", index, accessor.type,
                               accessor.dense.component, rule.type,
                               rule.normalized_integers ? " or normalised unsigned integers" : ""));

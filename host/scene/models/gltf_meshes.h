@@ -42,6 +42,7 @@ class GltfMeshes {
   GltfAccessors& accessors_;
   GltfMaterials& materials_;
   double crease_degrees_;
+  bool quantized_;  // KHR_mesh_quantization
   std::vector<Entry> meshes_;
 };
 

@@ -62,6 +62,28 @@ Model load(const models::Source& source, const std::string& extension, const Mod
   return models::load_gltf(source, options);
 }
 
+/// Beyond it a camera that sees the model cannot be written down, nor squares be computed.
+constexpr double farthest = 1e17;
+
+void check_extent(const models::Source& source, const Model& model) {
+  for (const Object& object : model.objects) {
+    const auto* shape = std::get_if<MeshShape>(&object.shape);
+    if (!shape) continue;
+    const Mesh& mesh = model.meshes[static_cast<std::size_t>(shape->mesh)];
+    for (const glm::uvec3& triangle : mesh.triangles)
+      for (int corner = 0; corner < 3; ++corner) {
+        const dvec3 at(object.world_from_object * glm::dvec4(mesh.positions[triangle[corner]], 1));
+        const double most = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
+        if (!(most <= farthest))
+          models::fail(
+              source, "",
+              fmt::format("{} has a vertex at {:.3g}, {:.3g}, {:.3g}; coordinates up to {:g} are read",
+                          mesh.name.empty() ? "a mesh" : fmt::format("the mesh '{}'", mesh.name), at.x, at.y,
+                          at.z, farthest));
+      }
+  }
+}
+
 }  // namespace
 
 bool is_model_file(const std::filesystem::path& path) {
@@ -77,8 +99,15 @@ Model load_model(const std::filesystem::path& path, const ModelOptions& options)
         path.string(), "",
         "not a model file: the name must end in .gltf .glb .obj .ply .stl or .nff (or that and .gz)");
   try {
-    Model model = load(models::read_source(path), models::model_extension(path), options);
+    models::Source source = models::read_source(path);
+    source.outside_files = options.outside_files;
+    Model model = load(source, models::model_extension(path), options);
     models::bring_near(model);
+    check_extent(source, model);
+    if (model.dropped_polygons > 0)
+      model.warnings.push_back(fmt::format("{} face{} of one or two corners {} left out",
+                                           model.dropped_polygons, model.dropped_polygons == 1 ? "" : "s",
+                                           model.dropped_polygons == 1 ? "is" : "are"));
     if (!model.unread.empty()) model.warnings.push_back(unread_text(model.unread));
     return model;
   } catch (const std::length_error& error) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "scene/inside.h"
 #include "scene/models/readers.h"
 #include "scene/models/text.h"
 
@@ -148,16 +149,25 @@ bool is_file(const fs::path& path) {
 
 }  // namespace
 
-void MaterialLibrary::load(const fs::path& obj, std::string_view names) {
-  const fs::path whole = beside(obj, std::string(names));
-  if (is_file(whole)) return read(whole);
+bool MaterialLibrary::is_refused(const Source& obj, const TextReader& line, const fs::path& path) {
+  if (obj.outside_files || !leads_outside(obj.path, path)) return false;
+  model_.warnings.push_back(
+      fmt::format("{}: line {}: the material library {} leads out of the model's folder and is not read: {}",
+                  obj.path.string(), line.line(), path.string(), outside_hint));
+  return true;
+}
+
+void MaterialLibrary::load(const Source& obj, const TextReader& line, std::string_view names) {
+  const fs::path whole = beside(obj.path, std::string(names));
+  if ((obj.outside_files || !leads_outside(obj.path, whole)) && is_file(whole)) return read(whole);
   for (const std::string& name : split_names(names)) {
-    const fs::path path = beside(obj, name);
+    const fs::path path = beside(obj.path, name);
+    if (is_refused(obj, line, path)) continue;
     if (is_file(path)) {
       read(path);
     } else {
       model_.warnings.push_back(
-          fmt::format("{}: the material library {} is missing", obj.string(), path.string()));
+          fmt::format("{}: the material library {} is missing", obj.path.string(), path.string()));
     }
   }
 }
@@ -166,8 +176,9 @@ void MaterialLibrary::read(const fs::path& path) {
   const Source source = read_source(path);
   TextReader text(source, {});
   Statements material;
+  bool begun = false;
   const auto finish = [&] {
-    if (material.name.empty()) return;
+    if (!begun) return;
     const auto at = static_cast<int>(model_.materials.size());
     if (index_.try_emplace(material.name, at).second) add_material(material, model_);
   };
@@ -177,8 +188,13 @@ void MaterialLibrary::read(const fs::path& path) {
       finish();
       material = {};
       material.name = text.rest();
-      if (material.name.empty()) text.fail("newmtl without a name");
-    } else if (!material.name.empty()) {
+      begun = true;
+      if (material.name.empty())
+        model_.warnings.push_back(
+            fmt::format("{}: line {}: newmtl without a name: only a usemtl without a name "
+                        "takes it",
+                        path.string(), text.line()));
+    } else if (begun) {
       read_statement(text, key, material);
       note_unread(text, key, model_);
     }

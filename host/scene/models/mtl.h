@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "scene/model.h"
+#include "scene/models/text.h"
 
 namespace sundog::models {
 
@@ -13,14 +14,15 @@ class MaterialLibrary {
  public:
   explicit MaterialLibrary(Model& model) : model_(model) {}
 
-  /// Reads the files that an mtllib statement names, beside `obj`. One that is missing leaves a warning.
-  /// Throws SceneError with the MTL file's line.
-  void load(const std::filesystem::path& obj, std::string_view names);
+  /// Reads the files that an mtllib statement names, beside `obj`. One that is missing, or that leaves the
+  /// folder of `obj` where that may not be, leaves a warning. Throws SceneError with the MTL file's line.
+  void load(const Source& obj, const TextReader& line, std::string_view names);
 
   /// The material's index; for an unknown name -1, and one warning that names all of these.
   int find(std::string_view name);
 
  private:
+  bool is_refused(const Source& obj, const TextReader& line, const std::filesystem::path& path);
   void read(const std::filesystem::path& path);
   void warn_undefined(std::string_view name);
 

@@ -34,13 +34,14 @@ class ObjReader {
  public:
   ObjReader(const Source& source, Model& model)
       : text_(source, {.hash_comments = true, .continuations = true}),
-        path_(source.path),
+        source_(source),
         model_(model),
         library_(model) {}
 
   void read() {
     while (text_.next_line()) read_statement(text_.word());
     if (positions_.empty()) text_.fail("no vertices: not an OBJ file");
+    settle_lost_normals();
   }
 
   // The mesh, its positions counted from origin().
@@ -49,7 +50,7 @@ class ObjReader {
     if (origin_ != dvec3(0))
       for (std::size_t i = 0; i < made_.size(); ++i)
         mesh_.positions[i] = glm::vec3(positions_[made_[i].position] - origin_);
-    mesh_.name = path_.stem().string();
+    mesh_.name = source_.path.stem().string();
     mesh_.source_vertex_count = positions_.size();
     if (!any_uv_) mesh_.uvs.clear();
     if (!any_color_) mesh_.colors.clear();
@@ -75,7 +76,7 @@ class ObjReader {
     } else if (key == "usemtl") {
       material_ = library_.find(text_.rest());
     } else if (key == "mtllib") {
-      library_.load(path_, text_.rest());
+      library_.load(source_, text_, text_.rest());
     } else {
       for (const auto& [word, feature] : unread_statements)
         if (key == word) leave_unread(model_, feature);
@@ -101,19 +102,38 @@ class ObjReader {
     newest_.push_back(none);
   }
 
+  // Indices of normals before the file has defined any.
+  struct Lost {
+    std::size_t count = 0;
+    std::string place, what;  // of the first
+  };
+
+  // Some programs number normals that they do not write.
+  void settle_lost_normals() {
+    if (lost_normals_.count == 0) return;
+    if (!normals_.empty()) fail(source_, lost_normals_.place, lost_normals_.what);
+    model_.warnings.push_back(
+        fmt::format("{}: faces name normals, but the file has none: they are made up", lost_normals_.place));
+  }
+
   // One index: 1 is the first, -1 the newest.
-  std::uint32_t resolve(std::string_view digits, std::size_t count, std::string_view what) const {
+  std::uint32_t resolve(std::string_view digits, std::size_t count, std::string_view what,
+                        Lost* lost = nullptr) {
     std::int64_t index = 0;
     const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
     const auto size = static_cast<std::int64_t>(count);
     if (code != std::errc() || end != digits.data() + digits.size())
       text_.fail(fmt::format("a face's {} index wanted, as in 1/2/3", what));
-    if (index == 0 || index > size || index < -size)
-      text_.fail(fmt::format("{} {} does not exist: {} are defined so far", what, index, count));
+    if (index == 0 || index > size || index < -size) {
+      const std::string why = fmt::format("{} {} does not exist: {} are defined so far", what, index, count);
+      if (!lost || count > 0 || index == 0) text_.fail(why);
+      if (lost->count++ == 0) *lost = {1, fmt::format("line {}", text_.line()), why};
+      return none;
+    }
     return static_cast<std::uint32_t>(index > 0 ? index - 1 : size + index);
   }
 
-  Corner read_corner(std::string_view word) const {
+  Corner read_corner(std::string_view word) {
     const std::size_t first = word.find('/');
     const std::size_t second = first == word.npos ? first : word.find('/', first + 1);
     Corner corner;
@@ -124,7 +144,7 @@ class ObjReader {
     }
     if (second != word.npos) {
       const std::string_view normal = word.substr(second + 1);
-      if (!normal.empty()) corner.normal = resolve(normal, normals_.size(), "normal");
+      if (!normal.empty()) corner.normal = resolve(normal, normals_.size(), "normal", &lost_normals_);
     }
     return corner;
   }
@@ -199,7 +219,7 @@ class ObjReader {
   }
 
   TextReader text_;
-  std::filesystem::path path_;
+  const Source& source_;
   Model& model_;
   MaterialLibrary library_;
   int material_ = -1;
@@ -213,6 +233,7 @@ class ObjReader {
   std::vector<std::uint32_t> points_;          // per mesh vertex: the first one of the same file vertex
   std::vector<bool> has_normal_;
   bool any_uv_ = false, any_color_ = false;
+  Lost lost_normals_;
   std::vector<Corner> corners_;  // of the face at hand
   std::vector<dvec3> outline_;
   std::vector<glm::vec3> places_;

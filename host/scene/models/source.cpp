@@ -6,11 +6,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 
 #include "base/error.h"
+#include "base/input.h"
 
 namespace sundog::models {
 namespace fs = std::filesystem;
@@ -25,21 +23,6 @@ std::string lower_extension(const fs::path& path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
-}
-
-std::string read_bytes(const fs::path& path) {
-  std::error_code status;
-  if (fs::is_directory(path, status)) throw SceneError(path.string(), "", "is a folder, not a model file");
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  const auto size = fs::file_size(path, status);
-  if (!in || status)
-    throw SceneError(path.string(), "",
-                     fmt::format("cannot be read: {}", in ? status.message() : std::strerror(errno)));
-  std::string bytes(size, '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(size));
-  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
-  return bytes;
 }
 
 class Inflater {
@@ -99,7 +82,7 @@ std::string model_extension(const fs::path& path) {
 }
 
 Source read_source(const fs::path& path) {
-  Source source{path, read_bytes(path)};
+  Source source{path, read_input(path, most_bytes)};
   if (lower_extension(path) == ".gz") source.bytes = Inflater().unpack(source.bytes, path);
   return source;
 }

@@ -8,7 +8,8 @@ namespace sundog::models {
 
 struct Source {
   std::filesystem::path path;
-  std::string bytes;  // after gunzip
+  std::string bytes;           // after gunzip
+  bool outside_files = false;  // files that it names may lie outside its folder
 };
 
 /// The file's bytes; a name that ends in .gz is unpacked (zlib), within a bound. Throws SceneError.

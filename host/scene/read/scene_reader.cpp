@@ -8,6 +8,7 @@
 #include "scene/animate.h"
 #include "scene/bounds.h"
 #include "scene/formula/read.h"
+#include "scene/inside.h"
 #include "scene/json/parse.h"
 #include "scene/procedural/procedural.h"
 #include "scene/read/library.h"
@@ -85,11 +86,15 @@ class SceneReader {
   /// A model file named in the scene, by a path from the scene's own folder.
   fs::path find_model(const JsonValue& value) const {
     const fs::path file = scene_.file.parent_path() / value.text();
+    if (file != scene_.file && !root_.context().outside_files && leads_outside(scene_.file, file))
+      value.fail(fmt::format("\"{}\" leads out of the scene's folder: {}", value.text(), outside_hint));
     require_readable(file, scene_.file, value.pointer());
     if (!is_model_file(file))
       value.wanted("a model file (.gltf, .glb, .obj, .ply, .stl or .nff, each also .gz)");
     return file;
   }
+
+  ModelOptions model_options() const { return {.outside_files = root_.context().outside_files}; }
 
   ModelLibrary::Parts read_mesh(const JsonValue& value, const std::string& name) {
     static constexpr std::string_view sources[] = {"file", "generate"};
@@ -98,7 +103,7 @@ class SceneReader {
       const JsonValue from = *object.find(source);
       if (source == "file") {
         const fs::path file = find_model(from);
-        ModelOptions options;
+        ModelOptions options = model_options();
         if (const auto angle = object.find("crease_angle"))
           options.crease_angle = angle->number({.low = 0, .high = 180});
         return library_.load(file, options);
@@ -139,7 +144,9 @@ class SceneReader {
         const JsonValue name = object.at("mesh", "the name of a mesh");
         library_.place(find_mesh(name), placement);
       } else if (type == "model") {
-        library_.place(library_.load(find_model(object.at("file", "the path of a model file"))), placement);
+        library_.place(
+            library_.load(find_model(object.at("file", "the path of a model file")), model_options()),
+            placement);
       } else if (type == "field") {
         place_field(object, find_name(object.at("field", "the name of a field"), fields_, "field"),
                     placement);

@@ -1,0 +1,56 @@
+#include "base/cache_folder.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "base/file.h"
+
+namespace sundog {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Why a folder is not the user's own; empty where it is, and where there is none.
+std::string refusal(const fs::path& folder) {
+  struct stat found {};
+  if (::stat(folder.c_str(), &found) != 0) return "";
+  if (!S_ISDIR(found.st_mode)) return fmt::format("{} is not a folder", folder.string());
+  if (found.st_uid != ::geteuid())
+    return fmt::format("{} belongs to another user: name a folder of your own by XDG_CACHE_HOME",
+                       folder.string());
+  if (found.st_mode & (S_IWGRP | S_IWOTH))
+    return fmt::format("others may write to {}: remove it, and sundog makes a new one for you alone",
+                       folder.string());
+  return "";
+}
+
+}  // namespace
+
+std::string cache_refusal() {
+  const fs::path cache = cache_directory();
+  if (cache.empty()) return "";
+  for (const fs::path& folder : {cache, cache / "kernels", cache / "tuning", cache / "pocl"})
+    if (const std::string why = refusal(folder); !why.empty()) return "the cache is not used: " + why;
+  return "";
+}
+
+fs::path cache_folder(const std::string& name) {
+  const fs::path cache = cache_directory();
+  return cache.empty() || !cache_refusal().empty() ? fs::path() : cache / name;
+}
+
+void make_cache_folder(const fs::path& folder) {
+  const fs::path own = folder.parent_path();
+  std::error_code failed;
+  fs::create_directories(own.parent_path(), failed);
+  for (const fs::path& made : {own, folder})
+    if (!failed && ::mkdir(made.c_str(), 0700) != 0 && errno != EEXIST)
+      failed = std::error_code(errno, std::generic_category());
+  if (!failed && !fs::is_directory(folder, failed) && !failed)
+    failed = std::make_error_code(std::errc::not_a_directory);
+  if (failed) throw IoError(fmt::format("{}: cannot be made: {}", folder.string(), failed.message()));
+}
+
+}  // namespace sundog

@@ -1,0 +1,18 @@
+#include "scene/inside.h"
+
+#include <algorithm>
+
+namespace sundog {
+namespace fs = std::filesystem;
+
+bool leads_outside(const fs::path& file, const fs::path& named) {
+  if (named.native().find('\0') != std::string::npos) return true;
+  std::error_code failed;
+  const fs::path folder = fs::canonical(file.has_parent_path() ? file.parent_path() : fs::path("."), failed);
+  if (failed) return true;
+  const fs::path whole = fs::weakly_canonical(named, failed);
+  if (failed) return true;
+  return std::mismatch(folder.begin(), folder.end(), whole.begin(), whole.end()).first != folder.end();
+}
+
+}  // namespace sundog
