@@ -20,7 +20,7 @@ int merge_command(const MergeCommand& command) {
   remove_left_over(command.out);
   const PartFile whole = merge_parts({command.parts.begin(), command.parts.end()});
   check_image_path(format_name(command), !whole.aovs.empty());
-  const Image image = whole.film.develop();
+  const Image image = whole.film.develop(image_channels(format_name(command)));
   AovImages aovs;
   for (const std::string& name : whole.aovs) aovs[name] = whole.film.develop_aov(name);
   save_image({image, aovs, whole.film, whole.key, {}, command.full_floats, command.format}, command.out);

@@ -22,6 +22,7 @@
 #include "app/save_image.h"
 #include "app/stats.h"
 #include "app/warnings.h"
+#include "base/cache_folder.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -70,7 +71,8 @@ void check_frames(const RenderCommand& command) {
 /// An error at a place that an option changed is the command line's.
 SceneDescription load(const RenderCommand& command) {
   try {
-    return load_scene(command.scene, command.overrides, {command.frame, command.native_code});
+    return load_scene(command.scene, command.overrides,
+                      {command.frame, command.native_code, command.outside_files});
   } catch (const SceneError& error) {
     if (error.file == scene_file_name(command.scene))
       for (const std::string& setting : command.overrides)
@@ -86,6 +88,7 @@ RenderOptions render_options(const RenderCommand& command) {
   if (command.part) options.part = *command.part;
   options.tile = command.tile;
   options.aovs = command.aovs;
+  options.channels = command.part ? 0 : image_channels(format_name(command));
   options.resume = command.resume;
   if (const char* seconds = std::getenv("SUNDOG_CHECKPOINT_EVERY"))
     options.checkpoint_seconds = std::max(0.0, std::strtod(seconds, nullptr));
@@ -124,6 +127,8 @@ LoadedScene load_and_compile(const RenderCommand& command, TimeLedger& times) {
   scene.description = timed(times.load, [&] { return load(command); });
   scene.flat = timed(times.compile_scene,
                      [&] { return std::make_shared<const CompiledScene>(compile(scene.description)); });
+  check_frame_memory(static_cast<int>(scene.flat->info.width), static_cast<int>(scene.flat->info.height),
+                     frame_output(command));
   return scene;
 }
 
@@ -225,6 +230,7 @@ int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox*
     scene = load_and_compile(command, times);
     print_warnings(scene->description.warnings);
   }
+  if (const std::string why = cache_refusal(); !why.empty()) print_warnings({{why}});
   setup.devices = choose_devices(command, job);
   if (scene) return render_one(command, *scene, setup, clock, times);
   setup.pool = std::make_shared<DevicePool>();

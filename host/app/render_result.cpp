@@ -10,6 +10,8 @@
 #include <map>
 
 #include "app/commands.h"
+#include "app/job.h"
+#include "app/output_files.h"
 #include "app/save_image.h"
 #include "app/warnings.h"
 #include "base/error.h"
@@ -58,12 +60,20 @@ void summarise(const RenderCommand& command, const RenderResult& result, const T
   const double rays = static_cast<double>(ray_count(result.counts));
   const double seconds = times.render.render + times.render.readback;
   fmt::print("{}: {}x{}, {:.4g} Mrays in {:.2f} s ({:.3g} Mrays/s), {:.2f} s in all\n", command.out,
-             result.image.width, result.image.height, rays / 1e6, seconds,
+             result.film.width, result.film.height, rays / 1e6, seconds,
              seconds > 0 ? rays / 1e6 / seconds : 0, times.total);
-  if (command.verbose) fmt::print("{}", details_text(result, times));
+  if (!command.verbose) return;
+  const double pixels = static_cast<double>(result.film.done.size());
+  const std::uint64_t each = bytes_a_pixel(frame_output(command));
+  fmt::print("{}  {:<22} {:10.1f} MiB, {} bytes a pixel\n", details_text(result, times),
+             "memory of the frame", pixels * static_cast<double>(each) / (1 << 20), each);
 }
 
 }  // namespace
+
+FrameOutput frame_output(const RenderCommand& command) {
+  return {format_name(command), command.aovs, !command.resume.empty() || job_rank() >= 0, command.tile};
+}
 
 void save_result(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result,
                  const std::string& checkpoint) {

@@ -2,12 +2,16 @@
 #pragma once
 #include <string>
 
+#include "app/frame_memory.h"
 #include "app/options.h"
 #include "app/stats.h"
 #include "compile/compiled_scene.h"
 #include "render/render.h"
 
 namespace sundog {
+
+/// What the command's frame takes memory for.
+FrameOutput frame_output(const RenderCommand& command);
 
 /// Writes the image, whole or in part, and takes the checkpoint of a whole one away: not before it is safe.
 void save_result(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result,

@@ -11,22 +11,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Coverage is kept where programs expect it; a PNG with it would show the background as holes.
-Image without_alpha(const Image& image) {
-  Image opaque(image.width, image.height, 3);
-  for (std::size_t i = 0; i < opaque.data.size(); ++i) opaque.data[i] = image.data[i / 3 * 4 + i % 3];
-  return opaque;
-}
-
 /// The path, whose extension is the format.
 fs::path named(const Picture& picture, const fs::path& path) {
   return is_standard_stream(path) ? fs::path("picture." + picture.format) : path;
 }
 
 void write(const Picture& picture, const fs::path& path) {
-  const fs::path name = named(picture, path);
-  write_output(path, encode_image(drops_alpha(name) ? without_alpha(picture.image) : picture.image, name,
-                                  picture.aovs, picture.full_floats ? ExrColor::full : ExrColor::half));
+  write_output(path, encode_image(picture.image, named(picture, path), picture.aovs,
+                                  picture.full_floats ? ExrColor::full : ExrColor::half));
 }
 
 bool keep_checkpoint(const Picture& picture) {

@@ -12,7 +12,7 @@ namespace sundog {
 
 /// What is to be saved: a developed frame and what it was developed from.
 struct Picture {
-  const Image& image;  // linear RGBA
+  const Image& image;  // linear, of image_channels() of the file
   const AovImages& aovs;
   const Film& film;
   std::uint64_t key = 0;             // of the scene, for a checkpoint
@@ -23,6 +23,9 @@ struct Picture {
 
 /// True where a program would show an alpha channel of coverage as holes.
 bool drops_alpha(const std::filesystem::path& path);
+
+/// The channels that a file of this name keeps: 3, or 4 with coverage.
+inline int image_channels(const std::filesystem::path& path) { return drops_alpha(path) ? 3 : 4; }
 
 /// Writes `path`; "-" is the standard output. When that fails the frame is kept as a checkpoint, or as an
 /// image in the folder for temporary files: IoError says what happened and where it is.

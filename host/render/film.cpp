@@ -54,15 +54,15 @@ std::uint64_t Film::put(const Tile& tile, std::span<const float4> tile_sums,
   return fresh;
 }
 
-Image Film::develop() const {
-  Image image(width, height, 4);
+Image Film::develop(int channels) const {
+  Image image(width, height, channels);
   for (std::size_t i = 0; i < sums.size(); ++i) {
     if (!done[i] || !(weights[i] > 0)) continue;
-    float* pixel = image.data.data() + 4 * i;
+    float* pixel = image.data.data() + static_cast<std::size_t>(channels) * i;
     pixel[0] = sums[i].x / weights[i];
     pixel[1] = sums[i].y / weights[i];
     pixel[2] = sums[i].z / weights[i];
-    pixel[3] = sums[i].w / weights[i];
+    if (channels == 4) pixel[3] = sums[i].w / weights[i];
   }
   return image;
 }

@@ -33,8 +33,8 @@ struct Film {
   /// times, or empty). Returns how many of them were not done before.
   std::uint64_t put(const Tile& tile, std::span<const float4> tile_sums, std::span<const float> tile_weights,
                     std::span<const float4> tile_aovs);
-  /// The mean of the samples; alpha is coverage; pixels that are not done are 0.
-  Image develop() const;
+  /// The mean of the samples; alpha, if there are 4 channels, is coverage; pixels that are not done are 0.
+  Image develop(int channels = 4) const;
   /// The named AOV (one of aov_names()); pixels that are not done are 0.
   Image develop_aov(const std::string& name) const;
 };

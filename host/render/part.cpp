@@ -116,7 +116,8 @@ PartFile merge_parts(const std::vector<std::filesystem::path>& paths) {
   for (const std::filesystem::path& path : paths) {
     PartFile file = read_part(path);
     if (found.empty()) {
-      whole = file;
+      static_cast<PartHeader&>(whole) = file;
+      whole.film = Film(file.film.width, file.film.height, !file.aovs.empty());
     } else if (const std::string why = difference(whole, file); !why.empty()) {
       throw SceneError(path.string(), "",
                        fmt::format("does not belong to {}: it is {}", found.begin()->second, why));

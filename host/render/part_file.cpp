@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/input.h"
 #include "base/limits.h"
+#include "base/memory.h"
 #include "render/hash.h"
 #include "render/part.h"
 #include "render/render.h"
@@ -86,6 +87,20 @@ std::optional<PartFile> read_header(const json& head) {
   return file;
 }
 
+/// A frame of few pixels done is small as a file.
+void check_memory(const std::filesystem::path& path, const PartFile& file) {
+  const auto pixels =
+      static_cast<std::uint64_t>(file.film.width) * static_cast<std::uint64_t>(file.film.height);
+  const std::uint64_t wanted = pixels * (file.aovs.empty() ? 21 : 69),
+                      there = available_memory().value_or(wanted);
+  if (wanted > there)
+    throw SceneError(
+        path.string(), "",
+        fmt::format("its frame of {}x{} pixels takes {:.1f} GiB of memory, and {:.1f} GiB are available",
+                    file.film.width, file.film.height, static_cast<double>(wanted) / (1 << 30),
+                    static_cast<double>(there) / (1 << 30)));
+}
+
 /// The film after the header, of a file whose checksum is right. Memory is taken for no more pixels than the
 /// file has flags for.
 bool read_film(const std::string& bytes, std::size_t at, bool with_aovs, Film& film) {
@@ -115,7 +130,7 @@ void write_part(const std::filesystem::path& path, const PartHeader& header, con
 }
 
 PartFile read_part(const std::filesystem::path& path) {
-  std::string bytes = read_input(path);
+  std::string bytes = read_input(path, most_frame_bytes);
   const auto refuse = [&](const char* why) { return SceneError(path.string(), "", why); };
   if (!bytes.starts_with('{') || bytes.find(format_name) == std::string::npos)
     throw refuse("is no part of a frame: `sundog render --tiles` writes them");
@@ -131,6 +146,7 @@ PartFile read_part(const std::filesystem::path& path) {
   } catch (const json::exception&) {
     throw refuse(damaged.c_str());
   }
+  if (file) check_memory(path, *file);
   if (!file || !read_film(bytes, line + 1, !file->aovs.empty(), file->film)) throw refuse(damaged.c_str());
   return std::move(*file);
 }

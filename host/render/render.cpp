@@ -147,8 +147,10 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   keep_checkpoint(frame.options, result);
   result.efficiency = frame_efficiency(frame);
   result.counts = frame.counts;
-  result.image = result.film.develop();
-  for (const std::string& name : frame.options.aovs) result.aovs[name] = result.film.develop_aov(name);
+  if (frame.options.channels > 0) {
+    result.image = result.film.develop(frame.options.channels);
+    for (const std::string& name : frame.options.aovs) result.aovs[name] = result.film.develop_aov(name);
+  }
   result.times = frame.times;
   result.times.readback = frame.readback;
   result.times.render = std::max(

@@ -38,8 +38,9 @@ struct RenderOptions {
   std::function<Tuning(const DeviceInfo&)> tuning;  // of each device; empty: the defaults
   int tile = 0;  // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
   Split split;
-  PartOfFrame part;                  // what to render of the frame
-  std::vector<std::string> aovs;     // of aov_names()
+  PartOfFrame part;               // what to render of the frame
+  std::vector<std::string> aovs;  // of aov_names()
+  int channels = 4;  // of the result's image; 3: without coverage; 0: neither it nor AOVs are made
   std::filesystem::path resume;      // a checkpoint: read when it exists
   std::filesystem::path checkpoint;  // written on interrupt and on the way, and removed by the caller; empty:
                                      // that is `resume`

@@ -1,0 +1,23 @@
+// The memory that a frame takes in the process that has it: its film, and what is made of it.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace sundog {
+
+/// What a frame is rendered to.
+struct FrameOutput {
+  std::string file;  // its extension says what is encoded; ".part": a part of the frame
+  std::vector<std::string> aovs;
+  bool checkpoints = false;  // written on the way
+  int tile = 0;              // edge of the tiles; 0: they are small beside the frame
+};
+
+/// Bytes a pixel where most is taken: while a checkpoint is written, or the image.
+std::uint64_t bytes_a_pixel(const FrameOutput& output);
+
+/// Throws std::runtime_error with the figures when a frame of that size takes more than there is.
+void check_frame_memory(int width, int height, const FrameOutput& output);
+
+}  // namespace sundog
