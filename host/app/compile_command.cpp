@@ -13,8 +13,8 @@ namespace sundog {
 int compile_command(int argc, const char* const* argv) {
   if (argc != 3 || ::isatty(STDOUT_FILENO))
     throw UsageError("compile is not a command for people: sundog starts it");
-  // Ctrl-C and a hang-up go to all of a terminal's processes; the one that started this decides. What it may leave behind
-  // when it ends at once is of no use to anyone.
+  // Ctrl-C and a hang-up go to all of a terminal's processes; the one that started this decides. What it may
+  // leave behind when it ends at once is of no use to anyone.
   hold_back({SIGINT, SIGHUP});
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   serve_compile(argv[2], STDIN_FILENO, STDOUT_FILENO);
