@@ -12,9 +12,9 @@ needed=(g++ cmake ninja-build ocl-icd-opencl-dev opencl-clhpp-headers pocl-openc
 # The tests compare with these where they are; Open MPI is what `mpirun sundog` needs.
 peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin)
 
-# Seconds that one core takes to build everything with an empty compiler cache (docs/building.md).
-program_work=290
-tests_work=780
+# Seconds of one core that a build takes with an empty compiler cache, in round figures.
+program_work=370
+tests_work=800
 
 say() { echo "sundog: $*" >&2; }
 
