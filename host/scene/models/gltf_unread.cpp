@@ -2,6 +2,7 @@
 #include "scene/models/gltf_unread.h"
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
