@@ -73,8 +73,8 @@ TEST_CASE("a terminal that is closed in the middle of a render costs nothing tha
 TEST_CASE("under nohup a closed terminal does not end a render") {
   const CliFolder folder;
   const CommandResult result = run_command({"sh", "-c",
-                                            "trap '' HUP; " $0 " render " $1 " -o " $2
-                                            " --samples 64 & kill -HUP $!; sleep 0.2; kill -HUP $!; wait $!",
+                                            R"(trap '' HUP; "$0" render "$1" -o "$2" --samples 64 &)"
+                                            " kill -HUP $!; sleep 0.2; kill -HUP $!; wait $!",
                                             SUNDOG_BINARY, folder.scene, folder.file("a.png")});
   CAPTURE(result.err);
   CHECK(result.status == 0);

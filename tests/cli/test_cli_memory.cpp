@@ -2,8 +2,6 @@
 #include "catch.h"
 #include "cli_scene.h"
 
-using namespace sundog;
-
 namespace {
 
 /// With no more address space than so many KiB.
