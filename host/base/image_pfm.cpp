@@ -70,6 +70,8 @@ void check_length(const Header& header, std::size_t size) {
 std::string encode_pfm(const Image& image) {
   static_assert(std::endian::native == std::endian::little);
   std::string bytes = fmt::format("PF\n{} {}\n-1.0\n", image.width, image.height);
+  const std::size_t pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  bytes.reserve(bytes.size() + 3 * sizeof(float) * pixels);
   for (int y = image.height - 1; y >= 0; --y)
     for (int x = 0; x < image.width; ++x)
       bytes.append(reinterpret_cast<const char*>(image.pixel(x, y)), 3 * sizeof(float));
