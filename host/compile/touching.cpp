@@ -163,6 +163,8 @@ bool leans_on(const Body& solid, const dvec3& normal, double at, double toleranc
 
 bool face_on_solid(const Body& a, const Body& solid, double tolerance) {
   if (solid.plane) return false;  // its own face is looked at
+  // A ball on a floor touches it in a point, which is not worth a look at each hit.
+  if (solid.unit.shape == SHAPE_SPHERE) return false;
   return std::any_of(a.faces.begin(), a.faces.end(), [&](const Face& face) {
     return overlap(face.box, solid.box, tolerance) && leans_on(solid, face.normal, face.at, tolerance);
   });

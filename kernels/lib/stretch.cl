@@ -30,6 +30,14 @@ static inline void note_hit(Stretch* stretch, const Hit* hit) {
 }
 
 #if HAS_SOLID
+// Whether the stretch may meet the ball around the instance, if it has one.
+static inline bool comes_near(__global const Instance* restrict instance, const Stretch* stretch) {
+  const float4 ball = instance->world_center;
+  const float3 p = stretch->o + stretch->from * stretch->d;
+  const float reach = ball.w + (stretch->box_to - stretch->from);
+  return ball.w == 0.0f || !(distance(p, ball.xyz) > reach + 1e-5f * (reach + length(p)));
+}
+
 static inline void note_solid(__global const Instance* restrict instances, u32 index, Stretch* stretch) {
   const REAL3 o = all3(stretch->o), d = all3(stretch->d);
   REAL from = (REAL)(stretch->from);
@@ -152,7 +160,8 @@ NEVER_INLINE void note_all(TRACE_PARAMETERS, Stretch* stretch) {
   const u32 first = 0;
 #endif
 #if HAS_SOLID
-  for (u32 i = first; i < info->instance_count; ++i) note_solid(instances, i, stretch);
+  for (u32 i = first; i < info->instance_count; ++i)
+    if (comes_near(instances + i, stretch)) note_solid(instances, i, stretch);
 #endif
 }
 #endif
