@@ -1,4 +1,4 @@
-// What people are told: on stderr, never on stdout.
+// Messages for people: on stderr, never on stdout.
 #pragma once
 #include <fmt/format.h>
 

@@ -236,8 +236,8 @@ std::vector<Placed> take_large_solids(std::vector<Placed>& bounded, const Bounds
   return taken;
 }
 
-void find_touching(const SceneDescription& scene, std::vector<Placed>& bounded, std::vector<Placed>& unbounded,
-                   const dvec3& origin, SceneFeatures& features) {
+void find_touching(const SceneDescription& scene, std::vector<Placed>& bounded,
+                   std::vector<Placed>& unbounded, const dvec3& origin, SceneFeatures& features) {
   std::vector<PlacedBody> bodies;
   for (std::vector<Placed>* list : {&bounded, &unbounded})
     for (Placed& placed : *list) bodies.push_back({&placed.instance, placed.box});

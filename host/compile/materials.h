@@ -11,7 +11,8 @@ namespace sundog {
 /// index, or NO_MATERIAL.
 u32 add_materials(const SceneDescription& scene, CompiledScene& out);
 
-/// Fills `out.lights`, whose positions count from `out.origin`, and `out.info.ambient`. Throws SceneError for a direction of length zero.
+/// Fills `out.lights`, whose positions count from `out.origin`, and `out.info.ambient`. Throws SceneError for
+/// a direction of length zero.
 void add_lights(const SceneDescription& scene, CompiledScene& out);
 
 /// The world's fog, into `out.info`.

@@ -1,4 +1,4 @@
-// What people are told of how devices are driven and chosen.
+// How devices are driven and chosen, in words for people.
 #pragma once
 #include <span>
 #include <string>

@@ -46,9 +46,9 @@ NEVER_INLINE void first_surfaces_item(TRACE_PARAMETERS, SHADE_PARAMETERS,
 }
 
 // Reads the scene; writes three float4 a pixel of the rectangle, through the pixel's centre: (normal, depth
-// along the view), (position in the world, object), (albedo, material). Where nothing is seen depth is infinite, object
-// and material are -1, the rest is 0; adds the pixels finished to counters. A work-item takes BATCH pixels in
-// a row.
+// along the view), (position in the world, object), (albedo, material). Where nothing is seen depth is
+// infinite, object and material are -1, the rest is 0; adds the pixels finished to counters. A work-item
+// takes BATCH pixels in a row.
 __kernel void first_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const u32* restrict camera_media,
                              __global float4* restrict aovs, __global u32* restrict counters, u32 x0, u32 y0,
                              u32 width, u32 pixel_count) {

@@ -60,7 +60,7 @@ TEST_CASE("a resumed animation renders only the frames that are not done, and th
   CHECK(!std::filesystem::exists(log));  // all are done
 }
 
-TEST_CASE("a damaged list of frames is set aside, and the animation goes on from its pictures") {
+TEST_CASE("a damaged list of frames is set aside, and the animation resumes from its pictures") {
   const CliFolder folder;
   const std::string damage =
       GENERATE("", "{", "[]", "\x01\x02", R"({"schema": 1})", R"({"frames": {}})",

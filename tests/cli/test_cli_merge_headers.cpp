@@ -84,7 +84,7 @@ TEST_CASE("a list of many missing parts is shortened") {
         std::string::npos);
 }
 
-TEST_CASE("parts that differ in long settings are told so in a short line") {
+TEST_CASE("parts that differ in long settings give a short message") {
   const CliFolder folder;
   json one = changed("parts", 2), other = changed("parts", 2);
   other["part"] = 2;

@@ -69,7 +69,7 @@ TEST_CASE("a mesh without a triangle is open at its three edges") {
   check(mesh, 3, 0, 0, 0);
 }
 
-TEST_CASE("a turned triangle is told from an opening") {
+TEST_CASE("a turned triangle is distinguished from an opening") {
   Mesh mesh = cube({0, 0, 0}, 1);
   std::swap(mesh.triangles[0].y, mesh.triangles[0].z);
   check(mesh, 0, 3, 0, 0);

@@ -137,7 +137,7 @@ TEST_CASE("an OBJ may name normals without having any, and its library a materia
   CHECK_THAT(model.warnings[0], ContainsSubstring("m.mtl: line 1: newmtl without a name"));
 }
 
-TEST_CASE("faces of one or two corners are told of in one warning with their number", "[models]") {
+TEST_CASE("faces of one or two corners give one warning with their number", "[models]") {
   const Model model = load_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1\nf 1 2\nf 1 2 3\n");
   REQUIRE(model.warnings.size() == 1);
   CHECK(model.warnings[0] == "2 faces of one or two corners are left out");

@@ -1,4 +1,4 @@
-// What of a model file is not read is reported in one warning.
+// One warning reports the parts of a model file that are not read.
 #include <scene/model.h>
 
 #include "catch.h"
