@@ -106,6 +106,40 @@ TEST_CASE(
   CHECK(contains(refused.err, "-o -: under mpirun"));
 }
 
+TEST_CASE("mpirun: --allow-outside-files holds for all ranks, and without it rank 0 alone refuses") {
+  const MpiFolder folder;
+  folder.write("out/m.obj", "v -2 -1 0\nv 2 -1 0\nv 0 2 0\nf 1 2 3\n");
+  json scene = json::parse(small_scene);
+  scene["objects"].push_back({{"type", "model"}, {"file", "../out/m.obj"}});
+  const std::string inner = folder.write("in/scene.json", scene.dump()).string();
+  const auto render = [&](const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> all = {"render",   inner,     "-o",      folder.file(out),
+                                    "--size",   "160x120", "--stats", folder.file("s.json"),
+                                    "--device", "0:0/1"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  REQUIRE(run_sundog(render("one.pfm", {"--allow-outside-files"}), folder.options).status == 0);
+  CHECK(read_file(folder / "one.pfm") != folder.plain);
+  using Words = std::vector<std::string>;
+  for (const Words& more : {Words{}, Words{"--isolate"}}) {  // a process more for each rank
+    Words allowed = {"--allow-outside-files", "--split", "1,1"};
+    allowed.insert(allowed.end(), more.begin(), more.end());
+    CAPTURE(more.size());
+    const CommandResult both = folder.mpirun(2, render("two.pfm", allowed));
+    CAPTURE(both.err);
+    CHECK(both.status == 0);
+    CHECK(both.err.empty());
+    CHECK((read_file(folder / "two.pfm") == read_file(folder / "one.pfm")));
+    CHECK(folder.stats()["devices"][1]["pixels"] == 160 * 120 / 2);
+  }
+  const CommandResult refused = folder.mpirun(2, render("three.pfm", {"--split", "1,1"}));
+  CAPTURE(refused.err);
+  CHECK(refused.status == 3);
+  REQUIRE(lines_of_sundog(refused.err).size() == 1);
+  CHECK(contains(lines_of_sundog(refused.err)[0], "leads out of the scene's folder"));
+}
+
 TEST_CASE("mpirun: without --device the ranks of a machine divide its processor, and take tiles by speed") {
   const MpiFolder folder;
   const CommandResult result = folder.mpirun(2, folder.arguments({"--tile", "16", "-v"}));
