@@ -19,12 +19,12 @@
 namespace sundog {
 namespace {
 
-/// Everything that may change what the compiler makes. PoCL reads the named variables when it compiles.
+/// Everything that may change what the compiler makes. PoCL and Intel's driver read the named variables.
 std::string program_key(const DeviceInfo& info, const std::string& options, const std::string& source) {
   std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n", info.platform_name, info.platform_version,
                                 info.name, info.driver, info.version, options);
-  for (const char* name :
-       {"POCL_EXTRA_BUILD_FLAGS", "POCL_WORK_GROUP_METHOD", "POCL_WORK_GROUP_SPECIALIZATION"}) {
+  for (const char* name : {"POCL_EXTRA_BUILD_FLAGS", "POCL_WORK_GROUP_METHOD",
+                           "POCL_WORK_GROUP_SPECIALIZATION", "CL_CONFIG_USE_VECTORIZER"}) {
     const char* value = std::getenv(name);
     key += fmt::format("{}={}\n", name, value ? value : "");
   }

@@ -93,6 +93,19 @@ TEST_CASE("drivers that fail, lie or have nothing are rows with their problem, a
                              ContainsSubstring("[the default]"));
 }
 
+TEST_CASE("Intel's driver is loaded with its vectorizer off, unless the user sets it") {
+  const TemporaryFolder vendors;
+  vendors.write("fake.icd", SUNDOG_FAKE_DRIVER "\n");
+  const auto version = [&](const std::string& setting) {
+    const json list = device_list(setting + " OCL_ICD_VENDORS=" + vendors.path().string() + "/");
+    const auto rows = rows_of(list, "Fake empty");
+    REQUIRE(rows.size() == 1);
+    return rows[0].at("platform_version").get<std::string>();
+  };
+  CHECK(version("-u CL_CONFIG_USE_VECTORIZER") == "OpenCL 1.2 fake, vectorizer False");
+  CHECK(version("CL_CONFIG_USE_VECTORIZER=True") == "OpenCL 1.2 fake, vectorizer True");
+}
+
 TEST_CASE("where there is no platform the list says so, and a render ends with the mend") {
   const TemporaryFolder nothing;
   const std::string environment = "OCL_ICD_VENDORS=" + nothing.path().string() + "/";

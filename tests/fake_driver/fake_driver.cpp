@@ -7,7 +7,8 @@
 //   "Fake crashing"  a device that looks usable, and crashes in the first call that uses it
 // With the variable FAKE_DRIVER_ABORTS it ends the process when it is asked for its platforms, with
 // FAKE_DRIVER_NEVER_ENDS its exit handler never comes back, with FAKE_DRIVER_TAKES_SIGNALS
-// it answers Ctrl-C itself.
+// it answers Ctrl-C itself. Its version ends in the value of CL_CONFIG_USE_VECTORIZER as it was when the
+// driver was loaded.
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <CL/cl_icd.h>
@@ -18,6 +19,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 #include <string_view>
 
 struct _cl_platform_id {
@@ -50,6 +52,13 @@ _cl_platform_id platforms[] = {
     {&dispatch, "Fake crashing", CL_SUCCESS, {&crashing, nullptr}},
 };
 
+/// Intel's driver reads it when it is loaded.
+std::string version_with_vectorizer() {
+  const char* value = std::getenv("CL_CONFIG_USE_VECTORIZER");
+  return std::string("OpenCL 1.2 fake, vectorizer ") + (value ? value : "unset");
+}
+const std::string version = version_with_vectorizer();
+
 cl_int answer(const void* value, size_t bytes, size_t room, void* to, size_t* needed) {
   if (needed) *needed = bytes;
   if (to && room < bytes) return CL_INVALID_VALUE;
@@ -71,7 +80,7 @@ cl_int CL_API_CALL get_platforms(cl_uint room, cl_platform_id* list, cl_uint* co
 cl_int CL_API_CALL platform_info(cl_platform_id platform, cl_platform_info what, size_t room, void* to,
                                  size_t* needed) {
   if (what == CL_PLATFORM_NAME) return answer_text(platform->name, room, to, needed);
-  if (what == CL_PLATFORM_VERSION) return answer_text("OpenCL 1.2 fake", room, to, needed);
+  if (what == CL_PLATFORM_VERSION) return answer_text(version.c_str(), room, to, needed);
   if (what == CL_PLATFORM_EXTENSIONS) return answer_text("cl_khr_icd", room, to, needed);
   return answer_text("fake", room, to, needed);
 }
