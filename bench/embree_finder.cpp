@@ -114,15 +114,17 @@ EmbreeFinder::~EmbreeFinder() = default;
 bool EmbreeFinder::closest(const plain::Ray& ray, plain::Hit& hit) const {
   plain::Ray left = ray;  // t_max shrinks to the nearest hit
   const bool found = closest_in_solids(state_->solids, left, hit);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRayHit query;
-  set_ray(query.ray, left);
-  query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(state_->scene, &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return found;
-  hit = {query.ray.tfar,   query.hit.u,           query.hit.v,
-         query.hit.primID, state_->mesh_instance, {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}};
+  RTCRayHit met;
+  set_ray(met.ray, left);
+  met.hit.geomID = met.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  EmbreeQuery(false).intersect(state_->scene, met);
+  if (met.hit.geomID == RTC_INVALID_GEOMETRY_ID) return found;
+  hit = {met.ray.tfar,
+         met.hit.u,
+         met.hit.v,
+         met.hit.primID,
+         state_->mesh_instance,
+         {met.hit.Ng_x, met.hit.Ng_y, met.hit.Ng_z}};
   return true;
 }
 
@@ -130,12 +132,10 @@ bool EmbreeFinder::any(const plain::Ray& ray) const {
   plain::Ray left = ray;
   plain::Hit hit;
   if (closest_in_solids(state_->solids, left, hit)) return true;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRay query;
-  set_ray(query, ray);
-  rtcOccluded1(state_->scene, &context, &query);
-  return query.tfar < 0;
+  RTCRay shadow;
+  set_ray(shadow, ray);
+  EmbreeQuery(false).occluded(state_->scene, shadow);
+  return shadow.tfar < 0;
 }
 
 }  // namespace sundog

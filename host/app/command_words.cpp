@@ -44,8 +44,9 @@ const OptionWords* find_option(const CommandWords& command, const std::string& n
   return found == command.options.end() ? nullptr : &*found;
 }
 
-const OptionWords& option_named(const CommandWords& command, const std::string& name) {
-  if (const OptionWords* option = find_option(command, name)) return *option;
+/// Never null: throws when there is none.
+const OptionWords* option_named(const CommandWords& command, const std::string& name) {
+  if (const OptionWords* option = find_option(command, name)) return option;
   std::vector<std::string> known;
   for (const OptionWords& option : command.options)
     for (const std::string& each : option.names)
@@ -61,12 +62,12 @@ const OptionWords& option_named(const CommandWords& command, const std::string& 
 const OptionWords* option_without_value(const CommandWords& command, const std::string& word) {
   if (word.starts_with("--")) {
     const std::size_t equals = word.find('=');
-    const OptionWords& option = option_named(command, word.substr(0, equals));
-    return equals == word.npos && option.takes_value ? &option : nullptr;
+    const OptionWords* option = option_named(command, word.substr(0, equals));
+    return equals == word.npos && option->takes_value ? option : nullptr;
   }
   for (std::size_t i = 1; i < word.size(); ++i)
-    if (const OptionWords& option = option_named(command, fmt::format("-{}", word[i])); option.takes_value)
-      return i + 1 == word.size() ? &option : nullptr;
+    if (const OptionWords* option = option_named(command, fmt::format("-{}", word[i])); option->takes_value)
+      return i + 1 == word.size() ? option : nullptr;
   return nullptr;
 }
 

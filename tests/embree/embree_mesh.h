@@ -1,7 +1,6 @@
-// A triangle mesh as Embree 3 takes it.
+// A triangle mesh as Embree takes it.
 #pragma once
-#include <embree3/rtcore.h>
-
+#include "embree_query.h"
 #include "scene/description.h"
 
 namespace sundog {

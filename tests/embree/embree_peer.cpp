@@ -38,13 +38,6 @@ void in_chunks(std::size_t count, unsigned threads, const Work& work) {
   for (std::thread& other : others) other.join();
 }
 
-RTCIntersectContext make_context(bool coherent) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  return context;
-}
-
 void set_ray(RTCRay& to, const Ray& from) {
   to.org_x = from.ox, to.org_y = from.oy, to.org_z = from.oz, to.tnear = from.t_min;
   to.dir_x = from.dx, to.dir_y = from.dy, to.dir_z = from.dz, to.tfar = from.t_max;
@@ -166,24 +159,24 @@ double EmbreePeer::build_processor_seconds() const { return state_->processor_se
 void EmbreePeer::intersect(std::span<const Ray> rays, std::span<EmbreeHit> hits, unsigned threads,
                            EmbreeWidth width, bool coherent) const {
   const auto single = [&](std::size_t begin, std::size_t end) {
-    RTCIntersectContext context = make_context(coherent);
+    EmbreeQuery query(coherent);
     for (std::size_t i = begin; i < end; ++i) {
       RTCRayHit ray;
       set_ray(ray.ray, rays[i]);
       ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(state_->scene, &context, &ray);
+      query.intersect(state_->scene, ray);
       hits[i] = {ray.ray.tfar, ray.hit.u, ray.hit.v, NO_PRIM, NO_INSTANCE};
       state_->name(hits[i], ray.hit.geomID, ray.hit.primID, ray.hit.instID[0]);
     }
   };
   const auto packets = [&](std::size_t begin, std::size_t end) {
-    RTCIntersectContext context = make_context(coherent);
+    EmbreeQuery query(coherent);
     for (std::size_t i = begin; i < end; i += 16) {
       RTCRayHit16 packet;
       alignas(64) int valid[16];
       set_rays(packet.ray, rays.subspan(i, std::min<std::size_t>(16, end - i)), valid);
       for (int k = 0; k < 16; ++k) packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect16(valid, state_->scene, &context, &packet);
+      query.intersect(state_->scene, valid, packet);
       for (std::size_t k = 0; k < 16 && i + k < end; ++k) {
         hits[i + k] = {packet.ray.tfar[k], packet.hit.u[k], packet.hit.v[k], NO_PRIM, NO_INSTANCE};
         state_->name(hits[i + k], packet.hit.geomID[k], packet.hit.primID[k], packet.hit.instID[0][k]);
@@ -199,21 +192,21 @@ void EmbreePeer::intersect(std::span<const Ray> rays, std::span<EmbreeHit> hits,
 void EmbreePeer::occluded(std::span<const Ray> rays, std::span<u32> result, unsigned threads,
                           EmbreeWidth width, bool coherent) const {
   const auto single = [&](std::size_t begin, std::size_t end) {
-    RTCIntersectContext context = make_context(coherent);
+    EmbreeQuery query(coherent);
     for (std::size_t i = begin; i < end; ++i) {
       RTCRay ray;
       set_ray(ray, rays[i]);
-      rtcOccluded1(state_->scene, &context, &ray);
+      query.occluded(state_->scene, ray);
       result[i] = ray.tfar < 0;
     }
   };
   const auto packets = [&](std::size_t begin, std::size_t end) {
-    RTCIntersectContext context = make_context(coherent);
+    EmbreeQuery query(coherent);
     for (std::size_t i = begin; i < end; i += 16) {
       RTCRay16 packet;
       alignas(64) int valid[16];
       set_rays(packet, rays.subspan(i, std::min<std::size_t>(16, end - i)), valid);
-      rtcOccluded16(valid, state_->scene, &context, &packet);
+      query.occluded(state_->scene, valid, packet);
       for (std::size_t k = 0; k < 16 && i + k < end; ++k) result[i + k] = packet.tfar[k] < 0;
     }
   };

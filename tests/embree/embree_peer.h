@@ -1,4 +1,4 @@
-// A scene's meshes and balls under Embree 3, and its answers for given rays: what the tracer is held against,
+// A scene's meshes and balls under Embree, and its answers for given rays: what the tracer is held against,
 // for hits and for speed.
 #pragma once
 #include <memory>

@@ -1,10 +1,9 @@
-// The balls of a scene as Embree 3 takes them.
+// The balls of a scene as Embree takes them.
 #pragma once
-#include <embree3/rtcore.h>
-
 #include <optional>
 #include <vector>
 
+#include "embree_query.h"
 #include "scene/description.h"
 
 namespace sundog {
