@@ -9,10 +9,10 @@
 
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "base/spawn_self.h"
 
 namespace sundog {
 namespace {
@@ -44,13 +44,15 @@ bool read_lines(int stream, double seconds, const std::function<void(const std::
 }  // namespace
 
 ChildResult run_self(const std::vector<std::string>& arguments, const std::vector<std::string>& variables,
-                     double seconds, const std::function<void(const std::string&)>& on_line) {
+                     double seconds, const std::function<void(const std::string&)>& on_line,
+                     std::vector<HandedDown> descriptors) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw IoError(std::string("no pipe: ") + std::strerror(errno));
   ChildResult result;
   pid_t child = 0;
   try {
-    child = spawn_self(arguments, {{ends[1], STDOUT_FILENO}, {nowhere, STDERR_FILENO}}, variables);
+    descriptors.insert(descriptors.begin(), {{ends[1], STDOUT_FILENO}, {nowhere, STDERR_FILENO}});
+    child = spawn_self(arguments, std::move(descriptors), variables);
   } catch (...) {
     ::close(ends[0]);
     ::close(ends[1]);

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "base/spawn_self.h"
+
 namespace sundog {
 
 struct ChildResult {
@@ -13,9 +15,10 @@ struct ChildResult {
 };
 
 /// Runs this very program with `arguments`; `variables` ("NAME=VALUE") are added to its environment.
-/// `on_line` hears each line of its stdout; its stderr goes nowhere. Killed after `seconds`. Throws IoError
-/// when it cannot be started.
+/// `on_line` hears each line of its stdout; its stdin and stderr, unless they are among `descriptors`, are
+/// nowhere. Killed after `seconds`. Throws IoError when it cannot be started.
 ChildResult run_self(const std::vector<std::string>& arguments, const std::vector<std::string>& variables,
-                     double seconds, const std::function<void(const std::string&)>& on_line);
+                     double seconds, const std::function<void(const std::string&)>& on_line,
+                     std::vector<HandedDown> descriptors = {});
 
 }  // namespace sundog

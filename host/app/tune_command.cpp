@@ -2,24 +2,18 @@
 #include "app/tune_command.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/bench_options.h"
-#include "app/bench_progress.h"
 #include "app/commands.h"
 #include "app/option_helpers.h"
-#include "app/progress.h"
+#include "app/tune_devices.h"
 #include "base/cache_folder.h"
-#include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "bench/report.h"
-#include "bench/self_check.h"
-#include "bench/tuner.h"
 #include "render/tuning.h"
 #include "scene/json/parse.h"
 
@@ -28,94 +22,6 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-struct TuneOptions {
-  BenchOptions bench;  // scenes, devices, overrides
-  double budget = 60;
-  bool show = false, forget = false;
-  std::string export_to, import_from;
-};
-
-struct NamedScene {
-  std::string name;
-  CompiledScene scene;
-};
-
-/// Those of the command line, or two that are built in: solids alone, and with a mesh among them.
-std::vector<NamedScene> scenes_to_tune(const TuneOptions& options) {
-  std::vector<NamedScene> scenes;
-  for (const std::string& file : options.bench.scenes)
-    scenes.push_back({scene_name(file), bench_scene(file, options.bench)});
-  if (!scenes.empty()) return scenes;
-  SceneDescription built_in = self_check_scene();
-  built_in.image.width = 320;
-  built_in.image.height = 240;
-  scenes.push_back({"built-in meshes", compile(built_in)});
-  std::erase_if(built_in.objects,
-                [](const Object& object) { return std::holds_alternative<MeshShape>(object.shape); });
-  built_in.meshes.clear();
-  scenes.push_back({"built-in solids", compile(built_in)});
-  return scenes;
-}
-
-void print_outcome(const DeviceInfo& device, const TuneOutcome& outcome) {
-  const TuningEntry& entry = outcome.entry;
-  const bool faster = entry.tuned_ms < entry.default_ms;
-  fmt::print("{}, {} ({}), {}: {}\n", device.label(), entry.scene_class, entry.scene, entry.kernel,
-             tuning_text(entry.tuning));
-  fmt::print(
-      "  {} ms with the defaults, {} ms tuned: {}; {} tried, {} rejected{}\n", number_text(entry.default_ms),
-      number_text(entry.tuned_ms),
-      faster ? fmt::format("{:.1f} % less time", 100 * (1 - entry.tuned_ms / entry.default_ms)) : "no gain",
-      outcome.tried, outcome.rejected,
-      outcome.left_out > 0 ? fmt::format(", at least {} left out for lack of time", outcome.left_out) : "");
-}
-
-/// What there was no time to begin.
-void print_left_out(const DeviceInfo& device, const std::vector<std::string>& names) {
-  if (!names.empty())
-    fmt::print("{}: not tuned for lack of time: {} (a longer --budget)\n", device.label(),
-               fmt::join(names, ", "));
-}
-
-/// The scenes in turn; each may take its share of what is left of the budget.
-void tune_on(const DeviceInfo& device, const std::vector<NamedScene>& scenes, const TuneOptions& options) {
-  const Stopwatch clock;
-  TuneCosts costs;
-  std::vector<std::string> left_out;
-  BenchProgress progress(!options.bench.quiet, options.budget);
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
-    const NamedScene& named = scenes[i];
-    const double left = options.budget - clock.seconds();
-    if (i > 0 && left < costs.compile) {
-      left_out.push_back(named.name);
-      continue;
-    }
-    const auto on_step = [&](const std::string& step) {
-      const double done = options.budget > 0 ? clock.seconds() / options.budget : 1;
-      progress.update(fmt::format("{}, {}: {}", device.label(), named.name, step), done);
-    };
-    const auto outcomes = tune_device(device, named.scene, named.name,
-                                      left / static_cast<double>(scenes.size() - i), costs, on_step);
-    progress.erase();
-    for (const TuneOutcome& outcome : outcomes) {
-      print_outcome(device, outcome);
-      keep_tuning(device, outcome.entry);
-    }
-    if (outcomes.size() < 2) left_out.push_back(fmt::format("{} of {}", surfaces_kernel, named.name));
-  }
-  print_left_out(device, left_out);
-  const bool is_over = clock.seconds() > options.budget && costs.compile > 0.5 * options.budget;
-  fmt::print("{}: took {} of {}{}\n", device.label(), duration_text(clock.seconds()),
-             duration_text(options.budget),
-             is_over ? fmt::format("; one compilation alone took {}", duration_text(costs.compile)) : "");
-}
-
-int tune(const TuneOptions& options) {
-  const std::vector<NamedScene> scenes = scenes_to_tune(options);
-  for (const DeviceInfo& device : bench_devices(options.bench)) tune_on(device, scenes, options);
-  return exit_done;
-}
 
 std::vector<fs::path> kept_files() {
   std::vector<fs::path> files;
@@ -220,7 +126,7 @@ int run_tune(const TuneOptions& options) {
   if (options.show) return show();
   if (!options.import_from.empty()) return exit_done;
   if (const std::string why = cache_refusal(); !why.empty()) throw IoError(why);
-  return tune(options);
+  return options.worker.empty() ? tune_devices(options) : tune_one_device(options);
 }
 
 }  // namespace
@@ -236,6 +142,7 @@ void add_tune(Arguments& root, Command& chosen) {
   outside_files(app, options->bench.outside_files);
   app->add_option("--budget", options->budget, "seconds for a device, with compilation (default 60)")
       ->type_name("SECONDS");
+  app->add_option("--worker", options->worker)->hidden();
   app->add_flag("--show", options->show, "print the results that are kept");
   app->add_flag("--forget", options->forget, "remove the results of --device, or all");
   value(app, "--export", "FILE", options->export_to, "write all results to this file");

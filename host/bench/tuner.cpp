@@ -1,6 +1,8 @@
 // See tuner.h.
 #include "bench/tuner.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <set>
@@ -9,6 +11,7 @@
 #include "base/error.h"
 #include "bench/frame_runner.h"
 #include "bench/samples.h"
+#include "bench/smaller_scene.h"
 #include "bench/tune_search.h"
 #include "render/kernel_config.h"
 
@@ -20,6 +23,7 @@ using enum WorkGroup::Kind;
 constexpr int runs = 3, runs_at_the_end = 5;
 
 constexpr double budget_of_surfaces = 0.15;  // of the whole
+constexpr double frame_part = 1.0 / 200;     // of the whole, that a frame may take: a candidate takes eight
 
 /// The values to choose from, neighbours beside each other; index 0 of each is the default.
 struct Choices {
@@ -85,6 +89,7 @@ class Candidate {
     frames_->save_programs();
     start_seconds_ = clock.seconds();
   }
+  const Film& film() const { return frames_->film(); }
   /// Adds what its start took.
   void add_to(TuneCosts& costs) const {
     double& most = frames_->times().cached ? costs.open : costs.compile;
@@ -101,7 +106,6 @@ class Candidate {
     return spread(seconds).median;
   }
   std::size_t greatest_group() const { return frames_->greatest_group(); }
-  const Film& film() const { return frames_->film(); }
 
  private:
   std::string kernel_;
@@ -126,8 +130,6 @@ std::pair<double, double> duel(Candidate& a, Candidate& b, int count) {
   }
   return {spread(of_a).median, spread(of_b).median};
 }
-
-using OnStep = std::function<void(const std::string&)>;
 
 /// What is left of the time for a kernel, and what measuring a point will take of it.
 class TimeLeft {
@@ -163,9 +165,9 @@ class TimeLeft {
 };
 
 TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, const std::string& scene_name,
-                        Choices choices, double budget, TuneCosts& costs, const OnStep& on_step) {
+                        Choices choices, double budget, TuneCosts& costs, const TuneListener& listener) {
   TimeLeft time(budget, costs);
-  const auto tell = [&](const std::string& what) { on_step(choices.kernel + ": " + what); };
+  const auto tell = [&](const std::string& what) { listener.on_step(choices.kernel + ": " + what); };
   const auto program_of = [](const TunePoint& point) { return std::pair(point[1], point[2]); };
   tell("the defaults");
   TuneProblem problem;
@@ -207,24 +209,36 @@ TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, co
            1e3 * found.default_seconds, 1e3 * found.best_seconds},
           found.tried,
           found.rejected,
-          found.left_out};
+          found.left_out,
+          {}};
 }
 
 }  // namespace
 
-std::vector<TuneOutcome> tune_device(const DeviceInfo& device, const CompiledScene& scene,
-                                     const std::string& scene_name, double budget, TuneCosts& costs,
-                                     const OnStep& on_step) {
+bool tune_device(const DeviceInfo& device, const CompiledScene& scene, const std::string& scene_name,
+                 double budget, TuneCosts& costs, const TuneListener& listener) {
   const Stopwatch clock;
-  std::vector<TuneOutcome> outcomes{tune_kernel(device, scene, scene_name, choices_of_frame(device, scene),
-                                                (1 - budget_of_surfaces) * budget, costs, on_step)};
+  listener.on_step(fmt::format("{}: the first small frame", frame_kernel));
+  CompiledScene smaller = scene_in_time(scene, frame_part * budget, [&](const CompiledScene& small) {
+    Candidate candidate(device, small, {}, TunePoint(Choices().sizes().size(), 0));
+    candidate.add_to(costs);
+    return candidate.run();
+  });
+  const SceneInfo &whole = scene.info, &info = smaller.info;
+  const bool is_smaller = info.width < whole.width || info.samples < whole.samples;
+  const auto tune = [&](const Choices& choices, double seconds) {
+    TuneOutcome outcome = tune_kernel(device, smaller, scene_name, choices, seconds, costs, listener);
+    if (is_smaller)
+      outcome.frames = fmt::format("{}x{} pixels and {} sample{} a pixel", info.width, info.height,
+                                   info.samples, info.samples == 1 ? "" : "s");
+    listener.on_outcome(outcome);
+  };
+  tune(choices_of_frame(device, smaller), (1 - budget_of_surfaces) * budget - clock.seconds());
   const double left = budget - clock.seconds();
-  if (left < std::max(costs.compile, costs.open)) return outcomes;
-  CompiledScene one_sample = scene;  // the AOVs are made once, however many samples the image has
-  one_sample.info.samples = 1;
-  outcomes.push_back(
-      tune_kernel(device, one_sample, scene_name, choices_of_surfaces(device, scene), left, costs, on_step));
-  return outcomes;
+  if (left < std::max(costs.compile, costs.open)) return false;
+  smaller.info.samples = 1;  // the AOVs are made once, however many samples the image has
+  tune(choices_of_surfaces(device, smaller), left);
+  return true;
 }
 
 }  // namespace sundog

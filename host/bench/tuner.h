@@ -12,6 +12,7 @@ struct TuneOutcome {
   TuningEntry entry;  // of one kernel; the defaults, with equal times, where nothing was faster
   std::size_t tried = 0, rejected = 0;
   std::size_t left_out = 0;  // there was no time for them
+  std::string frames;        // what was drawn instead of whole frames: "200x150 pixels and 1 sample a pixel"
 };
 
 /// The most that has been measured on a device so far, in seconds; 0: nothing yet.
@@ -20,12 +21,18 @@ struct TuneCosts {
   double open = 0;     // ... with a program that was there
 };
 
+/// Hears what is tried, and what was found for each kernel as soon as it is known.
+struct TuneListener {
+  std::function<void(const std::string& step)> on_step;
+  std::function<void(const TuneOutcome& outcome)> on_outcome;
+};
+
 /// Searches for at most `budget` seconds, compilation included: most of it for the frame, the rest for the
-/// kernel of the AOVs. An outcome for each that there was time for: what is about to be compiled is taken to
-/// cost as much as the slowest so far. Throws DeviceError, BuildError when the defaults do not work.
-/// `on_step` hears what is tried.
-std::vector<TuneOutcome> tune_device(const DeviceInfo& device, const CompiledScene& scene,
-                                     const std::string& scene_name, double budget, TuneCosts& costs,
-                                     const std::function<void(const std::string&)>& on_step);
+/// kernel of the AOVs. Where a frame takes too large a part of the budget, smaller ones with fewer samples
+/// are drawn. What is about to be compiled is taken to cost as much as the slowest so far; a compilation or a
+/// launch that takes longer is waited for. Returns whether there was time for both kernels. Throws
+/// DeviceError, BuildError when the defaults do not work.
+bool tune_device(const DeviceInfo& device, const CompiledScene& scene, const std::string& scene_name,
+                 double budget, TuneCosts& costs, const TuneListener& listener);
 
 }  // namespace sundog

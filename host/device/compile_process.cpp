@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <signal.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -19,6 +18,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/faults.h"
+#include "base/memory_file.h"
 #include "base/spawn_self.h"
 #include "device/cl_status.h"
 #include "device/device.h"
@@ -36,23 +36,6 @@ std::atomic<bool>& allowed() {
 
 /// By name, as it is the habit of one driver that is got round here.
 bool reads_a_library(const DeviceInfo& device) { return is_pocl(device) && device.type == "cpu"; }
-
-/// A file in memory that holds `text`, read from its start; -1 where there can be none.
-int memory_file(const std::string& text) {
-  const int file = ::memfd_create("sundog", MFD_CLOEXEC);
-  std::size_t written = 0;
-  while (file >= 0 && written < text.size()) {
-    const ssize_t part =
-        ::pwrite(file, text.data() + written, text.size() - written, static_cast<off_t>(written));
-    if (part > 0) {
-      written += static_cast<std::size_t>(part);
-    } else if (part == 0 || errno != EINTR) {
-      ::close(file);
-      return -1;
-    }
-  }
-  return file;
-}
 
 std::string contents(int file) {
   struct stat size {};

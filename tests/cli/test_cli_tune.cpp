@@ -12,8 +12,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct TuneFolder : CliFolder {
-  CommandResult run(std::vector<std::string> arguments) const {
-    CommandOptions options;
+  CommandResult run(std::vector<std::string> arguments, CommandOptions options = {}) const {
     options.environment["XDG_CACHE_HOME"] = (*this / "cache").string();
     arguments.insert(arguments.begin(), "tune");
     return run_sundog(arguments, options);
@@ -32,11 +31,11 @@ struct TuneFolder : CliFolder {
 TEST_CASE("what tune finds is kept in one file a device, and a render with it gives the same bits") {
   const TuneFolder folder;
   REQUIRE(folder.render("before.exr").status == 0);
-  const CommandResult tuned = folder.run({folder.scene, "--device", "pthread", "--budget", "0.5"});
+  const CommandResult tuned = folder.run({folder.scene, "--device", "pthread", "--budget", "3"});
   CAPTURE(tuned.out, tuned.err);
   REQUIRE(tuned.status == 0);
   CHECK_THAT(tuned.out, ContainsSubstring("solids+rays (scene)") && ContainsSubstring("tried"));
-  CHECK_THAT(tuned.out, ContainsSubstring(": took ") && ContainsSubstring(" of 1 s"));
+  CHECK_THAT(tuned.out, ContainsSubstring(": took ") && ContainsSubstring(" of 3 s"));
   CHECK_THAT(folder.run({"--export", folder.file("kept.json")}).out, ContainsSubstring(" of 1 device\n"));
   json kept = json::parse(sundog::read_file(folder.file("kept.json")));
   REQUIRE(kept.size() == 1);
@@ -82,6 +81,37 @@ TEST_CASE("what tune finds is kept in one file a device, and a render with it gi
   folder.write("kept.json", kept.dump());
   CHECK_THAT(folder.run({"--import", folder.file("kept.json")}).out,
              ContainsSubstring("skipped: it was measured with other kernels"));
+}
+
+TEST_CASE("tune keeps its budget where one frame takes longer: it measures on smaller ones") {
+  const TuneFolder folder;
+  REQUIRE(folder.render("before.exr").status == 0);  // its kernels are in the cache then
+  CommandOptions options;
+  options.timeout = 60;  // a frame as it is takes minutes
+  const CommandResult tuned =
+      folder.run({folder.scene, "--device", "pthread", "--budget", "5", "--set", "/image/width=1600", "--set",
+                  "/image/height=1200", "--set", "/render/samples=4096"},
+                 options);
+  CAPTURE(tuned.out, tuned.err);
+  REQUIRE(tuned.status == 0);
+  CHECK_THAT(tuned.out, ContainsSubstring("frames of ") && ContainsSubstring(" and 1 sample a pixel"));
+  CHECK_THAT(folder.run({"--show"}).out, ContainsSubstring("render_whitted"));
+}
+
+TEST_CASE("tune ends a device that takes longer than its budget, and keeps what was found before") {
+  const TuneFolder folder;
+  CommandOptions options;
+  options.timeout = 60;
+  const std::vector<std::string> arguments{folder.scene, "--device", "pthread", "--budget", "2"};
+  options.environment["SUNDOG_FAULTS"] = "hang@0:0#1";
+  const CommandResult nothing = folder.run(arguments, options);
+  CAPTURE(nothing.out, nothing.err);
+  CHECK(nothing.status == 4);
+  CHECK(is_one_error_line(nothing.err));
+  CHECK_THAT(nothing.err, ContainsSubstring("was ended after 3 s") &&
+                              ContainsSubstring("(scene, render_whitted: the first small frame)") &&
+                              ContainsSubstring("--budget"));
+  CHECK_THAT(folder.run({"--show"}).out, ContainsSubstring("There are no results"));
 }
 
 TEST_CASE(
