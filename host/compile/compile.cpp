@@ -139,7 +139,7 @@ CompiledScene compile(const SceneDescription& scene) {
   out.tracer = scene.render.tracer;
   check_objects(scene);
   const std::vector<FieldView> views = views_of(scene);
-  out.origin = std::ranges::any_of(views, is_deep) ? scene.camera.position : local_origin(scene.camera);
+  out.origin = std::ranges::any_of(views, is_deep) ? scene.camera.position : local_origin(scene);
   set_camera(scene, out.origin, out.info);
   add_lights(scene, out);
   const u32 default_material = add_materials(scene, out);

@@ -1,12 +1,20 @@
 // See local_origin.h.
 #include "compile/local_origin.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 namespace sundog {
 namespace {
 
 constexpr double far_lengths = 2;
+constexpr std::size_t most_places = 64;
+constexpr int least_decimals = -6, most_decimals = 8;
+constexpr double rounding = 0x1p-50;  // of sums of a few doubles
 
 /// `value` to a multiple of `step`; 0 where that is no number.
 double rounded_to(double value, double step) {
@@ -19,14 +27,67 @@ double view_step(double length) {
   return length > 0 && std::isfinite(length) ? std::ldexp(1.0, std::ilogb(length)) : 0;
 }
 
+bool has_place(const LightDescription& light) {
+  return light.type == LightType::point || light.type == LightType::spot;
+}
+
+/// Where the first things of the scene lie along an axis: the camera, lights, objects.
+std::vector<double> places_along(const SceneDescription& scene, int axis) {
+  std::vector<double> places{scene.camera.target[axis], scene.camera.position[axis]};
+  for (const LightDescription& light : scene.lights)
+    if (places.size() < most_places && has_place(light)) places.push_back(light.position[axis]);
+  for (const Object& object : scene.objects)
+    if (places.size() < most_places) places.push_back(object.world_from_object[3][axis]);
+  return places;
+}
+
+/// Decimal places of a number that is known to `error`; below 0: zeros before the point, of a round one.
+int decimals(double value, double error) {
+  for (int count = least_decimals; count < most_decimals; ++count)
+    if (const double unit = std::pow(10.0, -count);
+        std::abs(value - std::round(value / unit) * unit) <= error)
+      return count;
+  return most_decimals;
+}
+
+/// How badly an origin suits places: the decimals that write it and them, how many are not at it, the
+/// target's distance. `least` decimals count for its own: a round number is no merit of a place.
+std::tuple<int, std::size_t, double> unfitness(double origin, double target,
+                                               const std::vector<double>& places, int least) {
+  int sum = std::max(least, decimals(origin, rounding * std::abs(origin)));
+  std::size_t others = 0;
+  double last = std::numeric_limits<double>::quiet_NaN();
+  for (const double place : places) {  // of those in one place, one
+    others += place != origin;
+    if (place != std::exchange(last, place))
+      sum += std::max(0, decimals(place - origin, rounding * std::max(std::abs(place), std::abs(origin))));
+  }
+  return {sum, others, std::abs(origin - target)};
+}
+
+/// `origin`, or that place near the target that suits the others better.
+double rounder_origin(double origin, double target, double reach, std::vector<double> places) {
+  std::ranges::sort(places);
+  auto best = unfitness(origin, target, places, least_decimals);
+  double last = origin;
+  for (const double place : places) {
+    if (std::abs(place - target) > reach || place == std::exchange(last, place)) continue;
+    const auto found = unfitness(place, target, places, 0);
+    if (found < best) std::tie(best, origin) = std::tie(found, place);
+  }
+  return origin;
+}
+
 }  // namespace
 
-dvec3 local_origin(const Camera& camera) {
+dvec3 local_origin(const SceneDescription& scene) {
+  const Camera& camera = scene.camera;
   const double length = glm::length(camera.target - camera.position), step = view_step(length) / 2;
   dvec3 origin(0);
   for (int axis = 0; axis < 3; ++axis)
     if (step > 0 && std::abs(camera.target[axis]) > far_lengths * length)
-      origin[axis] = rounded_to(camera.target[axis], step);
+      origin[axis] = rounder_origin(rounded_to(camera.target[axis], step), camera.target[axis],
+                                    far_lengths * length, places_along(scene, axis));
   return origin;
 }
 

@@ -6,9 +6,11 @@
 namespace sundog {
 
 /// The point of the world that the tables take for their origin. Along each axis it is 0 while the camera's
-/// target lies within two lengths of the view (position to target) of it, else the target to about
-/// half that length: a round number, so that a scene that is moved by one keeps its bits.
-dvec3 local_origin(const Camera& camera);
+/// target lies within two lengths of the view (position to target) of it. Else it is the target to about half
+/// that length, a round number, or that place of an object, light or the camera near the target from which
+/// these are counted in fewer decimals: most likely the scene's own origin before it was moved, so that the
+/// moved scene keeps its bits.
+dvec3 local_origin(const SceneDescription& scene);
 
 /// `offset` counted in whole multiples of `period` from which a pattern repeats, where it is far beside the
 /// view's length; else 0. A `period` of 0 stands for any.

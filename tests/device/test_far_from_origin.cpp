@@ -55,8 +55,8 @@ SceneDescription moved(SceneDescription scene, const dvec3& shift) {
 }
 
 /// Along an axis, along a diagonal, and anywhere.
-const dvec3 shifts[] = {{100, 0, 0},     {1e4, 0, 0},     {1e5, 0, 0},         {100, 100, 100},
-                        {1e4, 1e4, 1e4}, {1e5, 1e5, 1e5}, {98765.4, -4321, 77}};
+const dvec3 shifts[] = {{100, 0, 0},     {1e4, 0, 0},     {1e5, 0, 0},          {100, 100, 100},
+                        {1e4, 1e4, 1e4}, {1e5, 1e5, 1e5}, {98765.4, -4321, 77}, {12345.678, -321.7, 98.6}};
 
 constexpr double visible = 0.01;
 
