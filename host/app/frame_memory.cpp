@@ -10,6 +10,7 @@
 #include "base/memory.h"
 
 namespace sundog {
+namespace fs = std::filesystem;
 namespace {
 
 // Sums, weight, and whether it is done; three vectors of AOVs.
@@ -20,11 +21,19 @@ std::uint64_t aov_floats(const std::string& name) {
   return name == "normal" || name == "position" || name == "albedo" ? 3 : 1;
 }
 
-/// What an encoder has at once beside the image: rows as they are written, packed, and the file's bytes.
+/// What an encoder has at once beside the image: rows as they are written, packed, and the file's bytes,
+/// where the picture is noise that no compression makes smaller.
 std::uint64_t encoder_bytes(const std::string& file, std::uint64_t aovs) {
-  if (!drops_alpha(file)) return 2 * 4 + aovs;  // half floats; AOVs stay floats
-  return file.ends_with(".png") || file.ends_with(".PNG") ? 5 * 3 : 12;
+  const fs::path extension = fs::path(file).extension();
+  if (!drops_alpha(file)) return 2 * 2 * 4 + aovs;  // half floats; AOVs stay floats
+  if (extension == ".png" || extension == ".PNG") return 4 * 3;
+  if (extension == ".hdr" || extension == ".HDR") return 14;
+  return extension == ".pfm" || extension == ".PFM" ? 12 : 2 * 3;
 }
+
+// Tiles that are on their way, on the device and off it, and what the allocator keeps of them: measured where
+// frames are drawn so fast that tiles are large.
+constexpr std::uint64_t tile_bytes = 4;
 
 }  // namespace
 
@@ -35,7 +44,7 @@ std::uint64_t bytes_a_pixel(const FrameOutput& output) {
   const std::uint64_t image = drops_alpha(output.file) ? 12 : 16;
   const bool part = output.file.ends_with(".part");
   const std::uint64_t at_end = film + (part ? film : image + aovs + encoder_bytes(output.file, aovs));
-  return output.checkpoints ? std::max(3 * film, at_end) : at_end;
+  return tile_bytes + (output.checkpoints ? std::max(3 * film, at_end) : at_end);
 }
 
 void check_frame_memory(int width, int height, const FrameOutput& output) {

@@ -137,6 +137,17 @@ class Reader {
   int width_ = 0, height_ = 0;
 };
 
+/// Bytes that a file does not exceed: blocks that cannot be compressed are stored as they are.
+std::size_t greatest_size(const Imf::Header& header) {
+  std::size_t pixel = 0;
+  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
+    pixel += channel.channel().type == Imf::HALF ? 2 : 4;
+  const Imath::Box2i window = header.dataWindow();
+  const auto width = static_cast<std::size_t>(window.max.x) + 1,
+             height = static_cast<std::size_t>(window.max.y) + 1;
+  return width * height * pixel + 16 * height + (std::size_t{1} << 16);
+}
+
 }  // namespace
 
 std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color) {
@@ -160,6 +171,7 @@ std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color
     }
   }
   std::string bytes;
+  bytes.reserve(greatest_size(header));  // a string that grows takes twice as much
   MemoryOut out(bytes);
   {
     Imf::OutputFile file(out, header);

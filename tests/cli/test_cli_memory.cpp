@@ -19,7 +19,7 @@ TEST_CASE("a frame that does not fit into memory is refused with the figures, be
   CHECK(result.status == 1);
   CHECK(is_one_error_line(result.err));
   CHECK(
-      result.err.find("a frame of 16384x16384 pixels takes 11.2 GiB of memory (45 bytes a pixel), and 3.") !=
+      result.err.find("a frame of 16384x16384 pixels takes 14.2 GiB of memory (57 bytes a pixel), and 3.") !=
       std::string::npos);
   CHECK(result.err.find("GiB are available") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder / "a.exr"));
@@ -31,5 +31,5 @@ TEST_CASE("--verbose states the memory of the frame") {
       run_sundog({"render", folder.scene, "-o", folder.file("a.pfm"), "--size", "512x512", "--verbose"});
   REQUIRE(result.status == 0);
   CHECK(result.out.find("memory of the frame") != std::string::npos);
-  CHECK(result.out.find("11.2 MiB, 45 bytes a pixel") != std::string::npos);
+  CHECK(result.out.find("12.2 MiB, 49 bytes a pixel") != std::string::npos);
 }
