@@ -10,7 +10,8 @@ if [[ ! -e $stamp || -n $(find "${sources[@]}" -newer "$stamp" -print -quit) ]];
   "$root/cmake/prepare.sh" tests
 fi
 cd "$root"
-if [[ ! -e build/release/sundog_mpi.so ]]; then
-  echo "sundog: built without Open MPI (libopenmpi-dev, openmpi-bin): the tests of mpirun are left out" >&2
-fi
+left_out() { echo "sundog: no $1 here: the tests $2 are left out" >&2; }
+[[ -e build/release/sundog_mpi.so ]] || left_out "Open MPI (libopenmpi-dev, openmpi-bin)" "of mpirun"
+[[ -e build/release/embree_rays ]] || left_out "Embree (libembree-dev)" "that compare with it"
+command -v oclgrind >/dev/null || left_out "Oclgrind" "of memory accesses"
 exec ctest --preset release --parallel "$(nproc)" "$@"

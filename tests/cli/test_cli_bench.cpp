@@ -11,7 +11,7 @@ using nlohmann::json;
 TEST_CASE("bench threads times every size and count on sub-devices, more than there are cores too") {
   const CliFolder folder;
   const CommandResult result =
-      run_sundog({"bench", "threads", folder.scene, "--device", "pthread", "--size", "24,16", "--counts",
+      run_sundog({"bench", "threads", folder.scene, "--device", "portable", "--size", "24,16", "--counts",
                   "1,2,5", "--repeat", "2", "--json", folder.file("t.json"), "--csv", folder.file("t.csv"),
                   "--html", folder.file("t.html")});
   CAPTURE(result.out, result.err);
@@ -21,7 +21,7 @@ TEST_CASE("bench threads times every size and count on sub-devices, more than th
                              ContainsSubstring("5 threads [ms]"));
   const json report = json::parse(sundog::read_file(folder.file("t.json")));
   CHECK(report.at("bench") == "threads");
-  CHECK_THAT(report.at("facts").at("device").get<std::string>(), ContainsSubstring("pthread"));
+  CHECK_THAT(report.at("facts").at("device").get<std::string>(), ContainsSubstring("Portable Computing"));
   CHECK_THAT(report.at("facts").at("PoCL").get<std::string>(),
              ContainsSubstring("POCL_WORK_GROUP_SPECIALIZATION=0"));
   CHECK_FALSE(report.at("facts").at("revision").get<std::string>().empty());
@@ -60,7 +60,7 @@ TEST_CASE("bench threads refuses what it cannot measure") {
 TEST_CASE("bench threads goes on to further sizes after sub-devices were closed") {
   const CommandResult result = run_sundog(
       {"bench", "threads", SUNDOG_SOURCE_DIR "/scenes/hollow_ice.json", "--sizes", "8,12,16", "--counts",
-       "1,2", "--repeat", "1", "--no-plain", "--device", "pthread", "--set", "/render/samples=1"});
+       "1,2", "--repeat", "1", "--no-plain", "--device", "portable", "--set", "/render/samples=1"});
   CAPTURE(result.out, result.err);
   CHECK(result.status == 0);
 }
@@ -69,7 +69,7 @@ TEST_CASE(
     "bench workgroup times each kernel with every size that the device takes, and the driver's choice") {
   const CliFolder folder;
   const CommandResult result =
-      run_sundog({"bench", "workgroup", folder.scene, "--device", "pthread", "--size", "16", "--repeat", "1",
+      run_sundog({"bench", "workgroup", folder.scene, "--device", "portable", "--size", "16", "--repeat", "1",
                   "--json", folder.file("w.json"), "--html", folder.file("w.html"), "--quiet"});
   CAPTURE(result.err);
   REQUIRE(result.status == 0);
@@ -90,7 +90,7 @@ TEST_CASE(
 TEST_CASE("bench rays times every kind of ray and checks the hits") {
   const CliFolder folder;
   const CommandResult result =
-      run_sundog({"bench", "rays", SUNDOG_SOURCE_DIR "/scenes/spheres.json", "--device", "pthread", "--size",
+      run_sundog({"bench", "rays", SUNDOG_SOURCE_DIR "/scenes/spheres.json", "--device", "portable", "--size",
                   "32", "--repeat", "2", "--json", folder.file("r.json")});
   CAPTURE(result.out, result.err);
   REQUIRE(result.status == 0);
@@ -117,7 +117,7 @@ TEST_CASE("bench rays takes the kinds that are asked for") {
   const std::string scene = SUNDOG_SOURCE_DIR "/tests/support/mesh_and_solids.json";
   for (const char* tracer : {"wide", "compact"}) {
     const CommandResult result = run_sundog(
-        {"bench", "rays", scene, "--device", "pthread", "--size", "16", "--repeat", "1", "--kinds",
+        {"bench", "rays", scene, "--device", "portable", "--size", "16", "--repeat", "1", "--kinds",
          "glass,primary", "--set", std::string("/render/tracer=") + tracer, "--json", folder.file("k.json")});
     CAPTURE(result.out, result.err);
     REQUIRE(result.status == 0);
@@ -146,7 +146,7 @@ TEST_CASE("bench rays fails where a kernel tells wrong distances") {
   options.environment["SUNDOG_KERNEL_DIR"] = kernels.string();
   const CommandResult result =
       run_sundog({"bench", "rays", SUNDOG_SOURCE_DIR "/tests/support/mesh_and_solids.json", "--device",
-                  "pthread", "--size", "32", "--repeat", "1"},
+                  "portable", "--size", "32", "--repeat", "1"},
                  options);
   CAPTURE(result.out, result.err);
   CHECK(result.status == 4);
@@ -157,8 +157,9 @@ TEST_CASE("bench rays fails where a kernel tells wrong distances") {
 TEST_CASE("bench kernels tells limits of each kernel and tracer, and nothing where nobody tells") {
   const CliFolder folder;
   for (const std::string tracer : {"wide", "compact"}) {
-    const CommandResult result = run_sundog({"bench", "kernels", folder.scene, "--device", "pthread", "--set",
-                                             "/render/tracer=" + tracer, "--json", folder.file("k.json")});
+    const CommandResult result =
+        run_sundog({"bench", "kernels", folder.scene, "--device", "portable", "--set",
+                    "/render/tracer=" + tracer, "--json", folder.file("k.json")});
     CAPTURE(result.out, result.err);
     REQUIRE(result.status == 0);
     CHECK_THAT(result.out, ContainsSubstring(tracer + " tracer") && ContainsSubstring("occluded_rays"));
@@ -203,7 +204,7 @@ TEST_CASE("bench workgroup tries no group that a kernel's own limit forbids") {
 TEST_CASE("bench rays says that it leaves distance fields out, and times nothing where nothing else is") {
   const CliFolder folder;
   const CommandResult result = run_sundog({"bench", "rays", SUNDOG_SOURCE_DIR "/scenes/mandelbulb.json",
-                                           SUNDOG_SOURCE_DIR "/scenes/julia.json", "--device", "pthread",
+                                           SUNDOG_SOURCE_DIR "/scenes/julia.json", "--device", "portable",
                                            "--size", "16", "--repeat", "1", "--json", folder.file("r.json")});
   CAPTURE(result.out, result.err);
   REQUIRE(result.status == 0);
@@ -222,8 +223,8 @@ TEST_CASE("bench devices ranks devices and combinations, with shares that add up
   const CliFolder folder;
   CommandOptions options;
   options.environment["POCL_DEVICES"] = "basic pthread";
-  const CommandResult result = run_sundog({"bench", "devices", folder.scene, "--device", "basic", "--device",
-                                           "pthread", "--repeat", "1", "--json", folder.file("d.json")},
+  const CommandResult result = run_sundog({"bench", "devices", folder.scene, "--device", "0:0", "--device",
+                                           "0:1", "--repeat", "1", "--json", folder.file("d.json")},
                                           options);
   CAPTURE(result.out, result.err);
   REQUIRE(result.status == 0);
@@ -245,9 +246,9 @@ TEST_CASE("bench devices ranks devices and combinations, with shares that add up
 
 TEST_CASE("bench samples tells time and error by samples, and the error falls") {
   const CliFolder folder;
-  CommandResult result =
-      run_sundog({"bench", "samples", folder.scene, "--device", "pthread", "--counts", "8,1,2", "--reference",
-                  "64", "--repeat", "2", "--json", folder.file("t.json"), "--html", folder.file("t.html")});
+  CommandResult result = run_sundog({"bench", "samples", folder.scene, "--device", "portable", "--counts",
+                                     "8,1,2", "--reference", "64", "--repeat", "2", "--json",
+                                     folder.file("t.json"), "--html", folder.file("t.html")});
   CAPTURE(result.out, result.err);
   REQUIRE(result.status == 0);
   CHECK_THAT(result.out, ContainsSubstring("time and error by samples a pixel"));

@@ -31,7 +31,7 @@ TEST_CASE("gpu.sh leaves tables, figures and build logs of every part, and says 
   const TemporaryFolder folder;
   const std::string model = folder.write("ball.obj", octahedron).string();
   const CommandResult result =
-      gpu_script({"--device", "pthread", "--quick", (folder / "out").string(), model});
+      gpu_script({"--device", "portable", "--quick", (folder / "out").string(), model});
   CAPTURE(result.out, result.err);
   CHECK(result.status == 0);
   for (const char* part : {"ball-kernels-compact", "ball-kernels-wide", "ball-rays-compact", "ball-rays-wide",

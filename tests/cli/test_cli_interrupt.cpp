@@ -180,8 +180,8 @@ TEST_CASE("an interrupted render goes on from its checkpoint to the same image a
     command.insert(command.end(), end.begin(), end.end());
     return command;
   };
-  REQUIRE(run_sundog(render("whole.exr", "pthread")).status == 0);
-  std::vector<std::string> parts = render("parts.exr", "pthread/1");
+  REQUIRE(run_sundog(render("whole.exr", "portable")).status == 0);
+  std::vector<std::string> parts = render("parts.exr", "portable/1");
   parts.back() = "--resume";
   parts.push_back(folder.file("checkpoint"));
   CommandOptions options = on_terminal();

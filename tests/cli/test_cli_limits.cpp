@@ -44,7 +44,7 @@ TEST_CASE("the driver may choose a work-group of any size without overflowing a 
     CommandOptions options;
     options.environment["POCL_DEVICES"] = device;
     const CommandResult result =
-        run_sundog({"render", folder.scene, "-o", folder.file("a.pfm"), "--device", device, "--size",
+        run_sundog({"render", folder.scene, "-o", folder.file("a.pfm"), "--device", "portable", "--size",
                     "256x256", "--tile", "256", "--max-depth", "20", "--work-group", "driver", "--verbose",
                     "--stats", folder.file("s.json")},
                    options);

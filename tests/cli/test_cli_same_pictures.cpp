@@ -23,7 +23,7 @@ struct Builds : CliFolder {
                                      "--scenes",
                                      scene,
                                      "--devices",
-                                     "pthread"};
+                                     "portable"};
     command.insert(command.end(), more.begin(), more.end());
     command.insert(command.end(), {SUNDOG_BINARY, other});
     return run_command(command);

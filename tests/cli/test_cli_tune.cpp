@@ -20,7 +20,7 @@ struct TuneFolder : CliFolder {
   CommandResult render(const std::string& name) const {
     CommandOptions options;
     options.environment["XDG_CACHE_HOME"] = (*this / "cache").string();
-    return run_sundog({"render", scene, "-o", file(name), "--device", "pthread", "--stats", file("s.json"),
+    return run_sundog({"render", scene, "-o", file(name), "--device", "portable", "--stats", file("s.json"),
                        "--aov", "depth"},
                       options);
   }
@@ -31,7 +31,7 @@ struct TuneFolder : CliFolder {
 TEST_CASE("what tune finds is kept in one file a device, and a render with it gives the same bits") {
   const TuneFolder folder;
   REQUIRE(folder.render("before.exr").status == 0);
-  const CommandResult tuned = folder.run({folder.scene, "--device", "pthread", "--budget", "3"});
+  const CommandResult tuned = folder.run({folder.scene, "--device", "portable", "--budget", "3"});
   CAPTURE(tuned.out, tuned.err);
   REQUIRE(tuned.status == 0);
   CHECK_THAT(tuned.out, ContainsSubstring("solids+rays (scene)") && ContainsSubstring("tried"));
@@ -89,8 +89,8 @@ TEST_CASE("tune keeps its budget where one frame takes longer: it measures on sm
   CommandOptions options;
   options.timeout = 60;  // a frame as it is takes minutes
   const CommandResult tuned =
-      folder.run({folder.scene, "--device", "pthread", "--budget", "5", "--set", "/image/width=1600", "--set",
-                  "/image/height=1200", "--set", "/render/samples=4096"},
+      folder.run({folder.scene, "--device", "portable", "--budget", "5", "--set", "/image/width=1600",
+                  "--set", "/image/height=1200", "--set", "/render/samples=4096"},
                  options);
   CAPTURE(tuned.out, tuned.err);
   REQUIRE(tuned.status == 0);
@@ -102,7 +102,7 @@ TEST_CASE("tune ends a device that takes longer than its budget, and keeps what 
   const TuneFolder folder;
   CommandOptions options;
   options.timeout = 60;
-  const std::vector<std::string> arguments{folder.scene, "--device", "pthread", "--budget", "2"};
+  const std::vector<std::string> arguments{folder.scene, "--device", "portable", "--budget", "2"};
   options.environment["SUNDOG_FAULTS"] = "hang@0:0#1";
   const CommandResult nothing = folder.run(arguments, options);
   CAPTURE(nothing.out, nothing.err);

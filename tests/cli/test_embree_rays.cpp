@@ -20,7 +20,7 @@ std::string write_model(const TemporaryFolder& folder) {
 
 CommandResult run_embree_rays(const std::string& model, const CommandOptions& options = {}) {
   const std::string program = (fs::path(SUNDOG_BINARY).parent_path() / "embree_rays").string();
-  return run_command({program, model, "--size", "64", "--repeats", "1", "--device", "pthread"}, options);
+  return run_command({program, model, "--size", "64", "--repeats", "1", "--device", "portable"}, options);
 }
 
 }  // namespace
