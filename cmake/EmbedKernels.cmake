@@ -36,6 +36,7 @@ function(sundog_embed_kernels target)
     DEPENDS ${files} ${PROJECT_SOURCE_DIR}/cmake/EmbedKernels.cmake
     COMMENT "Embedding the kernels" VERBATIM)
   target_sources(${target} PRIVATE ${output})
+  set_source_files_properties(${output} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 if(CMAKE_SCRIPT_MODE_FILE)

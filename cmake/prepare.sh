@@ -81,7 +81,9 @@ if [[ $goal == tests ]]; then install_missing "${peers[@]}"; fi
 
 cd "$root"
 touch "$build/started"  # what changes during the build is built the next time
-cmake --preset release >"$build/configure.log" 2>&1 || { cat "$build/configure.log" >&2; exit 1; }
+first=()
+if [[ ! -e $build/CMakeCache.txt ]]; then first=(-DSUNDOG_UNITY=ON); fi  # a folder of a developer keeps its way
+cmake --preset release "${first[@]}" >"$build/configure.log" 2>&1 || { cat "$build/configure.log" >&2; exit 1; }
 if [[ $goal == tests ]]; then target=all; else target=sundog; fi
 if [[ ! -e $build/built-$goal ]]; then
   say "building for the first time: $(duration_of "$([[ $goal == tests ]] && echo "$tests_work" || echo "$program_work")")"

@@ -49,15 +49,16 @@ json check_json(const SelfCheck& check) {
 }
 
 /// A line at once: what follows may end the process.
-void say(const std::string& line) {
+void print_line(const std::string& line) {
   fmt::print("{}\n", line);
   std::fflush(stdout);
 }
 
 int work(const std::string& spec) {
   const DeviceInfo device = select_devices(enumerate_devices(), {spec}).front();
-  const SelfCheck check = check_device(device, [](const std::string& stage) { say("stage " + stage); });
-  say("result " + check_json(check).dump(-1, ' ', false, json::error_handler_t::replace));
+  const SelfCheck check =
+      check_device(device, [](const std::string& stage) { print_line("stage " + stage); });
+  print_line("result " + check_json(check).dump(-1, ' ', false, json::error_handler_t::replace));
   return exit_done;
 }
 

@@ -14,7 +14,7 @@
 namespace sundog {
 namespace {
 
-constexpr double seconds_between_drawings = 0.1;
+constexpr double seconds_between_bars = 0.1;
 
 }  // namespace
 
@@ -63,7 +63,7 @@ void ProgressBar::update(const RenderProgress& progress) {
   if (!started_) first_ = progress;
   started_ = true;
   const double now = clock_.seconds();
-  if (!shown_ || (last_drawn_ >= 0 && now - last_drawn_ < seconds_between_drawings)) return;
+  if (!shown_ || (last_drawn_ >= 0 && now - last_drawn_ < seconds_between_bars)) return;
   last_drawn_ = now;
   drawn_ = true;
   tell(fmt::format("\r{}\033[K", progress_line(progress, first_, terminal_columns())));

@@ -11,10 +11,10 @@
 namespace sundog {
 namespace {
 
-using Names = std::vector<std::string>;
+using ObjectNames = std::vector<std::string>;
 
 struct Suspects {
-  Names inside_out, turned, open, flat, all;
+  ObjectNames inside_out, turned, open, flat, all;
 };
 
 bool has_interior(const SceneDescription& scene, int material) {
@@ -43,7 +43,7 @@ std::string name_of(const SceneDescription& scene, const Object& object) {
   return fmt::format("object {}", &object - scene.objects.data());
 }
 
-void add_name(Names& names, const std::string& name) {
+void add_name(ObjectNames& names, const std::string& name) {
   if (std::ranges::find(names, name) == names.end()) names.push_back(name);
 }
 
@@ -71,7 +71,7 @@ Suspects find_suspects(const SceneDescription& scene) {
   return found;
 }
 
-std::string list(const Names& names) {
+std::string list(const ObjectNames& names) {
   constexpr std::size_t most = 4;
   const std::size_t shown = names.size() > most + 1 ? most : names.size();
   std::string text = names[0];
@@ -84,7 +84,7 @@ std::string list(const Names& names) {
 std::vector<std::string> explain_stray_exits(std::uint64_t count, const SceneDescription& scene) {
   const Suspects found = find_suspects(scene);
   std::vector<std::string> sentences;
-  const auto say = [&](const Names& names, const char* one, const char* several) {
+  const auto say = [&](const ObjectNames& names, const char* one, const char* several) {
     if (!names.empty())
       sentences.push_back(fmt::format("{} {}", list(names), names.size() > 1 ? several : one));
   };

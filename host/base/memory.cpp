@@ -13,21 +13,21 @@ namespace sundog {
 namespace fs = std::filesystem;
 namespace {
 
-using Bytes = std::optional<std::uint64_t>;
+using MaybeBytes = std::optional<std::uint64_t>;
 
-Bytes less(const Bytes& a, const Bytes& b) { return a && b ? std::min(a, b) : a ? a : b; }
+MaybeBytes less(const MaybeBytes& a, const MaybeBytes& b) { return a && b ? std::min(a, b) : a ? a : b; }
 
 std::uint64_t rest(std::uint64_t limit, std::uint64_t used) { return limit > used ? limit - used : 0; }
 
 /// The number that a file of one number holds; none for "max".
-Bytes number_in(const fs::path& file) {
+MaybeBytes number_in(const fs::path& file) {
   std::ifstream in(file);
   std::uint64_t value = 0;
-  return in >> value ? Bytes(value) : std::nullopt;
+  return in >> value ? MaybeBytes(value) : std::nullopt;
 }
 
 /// The number behind a name in a file of "name number" or "name: number" lines.
-Bytes number_of(const fs::path& file, std::string_view name) {
+MaybeBytes number_of(const fs::path& file, std::string_view name) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
     std::istringstream words(line);
@@ -47,16 +47,16 @@ struct Names {
 constexpr Names version_1{"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"};
 constexpr Names version_2{"memory.max", "memory.current", "inactive_file"};
 
-Bytes left_in(const fs::path& group, const Names& names) {
-  const Bytes limit = number_in(group / names.limit), used = number_in(group / names.used);
+MaybeBytes left_in(const fs::path& group, const Names& names) {
+  const MaybeBytes limit = number_in(group / names.limit), used = number_in(group / names.used);
   if (!limit || !used) return std::nullopt;
   const std::uint64_t files = number_of(group / "memory.stat", names.reclaimable).value_or(0);
   return rest(*limit, rest(*used, files));
 }
 
 /// The least of a group and the groups around it, up to where they are mounted.
-Bytes left_up_from(const fs::path& mount, const std::string& group, const Names& names) {
-  Bytes least = left_in(mount, names);
+MaybeBytes left_up_from(const fs::path& mount, const std::string& group, const Names& names) {
+  MaybeBytes least = left_in(mount, names);
   fs::path at = mount;
   for (const fs::path& part : fs::path(group).relative_path()) {
     at /= part;
@@ -66,9 +66,9 @@ Bytes left_up_from(const fs::path& mount, const std::string& group, const Names&
 }
 
 /// Lines are "0::/group" (version 2) and "7:memory:/group" (version 1).
-Bytes left_in_groups(const fs::path& root) {
+MaybeBytes left_in_groups(const fs::path& root) {
   std::ifstream in(root / "proc/self/cgroup");
-  Bytes least;
+  MaybeBytes least;
   for (std::string line; std::getline(in, line);) {
     const std::size_t first = line.find(':'), second = line.find(':', first + 1);
     if (second == std::string::npos) continue;
@@ -82,17 +82,17 @@ Bytes left_in_groups(const fs::path& root) {
   return least;
 }
 
-Bytes left_of_address_space(const fs::path& root) {
+MaybeBytes left_of_address_space(const fs::path& root) {
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
-  const Bytes pages = number_in(root / "proc/self/statm");
+  const MaybeBytes pages = number_in(root / "proc/self/statm");
   return rest(limit.rlim_cur, pages.value_or(0) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)));
 }
 
 }  // namespace
 
 std::optional<std::uint64_t> available_memory(const fs::path& root) {
-  Bytes least = number_of(root / "proc/meminfo", "MemAvailable");
+  MaybeBytes least = number_of(root / "proc/meminfo", "MemAvailable");
   if (least) *least *= 1024;
   return less(less(least, left_in_groups(root)), left_of_address_space(root));
 }

@@ -16,7 +16,7 @@ namespace {
 
 using glm::vec3;
 
-constexpr float unlimited = std::numeric_limits<float>::infinity();
+constexpr float endless = std::numeric_limits<float>::infinity();
 constexpr unsigned tile = 16, block = 4;
 
 float uniform(u32 x) { return unit_float(random_word(x)); }
@@ -71,11 +71,11 @@ void glass_children(const CompiledScene& scene, const std::vector<Ray>& rays, co
     const float eta = s->entering ? 1.5f : 1 / 1.5f;  // transmitting side over incident side
     const float cos_i = -glm::dot(d, s->n), sin2_t = (1 - cos_i * cos_i) / (eta * eta);
     if (!s->entering || reflect_outside)
-      reflected.push_back(make_ray(s->p + s->offset * s->n, glm::normalize(d + 2 * cos_i * s->n), unlimited));
+      reflected.push_back(make_ray(s->p + s->offset * s->n, glm::normalize(d + 2 * cos_i * s->n), endless));
     if (sin2_t < 1)
       refracted.push_back(make_ray(s->p - s->offset * s->n,
                                    glm::normalize(d / eta + (cos_i / eta - std::sqrt(1 - sin2_t)) * s->n),
-                                   unlimited));
+                                   endless));
   }
 }
 
@@ -112,8 +112,8 @@ std::vector<RaySet> secondary_rays(const CompiledScene& scene, const Viewpoint& 
     const float distance = glm::length(view.light - p);
     const vec3 wi = (view.light - p) / distance;
     if (glm::dot(wi, s->n) > 0) shadow.rays.push_back(make_ray(p, wi, distance));
-    bounce.rays.push_back(make_ray(p, cosine_direction(s->n, static_cast<u32>(i)), unlimited));
-    reflection.rays.push_back(make_ray(p, glm::normalize(d - 2 * glm::dot(d, s->n) * s->n), unlimited));
+    bounce.rays.push_back(make_ray(p, cosine_direction(s->n, static_cast<u32>(i)), endless));
+    reflection.rays.push_back(make_ray(p, glm::normalize(d - 2 * glm::dot(d, s->n) * s->n), endless));
   }
   shuffled.rays = bounce.rays;
   shuffle(shuffled.rays);
@@ -191,7 +191,7 @@ RaySet primary_rays(const Viewpoint& view, unsigned size) {
       return ((static_cast<float>(at) + 0.5f) / static_cast<float>(width) * 2 - 1) * view.tangent;
     };
     const vec3 d = view.forward + place(x) * view.right - place(y) * view.up;
-    set.rays.push_back(make_ray(view.eye, glm::normalize(d), unlimited));
+    set.rays.push_back(make_ray(view.eye, glm::normalize(d), endless));
   }
   return set;
 }

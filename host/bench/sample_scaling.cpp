@@ -13,22 +13,23 @@
 namespace sundog {
 namespace {
 
-constexpr double visible = 0.02;  // in linear color
+constexpr double visible_error = 0.02;  // in linear color
 
 /// A scene for one number of samples, ready to be rendered again and again.
-struct Runner {
+struct SampleRunner {
   CompiledScene scene;
   FrameRunner frames;
   Image expected;
   std::vector<double> seconds;
   SampleTime result;
 
-  Runner(const DeviceInfo& device, CompiledScene scene_) : scene(std::move(scene_)), frames(device, scene) {}
+  SampleRunner(const DeviceInfo& device, CompiledScene scene_)
+      : scene(std::move(scene_)), frames(device, scene) {}
 
   void warm_up(const Image& reference) {
     frames.run();
     expected = frames.image();
-    result.error = compare_images(expected, reference, visible);
+    result.error = compare_images(expected, reference, visible_error);
     for (const int kind : {COUNT_PRIMARY, COUNT_REFLECTION, COUNT_REFRACTION, COUNT_SHADOW})
       result.rays += static_cast<double>(frames.counts()[static_cast<std::size_t>(kind)]);
   }
@@ -82,14 +83,14 @@ std::vector<SampleTime> measure_samples(const SampleScaling& plan,
   on_step(fmt::format("{}, the reference of {} samples", plan.scene, plan.reference));
   Image reference;
   {
-    Runner runner(plan.device, plan.compile_for(plan.reference));
+    SampleRunner runner(plan.device, plan.compile_for(plan.reference));
     runner.frames.run();
     reference = runner.frames.image();
   }
-  std::vector<std::unique_ptr<Runner>> runners;
+  std::vector<std::unique_ptr<SampleRunner>> runners;
   for (const int samples : plan.counts) {
     on_step(fmt::format("{}, {} samples", plan.scene, samples));
-    runners.push_back(std::make_unique<Runner>(plan.device, plan.compile_for(samples)));
+    runners.push_back(std::make_unique<SampleRunner>(plan.device, plan.compile_for(samples)));
     runners.back()->result.samples = samples;
     runners.back()->warm_up(reference);
   }

@@ -19,7 +19,7 @@ namespace {
 
 // A visible difference, and how many pixels may have one: rays on silhouettes and on the borders of checkers
 // fall to either side by rounding.
-constexpr double visible = 0.02;
+constexpr double visible_difference = 0.02;
 constexpr std::uint64_t pixels_per_flip = 200;
 
 int add(SceneDescription& scene, const MaterialDescription& material) {
@@ -71,7 +71,7 @@ void build_kernels(Device& device, const CompiledScene& scene, SelfCheck& check,
 }
 
 void compare(const CompiledScene& scene, const Image& image, SelfCheck& check) {
-  const ImageDifference difference = compare_images(image, render_plain(scene), visible);
+  const ImageDifference difference = compare_images(image, render_plain(scene), visible_difference);
   check.pixels = difference.pixels;
   check.differing = difference.over_tolerance;
   check.greatest = difference.max;

@@ -20,12 +20,12 @@ double label_room(const std::vector<std::string>& labels) {
   return std::min(static_cast<double>(longest), 44.0) * letter + 12;
 }
 
-struct Range {
+struct ValueRange {
   double least = std::numeric_limits<double>::infinity(), most = 0;
 };
 
-Range range_of(const HeatMap& map) {
-  Range range;
+ValueRange range_of(const HeatMap& map) {
+  ValueRange range;
   for (const auto& row : map.values)
     for (const auto& value : row)
       if (value) range = {std::min(range.least, *value), std::max(range.most, *value)};
@@ -95,7 +95,7 @@ std::string svg(const HeatMap& map) {
       (760 - left) / static_cast<double>(std::max<std::size_t>(map.columns.size(), 1)), 40.0, 84.0);
   const double width = left + cell_w * static_cast<double>(map.columns.size()) + 4,
                height = top + cell_h * static_cast<double>(map.rows.size()) + 4;
-  const Range range = range_of(map);
+  const ValueRange range = range_of(map);
   std::string text = fmt::format(
       "<svg viewBox=\"0 0 {0} {1}\" style=\"--width:{0}px;max-width:{0}px\" role=\"img\" aria-label=\"{2}\">",
       width, height, escape_html(map.title));

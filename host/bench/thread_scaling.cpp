@@ -16,7 +16,7 @@ namespace sundog {
 namespace {
 
 /// One count at work on one size.
-struct Runner {
+struct ThreadRunner {
   ThreadTime result;
   std::function<double()> run;  // a frame's seconds; empty: there is a problem
   std::function<Image()> image;
@@ -70,10 +70,10 @@ struct Runner {
 };
 
 /// The image of the first count that works is what all must show.
-void check_images(std::vector<Runner>& runners) {
-  const Runner* first = nullptr;
+void check_images(std::vector<ThreadRunner>& runners) {
+  const ThreadRunner* first = nullptr;
   Image expected;
-  for (Runner& runner : runners) {
+  for (ThreadRunner& runner : runners) {
     if (!runner.run || runner.is_plain()) continue;
     const Image image = runner.image();
     if (!first) {
@@ -83,7 +83,7 @@ void check_images(std::vector<Runner>& runners) {
       runner.fail(fmt::format("its image differs from that of {} threads", first->result.threads));
     }
   }
-  for (Runner& runner : runners) {
+  for (ThreadRunner& runner : runners) {
     if (!runner.run || !runner.is_plain()) continue;
     const std::string why =
         first ? plain_difference(runner.image(), expected) : "there is no device image to compare it with";
@@ -198,7 +198,7 @@ std::vector<ThreadTime> measure_threads(const ThreadScaling& plan, const OnPart&
     const CompiledScene scene = plan.compile_for(size);
     std::vector<unsigned> counts = plan.counts;
     if (plan.plain && size <= plan.greatest_plain_size) counts.insert(counts.begin(), 0);
-    std::vector<Runner> runners(counts.size());
+    std::vector<ThreadRunner> runners(counts.size());
     for (std::size_t i = 0; i < runners.size(); ++i) {
       runners[i].result.size = size;
       runners[i].result.threads = counts[i];
@@ -208,13 +208,13 @@ std::vector<ThreadTime> measure_threads(const ThreadScaling& plan, const OnPart&
     }
     check_images(runners);
     for (int i = 0; i < plan.repeat; ++i)
-      for (Runner& runner : runners) {
+      for (ThreadRunner& runner : runners) {
         if (!runner.run || runner.is_plain()) continue;
         tell(size, runner.name());
         runner.time();
         done += frame_seconds(plan, size, runner.result.threads);
       }
-    for (Runner& runner : runners) {
+    for (ThreadRunner& runner : runners) {
       runner.result.seconds = spread(runner.seconds);
       runner.result.cores = spread(runner.cores).median;
       times.push_back(runner.result);

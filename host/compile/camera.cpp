@@ -9,13 +9,10 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "compile/local_origin.h"
+#include "compile/pack.h"
 
 namespace sundog {
 namespace {
-
-float4 pack(const dvec3& v, double w = 0) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w)};
-}
 
 [[noreturn]] void fail(const SceneDescription& scene, const char* place, const std::string& what) {
   throw SceneError(scene.file.string(), place, what);

@@ -8,13 +8,10 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "compile/pack.h"
 
 namespace sundog {
 namespace {
-
-float4 pack(const dvec3& v, double w = 0) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w)};
-}
 
 bool is_zero(const dvec3& color) { return color == dvec3(0); }
 

@@ -19,7 +19,7 @@
 namespace sundog {
 namespace {
 
-constexpr float farthest = 1e36f;  // beyond, sums of coordinates leave the float's range
+constexpr float farthest_vertex = 1e36f;  // beyond, sums of coordinates leave the float's range
 
 [[noreturn]] void fail(const SceneDescription& scene, std::size_t mesh, const std::string& what) {
   std::string place;
@@ -33,7 +33,8 @@ constexpr float farthest = 1e36f;  // beyond, sums of coordinates leave the floa
 }
 
 bool in_range(const glm::vec3& p) {
-  return std::abs(p.x) <= farthest && std::abs(p.y) <= farthest && std::abs(p.z) <= farthest;
+  return std::abs(p.x) <= farthest_vertex && std::abs(p.y) <= farthest_vertex &&
+         std::abs(p.z) <= farthest_vertex;
 }
 
 bool attribute_fits(std::size_t count, std::size_t wanted) { return count == 0 || count == wanted; }
@@ -63,7 +64,7 @@ void check_attributes(const SceneDescription& scene, std::size_t index) {
       if (!in_range(p))
         fail(scene, index,
              fmt::format("vertex {} is ({}, {}, {}); wanted finite numbers up to {:g}; mend the model",
-                         vertex, p.x, p.y, p.z, farthest));
+                         vertex, p.x, p.y, p.z, farthest_vertex));
     }
   throw std::logic_error("a mesh that was refused has no bad corner");
 }
@@ -92,7 +93,7 @@ double table_unit(const Mesh& mesh) {
   };
   const float most = tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, mesh.positions.size(), 4096),
                                           0.0f, greatest, [](float a, float b) { return std::max(a, b); });
-  if (!(most > 0 && most <= farthest)) return 1;
+  if (!(most > 0 && most <= farthest_vertex)) return 1;
   const int exponent = std::clamp(std::ilogb(most), -126, 126);  // its inverse is a float too
   return std::abs(exponent) <= far ? 1 : std::ldexp(1.0, exponent);
 }

@@ -110,7 +110,7 @@ Surface make_surface(const RoundSolid& solid) {
   return surface;
 }
 
-struct Search {
+struct CellSearch {
   const Surface &a, &b;
   double tolerance, least;  // radius of a cell in which nothing more is asked
   int cells_left = 40000;
@@ -152,7 +152,7 @@ bool round_surfaces_touch(const RoundSolid& a, const RoundSolid& b, const Bounds
       upper(box.upper[0], box.upper[1], box.upper[2]);
   const dvec3 half = 0.5 * glm::max(upper - lower, dvec3(0)) + tolerance;
   const Surface of_a = make_surface(a), of_b = make_surface(b);
-  Search search{of_a, of_b, tolerance, 4 * tolerance + 1e-3 * glm::length(half)};
+  CellSearch search{of_a, of_b, tolerance, 4 * tolerance + 1e-3 * glm::length(half)};
   return search.run(0.5 * (lower + upper), half);
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int space_bins = 16;
 
-Bounds common(const Bounds& a, const Bounds& b) {
+Bounds overlap(const Bounds& a, const Bounds& b) {
   return {lanes_max(a.lower, b.lower), lanes_min(a.upper, b.upper)};
 }
 
@@ -73,7 +73,7 @@ Halves cut(const Mesh& mesh, u32 prim, const Bounds& box, int axis, float positi
     if ((a[axis] < position && position < b[axis]) || (b[axis] < position && position < a[axis]))
       add_crossing(halves, a, b, axis, position);
   }
-  return {common(halves.left, box), common(halves.right, box)};
+  return {overlap(halves.left, box), overlap(halves.right, box)};
 }
 
 struct SpaceBins {

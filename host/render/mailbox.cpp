@@ -12,7 +12,7 @@
 namespace sundog {
 namespace {
 
-constexpr std::size_t largest_piece = std::size_t{4} << 20, head = 8;
+constexpr std::size_t largest_piece = std::size_t{4} << 20, piece_head = 8;
 constexpr std::uint32_t control = 0;
 
 // How many times longer than another rank 0 may be silent: who stops it by hand wants to go on with it.
@@ -75,7 +75,7 @@ void Mailbox::post(State& state, int rank, std::uint32_t channel, const Message&
   for (std::size_t at = 0; at < bytes.size(); at += largest_piece) {
     const std::size_t size = std::min(largest_piece, bytes.size() - at);
     const std::uint32_t last = at + size == bytes.size();
-    std::string piece(head, '\0');
+    std::string piece(piece_head, '\0');
     std::memcpy(piece.data(), &channel, sizeof channel);
     std::memcpy(piece.data() + sizeof channel, &last, sizeof last);
     state.outgoing.push_back({rank, piece.append(bytes, at, size)});
@@ -151,7 +151,7 @@ void Mailbox::run(Transport& transport) {
 }
 
 void Mailbox::arrive(const Parcel& parcel) {
-  if (parcel.bytes.size() < head) return;
+  if (parcel.bytes.size() < piece_head) return;
   std::uint32_t channel = 0, last = 0;
   std::memcpy(&channel, parcel.bytes.data(), sizeof channel);
   std::memcpy(&last, parcel.bytes.data() + sizeof channel, sizeof last);
@@ -165,7 +165,7 @@ void Mailbox::arrive(const Parcel& parcel) {
   const auto inbox = channel == control ? state_->inboxes.try_emplace({parcel.from, control}).first
                                         : state_->inboxes.find({parcel.from, channel});
   if (inbox == state_->inboxes.end()) return;  // this side has closed it
-  inbox->second.begun.append(parcel.bytes, head);
+  inbox->second.begun.append(parcel.bytes, piece_head);
   if (last == 0) return;
   Message message;
   try {

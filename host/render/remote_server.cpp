@@ -9,7 +9,7 @@
 namespace sundog {
 namespace {
 
-constexpr double look_again = 0.005;  // seconds between looks at the flags while a tile is made elsewhere
+constexpr double between_flags = 0.005;  // seconds between looks at the flags while a tile is made elsewhere
 
 }  // namespace
 
@@ -33,7 +33,7 @@ Message RemoteServer::answer(Message::Kind expected, const StopFlags& flags) {
       stopped = true;
       channel_->send({Message::stop, {{"job", job_}}, {}});
     }
-    std::optional<Message> message = channel_->receive(look_again);
+    std::optional<Message> message = channel_->receive(between_flags);
     if (!message) continue;
     if (message->kind == Message::failed) fail(message->values);
     if (message->kind == expected && message->values.value("job", job_) == job_) return std::move(*message);

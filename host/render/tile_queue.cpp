@@ -7,7 +7,7 @@ namespace sundog {
 namespace {
 
 // How often an idle device looks whether another's tile has become worth repeating.
-constexpr std::chrono::milliseconds look_again{10};
+constexpr std::chrono::milliseconds between_tiles{10};
 
 // A driver may compile in its first tile: only after so long is a device that has finished none taken to
 // hang.
@@ -26,7 +26,7 @@ bool TileQueue::wait_until_needed(std::size_t device) {
   while (!over()) {
     find_stuck();
     if (plan_.lists.size() > 1 || !is_spared(speeds_, device)) return true;
-    changed_.wait_for(lock, look_again);
+    changed_.wait_for(lock, between_tiles);
   }
   return false;
 }
@@ -111,7 +111,7 @@ std::optional<TileJob> TileQueue::take(std::size_t device) {
     find_stuck();
     if (auto job = take_waiting(device)) return job;
     if (auto job = take_repeated(device)) return job;
-    changed_.wait_for(lock, look_again);
+    changed_.wait_for(lock, between_tiles);
   }
   return std::nullopt;
 }

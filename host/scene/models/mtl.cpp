@@ -35,7 +35,7 @@ std::optional<dvec3> read_color(TextReader& text) {
 }
 
 /// Statements that would change the picture.
-constexpr std::pair<std::string_view, const char*> unread_statements[] = {{"map_Kd", "colour textures"},
+constexpr std::pair<std::string_view, const char*> unread_properties[] = {{"map_Kd", "colour textures"},
                                                                           {"map_Ka", "ambient textures"},
                                                                           {"map_Ks", "specular textures"},
                                                                           {"map_Ns", "specular textures"},
@@ -70,7 +70,7 @@ void note_unread(TextReader text, std::string_view key, Model& model) {
     return true;
   };
   if (key == "Ke" && !all_zero()) leave_unread(model, "emission");
-  for (const auto& [word, feature] : unread_statements)
+  for (const auto& [word, feature] : unread_properties)
     if (key == word && !all_zero()) leave_unread(model, feature);
 }
 

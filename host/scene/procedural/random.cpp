@@ -18,7 +18,7 @@ std::uint64_t scrambled(std::uint64_t x) {
 double fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
 double mix(double a, double b, double t) { return a + (b - a) * t; }
 
-double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double dot3(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 // A slope of each lattice point, in the cube [-1, 1]^3.
 glm::dvec3 lattice_slope(std::uint64_t seed, std::int64_t x, std::int64_t y, std::int64_t z) {
@@ -36,7 +36,7 @@ double uniform(std::uint64_t seed, std::uint64_t index) {
   return static_cast<double>(scrambled(scrambled(seed) + index) >> 11) * (1.0 / 9007199254740992.0);
 }
 
-double length(const glm::dvec3& v) { return std::sqrt(dot(v, v)); }
+double length(const glm::dvec3& v) { return std::sqrt(dot3(v, v)); }
 
 glm::dvec3 normalized(const glm::dvec3& v) {
   const double l = length(v);
@@ -60,7 +60,7 @@ double gradient_noise(std::uint64_t seed, const glm::dvec3& point) {
   double corner[8];
   for (int i = 0; i < 8; i++) {
     const int a = i & 1, b = (i >> 1) & 1, c = i >> 2;
-    corner[i] = dot(lattice_slope(seed, ix + a, iy + b, iz + c), {x - a, y - b, z - c});
+    corner[i] = dot3(lattice_slope(seed, ix + a, iy + b, iz + c), {x - a, y - b, z - c});
   }
   const double u = fade(x), v = fade(y), w = fade(z);
   const double low = mix(mix(corner[0], corner[1], u), mix(corner[2], corner[3], u), v);
