@@ -37,9 +37,9 @@ std::array<dvec3, 8> corners_of(const dvec3& half) {
 
 }  // namespace
 
-Bounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes,
+SceneBounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes,
                  std::span<const SdfDescription> fields) {
-  Bounds bounds;
+  SceneBounds bounds;
   for (const Object& object : objects) {
     const auto add = [&](const dvec3& point) {
       bounds.add(dvec3(object.world_from_object * glm::dvec4(point, 1)));
@@ -57,7 +57,7 @@ Bounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes,
   return bounds;
 }
 
-Camera frame(const Bounds& bounds, double aspect, Camera camera) {
+Camera frame(const SceneBounds& bounds, double aspect, Camera camera) {
   if (bounds.empty()) return camera;
   const double tall = std::tan(glm::radians(camera.fov) / 2), wide = tall * aspect;
   const dvec3 back = glm::normalize(dvec3(0.55, 0.4, 1)),

@@ -8,7 +8,7 @@
 namespace sundog {
 
 /// An axis-parallel box; lower > upper when it is empty.
-struct Bounds {
+struct SceneBounds {
   dvec3 lower{std::numeric_limits<double>::infinity()}, upper{-std::numeric_limits<double>::infinity()};
 
   bool empty() const { return !(lower.x <= upper.x); }
@@ -17,11 +17,11 @@ struct Bounds {
 
 /// Around all objects with an end: planes do not count. Exact for meshes, the box of a box for the turned
 /// solids and of the fields' intervals.
-Bounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes,
+SceneBounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes,
                  std::span<const SdfDescription> fields = {});
 
 /// `camera` moved so that the box all but fills an image of width / height `aspect`, seen from the front,
 /// right and above (y is up). An empty box leaves it where it is.
-Camera frame(const Bounds& bounds, double aspect, Camera camera);
+Camera frame(const SceneBounds& bounds, double aspect, Camera camera);
 
 }  // namespace sundog

@@ -95,7 +95,7 @@ json to_json(const MadeUpLights& lights) {
 
 /// A matte plane just below the model, which takes its shadow. Lit, it has the background's colour at the
 /// horizon, and so no edge. Not for a camera from below.
-void add_ground(json& document, const Bounds& bounds, const Camera& camera, const ImageSettings& image,
+void add_ground(json& document, const SceneBounds& bounds, const Camera& camera, const ImageSettings& image,
                 const MadeUpLights& lights) {
   constexpr double ambient = 0.2, diffuse = 0.8;
   const double height = bounds.lower.y - 1e-3 * glm::length(bounds.upper - bounds.lower);
@@ -118,7 +118,7 @@ json make_model_scene(const std::filesystem::path& file, const Model& model, std
   image.background_bottom = {0.75, 0.75, 0.75}, image.background_top = {0.35, 0.42, 0.5};
   image = model.image.value_or(image);
   const double fitted = aspect.value_or(static_cast<double>(image.width) / image.height);
-  const Bounds bounds = bounds_of(model.objects, model.meshes);
+  const SceneBounds bounds = bounds_of(model.objects, model.meshes);
   const Camera camera = model.camera ? *model.camera : frame(bounds, fitted, {});
   const MadeUpLights made_up = expose(model, camera);
   json lights = json::array();

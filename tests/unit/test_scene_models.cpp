@@ -104,7 +104,7 @@ TEST_CASE("a model without camera and lights stands on a matte ground of the hor
   const SceneDescription scene = metal ? lit(dvec3(0.1), dvec3(1), 1, 1) : read(two_spheres());
   const Object& ground = scene.objects.at(2);
   REQUIRE(std::holds_alternative<PlaneShape>(ground.shape));
-  const Bounds bounds = bounds_of(scene.objects, scene.meshes);
+  const SceneBounds bounds = bounds_of(scene.objects, scene.meshes);
   CHECK(ground.world_from_object[3].y < bounds.lower.y);
   CHECK(ground.world_from_object[3].y > bounds.lower.y - 0.01 * glm::length(bounds.upper - bounds.lower));
   const MaterialDescription& m = scene.materials.at(static_cast<std::size_t>(ground.material));
@@ -213,7 +213,7 @@ TEST_CASE("a box around objects counts meshes and turned solids, and no planes")
   const SceneDescription scene = load_scene_text(R"({"materials": {"m": {}}, "objects": [
     {"type": "plane", "material": "m"}, {"type": "model", "file": "tetra.ply", "transform": [{"translate": [5, 0, 0]}]},
     {"type": "cylinder", "material": "m", "radius": 0.5, "from": [0, 0, 0], "to": [0, 0, 4]}]})");
-  const Bounds bounds = bounds_of(scene.objects, scene.meshes);
+  const SceneBounds bounds = bounds_of(scene.objects, scene.meshes);
   CHECK(glm::length(bounds.lower - dvec3(-0.5, -0.5, 0)) < 1e-12);
   CHECK(glm::length(bounds.upper - dvec3(6, 1, 4)) < 1e-12);
   CHECK(bounds_of({}, {}).empty());
