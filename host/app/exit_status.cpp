@@ -16,7 +16,7 @@ namespace sundog {
 namespace {
 
 /// Prints the error in one line without control characters, whatever a file or a library put into it.
-void say(std::string message) {
+void write_message(std::string message) {
   std::ranges::replace(message, '\n', ' ');
   std::ranges::replace_if(
       message, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
@@ -27,7 +27,7 @@ void say(std::string message) {
 
 int exit_status_of(const std::function<int()>& command, bool speaks) {
   const auto fail = [&](ExitStatus status, const char* message) {
-    if (speaks) say(message);
+    if (speaks) write_message(message);
     return status;
   };
   try {

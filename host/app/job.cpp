@@ -18,7 +18,7 @@ namespace sundog {
 namespace {
 
 // The longest that a rank may take to list its devices.
-constexpr double patience = 60;
+constexpr double patience_with_drivers = 60;
 
 struct Listed {
   std::vector<DeviceInfo> devices;
@@ -28,7 +28,7 @@ struct Listed {
 /// A rank's answer to the order to list its devices.
 Listed list_of(Channel& channel, const std::string& name) {
   const Stopwatch waited;
-  while (waited.seconds() < patience) {
+  while (waited.seconds() < patience_with_drivers) {
     const std::optional<Message> answer = channel.receive(1);
     if (!answer) continue;
     if (answer->kind == Message::failed)
@@ -37,7 +37,8 @@ Listed list_of(Channel& channel, const std::string& name) {
     return {answer->values.at("devices").get<std::vector<DeviceInfo>>(),
             answer->values.at("cores").get<unsigned>()};
   }
-  throw DeviceError(fmt::format("{}: its drivers have not listed their devices for {} s", name, patience));
+  throw DeviceError(
+      fmt::format("{}: its drivers have not listed their devices for {} s", name, patience_with_drivers));
 }
 
 /// Without SPECs: the fastest device and those like it, so that each rank of a machine finds one.
