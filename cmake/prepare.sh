@@ -13,7 +13,7 @@ needed=(g++ cmake ninja-build ocl-icd-opencl-dev opencl-clhpp-headers pocl-openc
 peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin)
 
 # Seconds of one core that a build takes with an empty compiler cache, in round figures.
-program_work=370
+program_work=300
 tests_work=800
 
 say() { echo "sundog: $*" >&2; }
