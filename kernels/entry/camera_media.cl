@@ -1,6 +1,36 @@
 // One stage: which media the camera is inside of, found by following a line from it to the outside.
 #include "lib/segment.cl"
 
+// The line leaves `medium`: one that it entered, or one that holds the camera. What is left later was entered
+// earlier: it goes to the far end.
+static inline void leave_medium(u32 medium, MediaStack* entered, MediaStack* holding) {
+  if (cross_boundary(entered, medium, false)) return;
+  u32 shift = 0;
+  while (shift < 64u && *holding >> shift) shift += 8u;
+  if (shift < 64u) *holding |= (MediaStack)(medium + 1u) << shift;
+}
+
+#if HAS_TOUCHING
+// The line at faces that lie in one place. Returns the distance of the last one.
+static inline float cross_faces(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRays* rays, const Hits* hits,
+                                MediaStack* entered, MediaStack* holding) {
+  const Hit first = get_hit(hits, 0);
+  Touching touching;
+  find_touching(TRACE_ARGUMENTS, triangles, get3(&rays->o, 0), get3(&rays->d, 0), REAL_LANE(rays->t_min, 0),
+                &first, &touching);
+  const Stretch* met = &touching.met;
+  Changes changes = faces_of(instances, triangles, materials, met);
+  take_out_pairs(instances, materials, met, &changes);
+  for (u32 left = changes.left; left;) {
+    const u32 inner = pick_face(instances, materials, media, met, &changes, left, false);
+    left &= ~(1u << inner);
+    leave_medium(materials[changes.material[inner]].medium, entered, holding);
+  }
+  enter_all(instances, materials, media, met, &changes, entered);
+  return touching.end;
+}
+#endif
+
 // The work of the kernel below.
 NEVER_INLINE void follow_line_outside(TRACE_PARAMETERS, SHADE_PARAMETERS,
                                       __global u32* restrict camera_media) {
@@ -21,18 +51,20 @@ NEVER_INLINE void follow_line_outside(TRACE_PARAMETERS, SHADE_PARAMETERS,
     nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lane, false, false, &hits, counts);
     if (MASK_LANE(hits.instance, 0) == (int)NO_INSTANCE) break;
     const Faces faces = hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays.d, &hits, lane);
+#if HAS_TOUCHING
+    if (any_lane(may_touch(instances, &hits, lane))) {
+      REAL_LANE(hits.t, 0) = cross_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, &hits, &entered, &holding);
+      continue_behind(info, &rays, &hits, faces.entering, lane);
+      continue;
+    }
+#endif
     continue_behind(info, &rays, &hits, faces.entering, lane);
-    const bool entering = MASK_LANE(faces.entering, 0);
     __global const Material* material = materials + MASK_LANE(faces.material, 0);
     if (!(material->flags & MATERIAL_TRANSMITS) || (material->flags & MATERIAL_THIN)) continue;
-    if (entering) {
+    if (MASK_LANE(faces.entering, 0))
       cross_boundary(&entered, material->medium, true);
-    } else if (!cross_boundary(&entered, material->medium, false)) {
-      // What is left later was entered earlier: it goes to the far end.
-      u32 shift = 0;
-      while (shift < 64u && holding >> shift) shift += 8u;
-      if (shift < 64u) holding |= (MediaStack)(material->medium + 1u) << shift;
-    }
+    else
+      leave_medium(material->medium, &entered, &holding);
   }
   camera_media[0] = (u32)holding;
   camera_media[1] = (u32)(holding >> 32);

@@ -46,9 +46,10 @@ typedef struct Touching {
   float apart;  // how far the faces may be apart
 } Touching;
 
-// The faces that touch the one at `first`, itself among them.
+// The faces beyond `t_min` that touch the one at `first`, itself among them. Some may lie before it by their
+// rounding: the tracer leaves out boxes that begin behind a hit.
 static inline void find_touching(TRACE_PARAMETERS, __global const TriangleShading* restrict triangles,
-                                 float3 o, float3 d, const Hit* first, Touching* touching) {
+                                 float3 o, float3 d, float t_min, const Hit* first, Touching* touching) {
   Stretch* met = &touching->met;
   const float3 outward = outward_of(instances, first), p = o + first->t * d;
   const float least = fmax(greatest_component(o), greatest_component(p)) * 0x1p-19f;
@@ -56,10 +57,10 @@ static inline void find_touching(TRACE_PARAMETERS, __global const TriangleShadin
   const float slope = fabs(dot(unit_normal(outward), d));
   met->o = o;
   met->d = d;
-  met->from = as_float(as_int(first->t) - 1);
   const float reach = fmax(own, instances[first->instance].touch) / fmax(slope, 1e-3f);
+  met->from = fmax(t_min, first->t - reach);
   met->to = first->t + reach;
-  met->box_from = fmax(first->t - reach, 0.0f);
+  met->box_from = fmax(met->from - reach, 0.0f);
   met->box_to = met->to + reach;
   note_all(TRACE_ARGUMENTS, met);
   bool found = false;
@@ -116,8 +117,9 @@ static inline Changes faces_of(__global const Instance* restrict instances,
     changes.material[i] = material_of(instances, triangles, hit);
     bool again = false;
     for (u32 k = 0; k < i; ++k) again |= on_shared_edge(instances, &met->hits[k], hit);
-    if (again) continue;
-    if (materials[changes.material[i]].flags & MATERIAL_THIN)
+    const u32 flags = materials[changes.material[i]].flags;
+    if (again || !(flags & MATERIAL_TRANSMITS)) continue;
+    if (flags & MATERIAL_THIN)
       changes.thin |= 1u << i;
     else if (dot(outward_of(instances, hit), met->d) < 0.0f)
       changes.entered |= 1u << i;
@@ -158,6 +160,21 @@ static inline bool is_outer(__global const Instance* restrict instances,
   return index_a != index_b ? index_a < index_b : medium_a < medium_b;
 }
 
+// Of the faces of `bits`, which is not 0, the one whose solid counts as the outermost, or else the innermost.
+static inline u32 pick_face(__global const Instance* restrict instances,
+                            __global const Material* restrict materials,
+                            __global const Medium* restrict media, const Stretch* met, const Changes* changes,
+                            u32 bits, bool outermost) {
+  u32 best = lowest_bit(bits), medium = materials[changes->material[best]].medium;
+  for (bits &= bits - 1u; bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits), other = materials[changes->material[i]].medium;
+    if (is_outer(instances, media, &met->hits[i], other, &met->hits[best], medium) != outermost) continue;
+    best = i;
+    medium = other;
+  }
+  return best;
+}
+
 // Enters the media of `changes`, the outer ones first. Returns how many found no room.
 static inline u32 enter_all(__global const Instance* restrict instances,
                             __global const Material* restrict materials,
@@ -165,15 +182,9 @@ static inline u32 enter_all(__global const Instance* restrict instances,
                             MediaStack* stack) {
   u32 lost = 0;
   for (u32 left = changes->entered; left;) {
-    u32 outer = lowest_bit(left), medium = materials[changes->material[outer]].medium;
-    for (u32 bits = left & (left - 1u); bits; bits &= bits - 1u) {
-      const u32 i = lowest_bit(bits), other = materials[changes->material[i]].medium;
-      if (!is_outer(instances, media, &met->hits[i], other, &met->hits[outer], medium)) continue;
-      outer = i;
-      medium = other;
-    }
+    const u32 outer = pick_face(instances, materials, media, met, changes, left, true);
     left &= ~(1u << outer);
-    if (!cross_boundary(stack, medium, true)) ++lost;
+    if (!cross_boundary(stack, materials[changes->material[outer]].medium, true)) ++lost;
   }
   return lost;
 }
@@ -260,7 +271,8 @@ NEVER_INLINE float meet_touching(TRACE_PARAMETERS, SHADE_PARAMETERS, const Scene
                                  Hits* hits, Faces* faces, Seen* seen, float* apart) {
   Touching touching;
   const Hit first = get_hit(hits, i);
-  find_touching(TRACE_ARGUMENTS, triangles, get3(&rays->o, i), get3(&rays->d, i), &first, &touching);
+  find_touching(TRACE_ARGUMENTS, triangles, get3(&rays->o, i), get3(&rays->d, i), REAL_LANE(rays->t_min, i),
+                &first, &touching);
   join_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &touching, mask, get_media(rays, i), seen);
   *apart = touching.apart;
   seen->hit.t = first.t;
