@@ -210,9 +210,10 @@ static inline u32 say_of(__global const Material* restrict material, u32 before,
   return material->flags & MATERIAL_CLEAR ? 1u : 2u;
 }
 
-// Whether face a is seen, and not b.
+// Whether face a is seen, and not b. Of one material the outer one is: the first that is entered, the last
+// that is left.
 static inline bool is_seen_before(SHADE_PARAMETERS, const Hit* a, u32 material_a, const Hit* b,
-                                  u32 material_b, u32 before, u32 after) {
+                                  u32 material_b, u32 before, u32 after, bool left) {
   __global const Material *ma = materials + material_a, *mb = materials + material_b;
   const u32 say_a = say_of(ma, before, after), say_b = say_of(mb, before, after);
   if (say_a != say_b) return say_a > say_b;
@@ -221,7 +222,7 @@ static inline bool is_seen_before(SHADE_PARAMETERS, const Hit* a, u32 material_a
   if (inside_a->absorption.w != inside_b->absorption.w)
     return inside_a->absorption.w > inside_b->absorption.w;
   if (material_a != material_b) return material_a < material_b;
-  return comes_first(a, b);
+  return left ? comes_first(b, a) : comes_first(a, b);
 }
 
 // What a ray in the media `before` makes of faces that touch. Something opaque among them, whose flags are
@@ -256,7 +257,7 @@ static inline void join_faces(TRACE_PARAMETERS, SHADE_PARAMETERS, const Touching
   for (u32 bits = some; bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     if (is_seen_before(SHADE_ARGUMENTS, &met->hits[i], changes.material[i], &met->hits[best],
-                       changes.material[best], current, seen->after))
+                       changes.material[best], current, seen->after, changes.left >> i & 1u))
       best = i;
   }
   seen->hit = met->hits[best];
