@@ -46,7 +46,7 @@ Mesh cube_of_squares(int n, bool other) {
 
 /// One of each solid, and two that touch: far off, for the kernels' sake.
 void add_bystanders(SceneDescription& scene) {
-  scene.meshes = {cube_of_squares(1, false), cube_of_squares(12, true)};
+  scene.meshes = {cube_of_squares(1, false), cube_of_squares(3, true)};
   const int material = scenes::add_glow(scene, {0, 0, 0});
   double x = 300;
   for (const Shape& shape : {Shape(MeshShape{0}), Shape(MeshShape{1}), Shape(BoxShape{}),

@@ -17,7 +17,7 @@ struct Piece {
 glm::dmat4 at(glm::dvec3 position);
 
 /// A checkered floor at y = -1.2 under a light, seen from above. Mesh 0 is the cube from (0, 0, 0) to
-/// (1, 1, 1), mesh 1 the same with faces of 12 x 12 squares.
+/// (1, 1, 1), mesh 1 the same with faces of 3 x 3 squares.
 sundog::SceneDescription over_a_floor();
 
 /// The line of sight of a closed form.
