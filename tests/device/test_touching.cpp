@@ -9,10 +9,10 @@
 #include "touching_scenes.h"
 
 using namespace sundog;
-using namespace touching;
 using glm::dmat4;
 using glm::dvec3;
 
+namespace touching {
 namespace {
 
 /// Halves a box at lattice planes, again and again.
@@ -142,22 +142,27 @@ TEST_CASE("round solids in one place are one solid") {
   check_alike(once, twice);
 }
 
-TEST_CASE("a round solid inside another one that it touches is not seen") {
-  // Along the line where they touch the inner surface is as near as rounding, but slants.
+TEST_CASE("faces just before the nearest hit, by rounding, are crossed with it") {
+  // The tracer leaves out a mesh whose box begins behind a hit, and its face may lie before both.
   SceneDescription whole = over_a_floor();
   const int glass = add_glass(whole);
+  whole.camera.fov = 90;
   SceneDescription parts = whole;
-  SECTION("a sphere in a cylinder") {
-    scenes::place(whole, CylinderShape{0.8, 1, true}, glass);
-    scenes::place(parts, CylinderShape{0.8, 1, true}, glass);
-    scenes::place(parts, SphereShape{0.8}, glass);
+  place_pieces(whole, {whole_box}, glass);
+  place_pieces(parts, {{{-1, -1, -1}, {-0.6, 1, 1}}, {{-0.6, -1, -1}, {1, 1, 1}, true}}, glass);
+  place_pieces(parts, {{{-0.6, -1, -1}, {0.6, 0.6, 1}, true}}, glass);
+  const int place = GENERATE(0, 1, 2);
+  for (SceneDescription* scene : {&whole, &parts}) {
+    scene->camera.position = place == 0   ? dvec3(-0.600897, -0.05, 0.61)
+                             : place == 1 ? dvec3(-0.60022, 0.24, 0.66)
+                                          : dvec3(-0.600637, -0.78, 0.46);
+    scene->camera.target = place == 0   ? dvec3(0, 0, 0.1)
+                           : place == 1 ? dvec3(0, 0, 0.2)
+                                        : dvec3(0, 0.1, -0.2);
   }
-  SECTION("a rounded box in a box") {
-    scenes::place(whole, BoxShape{}, glass);
-    scenes::place(parts, BoxShape{}, glass);
-    scenes::place(parts, RoundBoxShape{{1, 1, 1}, 0.2}, glass);
-  }
-  check_alike(whole, parts);
+  for (const DeviceInfo& device : quick_devices()) DYNAMIC_SECTION(device.label() << ", place " << place) {
+      CHECK(scenes::render_on(device, parts).counts[COUNT_STRAY_EXIT] == 0);
+    }
 }
 
 TEST_CASE("cylinders and cones that stand on each other or on boxes are one solid") {
@@ -324,3 +329,5 @@ TEST_CASE("a camera inside touching solids of one medium sees as inside one") {
                glass);
   check_alike(whole, parts, 2);
 }
+
+}  // namespace touching
