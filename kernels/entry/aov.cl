@@ -4,8 +4,7 @@
 #include "lib/segment.cl"
 
 // One work-item of the kernel below: the pixels from `first` on.
-NEVER_INLINE void first_surfaces_item(TRACE_PARAMETERS, SHADE_PARAMETERS,
-                                      __global const u32* restrict camera_media,
+NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* restrict camera_media,
                                       __global float4* restrict aovs, __global u32* restrict counters, u32 x0,
                                       u32 y0, u32 width, u32 pixel_count, u32 first) {
   u32 counts[COUNTERS];
@@ -20,15 +19,15 @@ NEVER_INLINE void first_surfaces_item(TRACE_PARAMETERS, SHADE_PARAMETERS,
     REAL_LANE(x, i) = (float)(x0 + (first + i) % width) + 0.5f;
     REAL_LANE(y, i) = (float)(y0 + (first + i) / width) + 0.5f;
   }
-  const CameraRays camera = camera_rays(info, x, y);
+  const CameraRays camera = camera_rays(scene->info, x, y);
   SceneRays rays = scene_rays(&camera, stack);
   Encounters met;
   Surfaces s;
-  next_surfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lanes, true, &met, counts);
+  next_surfaces(scene, &rays, lanes, true, &met, counts);
   const MASK hit = lanes & hit_anything(&met.hit);
-  interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays.o, rays.d, &met.hit, &met.face, hit, &s);
-  const REAL3 world = add3(add3(s.p, all3(info->origin_rest.xyz)), all3(info->origin.xyz));
-  const REAL depth = met.hit.t * dot3(rays.d, all3(info->camera_forward.xyz));
+  interact(scene, rays.o, rays.d, &met.hit, &met.face, hit, &s);
+  const REAL3 world = add3(add3(s.p, all3(scene->info->origin_rest.xyz)), all3(scene->info->origin.xyz));
+  const REAL depth = met.hit.t * dot3(rays.d, all3(scene->info->camera_forward.xyz));
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     __global float4* out = aovs + 3u * (first + i);
@@ -39,7 +38,7 @@ NEVER_INLINE void first_surfaces_item(TRACE_PARAMETERS, SHADE_PARAMETERS,
       continue;
     }
     out[0] = (float4)(get3(&s.ns, i), REAL_LANE(depth, i));
-    out[1] = (float4)(get3(&world, i), (float)instances[MASK_LANE(met.hit.instance, i)].object);
+    out[1] = (float4)(get3(&world, i), (float)scene->instances[MASK_LANE(met.hit.instance, i)].object);
     out[2] = (float4)(get3(&s.diffuse, i), (float)MASK_LANE(met.face.material, i));
   }
   add_finished(counters, lane_count(lanes), pixel_count);
@@ -49,11 +48,11 @@ NEVER_INLINE void first_surfaces_item(TRACE_PARAMETERS, SHADE_PARAMETERS,
 // along the view), (position in the world, object), (albedo, material). Where nothing is seen depth is
 // infinite, object and material are -1, the rest is 0; adds the pixels finished to counters. A work-item
 // takes BATCH pixels in a row.
-__kernel void first_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const u32* restrict camera_media,
+__kernel void first_surfaces(SCENE_PARAMETERS, __global const u32* restrict camera_media,
                              __global float4* restrict aovs, __global u32* restrict counters, u32 x0, u32 y0,
                              u32 width, u32 pixel_count) {
+  const Scene scene = SCENE_OF_PARAMETERS;
   const u32 first = get_global_id(0) * BATCH;
   if (first >= pixel_count) return;
-  first_surfaces_item(TRACE_ARGUMENTS, SHADE_ARGUMENTS, camera_media, aovs, counters, x0, y0, width,
-                      pixel_count, first);
+  first_surfaces_item(&scene, camera_media, aovs, counters, x0, y0, width, pixel_count, first);
 }

@@ -12,31 +12,29 @@ static inline void leave_medium(u32 medium, MediaStack* entered, MediaStack* hol
 
 #if HAS_TOUCHING
 // The line at faces that lie in one place. Returns the distance of the last one.
-static inline float cross_faces(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRays* rays, const Hits* hits,
+static inline float cross_faces(const Scene* scene, const SceneRays* rays, const Hits* hits,
                                 MediaStack* entered, MediaStack* holding) {
   const Hit first = get_hit(hits, 0);
   Touching touching;
-  find_touching(TRACE_ARGUMENTS, triangles, get3(&rays->o, 0), get3(&rays->d, 0), REAL_LANE(rays->t_min, 0),
-                &first, &touching);
+  find_touching(scene, get3(&rays->o, 0), get3(&rays->d, 0), REAL_LANE(rays->t_min, 0), &first, &touching);
   const Stretch* met = &touching.met;
-  Changes changes = faces_of(instances, triangles, materials, met);
-  take_out_pairs(instances, materials, met, &changes);
+  Changes changes = faces_of(scene->instances, scene->triangles, scene->materials, met);
+  take_out_pairs(scene->instances, scene->materials, met, &changes);
   for (u32 left = changes.left; left;) {
-    const u32 inner = pick_face(instances, materials, media, met, &changes, left, false);
+    const u32 inner = pick_face(scene->instances, scene->materials, scene->media, met, &changes, left, false);
     left &= ~(1u << inner);
-    leave_medium(materials[changes.material[inner]].medium, entered, holding);
+    leave_medium(scene->materials[changes.material[inner]].medium, entered, holding);
   }
-  enter_all(instances, materials, media, met, &changes, entered);
+  enter_all(scene->instances, scene->materials, scene->media, met, &changes, entered);
   return touching.end;
 }
 #endif
 
 // The work of the kernel below.
-NEVER_INLINE void follow_line_outside(TRACE_PARAMETERS, SHADE_PARAMETERS,
-                                      __global u32* restrict camera_media) {
+NEVER_INLINE void follow_line_outside(const Scene* scene, __global u32* restrict camera_media) {
   const float3 d =
       (float3)(0.3141f, 0.8660f, 0.3890f);  // off every axis that a scene is likely to be built along
-  const CameraRays line = {all3(info->camera_position.xyz), renormalized3(all3(d)), (REAL)(0.0f),
+  const CameraRays line = {all3(scene->info->camera_position.xyz), renormalized3(all3(d)), (REAL)(0.0f),
                            (REAL)(INFINITY)};
   SceneRays rays = scene_rays(&line, 0);  // one ray, in lane 0
   const MASK lane = lanes_of(1u);
@@ -48,18 +46,18 @@ NEVER_INLINE void follow_line_outside(TRACE_PARAMETERS, SHADE_PARAMETERS,
   MediaStack entered = 0, holding = 0;
   for (u32 i = 0; i < 4096u; ++i) {
     Hits hits;
-    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lane, false, false, &hits, counts);
+    nearest_hits(scene, &rays, lane, false, false, &hits, counts);
     if (MASK_LANE(hits.instance, 0) == (int)NO_INSTANCE) break;
-    const Faces faces = hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays.d, &hits, lane);
+    const Faces faces = hit_faces(scene, rays.d, &hits, lane);
 #if HAS_TOUCHING
-    if (any_lane(may_touch(instances, &hits, lane))) {
-      REAL_LANE(hits.t, 0) = cross_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, &hits, &entered, &holding);
-      continue_behind(info, &rays, &hits, faces.entering, lane);
+    if (any_lane(may_touch(scene->instances, &hits, lane))) {
+      REAL_LANE(hits.t, 0) = cross_faces(scene, &rays, &hits, &entered, &holding);
+      continue_behind(scene->info, &rays, &hits, faces.entering, lane);
       continue;
     }
 #endif
-    continue_behind(info, &rays, &hits, faces.entering, lane);
-    __global const Material* material = materials + MASK_LANE(faces.material, 0);
+    continue_behind(scene->info, &rays, &hits, faces.entering, lane);
+    __global const Material* material = scene->materials + MASK_LANE(faces.material, 0);
     if (!(material->flags & MATERIAL_TRANSMITS) || (material->flags & MATERIAL_THIN)) continue;
     if (MASK_LANE(faces.entering, 0))
       cross_boundary(&entered, material->medium, true);
@@ -72,6 +70,7 @@ NEVER_INLINE void follow_line_outside(TRACE_PARAMETERS, SHADE_PARAMETERS,
 
 // One work-item. Writes the camera's MediaStack to camera_media, low word first: a solid that the line leaves
 // without having entered it holds the camera, and the nearest such exit was entered last.
-__kernel void find_camera_media(TRACE_PARAMETERS, SHADE_PARAMETERS, __global u32* restrict camera_media) {
-  if (get_global_id(0) == 0) follow_line_outside(TRACE_ARGUMENTS, SHADE_ARGUMENTS, camera_media);
+__kernel void find_camera_media(SCENE_PARAMETERS, __global u32* restrict camera_media) {
+  const Scene scene = SCENE_OF_PARAMETERS;
+  if (get_global_id(0) == 0) follow_line_outside(&scene, camera_media);
 }

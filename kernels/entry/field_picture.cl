@@ -13,9 +13,9 @@
 #define ROWS (LANES / COLUMNS)
 
 // Work-item `item` of the kernel below.
-NEVER_INLINE void picture_item(SDF_PARAMETERS, __global float* restrict shades, __global u32* restrict counts,
-                               float4 origin, float4 right, float4 up, float4 forward, float4 light,
-                               u32 width, u32 height, u32 item) {
+NEVER_INLINE void picture_item(const Scene* scene, __global float* restrict shades,
+                               __global u32* restrict counts, float4 origin, float4 right, float4 up,
+                               float4 forward, float4 light, u32 width, u32 height, u32 item) {
   const u32 across = width / COLUMNS;
   const u32 x0 = item % across * COLUMNS, y0 = item / across * ROWS;
   REAL x = (REAL)(0.0f), y = (REAL)(0.0f);
@@ -34,20 +34,20 @@ NEVER_INLINE void picture_item(SDF_PARAMETERS, __global float* restrict shades, 
   rays.footprint = (REAL)(0.0f);
   rays.spread = (REAL)(scale);
   rays.active = ALL_LANES;
-  rays.step_limit = sdf_fields[0].step_limit;
+  rays.step_limit = scene->sdf_fields[0].step_limit;
   rays.inside = NO_LANES;
   rays.leaving = NO_LANES;
-  const MarchHits hits = march_rays(SDF_ARGUMENTS, 0, &rays);
+  const MarchHits hits = march_rays(scene, 0, &rays);
   REAL shade = (REAL)(0.0f);
   if (any_lane(hits.hit)) {
     const REAL3 p = along3(rays.origin, hits.t, rays.direction);
-    const SdfSurface s = sdf_surface(SDF_ARGUMENTS, 0, p, hits.threshold, hits.hit, hits.cut);
+    const SdfSurface s = sdf_surface(scene, 0, p, hits.threshold, hits.hit, hits.cut);
     const REAL3 wi = real3((REAL)(light.x), (REAL)(light.y), (REAL)(light.z));
     const REAL cosine = fmax(dot3(s.normal, wi), 0.0f);
     const REAL3 above = along3(p, 2.0f * hits.threshold, s.normal);
-    const REAL open = sdf_openness(SDF_ARGUMENTS, 0, above, s.normal, 0.2f, hits.hit);
-    u32 steps_left = sdf_fields[0].step_limit;
-    const REAL lit = sdf_soft_shadow(SDF_ARGUMENTS, 0, above, wi, 2.0f * hits.threshold, (REAL)(4.0f), 16.0f,
+    const REAL open = sdf_openness(scene, 0, above, s.normal, 0.2f, hits.hit);
+    u32 steps_left = scene->sdf_fields[0].step_limit;
+    const REAL lit = sdf_soft_shadow(scene, 0, above, wi, 2.0f * hits.threshold, (REAL)(4.0f), 16.0f,
                                      &steps_left, hits.hit & MASK_OF(cosine > 0.0f));
     shade = select(shade, fma(0.8f * cosine, lit, 0.2f * open), hits.hit);
   }
@@ -71,6 +71,7 @@ __kernel void field_picture(__global const SdfField* restrict sdf_fields,
                             __global u32* restrict counts, float4 origin, float4 right, float4 up,
                             float4 forward, float4 light, u32 width, u32 height) {
   const u32 item = get_global_id(0);
+  const Scene scene = {.sdf_fields = sdf_fields, .sdf_parameters = sdf_parameters};
   if (item < width * height / LANES)
-    picture_item(SDF_ARGUMENTS, shades, counts, origin, right, up, forward, light, width, height, item);
+    picture_item(&scene, shades, counts, origin, right, up, forward, light, width, height, item);
 }

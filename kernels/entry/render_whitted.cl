@@ -66,7 +66,7 @@ static inline void store_sample(const Job* job, u32 item, MASK lanes, const floa
 }
 
 // One work-item of the kernel below.
-NEVER_INLINE void render_item(TRACE_PARAMETERS, SHADE_PARAMETERS, MediaStack around, const Job* job, u32 item,
+NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Job* job, u32 item,
                               __global float4* restrict film, __global float* restrict weights,
                               __global u32* restrict counters) {
   u32 counts[COUNTERS];
@@ -79,9 +79,9 @@ NEVER_INLINE void render_item(TRACE_PARAMETERS, SHADE_PARAMETERS, MediaStack aro
     counts[COUNT_MARCH_LEFT] = MARCH_WORK;
 #endif
     SceneRays rays;
-    const MASK lanes = start_rays(info, job, item, sample, around, &rays);
+    const MASK lanes = start_rays(scene->info, job, item, sample, around, &rays);
     counts[COUNT_PRIMARY] += lane_count(lanes);
-    trace_whitted(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lanes, &stack, radiance, counts);
+    trace_whitted(scene, &rays, lanes, &stack, radiance, counts);
     store_sample(job, item, lanes, radiance, film, weights, counts);
   }
   counts[COUNT_MARCH_LEFT] = 0u;
@@ -92,15 +92,16 @@ NEVER_INLINE void render_item(TRACE_PARAMETERS, SHADE_PARAMETERS, MediaStack aro
 // Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of work-items
 // [first_item, last_item) of the rectangle (x0, y0, width, height) to film (rgb and coverage) and their
 // number to weights (a sample that is not finite counts for nothing); adds to counters.
-__kernel void render_whitted(TRACE_PARAMETERS, SHADE_PARAMETERS, __global const u32* restrict camera_media,
+__kernel void render_whitted(SCENE_PARAMETERS, __global const u32* restrict camera_media,
                              __global float4* restrict film, __global float* restrict weights,
                              __global u32* restrict counters, u32 x0, u32 y0, u32 width, u32 height,
                              u32 row_items, u32 first_item, u32 last_item, u32 first_sample,
                              u32 sample_count) {
+  const Scene scene = SCENE_OF_PARAMETERS;
   // Items count through the rectangle row by row; a launch in two dimensions takes whole rows of them.
   const u32 item = first_item + get_global_id(1) * row_items + get_global_id(0);
   if (get_global_id(0) >= row_items || item >= last_item) return;
   const Job job = {x0, y0, width, height, first_sample, sample_count, get_work_dim() == 1u};
-  render_item(TRACE_ARGUMENTS, SHADE_ARGUMENTS, (MediaStack)camera_media[1] << 32 | camera_media[0], &job,
-              item, film, weights, counters);
+  render_item(&scene, (MediaStack)camera_media[1] << 32 | camera_media[0], &job, item, film, weights,
+              counters);
 }

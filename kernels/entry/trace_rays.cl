@@ -68,15 +68,14 @@ ALWAYS_INLINE void load_batch(__global const Ray* rays, u32 ray_count, u32 first
 #endif
 }
 
-NEVER_INLINE void trace_rays_item(TRACE_PARAMETERS, __global const Ray* restrict rays,
+NEVER_INLINE void trace_rays_item(const Scene* scene, __global const Ray* restrict rays,
                                   __global Hit* restrict hits, u32 ray_count, u32 coherent, u32 item) {
   const u32 first = item * BATCH;
   if (first >= ray_count) return;
   Batch batch;
   load_batch(rays, ray_count, first, &batch);
   Hits found;
-  trace_batch(TRACE_ARGUMENTS, &batch.o, &batch.d, &batch.t_min, batch.t_max, batch.lanes, coherent != 0u,
-              &found);
+  trace_batch(scene, &batch.o, &batch.d, &batch.t_min, batch.t_max, batch.lanes, coherent != 0u, &found);
 #if LANES == 16
   if (first + BATCH <= ray_count) {
     float16 v[8] = {found.t,    found.u,    found.v,   as_float16(found.prim), as_float16(found.instance),
@@ -89,14 +88,14 @@ NEVER_INLINE void trace_rays_item(TRACE_PARAMETERS, __global const Ray* restrict
 #endif
   for (u32 i = 0; i < BATCH && first + i < ray_count; ++i) hits[first + i] = get_hit(&found, i);
 }
-NEVER_INLINE void occluded_rays_item(TRACE_PARAMETERS, __global const Ray* restrict rays,
+NEVER_INLINE void occluded_rays_item(const Scene* scene, __global const Ray* restrict rays,
                                      __global u32* restrict occluded, u32 ray_count, u32 coherent, u32 item) {
   const u32 first = item * BATCH;
   if (first >= ray_count) return;
   Batch batch;
   load_batch(rays, ray_count, first, &batch);
-  const MASK found = occluded_batch(TRACE_ARGUMENTS, &batch.o, &batch.d, &batch.t_min, batch.t_max,
-                                    batch.lanes, coherent != 0u);
+  const MASK found =
+      occluded_batch(scene, &batch.o, &batch.d, &batch.t_min, batch.t_max, batch.lanes, coherent != 0u);
 #if LANES == 16
   if (first + BATCH <= ray_count) {
     vstore16(as_uint16(found) & 1u, 0, occluded + first);
@@ -107,13 +106,15 @@ NEVER_INLINE void occluded_rays_item(TRACE_PARAMETERS, __global const Ray* restr
     occluded[first + i] = (u32)MASK_LANE(found, i) & 1u;
 }
 // Reads ray_count rays; writes the nearest hit of each in (t_min, t_max].
-__kernel void trace_rays(TRACE_PARAMETERS, __global const Ray* restrict rays, __global Hit* restrict hits,
+__kernel void trace_rays(SCENE_PARAMETERS, __global const Ray* restrict rays, __global Hit* restrict hits,
                          u32 ray_count, u32 coherent) {
-  trace_rays_item(TRACE_ARGUMENTS, rays, hits, ray_count, coherent, get_global_id(0));
+  const Scene scene = SCENE_OF_PARAMETERS;
+  trace_rays_item(&scene, rays, hits, ray_count, coherent, get_global_id(0));
 }
 
 // Reads ray_count rays; writes 1 where anything is hit in (t_min, t_max], else 0.
-__kernel void occluded_rays(TRACE_PARAMETERS, __global const Ray* restrict rays,
+__kernel void occluded_rays(SCENE_PARAMETERS, __global const Ray* restrict rays,
                             __global u32* restrict occluded, u32 ray_count, u32 coherent) {
-  occluded_rays_item(TRACE_ARGUMENTS, rays, occluded, ray_count, coherent, get_global_id(0));
+  const Scene scene = SCENE_OF_PARAMETERS;
+  occluded_rays_item(&scene, rays, occluded, ray_count, coherent, get_global_id(0));
 }

@@ -10,21 +10,21 @@
 
 // Sends shadow rays from the surfaces of `lanes` to one light, with what it would do there: Ij (kd n.l +
 // ks (r.v)^b) Vj.
-static inline void cast_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, const SceneRays* rays,
-                                const PathStates* paths, MASK lanes, const Encounters* met, const Surfaces* s,
-                                ShadowStack* stack, u32* counts) {
-  const LightSamples light = sample_light(lights + index, s->p);
+static inline void cast_shadows(const Scene* scene, u32 index, const SceneRays* rays, const PathStates* paths,
+                                MASK lanes, const Encounters* met, const Surfaces* s, ShadowStack* stack,
+                                u32* counts) {
+  const LightSamples light = sample_light(scene->lights + index, s->p);
   const MASK facing = lanes & MASK_OF(dot3(s->ns, light.wi) > 0.0f);
   if (!any_lane(facing)) return;
   const REAL3 possible =
-      multiply3(light.radiance, local_reflection(materials, &met->face, s, rays->d, light.wi, facing));
+      multiply3(light.radiance, local_reflection(scene->materials, &met->face, s, rays->d, light.wi, facing));
   // A high power of (r.v) may leave less than the least normal float, which some devices take for zero: not
   // worth a ray.
   const MASK lit = facing & MASK_OF(greatest3(possible) >= FLT_MIN);
   if (!any_lane(lit)) return;
   counts[COUNT_SHADOW] += lane_count(lit);
   SceneRays to_light = *rays;
-  start_on_surfaces(info, &to_light, &met->hit, ~met->face.entering, lit);
+  start_on_surfaces(scene->info, &to_light, &met->hit, ~met->face.entering, lit);
   to_light.o = along3(s->p, s->offset, s->ng);
   to_light.d = light.wi;
   to_light.t_min = (REAL)(0.0f);
@@ -33,8 +33,7 @@ static inline void cast_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, c
   weights.depth = NO_LANES;
   weights.throughput = multiply3(paths->throughput, possible);
 #if HAS_SOFT_SHADOWS
-  weights.throughput =
-      scale3(weights.throughput, soft_shadows(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &to_light, lit, counts));
+  weights.throughput = scale3(weights.throughput, soft_shadows(scene, &to_light, lit, counts));
 #endif
   push_shadows(stack, &to_light, &weights, lit);
 }
@@ -93,18 +92,18 @@ static inline REAL3 transmitted_direction(REAL3 d, const Surfaces* s, REAL cos_i
 }
 
 // The children of the surfaces of `lanes`: kr I(reflected) + kt I(transmitted).
-static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const Surfaces* s,
-                                  const Encounters* met, const SceneRays* rays, const PathStates* paths,
-                                  MASK lanes, RayStack* stack, u32* counts) {
+static inline void spawn_children(const Scene* scene, const Surfaces* s, const Encounters* met,
+                                  const SceneRays* rays, const PathStates* paths, MASK lanes, RayStack* stack,
+                                  u32* counts) {
   const Faces* faces = &met->face;
-  Splits split = split_light(materials, faces, lanes);
+  Splits split = split_light(scene->materials, faces, lanes);
   if (!any_lane(split.branches)) return;
   const MASK transmits = split.branches & MASK_OF((faces->flags & (int)MATERIAL_TRANSMITS) != 0);
   const MASK bends = transmits & MASK_OF((faces->flags & (int)MATERIAL_THIN) == 0);
   REAL eta = (REAL)(1.0f), cos_t = (REAL)(1.0f);
   const REAL cos_i = real_clamp(-dot3(s->ns, rays->d), (REAL)(0.0f), (REAL)(1.0f));
   if (any_lane(transmits | split.dielectric)) {
-    eta = relative_index(media, met, bends);
+    eta = relative_index(scene->media, met, bends);
     cos_t = refracted_cosine(cos_i, eta);
     const REAL f = select((REAL)(0.0f), fresnel_reflectance(cos_i, cos_t, eta), bends);
     // Total internal reflection turns everything into reflection.
@@ -119,19 +118,19 @@ static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const Surf
   child.t_max = (REAL)(INFINITY);
   PathStates state = *paths;
   state.depth = paths->depth + 1;
-  start_on_surfaces(info, &child, &met->hit, ~faces->entering, split.branches);
+  start_on_surfaces(scene->info, &child, &met->hit, ~faces->entering, split.branches);
   child.d = reflect_direction(rays->d, s->ns);
   // A shading normal must not send it inside.
   child.d = select3(reflect_direction(rays->d, s->ng), child.d, MASK_OF(dot3(child.d, s->ng) > 0.0f));
   child.o = along3(s->p, s->offset, s->ng);
   state.throughput = multiply3(paths->throughput, split.kr);
-  spawn(info, stack, &child, &state, split.branches, COUNT_REFLECTION, counts);
+  spawn(scene->info, stack, &child, &state, split.branches, COUNT_REFLECTION, counts);
 
   if (!any_lane(transmits)) return;
   child.d = transmitted_direction(rays->d, s, cos_i, cos_t, eta);
   child.o = along3(s->p, -s->offset, s->ng);
   state.throughput = multiply3(paths->throughput, split.kt);
-  start_on_hits(info, &child, &met->hit, faces->entering, transmits);
+  start_on_hits(scene->info, &child, &met->hit, faces->entering, transmits);
 #if HAS_TOUCHING
   child.media_low = select(child.media_low, met->behind_low, transmits);
   child.media_high = select(child.media_high, met->behind_high, transmits);
@@ -143,15 +142,15 @@ static inline void spawn_children(TRACE_PARAMETERS, SHADE_PARAMETERS, const Surf
     set_media(&child, i, crossed);
   }
 #endif
-  spawn(info, stack, &child, &state, transmits, COUNT_REFRACTION, counts);
+  spawn(scene->info, stack, &child, &state, transmits, COUNT_REFRACTION, counts);
 }
 #endif
 
 // The rays of `lanes` at what they met: the surfaces of those that hit something, which are returned, and
 // what the `fresh` ones see and spawn there. The rays of `unseen` saw only what lay before.
-static inline MASK look_around(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRays* rays, PathStates* paths,
-                               MASK lanes, MASK unseen, MASK fresh, const Encounters* met, Surfaces* s,
-                               REAL3* light, RayStack* stack, float4* radiance, u32* counts) {
+static inline MASK look_around(const Scene* scene, const SceneRays* rays, PathStates* paths, MASK lanes,
+                               MASK unseen, MASK fresh, const Encounters* met, Surfaces* s, REAL3* light,
+                               RayStack* stack, float4* radiance, u32* counts) {
   REAL3 seen = all3((float3)(0.0f));
 #if HAS_GLOW
   seen = multiply3(paths->throughput, rays->glow);
@@ -163,24 +162,24 @@ static inline MASK look_around(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRa
   const MASK ended = lanes & ~unseen, hit = ended & hit_anything(&met->hit);
 #if HAS_FOG
   const MASK foggy = ended & MASK_OF(met->before == 0);
-  const REAL clear = select((REAL)(1.0f), real_exp(-info->fog.w * met->hit.t), foggy);
-  seen = add3(seen, multiply3(scale3(paths->throughput, 1.0f - clear), all3(info->fog.xyz)));
+  const REAL clear = select((REAL)(1.0f), real_exp(-scene->info->fog.w * met->hit.t), foggy);
+  seen = add3(seen, multiply3(scale3(paths->throughput, 1.0f - clear), all3(scene->info->fog.xyz)));
   paths->throughput = scale3(paths->throughput, clear);
 #endif
-  const REAL3 background = multiply3(paths->throughput, background_along(info, rays->d));
+  const REAL3 background = multiply3(paths->throughput, background_along(scene->info, rays->d));
   seen = select3(seen, add3(seen, background), ended & ~hit);
   if (any_lane(hit)) {
-    interact(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->o, rays->d, &met->hit, &met->face, hit, s);
+    interact(scene, rays->o, rays->d, &met->hit, &met->face, hit, s);
 #if HAS_TOUCHING
     s->offset = real_max(s->offset, met->apart);
 #endif
-    REAL3 own = multiply3(s->ambient, all3(info->ambient.xyz));
+    REAL3 own = multiply3(s->ambient, all3(scene->info->ambient.xyz));
 #if HAS_OCCLUSION
-    own = scale3(own, field_openness(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, &met->hit, hit));
+    own = scale3(own, field_openness(scene, rays, &met->hit, hit));
 #endif
     seen = select3(seen, add3(seen, multiply3(paths->throughput, own)), hit);
 #if HAS_SECONDARY
-    spawn_children(TRACE_ARGUMENTS, SHADE_ARGUMENTS, s, met, rays, paths, hit & fresh, stack, counts);
+    spawn_children(scene, s, met, rays, paths, hit & fresh, stack, counts);
 #endif
     const MASK first = hit & fresh & MASK_OF(paths->depth == 1);
     counts[COUNT_PRIMARY_HIT] += lane_count(first);

@@ -7,15 +7,15 @@
 #if HAS_OCCLUSION
 // The part of ambient light that the field of a hit lets reach that point of it: 1 for everything else, and
 // where the field has no occlusion.
-NEVER_INLINE REAL field_openness(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRays* rays, const Hits* hits,
-                                 MASK lanes) {
+NEVER_INLINE REAL field_openness(const Scene* scene, const SceneRays* rays, const Hits* hits, MASK lanes) {
   REAL open = (REAL)(1.0f);
-  for (u32 index = info->instance_count; index < info->field_end; ++index) {
-    const float reach = sdf_fields[instances[index].root].occlusion_reach;
+  for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index) {
+    const float reach = scene->sdf_fields[scene->instances[index].root].occlusion_reach;
     const MASK mine = lanes & MASK_OF(hits->instance == (int)index);
     if (!(reach > 0.0f) || !any_lane(mine)) continue;
-    const REAL3 o = field_points(instances + index, rays->o), d = object_vectors(instances + index, rays->d);
-    const REAL value = sdf_openness(SDF_ARGUMENTS, instances[index].root, along3(o, hits->t, d),
+    const REAL3 o = field_points(scene->instances + index, rays->o),
+                d = object_vectors(scene->instances + index, rays->d);
+    const REAL value = sdf_openness(scene, scene->instances[index].root, along3(o, hits->t, d),
                                     unit3(hits->ng), reach, mine);
     open = select(open, value, mine);
   }
@@ -25,14 +25,13 @@ NEVER_INLINE REAL field_openness(TRACE_PARAMETERS, SHADE_PARAMETERS, const Scene
 
 #if HAS_SOFT_SHADOWS
 // What the fields with soft shadows let pass along the rays.
-NEVER_INLINE REAL soft_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRays* rays, MASK active,
-                               u32* counts) {
+NEVER_INLINE REAL soft_shadows(const Scene* scene, const SceneRays* rays, MASK active, u32* counts) {
   REAL through = (REAL)(1.0f);
   RayLanes lanes = load_lanes(rays, rays->t_max, active);
-  for (u32 index = info->instance_count; index < info->field_end; ++index) {
-    __global const SdfField* field = sdf_fields + instances[index].root;
+  for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index) {
+    __global const SdfField* field = scene->sdf_fields + scene->instances[index].root;
     if (!(field->shadow_hardness > 0.0f)) continue;
-    const MarchRays ray = march_from(SDF_ARGUMENTS, info, instances, index, false, &lanes);
+    const MarchRays ray = march_from(scene, index, false, &lanes);
     const REAL speed = length3(ray.direction);
     const REAL threshold =
         clamp(ray.footprint * speed * field->detail, (REAL)(field->lower.w), (REAL)(field->upper.w));
@@ -40,7 +39,7 @@ NEVER_INLINE REAL soft_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRa
     const u32 before = steps_left(field, counts);
     u32 left = before;
     const REAL open =
-        sdf_soft_shadow(SDF_ARGUMENTS, instances[index].root, ray.origin, scale3(ray.direction, 1.0f / speed),
+        sdf_soft_shadow(scene, scene->instances[index].root, ray.origin, scale3(ray.direction, 1.0f / speed),
                         start, ray.t_max * speed, field->shadow_hardness, &left, ray.active);
     pay_for_steps(field, before - left, counts);
     through *= open;

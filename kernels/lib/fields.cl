@@ -59,17 +59,15 @@ static inline MASK starts_within(__global const SdfField* restrict field, const 
 }
 
 // The rays in the field's own space, and on which side of its surface they start.
-static inline MarchRays march_from(SDF_PARAMETERS, __global const SceneInfo* restrict info,
-                                   __global const Instance* restrict instances, u32 index, bool two_sided,
-                                   const RayLanes* lanes) {
-  __global const Instance* instance = instances + index;
+static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided, const RayLanes* lanes) {
+  __global const Instance* instance = scene->instances + index;
   MarchRays rays;
   rays.origin = field_points(instance, lanes->o);
   rays.direction = object_vectors(instance, lanes->d);
   rays.t_min = lanes->t_min;
   rays.t_max = lanes->t_best;
   rays.footprint = lanes->footprint;
-  rays.spread = (REAL)(pixel_spread(info));
+  rays.spread = (REAL)(pixel_spread(scene->info));
   rays.active = lanes->active;
   rays.leaving = MASK_OF((lanes->from | 1) == (int)(index * 2u + 1u));
   rays.inside = NO_LANES;
@@ -77,10 +75,10 @@ static inline MarchRays march_from(SDF_PARAMETERS, __global const SceneInfo* res
   if (two_sided) {
     rays.inside = rays.leaving & MASK_OF((lanes->from & 1) != 0);
     // A ray that starts elsewhere asks the field itself.
-    const MASK ask = rays.active & ~rays.leaving & starts_within(sdf_fields + instance->root, &rays);
+    const MASK ask = rays.active & ~rays.leaving & starts_within(scene->sdf_fields + instance->root, &rays);
     if (any_lane(ask)) {
       const REAL3 start = along3(rays.origin, rays.t_min, rays.direction);
-      rays.inside |= ask & MASK_OF(sdf_signed(instance->root, start, ask, sdf_parameters) < 0.0f);
+      rays.inside |= ask & MASK_OF(sdf_signed(instance->root, start, ask, scene->sdf_parameters) < 0.0f);
     }
   }
 #endif
@@ -101,17 +99,17 @@ static inline void pay_for_steps(__global const SdfField* restrict field, u32 st
 }
 
 // Marches through one field and keeps what is nearer.
-static inline void march_field(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, RayLanes* lanes, u32* counts) {
-  __global const SdfField* restrict field = sdf_fields + instances[index].root;
-  const u32 flags = materials[instances[index].material].flags;
+static inline void march_field(const Scene* scene, u32 index, RayLanes* lanes, u32* counts) {
+  __global const SdfField* restrict field = scene->sdf_fields + scene->instances[index].root;
+  const u32 flags = scene->materials[scene->instances[index].material].flags;
   const bool two_sided = (flags & MATERIAL_TRANSMITS) && !(flags & MATERIAL_THIN);
-  MarchRays rays = march_from(SDF_ARGUMENTS, info, instances, index, two_sided, lanes);
+  MarchRays rays = march_from(scene, index, two_sided, lanes);
   rays.step_limit = min(field->step_limit, steps_left(field, counts));
   if (rays.step_limit == 0u) {
     counts[COUNT_MARCH_BUDGET] += 1u;
     return;
   }
-  const MarchHits hits = march_rays(SDF_ARGUMENTS, instances[index].root, &rays);
+  const MarchHits hits = march_rays(scene, scene->instances[index].root, &rays);
   const MASK nearer = hits.hit & MASK_OF(hits.t < lanes->t_best);
   lanes->t_best = select(lanes->t_best, hits.t, nearer);
   lanes->threshold = select(lanes->threshold, hits.threshold, nearer);
@@ -136,12 +134,12 @@ static inline void march_field(TRACE_PARAMETERS, SHADE_PARAMETERS, u32 index, Ra
 }
 
 // Normals and colours of the lanes that met instance `index`.
-static inline void shade_lanes(SDF_PARAMETERS, __global const Instance* restrict instances, u32 index,
-                               const RayLanes* lanes, Hits* hits) {
+static inline void shade_lanes(const Scene* scene, u32 index, const RayLanes* lanes, Hits* hits) {
   const MASK mine = MASK_OF(lanes->winner == (int)index);
   if (!any_lane(mine)) return;
-  const REAL3 o = field_points(instances + index, lanes->o), d = object_vectors(instances + index, lanes->d);
-  const SdfSurface surface = sdf_surface(SDF_ARGUMENTS, instances[index].root, along3(o, lanes->t_best, d),
+  const REAL3 o = field_points(scene->instances + index, lanes->o),
+              d = object_vectors(scene->instances + index, lanes->d);
+  const SdfSurface surface = sdf_surface(scene, scene->instances[index].root, along3(o, lanes->t_best, d),
                                          lanes->threshold, mine, lanes->cut);
   // A normal must not contradict the side that the ray comes from: it is bent as far as the silhouette.
   const REAL speed = length3(d), towards = dot3(surface.normal, d) / speed;
@@ -166,19 +164,19 @@ static inline void shade_lanes(SDF_PARAMETERS, __global const Instance* restrict
 
 // Takes `hits`, which holds the nearest ones so far, to a field's where that is nearer, for the lanes of
 // `active`. A hit's u, v and prim hold its colour. Adds to the rays' glow.
-NEVER_INLINE void march_fields(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active, u32 purpose,
-                               Hits* hits, u32* counts) {
+NEVER_INLINE void march_fields(const Scene* scene, SceneRays* rays, MASK active, u32 purpose, Hits* hits,
+                               u32* counts) {
   const bool to_light = purpose != MARCH_TO_SEE;
   RayLanes lanes = load_lanes(rays, hits->t, active);
-  for (u32 index = info->instance_count; index < info->field_end; ++index)
-    if (!(to_light && sdf_fields[instances[index].root].shadow_hardness > 0.0f))
-      march_field(TRACE_ARGUMENTS, SHADE_ARGUMENTS, index, &lanes, counts);
+  for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index)
+    if (!(to_light && scene->sdf_fields[scene->instances[index].root].shadow_hardness > 0.0f))
+      march_field(scene, index, &lanes, counts);
   if (purpose == MARCH_TO_BLOCK) {
     hits->instance = select(hits->instance, lanes.winner, MASK_OF(lanes.winner >= 0));
     return;
   }
-  for (u32 index = info->instance_count; index < info->field_end; ++index)
-    shade_lanes(SDF_ARGUMENTS, instances, index, &lanes, hits);
+  for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index)
+    shade_lanes(scene, index, &lanes, hits);
 #if HAS_GLOW
   if (!to_light) rays->glow = select3(rays->glow, add3(rays->glow, lanes.glow), active);
 #endif

@@ -114,23 +114,23 @@ NEVER_INLINE bool lanes_in_blocks(__global const TriangleBlock* blocks, const Pa
   return nearer;
 }
 
-NEVER_INLINE void packet_in_mesh(TRACE_PARAMETERS, const PacketRays* rays, PacketHits* hits, u32 root,
+NEVER_INLINE void packet_in_mesh(const Scene* scene, const PacketRays* rays, PacketHits* hits, u32 root,
                                  u32 instance, bool any) {
   PacketWalk walk;
   walk.top = 0;
   walk.first = root;
   u32 word, active;
-  while (next_place(nodes, rays, hits, &walk, any, &word, &active)) {
+  while (next_place(scene->nodes, rays, hits, &walk, any, &word, &active)) {
     bool hit = false;
     const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
     if (!(word & BVH_LEAF)) {
-      hit = walk_lanes(TRACE_ARGUMENTS, rays, hits, active, word, instance, any);
+      hit = walk_lanes(scene, rays, hits, active, word, instance, any);
     } else if (popcount(active) <= (any ? ANY_LEAF_LEAST : LEAF_LEAST)) {
-      hit = lanes_in_blocks(blocks, rays, hits, active, first, last, instance, any);
+      hit = lanes_in_blocks(scene->blocks, rays, hits, active, first, last, instance, any);
     } else {
       for (u32 index = first; index <= last; ++index)
-        for (u32 bits = triangles_in_packet(blocks + index, rays); bits; bits &= bits - 1u)
-          hit |= packet_triangle(blocks, index * 8u + lowest_bit(bits), rays, hits, instance, any);
+        for (u32 bits = triangles_in_packet(scene->blocks + index, rays); bits; bits &= bits - 1u)
+          hit |= packet_triangle(scene->blocks, index * 8u + lowest_bit(bits), rays, hits, instance, any);
     }
     if (hit) renew_bounds(hits);
   }

@@ -54,22 +54,21 @@ static inline MediaStack media_behind(const SceneRays* rays, const Encounters* m
 
 #if HAS_TOUCHING
 // The lanes of `lanes`, whose faces may touch others. Returns those that go on, as in cross_unseen().
-static inline MASK cross_touching(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, Encounters* met,
-                                  MASK lanes, u32* counts) {
+static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounters* met, MASK lanes,
+                                  u32* counts) {
   MASK unseen = NO_LANES;
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     Seen seen;
     float apart;
-    const float end = meet_touching(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, i, MATERIAL_TRANSMITS, &met->hit,
-                                    &met->face, &seen, &apart);
+    const float end = meet_touching(scene, rays, i, MATERIAL_TRANSMITS, &met->hit, &met->face, &seen, &apart);
     REAL_LANE(met->apart, i) = apart;
     MASK_LANE(met->behind_low, i) = (int)seen.behind;
     MASK_LANE(met->behind_high, i) = (int)(seen.behind >> 32);
     counts[COUNT_MEDIA_STACK_OVERFLOW] += seen.overflows;
     counts[COUNT_STRAY_EXIT] += seen.strays;
     if (((u32)MASK_LANE(met->face.flags, i) & INTERFACE) != MATERIAL_TRANSMITS) continue;
-    if (!cross_if_unseen(media, rays, met, i, seen.behind)) continue;
+    if (!cross_if_unseen(scene->media, rays, met, i, seen.behind)) continue;
     MASK_LANE(unseen, i) = -1;
     REAL_LANE(met->hit.t, i) = end;
   }
@@ -79,13 +78,13 @@ static inline MASK cross_touching(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays*
 
 // The lanes of `waiting` at their next hits. Returns those that go on through invisible interfaces: their
 // rays are then what holds behind.
-static inline MASK cross_unseen(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, Encounters* met,
-                                MASK waiting, u32* counts) {
+static inline MASK cross_unseen(const Scene* scene, SceneRays* rays, Encounters* met, MASK waiting,
+                                u32* counts) {
   const MASK hit = waiting & hit_anything(&met->hit);
-  const MASK here = current_media(media, rays, waiting);
+  const MASK here = current_media(scene->media, rays, waiting);
   met->before = select(met->before, here, waiting);
   met->after = select(met->after, here, waiting);
-  const Faces faces = hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->d, &met->hit, hit);
+  const Faces faces = hit_faces(scene, rays->d, &met->hit, hit);
   met->face.outward = select3(met->face.outward, faces.outward, hit);
   met->face.entering = select(met->face.entering, faces.entering, hit);
   met->face.material = select(met->face.material, faces.material, hit);
@@ -98,20 +97,21 @@ static inline MASK cross_unseen(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* r
   met->behind_high = select(met->behind_high, rays->media_high, waiting);
   met->apart = select(met->apart, (REAL)(0.0f), waiting);
   const MASK touching =
-      may_touch(instances, &met->hit, hit & MASK_OF((faces.flags & (int)MATERIAL_TRANSMITS) != 0));
+      may_touch(scene->instances, &met->hit, hit & MASK_OF((faces.flags & (int)MATERIAL_TRANSMITS) != 0));
   interface &= ~touching;
-  unseen |= cross_touching(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, met, touching, counts);
+  unseen |= cross_touching(scene, rays, met, touching, counts);
 #endif
   for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    if (cross_if_unseen(media, rays, met, i, media_behind(rays, met, i, counts))) MASK_LANE(unseen, i) = -1;
+    if (cross_if_unseen(scene->media, rays, met, i, media_behind(rays, met, i, counts)))
+      MASK_LANE(unseen, i) = -1;
   }
   const MASK leaves = (waiting & ~unseen) | (unseen & MASK_OF(met->after != met->before));
-  const REAL3 kept = absorb(media, here, met->hit.t - rays->since, leaves);
+  const REAL3 kept = absorb(scene->media, here, met->hit.t - rays->since, leaves);
   met->absorbed = multiply3(met->absorbed, kept);
   if (any_lane(unseen)) {
     rays->since = select(rays->since, met->hit.t, unseen & leaves);
-    continue_behind(info, rays, &met->hit, met->face.entering, unseen);
+    continue_behind(scene->info, rays, &met->hit, met->face.entering, unseen);
   }
   return unseen;
 }
@@ -120,8 +120,8 @@ static inline MASK cross_unseen(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* r
 // The lanes of `active` at the interfaces met->hit. Returns those that cannot see them: their rays are then
 // what holds behind. The media of the others are those just before the surface. Crossed interfaces do not
 // move the origin, so what lies behind a vanished interface keeps its bits.
-static inline MASK reach_interfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active,
-                                    Encounters* met, u32* counts) {
+static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK active, Encounters* met,
+                                    u32* counts) {
   met->absorbed = all3((float3)(1.0f));
   met->before = NO_LANES;
   met->after = NO_LANES;
@@ -136,31 +136,30 @@ static inline MASK reach_interfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRay
   met->behind_high = NO_LANES;
   met->apart = (REAL)(0.0f);
 #endif
-  return cross_unseen(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, met, active, counts);
+  return cross_unseen(scene, rays, met, active, counts);
 #else
-  met->face =
-      hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->d, &met->hit, active & hit_anything(&met->hit));
+  met->face = hit_faces(scene, rays->d, &met->hit, active & hit_anything(&met->hit));
   return NO_LANES;
 #endif
 }
 
 // Takes the lanes of `active` in (t_min, t_max] there. `coherent`: the rays run close together.
-static inline MASK next_interfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active,
-                                   bool coherent, Encounters* met, u32* counts) {
-  nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, coherent, false, &met->hit, counts);
-  return reach_interfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, met, counts);
+static inline MASK next_interfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
+                                   Encounters* met, u32* counts) {
+  nearest_hits(scene, rays, active, coherent, false, &met->hit, counts);
+  return reach_interfaces(scene, rays, active, met, counts);
 }
 
 // The same to their next visible surfaces.
-static inline void next_surfaces(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, MASK active,
-                                 bool coherent, Encounters* met, u32* counts) {
-  MASK waiting = next_interfaces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, active, coherent, met, counts);
+static inline void next_surfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
+                                 Encounters* met, u32* counts) {
+  MASK waiting = next_interfaces(scene, rays, active, coherent, met, counts);
   while (any_lane(waiting)) {
 #if HAS_MEDIA
     Hits hits;
-    nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, waiting, false, false, &hits, counts);
+    nearest_hits(scene, rays, waiting, false, false, &hits, counts);
     met->hit = select_hits(&met->hit, &hits, waiting);
-    waiting = cross_unseen(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, met, waiting, counts);
+    waiting = cross_unseen(scene, rays, met, waiting, counts);
 #endif
   }
 }

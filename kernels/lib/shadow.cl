@@ -40,32 +40,30 @@ static inline void filter_light(__global const Material* restrict materials,
 #if HAS_TOUCHING
 // The lanes of `lanes`, whose faces may touch others: hits and faces become those of what touches there, the
 // media of `behind` those behind it.
-static inline void pass_touching(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRays* rays, Hits* hits,
-                                 Faces* faces, SceneRays* behind, MASK lanes) {
+static inline void pass_touching(const Scene* scene, const SceneRays* rays, Hits* hits, Faces* faces,
+                                 SceneRays* behind, MASK lanes) {
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     Seen seen;
     float apart;
-    REAL_LANE(hits->t, i) =
-        meet_touching(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, i, MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE,
-                      hits, faces, &seen, &apart);
+    REAL_LANE(hits->t, i) = meet_touching(scene, rays, i, MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE, hits,
+                                          faces, &seen, &apart);
     set_media(behind, i, seen.behind);
   }
 }
 #endif
 
 // The lanes of `waiting` at their next hits. Returns those that go on to the light, of which `light` is left.
-static inline MASK pass_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, Hits* hits, MASK waiting,
-                                REAL3* light) {
+static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits, MASK waiting, REAL3* light) {
   const MASK hit = waiting & hit_anything(hits);
-  const MASK here = current_media(media, rays, waiting);
-  Faces faces = hit_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays->d, hits, hit);
+  const MASK here = current_media(scene->media, rays, waiting);
+  Faces faces = hit_faces(scene, rays->d, hits, hit);
   const int kind = (int)(MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE);
   MASK passing = hit & MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
 #if HAS_TOUCHING
   SceneRays behind = *rays;
-  const MASK touching = may_touch(instances, hits, passing);
-  pass_touching(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, hits, &faces, &behind, touching);
+  const MASK touching = may_touch(scene->instances, hits, passing);
+  pass_touching(scene, rays, hits, &faces, &behind, touching);
   passing &= MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
 #endif
   *light = select3(*light, all3((float3)(0.0f)), hit & ~passing);
@@ -83,14 +81,14 @@ static inline MASK pass_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* r
 #endif
       cross_boundary(&stack, (u32)MASK_LANE(faces.medium, i), MASK_LANE(faces.entering, i));
     set_media(rays, i, stack);
-    MASK_LANE(there, i) = (int)current_medium(media, stack);
+    MASK_LANE(there, i) = (int)current_medium(scene->media, stack);
   }
 #if HAS_TOUCHING
   rays->media_low = select(rays->media_low, behind.media_low, touching & passing);
   rays->media_high = select(rays->media_high, behind.media_high, touching & passing);
 #endif
   const MASK changes = interface & MASK_OF(there != here);
-  const REAL3 kept = absorb(media, here, hits->t - rays->since, (waiting & ~hit) | changes);
+  const REAL3 kept = absorb(scene->media, here, hits->t - rays->since, (waiting & ~hit) | changes);
   *light = multiply3(*light, kept);
   rays->since = select(rays->since, hits->t, changes);
   through = (passing & ~interface) | changes;
@@ -98,18 +96,18 @@ static inline MASK pass_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* r
   const MASK there = here;
 #endif
   if (!any_lane(passing)) return NO_LANES;
-  filter_light(materials, media, &faces, here, there, rays->d, through, light);
-  continue_behind(info, rays, hits, faces.entering, passing);
+  filter_light(scene->materials, scene->media, &faces, here, there, rays->d, through, light);
+  continue_behind(scene->info, rays, hits, faces.entering, passing);
   return passing & MASK_OF(greatest3(*light) > 0.0f);
 }
 #endif
 
 // The shadow rays of `lanes` at what they met: what reaches the lights is added to the pixels. Returns those
 // that go on.
-static inline MASK reach_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* rays, PathStates* paths,
-                                 Hits* hits, MASK lanes, float4* radiance, u32* counts) {
+static inline MASK reach_filters(const Scene* scene, SceneRays* rays, PathStates* paths, Hits* hits,
+                                 MASK lanes, float4* radiance, u32* counts) {
 #if HAS_SHADOW_FILTERS
-  const MASK passing = pass_filters(TRACE_ARGUMENTS, SHADE_ARGUMENTS, rays, hits, lanes, &paths->throughput);
+  const MASK passing = pass_filters(scene, rays, hits, lanes, &paths->throughput);
   const MASK too_many = passing & MASK_OF(rays->crossings >= MAX_FILTERS);
   counts[COUNT_SHADOW_LIMIT] += lane_count(too_many);
   add_to_pixels(paths->throughput, paths->pixel, lanes & ~passing, radiance);
@@ -118,7 +116,8 @@ static inline MASK reach_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* 
   const MASK arriving = lanes & ~hit_anything(hits);
   REAL3 light = paths->throughput;
 #if HAS_MEDIA
-  light = multiply3(light, absorb(media, current_media(media, rays, arriving), rays->t_max, arriving));
+  light = multiply3(light,
+                    absorb(scene->media, current_media(scene->media, rays, arriving), rays->t_max, arriving));
 #endif
   add_to_pixels(light, paths->pixel, arriving, radiance);
   return NO_LANES;
@@ -128,21 +127,20 @@ static inline MASK reach_filters(TRACE_PARAMETERS, SHADE_PARAMETERS, SceneRays* 
 #if BATCH > 1
 // Takes the newest shadow rays, at most `most`, to the light or to their next filters, where those that pass
 // wait again. `coherent`: the rays run close together.
-NEVER_INLINE void advance_shadows(TRACE_PARAMETERS, SHADE_PARAMETERS, ShadowStack* stack, u32 most,
-                                  bool coherent, float4* radiance, u32* counts) {
+NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 most, bool coherent,
+                                  float4* radiance, u32* counts) {
   SceneRays rays;
   PathStates paths;
   const MASK lanes = pop_shadows(stack, most, &rays, &paths);
   Hits hits;
 #if HAS_SHADOW_FILTERS
-  nearest_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lanes, coherent, true, &hits, counts);
+  nearest_hits(scene, &rays, lanes, coherent, true, &hits, counts);
 #else
   hits = no_hits(rays.t_max);
-  const MASK occluded = any_hits(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, lanes, coherent, counts);
+  const MASK occluded = any_hits(scene, &rays, lanes, coherent, counts);
   hits.instance = select(hits.instance, NO_LANES, occluded);
 #endif
-  const MASK passing =
-      reach_filters(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &rays, &paths, &hits, lanes, radiance, counts);
+  const MASK passing = reach_filters(scene, &rays, &paths, &hits, lanes, radiance, counts);
   push_shadows(stack, &rays, &paths, passing);
 }
 #endif

@@ -23,8 +23,9 @@ static inline void trace_solid(__global const Instance* restrict instances, u32 
 #if HAS_MESH
 // Nearest hit in one mesh BVH, or with `any` whichever comes first; o, d in object space. Uses the stack from
 // `stack` on. A hit's prim is left as finish_triangle wants it.
-static inline void trace_mesh(TRACE_PARAMETERS, u32 root, const SlabRay* slab_ray, const ShearRay* shear_ray,
-                              float t_min, u32 instance, bool any, u32* stack, float* stack_t, Hit* found) {
+static inline void trace_mesh(const Scene* scene, u32 root, const SlabRay* slab_ray,
+                              const ShearRay* shear_ray, float t_min, u32 instance, bool any, u32* stack,
+                              float* stack_t, Hit* found) {
   // Copies that nothing else can point at stay in registers.
   const SlabRay slabs = *slab_ray;
   const ShearRay shear = *shear_ray;
@@ -34,13 +35,13 @@ static inline void trace_mesh(TRACE_PARAMETERS, u32 root, const SlabRay* slab_ra
     if (word & BVH_LEAF) {
       const u32 first = word & BVH_FIRST_MASK,
                 last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
-      for (u32 i = first; i <= last; ++i) closest_in_block(blocks, i, &shear, t_min, instance, &hit);
+      for (u32 i = first; i <= last; ++i) closest_in_block(scene->blocks, i, &shear, t_min, instance, &hit);
       if (any && hit.instance == instance) break;
     } else {
       u32 keys[8];
-      const u32 crossed = cross_children(node_at(nodes, word), &slabs, t_min, hit.t, keys);
+      const u32 crossed = cross_children(node_at(scene->nodes, word), &slabs, t_min, hit.t, keys);
       if (crossed) {
-        word = push_children(node_at(nodes, word), crossed, keys, stack, stack_t, &top);
+        word = push_children(node_at(scene->nodes, word), crossed, keys, stack, stack_t, &top);
         continue;
       }
     }
@@ -60,10 +61,10 @@ static inline void trace_mesh(TRACE_PARAMETERS, u32 root, const SlabRay* slab_ra
 #endif
 
 // One instance in (t_min, hit->t]; world-space ray.
-static inline void trace_instance(TRACE_PARAMETERS, u32 index, float3 o, float3 d, float t_min, bool any,
+static inline void trace_instance(const Scene* scene, u32 index, float3 o, float3 d, float t_min, bool any,
                                   u32* stack, float* stack_t, Hit* hit) {
 #if HAS_MESH
-  __global const Instance* instance = instances + index;
+  __global const Instance* instance = scene->instances + index;
   if (instance->shape == SHAPE_MESH) {
     float3 oo = o, dd = d;
     if (!(instance->flags & INSTANCE_IDENTITY)) {
@@ -72,15 +73,15 @@ static inline void trace_instance(TRACE_PARAMETERS, u32 index, float3 o, float3 
     }
     const SlabRay slabs = make_slab_ray(oo, dd);
     const ShearRay shear = make_shear_ray(oo, dd);
-    trace_mesh(TRACE_ARGUMENTS, instance->root, &slabs, &shear, t_min, index, any, stack, stack_t, hit);
+    trace_mesh(scene, instance->root, &slabs, &shear, t_min, index, any, stack, stack_t, hit);
     return;
   }
 #endif
-  trace_solid(instances, index, o, d, t_min, hit);
+  trace_solid(scene->instances, index, o, d, t_min, hit);
 }
 
 // The bounded instances below `word` of the scene BVH.
-static inline void trace_bounded(TRACE_PARAMETERS, u32 word, float3 o, float3 d, float t_min, bool any,
+static inline void trace_bounded(const Scene* scene, u32 word, float3 o, float3 d, float t_min, bool any,
                                  Hit* hit) {
   u32 stack[BVH_STACK];
   float stack_t[BVH_STACK];
@@ -91,14 +92,14 @@ static inline void trace_bounded(TRACE_PARAMETERS, u32 word, float3 o, float3 d,
       const u32 first = word & BVH_FIRST_MASK,
                 last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
       for (u32 i = first; i <= last; ++i) {
-        trace_instance(TRACE_ARGUMENTS, i, o, d, t_min, any, stack + top, stack_t + top, hit);
+        trace_instance(scene, i, o, d, t_min, any, stack + top, stack_t + top, hit);
         if (any && hit->instance != NO_INSTANCE) return;
       }
     } else {
       u32 keys[8];
-      const u32 crossed = cross_children(node_at(nodes, word), &slabs, t_min, hit->t, keys);
+      const u32 crossed = cross_children(node_at(scene->nodes, word), &slabs, t_min, hit->t, keys);
       if (crossed) {
-        word = push_children(node_at(nodes, word), crossed, keys, stack, stack_t, &top);
+        word = push_children(node_at(scene->nodes, word), crossed, keys, stack, stack_t, &top);
         continue;
       }
     }
@@ -112,9 +113,9 @@ static inline void trace_bounded(TRACE_PARAMETERS, u32 word, float3 o, float3 d,
 
 // All bounded instances. One alone is a leaf without a tree: there is a single place that traces instances,
 // of which some compilers make copies.
-static inline void trace_instances(TRACE_PARAMETERS, float3 o, float3 d, float t_min, bool any, Hit* hit) {
-  if (info->bounded_count == 0u) return;
-  trace_bounded(TRACE_ARGUMENTS, info->bounded_count == 1u ? BVH_LEAF : info->tlas_root, o, d, t_min, any,
+static inline void trace_instances(const Scene* scene, float3 o, float3 d, float t_min, bool any, Hit* hit) {
+  if (scene->info->bounded_count == 0u) return;
+  trace_bounded(scene, scene->info->bounded_count == 1u ? BVH_LEAF : scene->info->tlas_root, o, d, t_min, any,
                 hit);
 }
 

@@ -100,8 +100,8 @@ static inline void note_block(__global const TriangleBlock* restrict blocks, u32
 #endif
 }
 
-static inline void note_mesh(TRACE_PARAMETERS, u32 index, Stretch* stretch, u32* stack) {
-  __global const Instance* instance = instances + index;
+static inline void note_mesh(const Scene* scene, u32 index, Stretch* stretch, u32* stack) {
+  __global const Instance* instance = scene->instances + index;
   float3 o = stretch->o, d = stretch->d;
   if (!(instance->flags & INSTANCE_IDENTITY)) {
     o = object_point(instance, o);
@@ -116,52 +116,53 @@ static inline void note_mesh(TRACE_PARAMETERS, u32 index, Stretch* stretch, u32*
     if (word & BVH_LEAF) {
       const u32 first = word & BVH_FIRST_MASK,
                 last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
-      for (u32 i = first; i <= last; ++i) note_block(blocks, i, &shear, index, stretch);
+      for (u32 i = first; i <= last; ++i) note_block(scene->blocks, i, &shear, index, stretch);
     } else
-      top = push_all_crossed(nodes, word, &slabs, stretch, stack, top);
+      top = push_all_crossed(scene->nodes, word, &slabs, stretch, stack, top);
   }
 }
 #endif
 
 #if HAS_BVH
-static inline void note_bounded(TRACE_PARAMETERS, Stretch* stretch) {
+static inline void note_bounded(const Scene* scene, Stretch* stretch) {
   u32 stack[BVH_STACK + 1];
   u32 top = 0;
-  if (info->bounded_count) stack[top++] = info->bounded_count == 1u ? BVH_LEAF : info->tlas_root;
+  if (scene->info->bounded_count)
+    stack[top++] = scene->info->bounded_count == 1u ? BVH_LEAF : scene->info->tlas_root;
   const SlabRay slabs = make_slab_ray(stretch->o, stretch->d);
   while (top) {
     const u32 word = stack[--top];
     if (!(word & BVH_LEAF)) {
-      top = push_all_crossed(nodes, word, &slabs, stretch, stack, top);
+      top = push_all_crossed(scene->nodes, word, &slabs, stretch, stack, top);
       continue;
     }
     const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
     for (u32 i = first; i <= last; ++i) {
 #if HAS_MESH
-      if (instances[i].shape == SHAPE_MESH) {
-        note_mesh(TRACE_ARGUMENTS, i, stretch, stack + top);
+      if (scene->instances[i].shape == SHAPE_MESH) {
+        note_mesh(scene, i, stretch, stack + top);
         continue;
       }
 #endif
 #if HAS_SOLID
-      note_solid(instances, i, stretch);
+      note_solid(scene->instances, i, stretch);
 #endif
     }
   }
 }
 #endif
 
-NEVER_INLINE void note_all(TRACE_PARAMETERS, Stretch* stretch) {
+NEVER_INLINE void note_all(const Scene* scene, Stretch* stretch) {
   stretch->count = 0;
 #if HAS_BVH
-  note_bounded(TRACE_ARGUMENTS, stretch);
-  const u32 first = info->bounded_count;
+  note_bounded(scene, stretch);
+  const u32 first = scene->info->bounded_count;
 #else
   const u32 first = 0;
 #endif
 #if HAS_SOLID
-  for (u32 i = first; i < info->instance_count; ++i)
-    if (comes_near(instances + i, stretch)) note_solid(instances, i, stretch);
+  for (u32 i = first; i < scene->info->instance_count; ++i)
+    if (comes_near(scene->instances + i, stretch)) note_solid(scene->instances, i, stretch);
 #endif
 }
 #endif

@@ -21,7 +21,7 @@ typedef struct Surfaces {
 } Surfaces;
 
 // The faces of the hits of `lanes`.
-static inline Faces hit_faces(TRACE_PARAMETERS, SHADE_PARAMETERS, REAL3 d, const Hits* hits, MASK lanes) {
+static inline Faces hit_faces(const Scene* scene, REAL3 d, const Hits* hits, MASK lanes) {
   Faces faces;
   faces.outward = hits->ng;
   faces.material = NO_LANES;
@@ -30,7 +30,7 @@ static inline Faces hit_faces(TRACE_PARAMETERS, SHADE_PARAMETERS, REAL3 d, const
   u32 index;
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(hits->instance, &left, &index);
-    __global const Instance* instance = instances + index;
+    __global const Instance* instance = scene->instances + index;
     if (!(instance->flags & INSTANCE_IDENTITY))
       faces.outward = select3(faces.outward, world_normals(instance, hits->ng), mine);
     if (instance->material != NO_MATERIAL)
@@ -38,13 +38,13 @@ static inline Faces hit_faces(TRACE_PARAMETERS, SHADE_PARAMETERS, REAL3 d, const
     else
       for (u32 bits = lane_bits(mine); bits; bits &= bits - 1u) {
         const u32 i = lowest_bit(bits);
-        MASK_LANE(faces.material, i) = (int)triangles[MASK_LANE(hits->prim, i)].material;
+        MASK_LANE(faces.material, i) = (int)scene->triangles[MASK_LANE(hits->prim, i)].material;
       }
   }
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(faces.material, &left, &index);
-    faces.flags = select(faces.flags, (MASK)((int)materials[index].flags), mine);
-    faces.medium = select(faces.medium, (MASK)((int)materials[index].medium), mine);
+    faces.flags = select(faces.flags, (MASK)((int)scene->materials[index].flags), mine);
+    faces.medium = select(faces.medium, (MASK)((int)scene->materials[index].medium), mine);
   }
   faces.entering = MASK_OF(dot3(faces.outward, d) < 0.0f);
   return faces;
@@ -83,14 +83,14 @@ static inline REAL3 settle_on_sphere(__global const Instance* instance, REAL3 p)
 
 // Normals of the corners and their colours, interpolated, for the lanes of `lanes`, and the triangles'
 // extents. World space, unit.
-NEVER_INLINE REAL3 shading_normals(SHADE_PARAMETERS, __global const Instance* instance, const Hits* hits,
+NEVER_INLINE REAL3 shading_normals(const Scene* scene, __global const Instance* instance, const Hits* hits,
                                    MASK lanes, REAL3* color, REAL* extent) {
   REAL3 normal = hits->ng;
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    __global const TriangleShading* triangle = triangles + MASK_LANE(hits->prim, i);
-    const Vertex a = vertices[triangle->vertex[0]], b = vertices[triangle->vertex[1]],
-                 c = vertices[triangle->vertex[2]];
+    __global const TriangleShading* triangle = scene->triangles + MASK_LANE(hits->prim, i);
+    const Vertex a = scene->vertices[triangle->vertex[0]], b = scene->vertices[triangle->vertex[1]],
+                 c = scene->vertices[triangle->vertex[2]];
     REAL_LANE(*extent, i) = triangle->extent;
     const float u = REAL_LANE(hits->u, i), v = REAL_LANE(hits->v, i), w = 1.0f - u - v;
     set3(color, i, w * (float3)(a.r, a.g, a.b) + u * (float3)(b.r, b.g, b.b) + v * (float3)(c.r, c.g, c.b));
@@ -123,8 +123,8 @@ static inline void color_surfaces(__global const Material* material, __global co
 }
 
 // The surfaces at the hits of `lanes`.
-static inline void interact(TRACE_PARAMETERS, SHADE_PARAMETERS, REAL3 o, REAL3 d, const Hits* hits,
-                            const Faces* faces, MASK lanes, Surfaces* s) {
+static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hits, const Faces* faces,
+                            MASK lanes, Surfaces* s) {
   const REAL3 outward = safe_unit3(faces->outward);
   s->ng = select3(negate3(outward), outward, faces->entering);
   s->ns = s->ng;
@@ -135,13 +135,13 @@ static inline void interact(TRACE_PARAMETERS, SHADE_PARAMETERS, REAL3 o, REAL3 d
   u32 index;
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(hits->instance, &left, &index);
-    __global const Instance* instance = instances + index;
+    __global const Instance* instance = scene->instances + index;
 #if HAS_SPHERE
     if (instance->shape == SHAPE_SPHERE) s->p = select3(s->p, settle_on_sphere(instance, s->p), mine);
 #endif
 #if HAS_MESH
     if (instance->shape == SHAPE_MESH) {
-      const REAL3 ns = shading_normals(SHADE_ARGUMENTS, instance, hits, mine, &color, &extent);
+      const REAL3 ns = shading_normals(scene, instance, hits, mine, &color, &extent);
       const MASK smooth = mine & MASK_OF((faces->flags & (int)MATERIAL_FLAT) == 0);
       s->ns = select3(s->ns, facing_normals(ns, s->ng, faces->entering, d), smooth);
     }
@@ -155,7 +155,7 @@ static inline void interact(TRACE_PARAMETERS, SHADE_PARAMETERS, REAL3 o, REAL3 d
     u32 material;
     for (MASK alike = mine; any_lane(alike);) {
       const MASK of_material = take_alike(faces->material, &alike, &material);
-      color_surfaces(materials + material, instance, of_material, s);
+      color_surfaces(scene->materials + material, instance, of_material, s);
     }
   }
   s->offset = real_max(triangle_offset(extent, hits->ng, faces->outward), offset_distance(o, s->p));

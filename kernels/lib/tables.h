@@ -1,22 +1,22 @@
-// The scene's tables as kernel parameters. OpenCL C 1.2 has no portable struct of pointers, so the lists are
-// macros: TRACE_* is what finding a hit needs, SHADE_* what shading it needs besides. A buffer has one name
-// everywhere. `nodes` are BvhNodes (nodes.cl).
+// The scene as kernels see it: SceneInfo and the tables of shared/scene_tables.h. A kernel takes them as
+// parameters, since OpenCL C 1.2 allows no pointers in a struct argument, and makes one Scene of them for all
+// that it calls:
+//   __kernel void f(SCENE_PARAMETERS, ...) { const Scene scene = SCENE_OF_PARAMETERS; ... }
 #ifndef SUNDOG_LIB_TABLES_H
 #define SUNDOG_LIB_TABLES_H
-#include "shared/bvh.h"
-#include "shared/scene.h"
-#include "shared/sdf.h"
+#include "shared/scene_tables.h"
 
-#define TRACE_PARAMETERS                                                            \
-  __global const SceneInfo *restrict info, __global const u32 *restrict nodes, \
-      __global const TriangleBlock *restrict blocks, __global const Instance *restrict instances
-#define TRACE_ARGUMENTS info, nodes, blocks, instances
+#define SCENE_MEMBER(type, host_type, name, label) __global const type* restrict name;
+typedef struct Scene {
+  __global const SceneInfo* restrict info;
+  SCENE_TABLES(SCENE_MEMBER)
+} Scene;
 
-#define SHADE_PARAMETERS                                                                        \
-  __global const TriangleShading *restrict triangles, __global const Vertex *restrict vertices, \
-      __global const Material *restrict materials, __global const Medium *restrict media,       \
-      __global const Light *restrict lights, __global const SdfField *restrict sdf_fields,      \
-      __global const float *restrict sdf_parameters
-#define SHADE_ARGUMENTS triangles, vertices, materials, media, lights, sdf_fields, sdf_parameters
+#define SCENE_PARAMETER(type, host_type, name, label) , __global const type* restrict name
+#define SCENE_PARAMETERS __global const SceneInfo* restrict info SCENE_TABLES(SCENE_PARAMETER)
+
+#define SCENE_VALUE(type, host_type, name, label) , name
+#define SCENE_OF_PARAMETERS \
+  { info SCENE_TABLES(SCENE_VALUE) }
 
 #endif

@@ -27,13 +27,12 @@ static inline float3 outward_of(__global const Instance* restrict instances, con
 
 // How far rounding may place a hit off its surface: `least` or what the size of the surface asks for. Twice
 // as much separates what are two surfaces from what is one.
-static inline float rounding_of(TRACE_PARAMETERS, __global const TriangleShading* restrict triangles,
-                                const Hit* hit, float3 outward, float least) {
-  __global const Instance* instance = instances + hit->instance;
+static inline float rounding_of(const Scene* scene, const Hit* hit, float3 outward, float least) {
+  __global const Instance* instance = scene->instances + hit->instance;
   float size = greatest_component(instance->world_center.xyz) + instance->world_center.w;
 #if HAS_MESH
   if (instance->shape == SHAPE_MESH)
-    size = triangles[hit->prim].extent * greatest_component(normal_of(hit)) /
+    size = scene->triangles[hit->prim].extent * greatest_component(normal_of(hit)) /
            fmax(greatest_component(outward), FLT_MIN);
 #endif
   return fmax(least, size * 0x1p-21f);
@@ -48,21 +47,21 @@ typedef struct Touching {
 
 // The faces beyond `t_min` that touch the one at `first`, itself among them. Some may lie before it by their
 // rounding: the tracer leaves out boxes that begin behind a hit.
-static inline void find_touching(TRACE_PARAMETERS, __global const TriangleShading* restrict triangles,
-                                 float3 o, float3 d, float t_min, const Hit* first, Touching* touching) {
+static inline void find_touching(const Scene* scene, float3 o, float3 d, float t_min, const Hit* first,
+                                 Touching* touching) {
   Stretch* met = &touching->met;
-  const float3 outward = outward_of(instances, first), p = o + first->t * d;
+  const float3 outward = outward_of(scene->instances, first), p = o + first->t * d;
   const float least = fmax(greatest_component(o), greatest_component(p)) * 0x1p-19f;
-  const float own = rounding_of(TRACE_ARGUMENTS, triangles, first, outward, least);
+  const float own = rounding_of(scene, first, outward, least);
   const float slope = fabs(dot(unit_normal(outward), d));
   met->o = o;
   met->d = d;
-  const float reach = fmax(own, instances[first->instance].touch) / fmax(slope, 1e-3f);
+  const float reach = fmax(own, scene->instances[first->instance].touch) / fmax(slope, 1e-3f);
   met->from = fmax(t_min, first->t - reach);
   met->to = first->t + reach;
   met->box_from = fmax(met->from - reach, 0.0f);
   met->box_to = met->to + reach;
-  note_all(TRACE_ARGUMENTS, met);
+  note_all(scene, met);
   bool found = false;
   for (u32 i = 0; i < met->count; ++i) found |= same_face(&met->hits[i], first);
   if (!found) met->hits[min(met->count++, MOST_TOUCHING - 1u)] = *first;
@@ -71,8 +70,8 @@ static inline void find_touching(TRACE_PARAMETERS, __global const TriangleShadin
   touching->apart = own;
   for (u32 i = 0; i < met->count; ++i) {
     const Hit* hit = &met->hits[i];
-    const float3 other = outward_of(instances, hit);
-    const float limit = fmax(own, rounding_of(TRACE_ARGUMENTS, triangles, hit, other, least));
+    const float3 other = outward_of(scene->instances, hit);
+    const float limit = fmax(own, rounding_of(scene, hit, other, least));
     const float further = hit->t - first->t;
     if (further * fmax(slope, fabs(dot(unit_normal(other), d))) > limit) continue;
     touching->end = fmax(touching->end, hit->t);
@@ -212,12 +211,12 @@ static inline u32 say_of(__global const Material* restrict material, u32 before,
 
 // Whether face a is seen, and not b. Of one material the outer one is: the first that is entered, the last
 // that is left.
-static inline bool is_seen_before(SHADE_PARAMETERS, const Hit* a, u32 material_a, const Hit* b,
+static inline bool is_seen_before(const Scene* scene, const Hit* a, u32 material_a, const Hit* b,
                                   u32 material_b, u32 before, u32 after, bool left) {
-  __global const Material *ma = materials + material_a, *mb = materials + material_b;
+  __global const Material *ma = scene->materials + material_a, *mb = scene->materials + material_b;
   const u32 say_a = say_of(ma, before, after), say_b = say_of(mb, before, after);
   if (say_a != say_b) return say_a > say_b;
-  __global const Medium *inside_a = media + ma->medium, *inside_b = media + mb->medium;
+  __global const Medium *inside_a = scene->media + ma->medium, *inside_b = scene->media + mb->medium;
   if (inside_a->priority != inside_b->priority) return inside_a->priority > inside_b->priority;
   if (inside_a->absorption.w != inside_b->absorption.w)
     return inside_a->absorption.w > inside_b->absorption.w;
@@ -227,37 +226,37 @@ static inline bool is_seen_before(SHADE_PARAMETERS, const Hit* a, u32 material_a
 
 // What a ray in the media `before` makes of faces that touch. Something opaque among them, whose flags are
 // not `passable` under `mask`, is seen from the media before: what lies at its surface, light does not enter.
-static inline void join_faces(TRACE_PARAMETERS, SHADE_PARAMETERS, const Touching* touching, u32 mask,
-                              MediaStack before, Seen* seen) {
+static inline void join_faces(const Scene* scene, const Touching* touching, u32 mask, MediaStack before,
+                              Seen* seen) {
   const Stretch* met = &touching->met;
-  const u32 current = current_medium(media, before);
+  const u32 current = current_medium(scene->media, before);
   seen->behind = before;
   seen->after = current;
   seen->overflows = 0;
   seen->strays = 0;
   bool opaque = false;
   for (u32 i = 0; i < met->count; ++i) {
-    const u32 material = material_of(instances, triangles, &met->hits[i]);
-    if ((materials[material].flags & mask) == MATERIAL_TRANSMITS) continue;
+    const u32 material = material_of(scene->instances, scene->triangles, &met->hits[i]);
+    if ((scene->materials[material].flags & mask) == MATERIAL_TRANSMITS) continue;
     if (opaque && comes_first(&seen->hit, &met->hits[i])) continue;
     opaque = true;
     seen->hit = met->hits[i];
     seen->material = material;
   }
   if (opaque) return;
-  Changes changes = faces_of(instances, triangles, materials, met);
-  take_out_pairs(instances, materials, met, &changes);
+  Changes changes = faces_of(scene->instances, scene->triangles, scene->materials, met);
+  take_out_pairs(scene->instances, scene->materials, met, &changes);
   for (u32 left = changes.left; left; left &= left - 1u)
-    if (!cross_boundary(&seen->behind, materials[changes.material[lowest_bit(left)]].medium, false))
+    if (!cross_boundary(&seen->behind, scene->materials[changes.material[lowest_bit(left)]].medium, false))
       ++seen->strays;
-  seen->overflows = enter_all(instances, materials, media, met, &changes, &seen->behind);
-  seen->after = current_medium(media, seen->behind);
+  seen->overflows = enter_all(scene->instances, scene->materials, scene->media, met, &changes, &seen->behind);
+  seen->after = current_medium(scene->media, seen->behind);
   const u32 some = changes.thin | changes.entered | changes.left;
   u32 best = some ? lowest_bit(some) : 0u;
   for (u32 bits = some; bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    if (is_seen_before(SHADE_ARGUMENTS, &met->hits[i], changes.material[i], &met->hits[best],
-                       changes.material[best], current, seen->after, changes.left >> i & 1u))
+    if (is_seen_before(scene, &met->hits[i], changes.material[i], &met->hits[best], changes.material[best],
+                       current, seen->after, changes.left >> i & 1u))
       best = i;
   }
   seen->hit = met->hits[best];
@@ -268,25 +267,24 @@ static inline void join_faces(TRACE_PARAMETERS, SHADE_PARAMETERS, const Touching
 // the face that is seen, `behind` and `after` what lies behind all that touch there. `mask`: as above. The
 // distance of what is seen stays that of the first face; returns that of the last, and in `apart` how far the
 // faces may be apart.
-NEVER_INLINE float meet_touching(TRACE_PARAMETERS, SHADE_PARAMETERS, const SceneRays* rays, u32 i, u32 mask,
-                                 Hits* hits, Faces* faces, Seen* seen, float* apart) {
+NEVER_INLINE float meet_touching(const Scene* scene, const SceneRays* rays, u32 i, u32 mask, Hits* hits,
+                                 Faces* faces, Seen* seen, float* apart) {
   Touching touching;
   const Hit first = get_hit(hits, i);
-  find_touching(TRACE_ARGUMENTS, triangles, get3(&rays->o, i), get3(&rays->d, i), REAL_LANE(rays->t_min, i),
-                &first, &touching);
-  join_faces(TRACE_ARGUMENTS, SHADE_ARGUMENTS, &touching, mask, get_media(rays, i), seen);
+  find_touching(scene, get3(&rays->o, i), get3(&rays->d, i), REAL_LANE(rays->t_min, i), &first, &touching);
+  join_faces(scene, &touching, mask, get_media(rays, i), seen);
   *apart = touching.apart;
   seen->hit.t = first.t;
   set_hit(hits, i, &seen->hit);
-  const float3 outward = outward_of(instances, &seen->hit);
+  const float3 outward = outward_of(scene->instances, &seen->hit);
   set3(&faces->outward, i, outward);
   MASK_LANE(faces->entering, i) = dot(outward, get3(&rays->d, i)) < 0.0f ? -1 : 0;
   MASK_LANE(faces->material, i) = (int)seen->material;
-  u32 flags = materials[seen->material].flags;
+  u32 flags = scene->materials[seen->material].flags;
   // A thin surface on an interface bends like one.
-  if (seen->after != current_medium(media, get_media(rays, i))) flags &= ~MATERIAL_THIN;
+  if (seen->after != current_medium(scene->media, get_media(rays, i))) flags &= ~MATERIAL_THIN;
   MASK_LANE(faces->flags, i) = (int)flags;
-  MASK_LANE(faces->medium, i) = (int)materials[seen->material].medium;
+  MASK_LANE(faces->medium, i) = (int)scene->materials[seen->material].medium;
   return touching.end;
 }
 

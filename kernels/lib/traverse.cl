@@ -49,14 +49,15 @@ NEVER_INLINE bool make_packet(const REAL3* o, const REAL3* d, const REAL* t_min,
 
 #if HAS_BVH
 // The bounded instances for the lanes of `active`.
-static inline void trace_bounded_batch(TRACE_PARAMETERS, const REAL3* world_o, const REAL3* world_d,
+static inline void trace_bounded_batch(const Scene* scene, const REAL3* world_o, const REAL3* world_d,
                                        const REAL* t_min, MASK active, bool coherent, bool any, Hits* hits) {
   REAL3 o = *world_o, d = *world_d;
   // A mesh alone needs no scene BVH, and takes all rays into its space at once.
-  const bool lone_mesh = HAS_MESH && info->bounded_count == 1u && instances->shape == SHAPE_MESH;
-  if (WIDE_VECTORS && lone_mesh && !(instances->flags & INSTANCE_IDENTITY)) {
-    o = object_points(instances, o);
-    d = object_vectors(instances, d);
+  const bool lone_mesh =
+      HAS_MESH && scene->info->bounded_count == 1u && scene->instances->shape == SHAPE_MESH;
+  if (WIDE_VECTORS && lone_mesh && !(scene->instances->flags & INSTANCE_IDENTITY)) {
+    o = object_points(scene->instances, o);
+    d = object_vectors(scene->instances, d);
   }
 #if PACKETS
   PacketRays rays;
@@ -66,10 +67,10 @@ static inline void trace_bounded_batch(TRACE_PARAMETERS, const REAL3* world_o, c
       make_packet(&o, &d, t_min, active, hits, &rays, &packet)) {
 #if HAS_MESH
     if (lone_mesh)
-      packet_in_mesh(TRACE_ARGUMENTS, &rays, &packet, instances->root, 0u, any);
+      packet_in_mesh(scene, &rays, &packet, scene->instances->root, 0u, any);
     else
 #endif
-      packet_in_scene(TRACE_ARGUMENTS, &rays, &packet, any);
+      packet_in_scene(scene, &rays, &packet, any);
     hits->t = select(t, hits->t, active);
     return;
   }
@@ -78,15 +79,15 @@ static inline void trace_bounded_batch(TRACE_PARAMETERS, const REAL3* world_o, c
   const WalkRays walkers = {&o, &d, t_min, hits};
   const u32 bits = lane_bits(active);
   if (lone_mesh)
-    walk_rays(TRACE_ARGUMENTS, &walkers, bits, instances->root, 0u, any);
+    walk_rays(scene, &walkers, bits, scene->instances->root, 0u, any);
   else
-    walk_rays(TRACE_ARGUMENTS, &walkers, bits, info->bounded_count == 1u ? BVH_LEAF : info->tlas_root,
+    walk_rays(scene, &walkers, bits, scene->info->bounded_count == 1u ? BVH_LEAF : scene->info->tlas_root,
               NO_INSTANCE, any);
 #else
   for (u32 bits = lane_bits(active); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     Hit hit = get_hit(hits, i);
-    trace_instances(TRACE_ARGUMENTS, get3(&o, i), get3(&d, i), REAL_LANE(*t_min, i), any, &hit);
+    trace_instances(scene, get3(&o, i), get3(&d, i), REAL_LANE(*t_min, i), any, &hit);
     set_hit(hits, i, &hit);
   }
 #endif
@@ -95,35 +96,34 @@ static inline void trace_bounded_batch(TRACE_PARAMETERS, const REAL3* world_o, c
 
 // The nearest hits of the lanes of `active` in (t_min, t_max], or with `any` some hits. `coherent`: the rays
 // run close together.
-static inline void find_hits(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min, REAL t_max,
-                             MASK active, bool coherent, bool any, Hits* hits) {
+static inline void find_hits(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
+                             REAL t_max, MASK active, bool coherent, bool any, Hits* hits) {
   *hits = no_hits(t_max);
 #if HAS_TRACED
   active &= traceable(o, d, *t_min, t_max);
 #if !HAS_BVH
   const bool in_tree = false;
 #elif HAS_MESH
-  const bool in_tree = info->bounded_count > 0u;
+  const bool in_tree = scene->info->bounded_count > 0u;
 #elif PACKETS
-  const bool in_tree = coherent || info->bounded_count > FEW_SOLIDS;
+  const bool in_tree = coherent || scene->info->bounded_count > FEW_SOLIDS;
 #else
-  const bool in_tree = info->bounded_count > FEW_SOLIDS;
+  const bool in_tree = scene->info->bounded_count > FEW_SOLIDS;
 #endif
 #if HAS_SOLID
-  const u32 first = in_tree ? info->bounded_count : 0u;
-  if (first < info->instance_count)
-    hit_solids(instances, first, info->instance_count, o, d, t_min, active, any, hits);
+  const u32 first = in_tree ? scene->info->bounded_count : 0u;
+  if (first < scene->info->instance_count)
+    hit_solids(scene->instances, first, scene->info->instance_count, o, d, t_min, active, any, hits);
 #endif
 #if HAS_BVH
   if (any) active &= ~hit_anything(hits);
-  if (in_tree && any_lane(active))
-    trace_bounded_batch(TRACE_ARGUMENTS, o, d, t_min, active, coherent, any, hits);
+  if (in_tree && any_lane(active)) trace_bounded_batch(scene, o, d, t_min, active, coherent, any, hits);
 #endif
 #endif
 }
 
 // Indices and geometric normals of the triangles among the hits. `coherent`: several rays meet the same one.
-static inline void finish_triangles(TRACE_PARAMETERS, bool coherent, Hits* hits) {
+static inline void finish_triangles(const Scene* scene, bool coherent, Hits* hits) {
 #if HAS_MESH
   const MASK places = hits->prim;
   u32 bits = lane_bits(hit_anything(hits));
@@ -132,11 +132,11 @@ static inline void finish_triangles(TRACE_PARAMETERS, bool coherent, Hits* hits)
     bits &= bits - 1u;
     const int instance = MASK_LANE(hits->instance, i), place = MASK_LANE(places, i);
 #if HAS_SOLID
-    if (instances[instance].shape != SHAPE_MESH) continue;
+    if (scene->instances[instance].shape != SHAPE_MESH) continue;
 #endif
     Hit hit;
     hit.prim = (u32)place;
-    finish_triangle(blocks, &hit);
+    finish_triangle(scene->blocks, &hit);
     const float3 ng = (float3)(hit.ng_x, hit.ng_y, hit.ng_z);
     if (coherent) {
       const MASK alike = MASK_OF(places == place) & MASK_OF(hits->instance == instance);
@@ -152,17 +152,17 @@ static inline void finish_triangles(TRACE_PARAMETERS, bool coherent, Hits* hits)
 }
 
 // The nearest hits of the lanes of `active` in (t_min, t_max].
-static inline void trace_batch(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min,
+static inline void trace_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
                                REAL t_max, MASK active, bool coherent, Hits* hits) {
-  find_hits(TRACE_ARGUMENTS, o, d, t_min, t_max, active, coherent, false, hits);
-  finish_triangles(TRACE_ARGUMENTS, coherent, hits);
+  find_hits(scene, o, d, t_min, t_max, active, coherent, false, hits);
+  finish_triangles(scene, coherent, hits);
 }
 
 // The lanes of `active` that hit anything in (t_min, t_max].
-static inline MASK occluded_batch(TRACE_PARAMETERS, const REAL3* o, const REAL3* d, const REAL* t_min,
+static inline MASK occluded_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
                                   REAL t_max, MASK active, bool coherent) {
   Hits hits;
-  find_hits(TRACE_ARGUMENTS, o, d, t_min, t_max, active, coherent, true, &hits);
+  find_hits(scene, o, d, t_min, t_max, active, coherent, true, &hits);
   return active & hit_anything(&hits);
 }
 

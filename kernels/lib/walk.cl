@@ -122,7 +122,7 @@ ALWAYS_INLINE void walk_block(__global const TriangleBlock* blocks, const REAL* 
 #define LEAF_SOLID 2u  // it has come to a solid
 
 // The next word of a walk, a leaf.
-ALWAYS_INLINE u32 walk_leaf(TRACE_PARAMETERS, const WalkRays* rays, const AimedRays* world, Walk* walk,
+ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const AimedRays* world, Walk* walk,
                             u32 word, bool any) {
 #if HAS_MESH
   if (word == WALK_BACK) {
@@ -131,15 +131,15 @@ ALWAYS_INLINE u32 walk_leaf(TRACE_PARAMETERS, const WalkRays* rays, const AimedR
     return 0u;
   }
   if (walk->instance != NO_INSTANCE) {
-    walk_block(blocks, rays->t_min, rays->hits, walk, word);
+    walk_block(scene->blocks, rays->t_min, rays->hits, walk, word);
     return 0u;
   }
 #endif
-  // The first of the leaf's instances; the others wait.
+  // The first of the leaf's scene->instances; the others wait.
   const u32 index = word & BVH_FIRST_MASK;
   if (word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK) push_word(walk, word - (1u << BVH_LEAF_SHIFT) + 1u);
-  if (!HAS_MESH || instances[index].shape != SHAPE_MESH) return LEAF_SOLID;
-  return enter_mesh(instances, walk, index) ? LEAF_TURN : 0u;
+  if (!HAS_MESH || scene->instances[index].shape != SHAPE_MESH) return LEAF_SOLID;
+  return enter_mesh(scene->instances, walk, index) ? LEAF_TURN : 0u;
 }
 
 // The walks of `bits`, which is not 0, at solids[ray]. Returns those that go on.
@@ -183,7 +183,7 @@ ALWAYS_INLINE void list_walk(Walk* walk, Walk** at_node, u32* node_words, u32* n
 
 // The nearest hits, or with `any` whichever come first, of the lanes of `bits`, which is not 0, from `word`
 // of the scene BVH on; or, rays in object space, of the mesh BVH of `instance`.
-NEVER_INLINE void walk_rays(TRACE_PARAMETERS, const WalkRays* rays, u32 bits, u32 word, u32 instance,
+NEVER_INLINE void walk_rays(const Scene* scene, const WalkRays* rays, u32 bits, u32 word, u32 instance,
                             bool any) {
   const REAL* t_min = rays->t_min;
   Hits* hits = rays->hits;
@@ -202,7 +202,7 @@ NEVER_INLINE void walk_rays(TRACE_PARAMETERS, const WalkRays* rays, u32 bits, u3
     // The longer list, so that there is always much to overlap.
     if (node_count > leaf_count) {
       const u32 count = node_count;
-      for (u32 k = 0; k < count; ++k) walk_node(nodes, t_min, hits, at_node[k], node_words[k], any);
+      for (u32 k = 0; k < count; ++k) walk_node(scene->nodes, t_min, hits, at_node[k], node_words[k], any);
       // Only now, when what was pushed has arrived, is it looked at.
       node_count = 0;
       for (u32 k = 0; k < count; ++k) LIST_WALK(at_node[k]);
@@ -213,16 +213,16 @@ NEVER_INLINE void walk_rays(TRACE_PARAMETERS, const WalkRays* rays, u32 bits, u3
       for (u32 k = 0; k < count; ++k) {
         Walk* walk = at_leaf[k];
         const u32 word = walk->stack[--walk->top], ray = walk->ray;
-        const u32 left = walk_leaf(TRACE_ARGUMENTS, rays, &world, walk, word, any);
+        const u32 left = walk_leaf(scene, rays, &world, walk, word, any);
         solids[ray] = word & BVH_FIRST_MASK;
         entering |= (left & LEAF_TURN) << ray;
         at_solid |= (left / LEAF_SOLID) << ray;
         if (left == LEAF_SOLID || (any && MASK_LANE(hits->instance, ray) != (int)NO_INSTANCE)) continue;
         LIST_WALK(walk);
       }
-      if (entering) aim_in_meshes(instances, rays, &turned, walks, entering);
+      if (entering) aim_in_meshes(scene->instances, rays, &turned, walks, entering);
       if (!HAS_SOLID || !at_solid) continue;
-      for (u32 on = walk_solids(instances, solids, at_solid, rays, walks, any); on; on &= on - 1u)
+      for (u32 on = walk_solids(scene->instances, solids, at_solid, rays, walks, any); on; on &= on - 1u)
         LIST_WALK(&walks[lowest_bit(on)]);
     }
   }

@@ -5,20 +5,21 @@
 #include "lib/sdf/march.cl"
 
 // Distance of p from the surface, as light sees it.
-static inline REAL open_distance(SDF_PARAMETERS, u32 index, REAL3 p, MASK active) {
+static inline REAL open_distance(const Scene* scene, u32 index, REAL3 p, MASK active) {
 #ifdef SDF_HAS_NEAR
-  if (sdf_uneven(index)) return called_near(index, p, active, NO_LANES, sdf_parameters);
+  if (sdf_uneven(index)) return called_near(index, p, active, NO_LANES, scene->sdf_parameters);
 #endif
-  return sdf_distance(index, p, active, sdf_parameters) * sdf_fields[index].safety;
+  return sdf_distance(index, p, active, scene->sdf_parameters) * scene->sdf_fields[index].safety;
 }
 
 // 1 in the open, towards 0 in a crevice: five estimates along the normal, up to `reach` off the surface.
-static inline REAL sdf_openness(SDF_PARAMETERS, u32 index, REAL3 p, REAL3 normal, float reach, MASK active) {
+static inline REAL sdf_openness(const Scene* scene, u32 index, REAL3 p, REAL3 normal, float reach,
+                                MASK active) {
   REAL missing = (REAL)(0.0f);
   float weight = 1.0f, total = 0.0f;
   for (int i = 1; i <= 5; ++i) {
     const float h = reach * (float)i * 0.2f;
-    const REAL d = open_distance(SDF_ARGUMENTS, index, along3(p, (REAL)(h), normal), active);
+    const REAL d = open_distance(scene, index, along3(p, (REAL)(h), normal), active);
     missing = fma((REAL)(weight / h), real_max(h - d, (REAL)(0.0f)), missing);
     total += weight;
     weight *= 0.6f;
@@ -29,19 +30,19 @@ static inline REAL sdf_openness(SDF_PARAMETERS, u32 index, REAL3 p, REAL3 normal
 // The part of a light that reaches p along the unit direction wi, within t_max: 0 behind the surface, between
 // 0 and 1 where the way to the light passes it within 1 / hardness of the distance. Takes its steps from
 // *steps_left; without any, what has been seen so far counts.
-static inline REAL sdf_soft_shadow(SDF_PARAMETERS, u32 index, REAL3 p, REAL3 wi, REAL t_min, REAL t_max,
+static inline REAL sdf_soft_shadow(const Scene* scene, u32 index, REAL3 p, REAL3 wi, REAL t_min, REAL t_max,
                                    float hardness, u32* steps_left, MASK active) {
-  __global const SdfField* restrict field = sdf_fields + index;
+  __global const SdfField* restrict field = scene->sdf_fields + index;
   REAL enter = t_min, leave = t_max;
   clip_to_interval(field, p, wi, &enter, &leave);
   active &= MASK_OF(enter <= leave);
   REAL t = enter, open = (REAL)(1.0f);
   for (u32 i = 0; i<field->step_limit&& * steps_left> 0u && any_lane(active); ++i) {
     *steps_left -= 1u;
-    const REAL d = sdf_distance(index, along3(p, t, wi), active, sdf_parameters) * field->safety;
+    const REAL d = sdf_distance(index, along3(p, t, wi), active, scene->sdf_parameters) * field->safety;
     REAL beside = d;
 #ifdef SDF_HAS_NEAR
-    if (sdf_uneven(index)) beside = open_distance(SDF_ARGUMENTS, index, along3(p, t, wi), active);
+    if (sdf_uneven(index)) beside = open_distance(scene, index, along3(p, t, wi), active);
 #endif
     open = select(open, real_min(open, hardness * beside * rough_inverse(t)), active);
     t += real_max(d, 0.02f * t);  // a penumbra is not looked at more closely than this

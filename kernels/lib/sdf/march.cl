@@ -64,26 +64,26 @@ __attribute__((noinline)) static REAL called_near(u32 field, REAL3 p, MASK activ
   return select(d, -d, inside);
 }
 #endif
-static inline REAL surface_distance(SDF_PARAMETERS, u32 field, REAL3 p, MASK active, MASK inside) {
+static inline REAL surface_distance(const Scene* scene, u32 field, REAL3 p, MASK active, MASK inside) {
 #ifdef SDF_HAS_NEAR
-  if (sdf_uneven(field)) return called_near(field, p, active, inside, sdf_parameters);
+  if (sdf_uneven(field)) return called_near(field, p, active, inside, scene->sdf_parameters);
 #endif
-  return called_estimate(field, p, active, inside, sdf_parameters);
+  return called_estimate(field, p, active, inside, scene->sdf_parameters);
 }
 
 // From within the threshold of a closed form to its surface: Newton's method along the ray, the slope taken
 // from the last two points, never further from the hit than a few thresholds. A ray that only grazes the
 // surface stays where it comes nearest.
-static inline REAL refine_hit(SDF_PARAMETERS, u32 field, const MarchRays* rays, REAL t, REAL inverse_speed,
-                              REAL threshold, MASK hit) {
+static inline REAL refine_hit(const Scene* scene, u32 field, const MarchRays* rays, REAL t,
+                              REAL inverse_speed, REAL threshold, MASK hit) {
   const REAL reach = 64.0f * threshold * inverse_speed, low = t - reach, high = t + reach;
-  REAL before = t, f_before = surface_distance(SDF_ARGUMENTS, field, along3(rays->origin, t, rays->direction),
-                                               hit, rays->inside);
+  REAL before = t,
+       f_before = surface_distance(scene, field, along3(rays->origin, t, rays->direction), hit, rays->inside);
   REAL best = t, f_best = f_before;
   t = fma(f_before, inverse_speed, t);
   for (int i = 0; i < 5; ++i) {
     const REAL f =
-        surface_distance(SDF_ARGUMENTS, field, along3(rays->origin, t, rays->direction), hit, rays->inside);
+        surface_distance(scene, field, along3(rays->origin, t, rays->direction), hit, rays->inside);
     const MASK nearer = MASK_OF(fabs(f) < fabs(f_best));
     best = select(best, t, nearer);
     f_best = select(f_best, f, nearer);
@@ -98,12 +98,12 @@ static inline REAL refine_hit(SDF_PARAMETERS, u32 field, const MarchRays* rays, 
 }
 
 // A ray that has changed sides since `before`: halves the way between until the surface is found.
-static inline REAL bisect_crossing(SDF_PARAMETERS, u32 field, const MarchRays* rays, REAL before, REAL t,
+static inline REAL bisect_crossing(const Scene* scene, u32 field, const MarchRays* rays, REAL before, REAL t,
                                    MASK lanes) {
   for (int i = 0; i < 12; ++i) {
     const REAL middle = 0.5f * (before + t);
     const REAL f = called_estimate(field, along3(rays->origin, middle, rays->direction), lanes, rays->inside,
-                                   sdf_parameters);
+                                   scene->sdf_parameters);
     const MASK out = MASK_OF(f < 0.0f);
     t = select(t, middle, out);
     before = select(middle, before, out);
@@ -114,20 +114,20 @@ static inline REAL bisect_crossing(SDF_PARAMETERS, u32 field, const MarchRays* r
 // On from where a ray has come out of an estimated surface to where that is about a threshold away: as far
 // off as a ray from outside arrives, so that either side's next ray starts clear of it and the normal is
 // taken where all estimates are from outside.
-static inline REAL clear_exit(SDF_PARAMETERS, u32 field, const MarchRays* rays, REAL t, REAL last,
+static inline REAL clear_exit(const Scene* scene, u32 field, const MarchRays* rays, REAL t, REAL last,
                               REAL inverse_speed, REAL threshold, MASK lanes) {
   REAL clear = t;
   for (int i = 0; i < 8 && any_lane(lanes); ++i) {
     const REAL f =
-        surface_distance(SDF_ARGUMENTS, field, along3(rays->origin, clear, rays->direction), lanes, NO_LANES);
+        surface_distance(scene, field, along3(rays->origin, clear, rays->direction), lanes, NO_LANES);
     lanes &= MASK_OF(f < 0.75f * threshold);
     clear = select(clear, fma(real_max(f, 0.5f * threshold), inverse_speed, clear), lanes);
   }
   return select(t, clear, MASK_OF(clear < last));
 }
 
-static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* rays) {
-  __global const SdfField* restrict field = sdf_fields + index;
+static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRays* rays) {
+  __global const SdfField* restrict field = scene->sdf_fields + index;
   const REAL speed = length3(rays->direction), inverse_speed = 1.0f / speed;
   REAL first = (REAL)(-INFINITY), last = (REAL)(INFINITY);
   clip_to_interval(field, rays->origin, rays->direction, &first, &last);
@@ -158,14 +158,14 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   const REAL least = (REAL)(field->lower.w), greatest = (REAL)(field->upper.w);
   for (u32 i = 0; i < rays->step_limit && any_lane(active); ++i) {
     const REAL3 p = along3(rays->origin, t, rays->direction);
-    const REAL f = march_estimate(index, p, active, rays->inside, sdf_parameters) * field->safety;
+    const REAL f = march_estimate(index, p, active, rays->inside, scene->sdf_parameters) * field->safety;
     const REAL threshold = real_clamp(fma(t, spread, footprint), least, greatest);
     hits.steps -= active;
     REAL d = f;  // to the surface
 #ifdef SDF_HAS_NEAR
     const MASK close = uneven ? active & MASK_OF(f < threshold) : NO_LANES;
     if (uneven && (HAS_GLOW || any_lane(close)))
-      d = called_near(index, p, active, rays->inside, sdf_parameters);
+      d = called_near(index, p, active, rays->inside, scene->sdf_parameters);
 #endif
 #if HAS_GLOW
     hits.nearest = select(hits.nearest, real_min(real_max(d, (REAL)(0.0f)), hits.nearest), active);
@@ -225,18 +225,15 @@ static inline MarchHits march_rays(SDF_PARAMETERS, u32 index, const MarchRays* r
   hits.hit |= active | hits.cut;
 #if SDF_CROSSES  // depths are no proven bound in every fractal (definition.h)
   if (any_lane(overshot))
-    hits.t =
-        select(hits.t, bisect_crossing(SDF_ARGUMENTS, index, rays, clear_at, hits.t, overshot), overshot);
+    hits.t = select(hits.t, bisect_crossing(scene, index, rays, clear_at, hits.t, overshot), overshot);
   const MASK out = to_crossing & overshot;
   if (any_lane(out))
     hits.t =
-        select(hits.t,
-               clear_exit(SDF_ARGUMENTS, index, rays, hits.t, last, inverse_speed, hits.threshold, out), out);
+        select(hits.t, clear_exit(scene, index, rays, hits.t, last, inverse_speed, hits.threshold, out), out);
 #endif
   if (smooth) {
     const MASK on_surface = hits.hit & ~hits.cut;
-    const REAL refined =
-        refine_hit(SDF_ARGUMENTS, index, rays, hits.t, inverse_speed, hits.threshold, on_surface);
+    const REAL refined = refine_hit(scene, index, rays, hits.t, inverse_speed, hits.threshold, on_surface);
     hits.t = select(hits.t, refined, on_surface);
   }
   return hits;

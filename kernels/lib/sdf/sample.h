@@ -2,11 +2,7 @@
 #ifndef SUNDOG_LIB_SDF_SAMPLE_H
 #define SUNDOG_LIB_SDF_SAMPLE_H
 #include "lib/lanes.h"
-#include "shared/sdf.h"
-
-#define SDF_PARAMETERS \
-  __global const SdfField *restrict sdf_fields, __global const float *restrict sdf_parameters
-#define SDF_ARGUMENTS sdf_fields, sdf_parameters
+#include "lib/tables.h"
 
 // Tables of a formula's numbers, one of them, and one in the code: doubles in deep views (deep_begin.h).
 #ifndef SDF_TABLE

@@ -9,7 +9,7 @@ typedef struct SdfSurface {
 } SdfSurface;
 
 // The palette at `trap`, linear between its stops, the last of which joins the first.
-static inline REAL3 palette_color(SDF_PARAMETERS, __global const SdfField* restrict field, REAL trap) {
+static inline REAL3 palette_color(const Scene* scene, __global const SdfField* restrict field, REAL trap) {
   const REAL turns = fma(trap, (REAL)(field->palette_scale), (REAL)(field->palette_offset));
   const float count = (float)field->palette_count;
   const REAL place = (turns - floor(turns)) * count;
@@ -17,7 +17,7 @@ static inline REAL3 palette_color(SDF_PARAMETERS, __global const SdfField* restr
   for (u32 i = 0; i < field->palette_count; ++i) {
     const REAL apart = fabs(place - (float)i);
     const REAL weight = fmax(1.0f - fmin(apart, count - apart), 0.0f);  // round the circle of stops
-    __global const float* stop = sdf_parameters + field->palette_first + 3u * i;
+    __global const float* stop = scene->sdf_parameters + field->palette_first + 3u * i;
     color = along3(color, weight, real3((REAL)(stop[0]), (REAL)(stop[1]), (REAL)(stop[2])));
   }
   return color;
@@ -40,40 +40,41 @@ static inline REAL trap_value(u32 color_by, SdfSample s, REAL3 p) {
 
 // Differences of the estimate at the corners of a tetrahedron (I. Quilez, Normals for an SDF). As wide as the
 // threshold, it leaves out what is finer than the pixel: on fractals the derivative itself is speckled.
-static inline REAL3 difference_normal(SDF_PARAMETERS, u32 index, REAL3 p, REAL width, MASK active) {
+static inline REAL3 difference_normal(const Scene* scene, u32 index, REAL3 p, REAL width, MASK active) {
   REAL3 sum = real3((REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f));
   for (u32 i = 0; i < 4u; ++i) {
     const REAL x = i == 0u || i == 3u ? width : -width, y = i >= 2u ? width : -width;
     const REAL z = i == 1u || i == 3u ? width : -width;
     const REAL ahead =
-        called_estimate(index, real3(p.x + x, p.y + y, p.z + z), active, NO_LANES, sdf_parameters);
+        called_estimate(index, real3(p.x + x, p.y + y, p.z + z), active, NO_LANES, scene->sdf_parameters);
     sum = along3(sum, ahead, real3(x, y, z));
   }
   return sum;
 }
 
 // At p, a hit of march_rays. `cut`: it lies on the interval's boundary.
-static inline SdfSurface sdf_surface(SDF_PARAMETERS, u32 index, REAL3 p, REAL threshold, MASK hit, MASK cut) {
-  __global const SdfField* restrict field = sdf_fields + index;
+static inline SdfSurface sdf_surface(const Scene* scene, u32 index, REAL3 p, REAL threshold, MASK hit,
+                                     MASK cut) {
+  __global const SdfField* restrict field = scene->sdf_fields + index;
   const bool exact = field->flags & SDF_FLAGS & SDF_SMOOTH, colored = field->color_by != SDF_COLOR_NONE;
   SdfSurface surface;
   surface.color = real3((REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f));
   REAL3 gradient = surface.color;
   if (exact || colored) {
-    const SdfSample s = sdf_sample(index, p, sdf_parameters);
+    const SdfSample s = sdf_sample(index, p, scene->sdf_parameters);
     gradient = s.gradient;
 #ifdef SDF_DEEP
-    const REAL3 place = sdf_place(index, p, sdf_parameters);
+    const REAL3 place = sdf_place(index, p, scene->sdf_parameters);
 #else
     const REAL3 place = p;
 #endif
-    if (colored) surface.color = palette_color(SDF_ARGUMENTS, field, trap_value(field->color_by, s, place));
+    if (colored) surface.color = palette_color(scene, field, trap_value(field->color_by, s, place));
   }
   // On its edges, and where a minimum changes over on the surface itself, a closed form may have no gradient.
   const MASK lost = exact ? hit & MASK_OF(dot3(gradient, gradient) < 1e-20f) : hit;
   if (any_lane(lost))
-    gradient = select3(
-        gradient, difference_normal(SDF_ARGUMENTS, index, p, threshold * field->normal_width, lost), lost);
+    gradient =
+        select3(gradient, difference_normal(scene, index, p, threshold * field->normal_width, lost), lost);
   surface.normal = unit3(gradient);
   if (any_lane(cut)) surface.normal = select3(surface.normal, cut_normal(field, p), cut);
   return surface;
