@@ -67,7 +67,7 @@ class KernelPeer {
     const SdfDescription field = field_of(p, exact);
     const CompiledFields compiled = compile_fields(std::span(&field, 1));
     kernel_ = device
-                  .build("entry/field_picture.cl", {{"LANES", std::to_string(lanes)}}, nullptr,
+                  .build("entry/field_picture.cl", {{"LANES", std::to_string(lanes)}, {"SDF_FLAGS", "3"}, {"SDF_TWO_SIDED", "1"}}, nullptr,
                          {{"generated/sdf.cl", compiled.source}})
                   .kernel<Buffer<SdfField>, Buffer<float>, Buffer<float>, Buffer<u32>, float4, float4, float4,
                           float4, float4, u32, u32>("field_picture");

@@ -47,13 +47,11 @@ std::size_t bytes_of(const std::vector<T>& table) {
   return table.size() * sizeof(T);
 }
 
-json table_bytes(const CompiledScene& flat) {
+json bytes_by_kind(const CompiledScene& flat) {
   const std::size_t bvh = bytes_of(flat.nodes) + bytes_of(flat.blocks);
   const std::size_t shading = bytes_of(flat.triangles) + bytes_of(flat.vertices);
-  const std::size_t rest = bytes_of(flat.instances) + bytes_of(flat.materials) + bytes_of(flat.media) +
-                           bytes_of(flat.lights) + bytes_of(flat.fields.fields) +
-                           bytes_of(flat.fields.parameters);
-  return {{"bvh", bvh}, {"shading", shading}, {"tables", rest}, {"total", bvh + shading + rest}};
+  const std::size_t total = table_bytes(flat);
+  return {{"bvh", bvh}, {"shading", shading}, {"tables", total - bvh - shading}, {"total", total}};
 }
 
 json bounds(const CompiledScene& flat) {
@@ -135,7 +133,7 @@ json scene_figures(const SceneDescription& scene, const CompiledScene& flat) {
              "nodes and blocks (or solids) that a ray through the scene's box visits, by surface area"},
             {"build_seconds", flat.figures.build_seconds},
             {"build_seconds_unit", "seconds on the wall's clock, of the whole compiled scene"}}},
-          {"bytes", table_bytes(flat)},
+          {"bytes", bytes_by_kind(flat)},
           {"field_bounds", field_bounds(scene)},
           {"bounds", whole_bounds(bounds(flat), field_bounds(scene))}};
 }

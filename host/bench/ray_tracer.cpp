@@ -20,10 +20,8 @@ RayTracer::RayTracer(Device& device, const CompiledScene& scene, const KernelDef
                                  std::stoul(config.defines.at("TILE_H")));
   stack_limit_ = greatest_work_group(config, device.info());
   const Program program = device.build("entry/trace_rays.cl", config.defines);
-  trace_rays_ = program.kernel<Buffer<SceneInfo>, Buffer<u32>, Buffer<TriangleBlock>, Buffer<Instance>,
-                               Buffer<Ray>, Buffer<Hit>, u32, u32>("trace_rays");
-  occluded_rays_ = program.kernel<Buffer<SceneInfo>, Buffer<u32>, Buffer<TriangleBlock>, Buffer<Instance>,
-                                  Buffer<Ray>, Buffer<u32>, u32, u32>("occluded_rays");
+  trace_rays_ = scene_kernel<Buffer<Ray>, Buffer<Hit>, u32, u32>(program, "trace_rays");
+  occluded_rays_ = scene_kernel<Buffer<Ray>, Buffer<u32>, u32, u32>(program, "occluded_rays");
 }
 
 void RayTracer::upload(std::span<const Ray> rays) {
@@ -40,11 +38,11 @@ double RayTracer::run(const RayQuery& query, const WorkGroup& group) {
   const auto count = static_cast<u32>(rays_.count);
   const u32 coherent = query.coherent ? 1 : 0;
   if (query.any)
-    device_.run(occluded_rays_, size, tables_.info, tables_.nodes, tables_.blocks, tables_.instances, rays_,
-                occluded_, count, coherent);
+    run_scene_kernel<Buffer<Ray>, Buffer<u32>, u32, u32>(device_, occluded_rays_, size, tables_, rays_, occluded_,
+                                                         count, coherent);
   else
-    device_.run(trace_rays_, size, tables_.info, tables_.nodes, tables_.blocks, tables_.instances, rays_,
-                hits_, count, coherent);
+    run_scene_kernel<Buffer<Ray>, Buffer<Hit>, u32, u32>(device_, trace_rays_, size, tables_, rays_, hits_, count,
+                                                         coherent);
   const auto seconds = [&] {
     const auto times = device_.times().find(query.any ? occluded_rays_.name : trace_rays_.name);
     return times == device_.times().end() ? 0 : 1e-3 * times->second.device_ms;

@@ -41,8 +41,7 @@ class RayTracer {
 
  private:
   template <class Result>
-  using RayKernel = Kernel<Buffer<SceneInfo>, Buffer<u32>, Buffer<TriangleBlock>, Buffer<Instance>,
-                           Buffer<Ray>, Buffer<Result>, u32, u32>;
+  using RayKernel = SceneKernel<Buffer<Ray>, Buffer<Result>, u32, u32>;
 
   Device& device_;
   unsigned batch_ = 1;           // rays a work-item traces

@@ -100,7 +100,7 @@ bool has_fractional_exponent(const Material& material) {
 }
 
 void add_field_features(CompiledScene& out) {
-  for (const SdfField& field : out.fields.fields) {
+  for (const SdfField& field : out.sdf_fields) {
     out.features.glow |= field.glow.w > 0;
     out.features.occlusion |= field.occlusion_reach > 0;
     out.features.soft_shadows |= field.shadow_hardness > 0;
@@ -115,23 +115,28 @@ void set_counts(CompiledScene& out) {
   out.info.camera_inside = out.features.camera_inside ? 1 : 0;
 }
 
-template <class T>
-std::size_t bytes(const std::vector<T>& table) {
-  return table.size() * sizeof(T);
-}
-
 void set_figures(CompiledScene& out) {
   BvhFigures& figures = out.figures;
   figures.nodes = out.nodes.size();
   figures.blocks = out.blocks.size();
   figures.triangles = out.triangles.size();
   figures.instances = out.instances.size();
-  figures.bytes = sizeof(SceneInfo) + bytes(out.nodes) + bytes(out.blocks) + bytes(out.triangles) +
-                  bytes(out.vertices) + bytes(out.instances) + bytes(out.materials) + bytes(out.media) +
-                  bytes(out.lights) + bytes(out.fields.fields) + bytes(out.fields.parameters);
+  figures.bytes = sizeof(SceneInfo) + table_bytes(out);
+}
+
+void add_fields(CompiledFields fields, CompiledScene& out) {
+  out.field_source = std::move(fields.source);
+  out.sdf_fields = std::move(fields.fields);
+  out.sdf_parameters = std::move(fields.parameters);
 }
 
 }  // namespace
+
+std::size_t table_bytes(const SceneTables& tables) {
+  std::size_t bytes = 0;
+  for_each_table(tables, [&](const char*, const auto& table) { bytes += table.size() * sizeof table[0]; });
+  return bytes;
+}
 
 CompiledScene compile(const SceneDescription& scene) {
   const auto start = std::chrono::steady_clock::now();
@@ -148,7 +153,7 @@ CompiledScene compile(const SceneDescription& scene) {
   out.features.fractional_exponents = std::ranges::any_of(out.materials, has_fractional_exponent);
   const std::vector<PlacedMesh> meshes = add_meshes(scene, default_material, out);
   add_instances(scene, meshes, default_material, out);
-  out.fields = fields_of(scene, views, out);
+  add_fields(fields_of(scene, views, out), out);
   add_field_features(out);
   add_fog(scene, out);
   set_counts(out);

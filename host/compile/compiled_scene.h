@@ -6,30 +6,20 @@
 #include <vector>
 
 #include "compile/bounds.h"
-#include "compile/sdf.h"
 #include "scene/description.h"
-#include "shared/bvh.h"
-#include "shared/scene.h"
+#include "shared/features.h"
+#include "shared/scene_tables.h"
 
 namespace sundog {
 
 /// What a scene uses: kernels are specialised to it, so only what a scene needs is built.
 struct SceneFeatures {
   std::array<bool, SHAPE_COUNT> shapes{};
-  bool secondary_rays = false;  // some material reflects or transmits
-  bool media = false;           // some material has an interior medium, or the world's absorbs
-  bool touching = false;        // surfaces of solids with media may lie on others
-  bool shadow_filters = false;  // shadow rays must look through transmissive things
+#define SUNDOG_FEATURE_MEMBER(type, definition, name) type name = 0;
+  SCENE_FEATURES(SUNDOG_FEATURE_MEMBER)
+#undef SUNDOG_FEATURE_MEMBER
   bool camera_inside = false;
-  bool unbounded = false;         // there are planes
-  bool two_sided_fields = false;  // rays may be inside of a distance field
-  bool glow = false;              // some field glows
-  bool occlusion = false;         // some field takes ambient light from its crevices
-  bool soft_shadows = false;      // some field's shadow has a penumbra
-  u32 field_flags = 0;            // SdfField.flags that some field has
-  bool fog = false;
-  bool absorption = false;            // some medium absorbs
-  bool fractional_exponents = false;  // some highlight's exponent is no integer
+  bool unbounded = false;  // there are planes
   u32 bvh_stack = 1;  // entries a traversal stack needs at most (scene BVH and the mesh BVH below it)
 };
 
@@ -43,18 +33,28 @@ struct BvhFigures {
   Bounds box = Bounds::none();  // of all instances but planes and fields, from CompiledScene::origin
 };
 
-struct CompiledScene {
+/// The tables of shared/scene_tables.h.
+struct SceneTables {
+#define SUNDOG_TABLE_MEMBER(type, host_type, name, label) std::vector<host_type> name;
+  SCENE_TABLES(SUNDOG_TABLE_MEMBER)
+#undef SUNDOG_TABLE_MEMBER
+};
+
+/// Calls visit(words for messages, table) for each table, in the order of the list.
+template <class Visit>
+void for_each_table(const SceneTables& tables, const Visit& visit) {
+#define SUNDOG_VISIT_TABLE(type, host_type, name, label) visit(label, tables.name);
+  SCENE_TABLES(SUNDOG_VISIT_TABLE)
+#undef SUNDOG_VISIT_TABLE
+}
+
+/// Bytes of all tables.
+std::size_t table_bytes(const SceneTables& tables);
+
+struct CompiledScene : SceneTables {
   SceneInfo info{};
   dvec3 origin{0};  // where the tables' coordinates begin in the world; SceneInfo has it in floats
-  std::vector<Bvh8Node> nodes;
-  std::vector<TriangleBlock> blocks;
-  std::vector<TriangleShading> triangles;
-  std::vector<Vertex> vertices;
-  std::vector<Instance> instances;
-  std::vector<Material> materials;
-  std::vector<Medium> media;
-  std::vector<Light> lights;
-  CompiledFields fields;
+  std::string field_source;           // text of generated/sdf.cl (compile/sdf.h); empty without fields
   Tracer tracer = Tracer::automatic;  // of which kind the device shall trace
   SceneFeatures features;
   BvhFigures figures;

@@ -13,51 +13,52 @@ namespace {
 
 constexpr std::size_t camera_media_words = 2;
 
-template <class T>
-std::size_t table_bytes(const std::vector<T>& table) {
-  return table.size() * sizeof(T);
-}
+/// Uploads tables, which must fit into one allocation each.
+class Uploader {
+ public:
+  explicit Uploader(Device& device, bool compact) : device_(device), compact_(compact) {}
 
-template <class T>
-Buffer<u32> as_words(const Buffer<T>& table) {
-  return {table.memory, table.count * sizeof(T) / sizeof(u32)};
-}
+  template <class T>
+  Buffer<T> operator()(const char* label, const std::vector<T>& table) {
+    const std::size_t bytes = table.size() * sizeof(T), most = device_.info().max_allocation;
+    if (most && bytes > most)
+      throw DeviceError(
+          fmt::format("{}: the scene's {} take {} MiB, more than the {} MiB that one allocation may have",
+                      device_.info().label(), label, bytes >> 20, most >> 20));
+    return device_.upload(std::span<const T>(table));
+  }
+  /// Nodes are of two kinds, so the kernels have them as words.
+  Buffer<u32> operator()(const char* label, const std::vector<Bvh8Node>& nodes) {
+    return compact_ ? as_words(operator()<CompactNode>(label, compact_nodes(nodes)))
+                    : as_words(operator()<Bvh8Node>(label, nodes));
+  }
+
+ private:
+  template <class T>
+  static Buffer<u32> as_words(const Buffer<T>& table) {
+    return {table.memory, table.count * sizeof(T) / sizeof(u32)};
+  }
+  Device& device_;
+  bool compact_;
+};
 
 }  // namespace
 
 std::size_t scene_bytes(const CompiledScene& scene) {
-  return sizeof(SceneInfo) + table_bytes(scene.nodes) + table_bytes(scene.blocks) +
-         table_bytes(scene.instances) + table_bytes(scene.triangles) + table_bytes(scene.vertices) +
-         table_bytes(scene.materials) + table_bytes(scene.media) + table_bytes(scene.lights) +
-         table_bytes(scene.fields.fields) + table_bytes(scene.fields.parameters) +
-         camera_media_words * sizeof(u32);
+  return sizeof(SceneInfo) + table_bytes(scene) + camera_media_words * sizeof(u32);
 }
 
 DeviceScene upload_scene(Device& device, const CompiledScene& scene) {
   const DeviceInfo& info = device.info();
-  const auto table = [&]<class T>(const char* name, const std::vector<T>& values) {
-    if (info.max_allocation && table_bytes(values) > info.max_allocation)
-      throw DeviceError(
-          fmt::format("{}: the scene's {} take {} MiB, more than the {} MiB that one allocation may have",
-                      info.label(), name, table_bytes(values) >> 20, info.max_allocation >> 20));
-    return device.upload(std::span<const T>(values));
-  };
   if (info.global_memory && scene_bytes(scene) > info.global_memory)
     throw DeviceError(fmt::format("{}: the scene takes {} MiB, more than the device's {} MiB", info.label(),
                                   scene_bytes(scene) >> 20, info.global_memory >> 20));
+  Uploader upload(device, traces_compact(scene, info));
   DeviceScene result;
   result.info = device.upload(std::span<const SceneInfo>(&scene.info, 1));
-  result.nodes = traces_compact(scene, info) ? as_words(table("BVH nodes", compact_nodes(scene.nodes)))
-                                             : as_words(table("BVH nodes", scene.nodes));
-  result.blocks = table("triangle blocks", scene.blocks);
-  result.instances = table("instances", scene.instances);
-  result.triangles = table("triangles", scene.triangles);
-  result.vertices = table("vertices", scene.vertices);
-  result.materials = table("materials", scene.materials);
-  result.media = table("media", scene.media);
-  result.lights = table("lights", scene.lights);
-  result.sdf_fields = table("fields", scene.fields.fields);
-  result.sdf_parameters = table("field parameters", scene.fields.parameters);
+#define SUNDOG_UPLOAD_TABLE(type, host_type, name, label) result.name = upload(label, scene.name);
+  SCENE_TABLES(SUNDOG_UPLOAD_TABLE)
+#undef SUNDOG_UPLOAD_TABLE
   constexpr std::array<u32, camera_media_words> outside{};
   result.camera_media = device.upload(std::span<const u32>(outside));
   return result;

@@ -8,16 +8,9 @@ namespace sundog {
 
 struct DeviceScene {
   Buffer<SceneInfo> info;
-  Buffer<u32> nodes;  // Bvh8Nodes, or CompactNodes when the device runs a lane a ray
-  Buffer<TriangleBlock> blocks;
-  Buffer<Instance> instances;
-  Buffer<TriangleShading> triangles;
-  Buffer<Vertex> vertices;
-  Buffer<Material> materials;
-  Buffer<Medium> media;
-  Buffer<Light> lights;
-  Buffer<SdfField> sdf_fields;
-  Buffer<float> sdf_parameters;
+#define SUNDOG_TABLE_BUFFER(type, host_type, name, label) Buffer<type> name;
+  SCENE_TABLES(SUNDOG_TABLE_BUFFER)
+#undef SUNDOG_TABLE_BUFFER
   Buffer<u32> camera_media;  // the MediaStack at the camera (kernels/lib/media.cl), low word first
 };
 
@@ -27,25 +20,25 @@ std::size_t scene_bytes(const CompiledScene& scene);
 /// Throws DeviceError when the device cannot hold the scene. camera_media is empty.
 DeviceScene upload_scene(Device& device, const CompiledScene& scene);
 
-/// A kernel that reads the scene: its table parameters, then Args.
+#define SUNDOG_TABLE_TYPE(type, host_type, name, label) , Buffer<type>
+#define SUNDOG_TABLE_ARGUMENT(type, host_type, name, label) , scene.name
+/// A kernel that reads the scene: SCENE_PARAMETERS (kernels/lib/tables.h), then Args.
 template <class... Args>
-using SceneKernel = Kernel<Buffer<SceneInfo>, Buffer<u32>, Buffer<TriangleBlock>, Buffer<Instance>,
-                           Buffer<TriangleShading>, Buffer<Vertex>, Buffer<Material>, Buffer<Medium>,
-                           Buffer<Light>, Buffer<SdfField>, Buffer<float>, Args...>;
+using SceneKernel = Kernel<Buffer<SceneInfo> SCENE_TABLES(SUNDOG_TABLE_TYPE), Args...>;
 
+/// Throws BuildError as Program::kernel() does.
 template <class... Args>
 SceneKernel<Args...> scene_kernel(const Program& program, const std::string& name) {
-  return program.kernel<Buffer<SceneInfo>, Buffer<u32>, Buffer<TriangleBlock>, Buffer<Instance>,
-                        Buffer<TriangleShading>, Buffer<Vertex>, Buffer<Material>, Buffer<Medium>,
-                        Buffer<Light>, Buffer<SdfField>, Buffer<float>, Args...>(name);
+  return program.kernel<Buffer<SceneInfo> SCENE_TABLES(SUNDOG_TABLE_TYPE), Args...>(name);
 }
 
+/// Device::run() with the scene's tables before `args`.
 template <class... Args>
 cl::Event run_scene_kernel(Device& device, SceneKernel<Args...>& kernel, const LaunchSize& size,
                            const DeviceScene& scene, const std::type_identity_t<Args>&... args) {
-  return device.run(kernel, size, scene.info, scene.nodes, scene.blocks, scene.instances, scene.triangles,
-                    scene.vertices, scene.materials, scene.media, scene.lights, scene.sdf_fields,
-                    scene.sdf_parameters, args...);
+  return device.run(kernel, size, scene.info SCENE_TABLES(SUNDOG_TABLE_ARGUMENT), args...);
 }
+#undef SUNDOG_TABLE_TYPE
+#undef SUNDOG_TABLE_ARGUMENT
 
 }  // namespace sundog

@@ -29,17 +29,8 @@ std::uint64_t hash_scene(const CompiledScene& scene) {
   };
   state = hash_bytes(&scene.origin, sizeof scene.origin, state);
   state = hash_bytes(&scene.tracer, sizeof scene.tracer, state);
-  mix(scene.nodes);
-  mix(scene.blocks);
-  mix(scene.triangles);
-  mix(scene.vertices);
-  mix(scene.instances);
-  mix(scene.materials);
-  mix(scene.media);
-  mix(scene.lights);
-  mix(scene.fields.source);
-  mix(scene.fields.fields);
-  mix(scene.fields.parameters);
+  mix(scene.field_source);
+  for_each_table(scene, [&](const char*, const auto& table) { mix(table); });
   return state;
 }
 

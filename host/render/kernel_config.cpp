@@ -33,19 +33,10 @@ void define_features(const SceneFeatures& features, const Define& define) {
                                                          "HAS_BOX",  "HAS_CYLINDER", "HAS_CONE",
                                                          "HAS_DISK", "HAS_TORUS",    "HAS_ROUNDBOX"};
   for (unsigned shape = 0; shape < SHAPE_SDF; ++shape) define(shape_names[shape], features.shapes[shape]);
-  define("HAS_SECONDARY", features.secondary_rays);
-  define("HAS_MEDIA", features.media);
-  define("HAS_TOUCHING", features.touching);
-  define("HAS_SHADOW_FILTERS", features.shadow_filters);
   define("HAS_SDF", features.shapes[SHAPE_SDF]);
-  define("SDF_TWO_SIDED", features.two_sided_fields);
-  define("HAS_GLOW", features.glow);
-  define("HAS_OCCLUSION", features.occlusion);
-  define("HAS_SOFT_SHADOWS", features.soft_shadows);
-  define("SDF_FLAGS", features.field_flags);
-  define("HAS_FOG", features.fog);
-  define("HAS_ABSORPTION", features.absorption);
-  define("HAS_FRACTIONAL_EXPONENTS", features.fractional_exponents);
+#define SUNDOG_DEFINE_FEATURE(type, definition, name) define(#definition, features.name);
+  SCENE_FEATURES(SUNDOG_DEFINE_FEATURE)
+#undef SUNDOG_DEFINE_FEATURE
 }
 
 }  // namespace
@@ -95,7 +86,7 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   const unsigned without_tree = vectors && batch == 16 ? 6 : few_solids;
   define("HAS_BVH", scene.features.shapes[SHAPE_MESH] || scene.info.bounded_count > without_tree);
   define("LANES", lanes);
-  if (!scene.fields.source.empty()) config.generated["generated/sdf.cl"] = scene.fields.source;
+  if (!scene.field_source.empty()) config.generated["generated/sdf.cl"] = scene.field_source;
   return config;
 }
 

@@ -55,7 +55,7 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
       tuning_(options.tuning ? options.tuning(device.info()) : Tuning{}),
       config_(make_kernel_config(scene, device.info(), tuning_)),
       watch_(watch),
-      next_size_(scene.fields.fields.empty() ? first_launch_size : first_launch_size_of_fields) {
+      next_size_(scene.sdf_fields.empty() ? first_launch_size : first_launch_size_of_fields) {
   most_group_ = greatest_work_group(config_, device.info());
   check_work_group(device.info(), most_group_, options.work_group);
   const Stopwatch building;

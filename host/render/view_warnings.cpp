@@ -18,12 +18,12 @@ float pixel_angle(const CompiledScene& scene) {
 
 std::vector<std::string> view_warnings(const CompiledScene& scene, std::span<const DeviceInfo> devices) {
   std::vector<std::string> warnings;
-  if (scene.fields.fields.empty()) return warnings;
+  if (scene.sdf_fields.empty()) return warnings;
   if (pixel_angle(scene) < least_angle)
     warnings.push_back(
         "the field of view is so narrow that floats do not tell its pixels apart: move the camera nearer to "
         "what it sees and raise fov");
-  if (scene.fields.source.find("deep_begin.h") == std::string::npos) return warnings;
+  if (scene.field_source.find("deep_begin.h") == std::string::npos) return warnings;
   for (const DeviceInfo& device : devices)
     if (device.extensions.find("cl_khr_fp64") == std::string::npos)
       warnings.push_back(fmt::format(

@@ -1,5 +1,6 @@
-// Every constant that a scene or a device specialises a kernel by, with its default: the host's KernelConfig
-// writes the -D options. Thresholds of a method stand where the method does.
+// Every constant that a device specialises a kernel by, with its default, and what follows from the features of a scene
+// (shared/features.h; HAS_MESH, HAS_SPHERE, ...: it has that shape; HAS_BVH: rays go through a BVH). The host's
+// KernelConfig writes the -D options. Thresholds of a method stand where the method does.
 #ifndef SUNDOG_LIB_CONFIG_H
 #define SUNDOG_LIB_CONFIG_H
 
@@ -66,82 +67,6 @@
 // Invisible interfaces (overruled by priority) that one ray may cross between two visible ones.
 #ifndef MAX_CROSSINGS
 #define MAX_CROSSINGS 64
-#endif
-
-#ifndef HAS_MESH
-#define HAS_MESH 1
-#endif
-#ifndef HAS_SPHERE
-#define HAS_SPHERE 1
-#endif
-#ifndef HAS_PLANE
-#define HAS_PLANE 1
-#endif
-#ifndef HAS_BOX
-#define HAS_BOX 1
-#endif
-#ifndef HAS_CYLINDER
-#define HAS_CYLINDER 1
-#endif
-#ifndef HAS_CONE
-#define HAS_CONE 1
-#endif
-#ifndef HAS_DISK
-#define HAS_DISK 1
-#endif
-#ifndef HAS_TORUS
-#define HAS_TORUS 1
-#endif
-#ifndef HAS_ROUNDBOX
-#define HAS_ROUNDBOX 1
-#endif
-// A BVH leads to what is bounded: there is a mesh, or several solids.
-#ifndef HAS_BVH
-#define HAS_BVH 1
-#endif
-#ifndef HAS_SDF
-#define HAS_SDF 1
-#endif
-// Some field glows.
-#ifndef HAS_GLOW
-#define HAS_GLOW HAS_SDF
-#endif
-// Some field takes ambient light from its crevices; some has a penumbra.
-#ifndef HAS_OCCLUSION
-#define HAS_OCCLUSION HAS_SDF
-#endif
-#ifndef HAS_SOFT_SHADOWS
-#define HAS_SOFT_SHADOWS HAS_SDF
-#endif
-// SdfField.flags that some field has.
-#ifndef SDF_FLAGS
-#define SDF_FLAGS 3u
-#endif
-#ifndef HAS_FOG
-#define HAS_FOG 1
-#endif
-// Some field transmits: rays may march inside of it.
-#ifndef SDF_TWO_SIDED
-#define SDF_TWO_SIDED 1
-#endif
-#ifndef HAS_SECONDARY
-#define HAS_SECONDARY 1
-#endif
-#ifndef HAS_MEDIA
-#define HAS_MEDIA 1
-#endif
-// Surfaces of solids with media may lie in one place with others.
-#ifndef HAS_TOUCHING
-#define HAS_TOUCHING HAS_MEDIA
-#endif
-#ifndef HAS_ABSORPTION
-#define HAS_ABSORPTION 1
-#endif
-#ifndef HAS_FRACTIONAL_EXPONENTS
-#define HAS_FRACTIONAL_EXPONENTS 1
-#endif
-#ifndef HAS_SHADOW_FILTERS
-#define HAS_SHADOW_FILTERS 1
 #endif
 
 // Whether rays go on behind surfaces: interfaces that they do not see, or filters.

@@ -12,8 +12,8 @@
 /// Builds `text`, which includes lib/sdf/..., for the fields, with LANES lanes.
 inline sundog::Program build_fields(sundog::Device& device, const std::string& text,
                                     const sundog::CompiledFields& fields, int lanes, bool two_sided = false) {
-  const sundog::KernelDefines defines{{"LANES", std::to_string(lanes)},
-                                      {"SDF_TWO_SIDED", two_sided ? "1" : "0"}};
+  sundog::KernelDefines defines{{"LANES", std::to_string(lanes)}, {"SDF_TWO_SIDED", two_sided ? "1" : "0"}};
+  defines.merge(all_features());
   return device.build("test.cl", defines, nullptr, {{"test.cl", text}, {"generated/sdf.cl", fields.source}});
 }
 

@@ -2,8 +2,10 @@
 
 #include <cstdlib>
 #include <sstream>
+#include <type_traits>
 
 #include "catch.h"
+#include "shared/features.h"
 
 void prepare_opencl_environment() {
   setenv("RUSTICL_ENABLE", "llvmpipe", 0);
@@ -26,7 +28,21 @@ const std::vector<sundog::DeviceInfo>& test_devices() {
   return devices;
 }
 
+sundog::KernelDefines all_features() {
+  using sundog::u32;
+  sundog::KernelDefines defines;
+  for (const char* shape : {"MESH", "SPHERE", "PLANE", "BOX", "CYLINDER", "CONE", "DISK", "TORUS", "ROUNDBOX", "BVH", "SDF"})
+    defines[std::string("HAS_") + shape] = "1";
+#define SUNDOG_DEFINE_FEATURE(type, definition, name) \
+  defines[#definition] = std::is_same_v<type, bool> ? "1" : "3";
+  SCENE_FEATURES(SUNDOG_DEFINE_FEATURE)
+#undef SUNDOG_DEFINE_FEATURE
+  return defines;
+}
+
 sundog::Program build_text(sundog::Device& device, const std::string& text,
                            const sundog::KernelDefines& defines) {
-  return device.build("test.cl", defines, nullptr, {{"test.cl", text}});
+  sundog::KernelDefines all = defines;
+  all.merge(all_features());
+  return device.build("test.cl", all, nullptr, {{"test.cl", text}});
 }

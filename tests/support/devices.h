@@ -17,7 +17,11 @@ void prepare_opencl_environment();
 ///     }
 const std::vector<sundog::DeviceInfo>& test_devices();
 
-/// Builds kernels from text, which may `#include "lib/..."` and `"shared/..."`.
+/// Definitions of every shape and feature, for kernels that are tested by themselves.
+sundog::KernelDefines all_features();
+
+/// Builds kernels from text, which may `#include "lib/..."` and `"shared/..."`, with all features but those that `defines`
+/// sets otherwise.
 sundog::Program build_text(sundog::Device& device, const std::string& text,
                            const sundog::KernelDefines& defines = {});
 

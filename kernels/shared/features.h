@@ -1,0 +1,22 @@
+// What a scene may use. Each scene's kernels are built with these definitions, so that only what it needs is compiled.
+// From this list come SceneFeatures and the -D options. A new feature is a line
+// here, the line that sets it in host/compile, and the kernel code that asks for it.
+//   FEATURE(type on the host, definition, member of SceneFeatures)
+#ifndef SUNDOG_SHARED_FEATURES_H
+#define SUNDOG_SHARED_FEATURES_H
+
+#define SCENE_FEATURES(FEATURE)                                                                         \
+  FEATURE(bool, HAS_SECONDARY, secondary_rays)      /* some material reflects or transmits */           \
+  FEATURE(bool, HAS_MEDIA, media)                   /* some material has a medium, or the world absorbs */ \
+  FEATURE(bool, HAS_TOUCHING, touching)             /* surfaces of solids with media may lie on others */ \
+  FEATURE(bool, HAS_ABSORPTION, absorption)         /* some medium absorbs */                           \
+  FEATURE(bool, HAS_SHADOW_FILTERS, shadow_filters) /* shadow rays look through transmissive things */  \
+  FEATURE(bool, HAS_FRACTIONAL_EXPONENTS, fractional_exponents) /* some highlight's exponent is no integer */ \
+  FEATURE(bool, HAS_FOG, fog)                       /* the world has fog */                             \
+  FEATURE(bool, HAS_GLOW, glow)                     /* some field glows */                              \
+  FEATURE(bool, HAS_OCCLUSION, occlusion)           /* some field darkens ambient light in its crevices */ \
+  FEATURE(bool, HAS_SOFT_SHADOWS, soft_shadows)     /* some field's shadow has a penumbra */            \
+  FEATURE(bool, SDF_TWO_SIDED, two_sided_fields)    /* some field transmits: rays may be inside it */   \
+  FEATURE(u32, SDF_FLAGS, field_flags)              /* SdfField.flags that some field has */
+
+#endif
