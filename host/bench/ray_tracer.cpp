@@ -38,11 +38,11 @@ double RayTracer::run(const RayQuery& query, const WorkGroup& group) {
   const auto count = static_cast<u32>(rays_.count);
   const u32 coherent = query.coherent ? 1 : 0;
   if (query.any)
-    run_scene_kernel<Buffer<Ray>, Buffer<u32>, u32, u32>(device_, occluded_rays_, size, tables_, rays_, occluded_,
-                                                         count, coherent);
+    run_scene_kernel<Buffer<Ray>, Buffer<u32>, u32, u32>(device_, occluded_rays_, size, tables_, rays_,
+                                                         occluded_, count, coherent);
   else
-    run_scene_kernel<Buffer<Ray>, Buffer<Hit>, u32, u32>(device_, trace_rays_, size, tables_, rays_, hits_, count,
-                                                         coherent);
+    run_scene_kernel<Buffer<Ray>, Buffer<Hit>, u32, u32>(device_, trace_rays_, size, tables_, rays_, hits_,
+                                                         count, coherent);
   const auto seconds = [&] {
     const auto times = device_.times().find(query.any ? occluded_rays_.name : trace_rays_.name);
     return times == device_.times().end() ? 0 : 1e-3 * times->second.device_ms;

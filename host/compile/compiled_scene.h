@@ -20,7 +20,7 @@ struct SceneFeatures {
 #undef SUNDOG_FEATURE_MEMBER
   bool camera_inside = false;
   bool unbounded = false;  // there are planes
-  u32 bvh_stack = 1;  // entries a traversal stack needs at most (scene BVH and the mesh BVH below it)
+  u32 bvh_stack = 1;       // entries a traversal stack needs at most (scene BVH and the mesh BVH below it)
 };
 
 struct BvhFigures {
@@ -53,8 +53,8 @@ std::size_t table_bytes(const SceneTables& tables);
 
 struct CompiledScene : SceneTables {
   SceneInfo info{};
-  dvec3 origin{0};  // where the tables' coordinates begin in the world; SceneInfo has it in floats
-  std::string field_source;           // text of generated/sdf.cl (compile/sdf.h); empty without fields
+  dvec3 origin{0};           // where the tables' coordinates begin in the world; SceneInfo has it in floats
+  std::string field_source;  // text of generated/sdf.cl (compile/sdf.h); empty without fields
   Tracer tracer = Tracer::automatic;  // of which kind the device shall trace
   SceneFeatures features;
   BvhFigures figures;

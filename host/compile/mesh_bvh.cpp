@@ -163,6 +163,15 @@ void append_tree(const WideBvh& tree, const Mesh& mesh, u32 first_triangle, std:
   });
 }
 
+/// Where each triangle's corners are: in the first of the blocks that have it.
+void note_places(std::span<const TriangleBlock> blocks, u32 first_block,
+                 std::span<TriangleShading> all_triangles) {
+  for (std::size_t i = blocks.size(); i-- > 0;)
+    for (u32 lane = 0; lane < 8; ++lane)
+      if (blocks[i].prim[lane] != NO_PRIM)
+        all_triangles[blocks[i].prim[lane]].place = (first_block + static_cast<u32>(i)) * 8 + lane;
+}
+
 /// Rows of the tables: how many there are, or where a mesh begins.
 struct Rows {
   std::size_t nodes = 0, blocks = 0, triangles = 0, vertices = 0;
@@ -240,6 +249,8 @@ void fill_tables(const Mesh& mesh, const WideBvh& tree, const Rows& first, u32 d
                       std::span(out.vertices).subspan(first.vertices, vertex_count(mesh)), triangles);
         placed.materials = distinct_materials(triangles);
       });
+  note_places(std::span(out.blocks).subspan(first.blocks, tree.blocks.size()), static_cast<u32>(first.blocks),
+              out.triangles);
 }
 
 double mean_fill(const std::vector<WideBvh>& trees) {

@@ -111,7 +111,8 @@ void fill_vertices(const Mesh& mesh, u32 first_vertex, u32 default_material, std
     const glm::uvec3& corners = mesh.triangles[t];
     triangles[t] = {{first_vertex + corners.x, first_vertex + corners.y, first_vertex + corners.z},
                     triangle_material(mesh, t, default_material),
-                    triangle_extent(mesh, corners)};
+                    triangle_extent(mesh, corners),
+                    0};
   });
 }
 

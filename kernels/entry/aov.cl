@@ -1,5 +1,6 @@
 // One stage: what the camera sees first, for the extra images: depth, normal, position, albedo, object and
 // material.
+#include "lib/bsdf.cl"
 #include "lib/counters.cl"
 #include "lib/segment.cl"
 
@@ -22,10 +23,11 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
   const CameraRays camera = camera_rays(scene->info, x, y);
   SceneRays rays = scene_rays(&camera, stack);
   Encounters met;
-  Surfaces s;
+  SurfaceInteractions s;
   next_surfaces(scene, &rays, lanes, true, &met, counts);
   const MASK hit = lanes & hit_anything(&met.hit);
   interact(scene, rays.o, rays.d, &met.hit, &met.face, hit, &s);
+  const Bsdfs bsdf = make_bsdfs(scene, &s, met.before, met.after, hit);
   const REAL3 world = add3(add3(s.p, all3(scene->info->origin_rest.xyz)), all3(scene->info->origin.xyz));
   const REAL depth = met.hit.t * dot3(rays.d, all3(scene->info->camera_forward.xyz));
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
@@ -39,7 +41,7 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
     }
     out[0] = (float4)(get3(&s.ns, i), REAL_LANE(depth, i));
     out[1] = (float4)(get3(&world, i), (float)scene->instances[MASK_LANE(met.hit.instance, i)].object);
-    out[2] = (float4)(get3(&s.diffuse, i), (float)MASK_LANE(met.face.material, i));
+    out[2] = (float4)(get3(&bsdf.diffuse, i), (float)MASK_LANE(met.face.material, i));
   }
   add_finished(counters, lane_count(lanes), pixel_count);
 }

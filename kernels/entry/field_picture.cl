@@ -41,11 +41,11 @@ NEVER_INLINE void picture_item(const Scene* scene, __global float* restrict shad
   REAL shade = (REAL)(0.0f);
   if (any_lane(hits.hit)) {
     const REAL3 p = along3(rays.origin, hits.t, rays.direction);
-    const SdfSurface s = sdf_surface(scene, 0, p, hits.threshold, hits.hit, hits.cut);
+    const REAL3 normal = sdf_normal(scene, 0, p, hits.threshold, hits.hit, hits.cut);
     const REAL3 wi = real3((REAL)(light.x), (REAL)(light.y), (REAL)(light.z));
-    const REAL cosine = fmax(dot3(s.normal, wi), 0.0f);
-    const REAL3 above = along3(p, 2.0f * hits.threshold, s.normal);
-    const REAL open = sdf_openness(scene, 0, above, s.normal, 0.2f, hits.hit);
+    const REAL cosine = fmax(dot3(normal, wi), 0.0f);
+    const REAL3 above = along3(p, 2.0f * hits.threshold, normal);
+    const REAL open = sdf_openness(scene, 0, above, normal, 0.2f, hits.hit);
     u32 steps_left = scene->sdf_fields[0].step_limit;
     const REAL lit = sdf_soft_shadow(scene, 0, above, wi, 2.0f * hits.threshold, (REAL)(4.0f), 16.0f,
                                      &steps_left, hits.hit & MASK_OF(cosine > 0.0f));

@@ -2,7 +2,7 @@
 // place in the image is a multiple of the tile, so that the pixels it works on together are the same however
 // the frame is cut.
 #include "lib/counters.cl"
-#include "lib/random.cl"
+#include "lib/sampler.cl"
 #include "lib/whitted.cl"
 
 // Rectangle of pixels in the image, and what is added to it.
@@ -36,10 +36,10 @@ static inline MASK start_rays(__global const SceneInfo* restrict info, const Job
   for (u32 lane = 0; lane < BATCH; ++lane) {
     const uint2 at = lane_pixel(job, item, lane);
     if (at.x >= job->width || at.y >= job->height) continue;
-    const u32 px = job->x0 + at.x, py = job->y0 + at.y;
-    const float2 in_pixel = sample_offset(px, py, sample, info->samples);
-    REAL_LANE(x, lane) = (float)px + in_pixel.x;
-    REAL_LANE(y, lane) = (float)py + in_pixel.y;
+    const uint2 pixel = (uint2)(job->x0, job->y0) + at;
+    const float2 in_pixel = pixel_sample(pixel, sample, info->samples);
+    REAL_LANE(x, lane) = (float)pixel.x + in_pixel.x;
+    REAL_LANE(y, lane) = (float)pixel.y + in_pixel.y;
     MASK_LANE(lanes, lane) = -1;
   }
   const CameraRays camera = camera_rays(info, x, y);

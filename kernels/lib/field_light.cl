@@ -1,12 +1,15 @@
 // What fields do to light besides stopping it: crevices that ambient light does not reach, and soft shadows.
 #ifndef SUNDOG_LIB_FIELD_LIGHT_CL
 #define SUNDOG_LIB_FIELD_LIGHT_CL
+#include "lib/scene_ray.cl"
+#if HAS_SDF
 #include "lib/fields.cl"
 #include "lib/sdf/light.cl"
+#endif
 
-#if HAS_OCCLUSION
 // The part of ambient light that the field of a hit lets reach that point of it: 1 for everything else, and
 // where the field has no occlusion.
+#if HAS_OCCLUSION
 NEVER_INLINE REAL field_openness(const Scene* scene, const SceneRays* rays, const Hits* hits, MASK lanes) {
   REAL open = (REAL)(1.0f);
   for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index) {
@@ -21,10 +24,14 @@ NEVER_INLINE REAL field_openness(const Scene* scene, const SceneRays* rays, cons
   }
   return open;
 }
+#else
+static inline REAL field_openness(const Scene* scene, const SceneRays* rays, const Hits* hits, MASK lanes) {
+  return (REAL)(1.0f);
+}
 #endif
 
-#if HAS_SOFT_SHADOWS
 // What the fields with soft shadows let pass along the rays.
+#if HAS_SOFT_SHADOWS
 NEVER_INLINE REAL soft_shadows(const Scene* scene, const SceneRays* rays, MASK active, u32* counts) {
   REAL through = (REAL)(1.0f);
   RayLanes lanes = load_lanes(rays, rays->t_max, active);
@@ -46,6 +53,10 @@ NEVER_INLINE REAL soft_shadows(const Scene* scene, const SceneRays* rays, MASK a
   }
   return through;
 }
-
+#else
+static inline REAL soft_shadows(const Scene* scene, const SceneRays* rays, MASK active, u32* counts) {
+  return (REAL)(1.0f);
+}
 #endif
+
 #endif

@@ -133,27 +133,26 @@ static inline void march_field(const Scene* scene, u32 index, RayLanes* lanes, u
   pay_for_steps(field, most, counts);
 }
 
-// Normals and colours of the lanes that met instance `index`.
+// Normals of the lanes that met instance `index`.
 static inline void shade_lanes(const Scene* scene, u32 index, const RayLanes* lanes, Hits* hits) {
   const MASK mine = MASK_OF(lanes->winner == (int)index);
   if (!any_lane(mine)) return;
   const REAL3 o = field_points(scene->instances + index, lanes->o),
               d = object_vectors(scene->instances + index, lanes->d);
-  const SdfSurface surface = sdf_surface(scene, scene->instances[index].root, along3(o, lanes->t_best, d),
-                                         lanes->threshold, mine, lanes->cut);
+  const REAL3 normal = sdf_normal(scene, scene->instances[index].root, along3(o, lanes->t_best, d),
+                                  lanes->threshold, mine, lanes->cut);
   // A normal must not contradict the side that the ray comes from: it is bent as far as the silhouette.
-  const REAL speed = length3(d), towards = dot3(surface.normal, d) / speed;
+  const REAL speed = length3(d), towards = dot3(normal, d) / speed;
   const MASK inside = lanes->inside;
   const REAL limit = select((REAL)(-1e-3f), (REAL)(1e-3f), inside);
   const MASK wrong = select(MASK_OF(towards > limit), MASK_OF(towards < limit), inside);
-  const REAL3 bent = along3(surface.normal, select((REAL)(0.0f), (limit - towards) / speed, wrong), d);
+  const REAL3 bent = along3(normal, select((REAL)(0.0f), (limit - towards) / speed, wrong), d);
   hits->t = select(hits->t, lanes->t_best, mine);
   hits->instance = select(hits->instance, (MASK)((int)index), mine);
   hits->ng = select3(hits->ng, bent, mine);
-  // A field has no parameters u, v and no parts: their place takes the colour.
-  hits->u = select(hits->u, surface.color.x, mine);
-  hits->v = select(hits->v, surface.color.y, mine);
-  hits->prim = select(hits->prim, AS_MASK(surface.color.z), mine);
+  hits->u = select(hits->u, (REAL)(0.0f), mine);
+  hits->v = select(hits->v, (REAL)(0.0f), mine);
+  hits->prim = select(hits->prim, NO_LANES, mine);
 }
 
 // What of a hit is wanted: all; all, on the way to a light, so that fields with soft shadows are left to
@@ -163,7 +162,7 @@ static inline void shade_lanes(const Scene* scene, u32 index, const RayLanes* la
 #define MARCH_TO_BLOCK 2u
 
 // Takes `hits`, which holds the nearest ones so far, to a field's where that is nearer, for the lanes of
-// `active`. A hit's u, v and prim hold its colour. Adds to the rays' glow.
+// `active`. Adds to the rays' glow.
 NEVER_INLINE void march_fields(const Scene* scene, SceneRays* rays, MASK active, u32 purpose, Hits* hits,
                                u32* counts) {
   const bool to_light = purpose != MARCH_TO_SEE;

@@ -70,4 +70,14 @@ static inline REAL refraction_index(__global const Medium* restrict media, MASK 
   return index;
 }
 
+// Index of refraction behind the interfaces of `lanes` over that before them, 1 elsewhere.
+static inline REAL relative_index(__global const Medium* restrict media, MASK before, MASK after,
+                                  MASK lanes) {
+#if HAS_MEDIA
+  return refraction_index(media, after, lanes) / refraction_index(media, before, lanes);
+#else
+  return (REAL)(1.0f);
+#endif
+}
+
 #endif

@@ -11,10 +11,36 @@ typedef struct PathStates {
   MASK depth;        // the camera's ray has 1, a shadow ray 0
 } PathStates;
 
-#define CROSSING_MEMBERS (12u + (BATCH > 1))
-#define MEDIA_MEMBERS (CROSSING_MEMBERS + RAYS_CROSS)
-#define SDF_MEMBERS (MEDIA_MEMBERS + 3u * HAS_MEDIA)
-#define STACK_MEMBERS (SDF_MEMBERS + 2u * HAS_SDF)
+// What is kept of each waiting ray, in this order: from this list come the count, the writing and the
+// reading.
+#if BATCH > 1
+#define STACKED_PIXEL(REALS, MASKS) MASKS(paths->pixel)
+#else
+#define STACKED_PIXEL(REALS, MASKS)
+#endif
+#if RAYS_CROSS
+#define STACKED_CROSSINGS(REALS, MASKS) MASKS(rays->crossings)
+#else
+#define STACKED_CROSSINGS(REALS, MASKS)
+#endif
+#if HAS_MEDIA
+#define STACKED_MEDIA(REALS, MASKS) MASKS(rays->media_low) MASKS(rays->media_high) REALS(rays->since)
+#else
+#define STACKED_MEDIA(REALS, MASKS)
+#endif
+#if HAS_SDF
+#define STACKED_FIELDS(REALS, MASKS) MASKS(rays->from) REALS(rays->footprint)
+#else
+#define STACKED_FIELDS(REALS, MASKS)
+#endif
+#define STACKED(REALS, MASKS)                                                                             \
+  REALS(rays->o.x)                                                                                        \
+  REALS(rays->o.y) REALS(rays->o.z) REALS(rays->d.x) REALS(rays->d.y) REALS(rays->d.z) REALS(rays->t_min) \
+      REALS(rays->t_max) REALS(paths->throughput.x) REALS(paths->throughput.y) REALS(paths->throughput.z) \
+          MASKS(paths->depth) STACKED_PIXEL(REALS, MASKS) STACKED_CROSSINGS(REALS, MASKS)                 \
+              STACKED_MEDIA(REALS, MASKS) STACKED_FIELDS(REALS, MASKS)
+#define COUNT_MEMBER(member) +1u
+#define STACK_MEMBERS (0u STACKED(COUNT_MEMBER, COUNT_MEMBER))
 
 // Arrays are BATCH longer than what may wait: see write_packed().
 #if BATCH > 1
@@ -35,72 +61,24 @@ typedef struct RayStack {
   u32 count;
 } RayStack;
 
-#define PUSH(member, lanes_value) write_packed(to + (member)*stride, lanes_value, lanes)
 // Writes the lanes of `lanes` one behind the other; member k goes to to[k * stride].
 NEVER_INLINE void write_rays(float* to, u32 stride, const SceneRays* rays, const PathStates* paths,
                              MASK lanes) {
-  PUSH(0u, rays->o.x);
-  PUSH(1u, rays->o.y);
-  PUSH(2u, rays->o.z);
-  PUSH(3u, rays->d.x);
-  PUSH(4u, rays->d.y);
-  PUSH(5u, rays->d.z);
-  PUSH(6u, rays->t_min);
-  PUSH(7u, rays->t_max);
-  PUSH(8u, paths->throughput.x);
-  PUSH(9u, paths->throughput.y);
-  PUSH(10u, paths->throughput.z);
-  PUSH(11u, AS_REAL(paths->depth));
-#if BATCH > 1
-  PUSH(12u, AS_REAL(paths->pixel));
-#endif
-#if RAYS_CROSS
-  PUSH(CROSSING_MEMBERS, AS_REAL(rays->crossings));
-#endif
-#if HAS_MEDIA
-  PUSH(MEDIA_MEMBERS, AS_REAL(rays->media_low));
-  PUSH(MEDIA_MEMBERS + 1u, AS_REAL(rays->media_high));
-  PUSH(MEDIA_MEMBERS + 2u, rays->since);
-#endif
-#if HAS_SDF
-  PUSH(SDF_MEMBERS, AS_REAL(rays->from));
-  PUSH(SDF_MEMBERS + 1u, rays->footprint);
-#endif
+#define WRITE_REALS(member) write_packed(to, member, lanes), to += stride;
+#define WRITE_MASKS(member) WRITE_REALS(AS_REAL(member))
+  STACKED(WRITE_REALS, WRITE_MASKS)
 }
-#undef PUSH
 
-#define PULL(member) read_lanes(from + (member)*stride)
 // Reads a ray for every lane.
 NEVER_INLINE void read_rays(const float* from, u32 stride, SceneRays* rays, PathStates* paths) {
-  rays->o = real3(PULL(0u), PULL(1u), PULL(2u));
-  rays->d = real3(PULL(3u), PULL(4u), PULL(5u));
-  rays->t_min = PULL(6u);
-  rays->t_max = PULL(7u);
-  paths->throughput = real3(PULL(8u), PULL(9u), PULL(10u));
-  paths->depth = AS_MASK(PULL(11u));
   paths->pixel = NO_LANES;
-#if BATCH > 1
-  paths->pixel = AS_MASK(PULL(12u));
-#endif
   rays->media_low = NO_LANES;
   rays->media_high = NO_LANES;
-#if RAYS_CROSS
-  rays->crossings = AS_MASK(PULL(CROSSING_MEMBERS));
-#endif
-#if HAS_MEDIA
-  rays->media_low = AS_MASK(PULL(MEDIA_MEMBERS));
-  rays->media_high = AS_MASK(PULL(MEDIA_MEMBERS + 1u));
-  rays->since = PULL(MEDIA_MEMBERS + 2u);
-#endif
-#if HAS_SDF
-  rays->from = AS_MASK(PULL(SDF_MEMBERS));
-  rays->footprint = PULL(SDF_MEMBERS + 1u);
-#endif
-#if HAS_GLOW
-  rays->glow = all3((float3)(0.0f));
-#endif
+  forget_glow(rays);
+#define READ_REALS(member) member = read_lanes(from), from += stride;
+#define READ_MASKS(member) member = AS_MASK(read_lanes(from)), from += stride;
+  STACKED(READ_REALS, READ_MASKS)
 }
-#undef PULL
 
 // The lanes of `lanes`; there must be room.
 static inline void push_rays(RayStack* stack, const SceneRays* rays, const PathStates* paths, MASK lanes) {

@@ -29,6 +29,12 @@ typedef struct SceneRays {
 #endif
 } SceneRays;
 
+static inline void forget_glow(SceneRays* rays) {
+#if HAS_GLOW
+  rays->glow = all3((float3)(0.0f));
+#endif
+}
+
 static inline SceneRays scene_rays(const CameraRays* camera, MediaStack media) {
   SceneRays rays;
   rays.o = camera->o;
@@ -47,9 +53,7 @@ static inline SceneRays scene_rays(const CameraRays* camera, MediaStack media) {
   rays.from = (MASK)(FROM_NOWHERE);
   rays.footprint = (REAL)(0.0f);
 #endif
-#if HAS_GLOW
-  rays.glow = all3((float3)(0.0f));
-#endif
+  forget_glow(&rays);
   return rays;
 }
 
@@ -72,7 +76,7 @@ static inline MASK current_media(__global const Medium* restrict media, const Sc
   return current;
 }
 
-// Where the lanes of `lanes` go on from their hits: `inside` what they hit, or not.
+// Records which field, and which side of it, each ray in `lanes` restarts from.
 static inline void start_on_hits(__global const SceneInfo* restrict info, SceneRays* rays, const Hits* hits,
                                  MASK inside, MASK lanes) {
 #if HAS_SDF
@@ -88,9 +92,7 @@ static inline void start_on_surfaces(__global const SceneInfo* restrict info, Sc
 #if HAS_SDF
   rays->footprint = select(rays->footprint, fma(hits->t, (REAL)(pixel_spread(info)), rays->footprint), lanes);
 #endif
-#if HAS_GLOW
-  rays->glow = all3((float3)(0.0f));
-#endif
+  forget_glow(rays);
 #if HAS_MEDIA
   rays->since = (REAL)(0.0f);
 #endif

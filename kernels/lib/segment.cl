@@ -3,10 +3,9 @@
 #ifndef SUNDOG_LIB_SEGMENT_CL
 #define SUNDOG_LIB_SEGMENT_CL
 #include "lib/config.h"
+#include "lib/faces.cl"
 #include "lib/media.cl"
 #include "lib/nearest.cl"
-#include "lib/optics.cl"
-#include "lib/surface.cl"
 #include "lib/touching.cl"
 
 // What rays meet. `before` and `after` are the media on the two sides as a ray crosses; equal where nothing
@@ -164,12 +163,29 @@ static inline void next_surfaces(const Scene* scene, SceneRays* rays, MASK activ
   }
 }
 
-// Index of the transmitting side over that of the incident side, for the lanes of `lanes`.
-static inline REAL relative_index(__global const Medium* restrict media, const Encounters* met, MASK lanes) {
-#if HAS_MEDIA
-  return refraction_index(media, met->after, lanes) / refraction_index(media, met->before, lanes);
+// How far off the surface further rays start, where faces that touch may be apart.
+static inline REAL offset_beyond(const Encounters* met, REAL offset) {
+#if HAS_TOUCHING
+  return real_max(offset, met->apart);
 #else
-  return (REAL)(1.0f);
+  return offset;
+#endif
+}
+
+// The children of `lanes`, copies of `rays`, are in the media behind what those have met; thin surfaces
+// change none.
+static inline void enter_behind(const Encounters* met, const SceneRays* rays, MASK lanes, SceneRays* child) {
+#if HAS_TOUCHING
+  child->media_low = select(child->media_low, met->behind_low, lanes);
+  child->media_high = select(child->media_high, met->behind_high, lanes);
+#elif HAS_MEDIA
+  const MASK bends = lanes & MASK_OF((met->face.flags & (int)MATERIAL_THIN) == 0);
+  for (u32 bits = lane_bits(bends); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    MediaStack crossed = get_media(rays, i);
+    cross_boundary(&crossed, (u32)MASK_LANE(met->face.medium, i), MASK_LANE(met->face.entering, i));
+    set_media(child, i, crossed);
+  }
 #endif
 }
 

@@ -3,7 +3,7 @@
 // on the straight line).
 #ifndef SUNDOG_LIB_SHADOW_CL
 #define SUNDOG_LIB_SHADOW_CL
-#include "lib/field_light.cl"
+#include "lib/optics.cl"
 #include "lib/ray_stack.cl"
 #include "lib/segment.cl"
 

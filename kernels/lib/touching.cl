@@ -6,10 +6,10 @@
 #define SUNDOG_LIB_TOUCHING_CL
 #include "lib/config.h"
 #if HAS_TOUCHING
+#include "lib/faces.cl"
 #include "lib/media.cl"
 #include "lib/scene_ray.cl"
 #include "lib/stretch.cl"
-#include "lib/surface.cl"
 
 static inline float greatest_component(float3 a) { return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z))); }
 

@@ -59,14 +59,16 @@ SUNDOG_SHARED_SIZE(TriangleBlock, 320)
 #define NO_PRIM 0xFFFFFFFFu
 #define NO_INSTANCE 0xFFFFFFFFu
 
-// 20 bytes: what shading needs of a triangle: three indices into the Vertex array, its material, and the
-// greatest distance of its corners along an axis, which rounding of positions on it is relative to.
+// 24 bytes: what shading needs of a triangle: three indices into the Vertex array, its material, the greatest distance of
+// its corners along an axis, which rounding of positions on it is relative to, and where its corners are:
+// lane place & 7 of the block place >> 3.
 typedef struct TriangleShading {
   u32 vertex[3];
   u32 material;
   float extent;
+  u32 place;
 } TriangleShading;
-SUNDOG_SHARED_SIZE(TriangleShading, 20)
+SUNDOG_SHARED_SIZE(TriangleShading, 24)
 
 // 32 bytes: a mesh vertex's attributes. Normals are unit length, object space.
 typedef struct Vertex {

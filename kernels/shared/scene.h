@@ -14,8 +14,7 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_REFLECTS 16u
 #define MATERIAL_THIN 32u          // no interior: transmits straight through and changes no medium
 #define MATERIAL_VERTEX_COLOR 64u  // ambient and diffuse are multiplied by the vertex colour
-#define MATERIAL_FLAT 128u         // shades with the geometric normal
-#define MATERIAL_CLEAR 256u        // no local terms, no tint in transmission: cannot be seen between equal indices
+#define MATERIAL_CLEAR 128u        // no local terms, no tint in transmission: cannot be seen between equal indices
 
 // Highlights up to this exponent, where it is whole, are products alone.
 #define GREATEST_WHOLE_EXPONENT 65535.0f

@@ -79,7 +79,8 @@ __kernel void depths(__global const SdfField* fields, __global const float* q, _
   r.t_min = (REAL)(0.0f); r.t_max = (REAL)(1e20f);
   r.footprint = (REAL)(0.0f); r.spread = (REAL)(spread);
   r.active = ALL_LANES; r.step_limit = fields[0].step_limit; r.inside = NO_LANES; r.leaving = NO_LANES;
-  const MarchHits h = march_rays(fields, q, 0, &r);
+  const Scene scene = {.sdf_fields = fields, .sdf_parameters = q};
+  const MarchHits h = march_rays(&scene, 0, &r);
   for (u32 i = 0; i < LANES; ++i)
     found[item * LANES + i] = MASK_LANE(h.hit, i) ? REAL_LANE(h.t, i) : INFINITY;
 }
@@ -121,6 +122,10 @@ __kernel void distances(__global const float* q, __global const float4* points, 
 }
 )";
 
+CompiledFields fields_of(const CompiledScene& flat) {
+  return {flat.field_source, flat.sdf_parameters, flat.sdf_fields};
+}
+
 bool has_doubles(const DeviceInfo& device) {
   return device.extensions.find("cl_khr_fp64") != std::string::npos;
 }
@@ -159,7 +164,7 @@ TEST_CASE("a view a millionth wide has the depths that doubles give") {
   for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
       if (!has_doubles(info) || !is_quick(info)) continue;
       Device device(info);
-      const std::vector<float> found = depths(device, flat.fields, directions, spread);
+      const std::vector<float> found = depths(device, fields_of(flat), directions, spread);
       int close = 0;
       for (std::size_t i = 0; i < found.size(); ++i)
         close += std::abs(found[i] - wanted[i]) < 3 * spread * width;
@@ -172,19 +177,19 @@ TEST_CASE("fields are marched in doubles only where floats are too coarse, each 
     const NearView view = near_view(width);
     const CompiledScene flat = compile(view.scene);
     const bool deep = width < 1e-4;
-    CHECK((flat.fields.source.find("deep_begin.h") != std::string::npos) == deep);
+    CHECK((flat.field_source.find("deep_begin.h") != std::string::npos) == deep);
     const double footprint = view_of_field(view.scene, view.scene.objects[0]).footprint;
     const double real = width * 2 * 2 * std::tan(glm::radians(14.0)) / size;  // in the field's units
     CHECK(footprint < 1.01 * real);
     CHECK(footprint > 0.02 * real);  // estimates are short
-    CHECK(flat.fields.fields[0].lower.w < 0.5 * footprint);
+    CHECK(flat.sdf_fields[0].lower.w < 0.5 * footprint);
   }
   NearView view = near_view(1e-8);
   view.scene.objects.push_back(view.scene.objects[0]);
   view.scene.objects[1].world_from_object[3].x += 5;
   const CompiledScene both = compile(view.scene);
-  REQUIRE(both.fields.fields.size() == 2);
-  CHECK(std::abs(both.fields.fields[0].lower.y - both.fields.fields[1].lower.y) == Approx(2.5));
+  REQUIRE(both.sdf_fields.size() == 2);
+  CHECK(std::abs(both.sdf_fields[0].lower.y - both.sdf_fields[1].lower.y) == Approx(2.5));
 }
 
 TEST_CASE("a deep view is rendered sharp, with its shadows") {

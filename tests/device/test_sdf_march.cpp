@@ -33,8 +33,9 @@ __kernel void march(__global const SdfField* fields, __global const float* q, __
   r.step_limit = fields[field].step_limit;
   r.inside = (mode & 1u) ? ALL_LANES : NO_LANES;
   r.leaving = (mode & 2u) ? ALL_LANES : NO_LANES;
-  MarchHits h = march_rays(fields, q, field, &r);
-  SdfSurface s = sdf_surface(fields, q, field, along3(r.origin, h.t, r.direction), h.threshold, h.hit, h.cut);
+  const Scene scene = {.sdf_fields = fields, .sdf_parameters = q};
+  MarchHits h = march_rays(&scene, field, &r);
+  REAL3 normal = sdf_normal(&scene, field, along3(r.origin, h.t, r.direction), h.threshold, h.hit, h.cut);
   for (u32 i = 0; i < LANES; ++i) {
     Hit hit;
     hit.t = REAL_LANE(h.t, i);
@@ -42,7 +43,7 @@ __kernel void march(__global const SdfField* fields, __global const float* q, __
     hit.v = (float)MASK_LANE(h.taken_back, i);
     hit.prim = (MASK_LANE(h.hit, i) ? 1u : 0u) | (MASK_LANE(h.cut, i) ? 2u : 0u) | (MASK_LANE(h.limited, i) ? 4u : 0u);
     hit.instance = 0;
-    hit.ng_x = REAL_LANE(s.normal.x, i); hit.ng_y = REAL_LANE(s.normal.y, i); hit.ng_z = REAL_LANE(s.normal.z, i);
+    hit.ng_x = REAL_LANE(normal.x, i); hit.ng_y = REAL_LANE(normal.y, i); hit.ng_z = REAL_LANE(normal.z, i);
     hits[item * LANES + i] = hit;
   }
 }

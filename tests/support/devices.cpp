@@ -31,7 +31,8 @@ const std::vector<sundog::DeviceInfo>& test_devices() {
 sundog::KernelDefines all_features() {
   using sundog::u32;
   sundog::KernelDefines defines;
-  for (const char* shape : {"MESH", "SPHERE", "PLANE", "BOX", "CYLINDER", "CONE", "DISK", "TORUS", "ROUNDBOX", "BVH", "SDF"})
+  for (const char* shape :
+       {"MESH", "SPHERE", "PLANE", "BOX", "CYLINDER", "CONE", "DISK", "TORUS", "ROUNDBOX", "BVH", "SDF"})
     defines[std::string("HAS_") + shape] = "1";
 #define SUNDOG_DEFINE_FEATURE(type, definition, name) \
   defines[#definition] = std::is_same_v<type, bool> ? "1" : "3";

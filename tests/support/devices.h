@@ -20,8 +20,8 @@ const std::vector<sundog::DeviceInfo>& test_devices();
 /// Definitions of every shape and feature, for kernels that are tested by themselves.
 sundog::KernelDefines all_features();
 
-/// Builds kernels from text, which may `#include "lib/..."` and `"shared/..."`, with all features but those that `defines`
-/// sets otherwise.
+/// Builds kernels from text, which may `#include "lib/..."` and `"shared/..."`, with all features but those
+/// that `defines` sets otherwise.
 sundog::Program build_text(sundog::Device& device, const std::string& text,
                            const sundog::KernelDefines& defines = {});
 

@@ -34,7 +34,7 @@ void shade_mesh(const CompiledScene& scene, const Ray& ray, const Hit& hit, bool
   const vec3 ns =
       world_normal(scene.instances[hit.instance], interpolate(hit, normal_of(a), normal_of(b), normal_of(c)));
   const float length = glm::length(ns);
-  if ((s.material->flags & MATERIAL_FLAT) || !(length > 0)) return;
+  if (!(length > 0)) return;
   const vec3 facing = ns / (entering ? length : -length);
   const float towards = glm::dot(facing, ray.d);
   s.ns = towards < 0 ? facing : glm::normalize(facing - (towards + 1e-4f) * ray.d);

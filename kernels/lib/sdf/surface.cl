@@ -3,11 +3,6 @@
 #define SUNDOG_LIB_SDF_SURFACE_CL
 #include "lib/sdf/march.cl"
 
-typedef struct SdfSurface {
-  REAL3 normal;  // outward, unit, in the field's space
-  REAL3 color;   // factor on the material's ambient and diffuse colours, linear
-} SdfSurface;
-
 // The palette at `trap`, linear between its stops, the last of which joins the first.
 static inline REAL3 palette_color(const Scene* scene, __global const SdfField* restrict field, REAL trap) {
   const REAL turns = fma(trap, (REAL)(field->palette_scale), (REAL)(field->palette_offset));
@@ -52,32 +47,43 @@ static inline REAL3 difference_normal(const Scene* scene, u32 index, REAL3 p, RE
   return sum;
 }
 
-// At p, a hit of march_rays. `cut`: it lies on the interval's boundary.
-static inline SdfSurface sdf_surface(const Scene* scene, u32 index, REAL3 p, REAL threshold, MASK hit,
-                                     MASK cut) {
+// One copy that is called: the whole formula with its traps and its gradient is compiled once.
+NEVER_INLINE void called_sample(const Scene* scene, u32 index, const REAL3* p, SdfSample* s) {
+  *s = sdf_sample(index, *p, scene->sdf_parameters);
+}
+
+// The outward unit normal at p, a hit of march_rays, in the field's space. `cut`: it lies on the interval's
+// boundary.
+static inline REAL3 sdf_normal(const Scene* scene, u32 index, REAL3 p, REAL threshold, MASK hit, MASK cut) {
   __global const SdfField* restrict field = scene->sdf_fields + index;
-  const bool exact = field->flags & SDF_FLAGS & SDF_SMOOTH, colored = field->color_by != SDF_COLOR_NONE;
-  SdfSurface surface;
-  surface.color = real3((REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f));
-  REAL3 gradient = surface.color;
-  if (exact || colored) {
-    const SdfSample s = sdf_sample(index, p, scene->sdf_parameters);
+  const bool exact = field->flags & SDF_FLAGS & SDF_SMOOTH;
+  REAL3 gradient = all3((float3)(1.0f));
+  if (exact) {
+    SdfSample s;
+    called_sample(scene, index, &p, &s);
     gradient = s.gradient;
-#ifdef SDF_DEEP
-    const REAL3 place = sdf_place(index, p, scene->sdf_parameters);
-#else
-    const REAL3 place = p;
-#endif
-    if (colored) surface.color = palette_color(scene, field, trap_value(field->color_by, s, place));
   }
   // On its edges, and where a minimum changes over on the surface itself, a closed form may have no gradient.
   const MASK lost = exact ? hit & MASK_OF(dot3(gradient, gradient) < 1e-20f) : hit;
   if (any_lane(lost))
     gradient =
         select3(gradient, difference_normal(scene, index, p, threshold * field->normal_width, lost), lost);
-  surface.normal = unit3(gradient);
-  if (any_lane(cut)) surface.normal = select3(surface.normal, cut_normal(field, p), cut);
-  return surface;
+  const REAL3 normal = unit3(gradient);
+  return any_lane(cut) ? select3(normal, cut_normal(field, p), cut) : normal;
+}
+
+// A factor on the material's ambient and diffuse colours at p, linear: what the orbit's trap gives.
+static inline REAL3 sdf_color(const Scene* scene, u32 index, REAL3 p) {
+  __global const SdfField* restrict field = scene->sdf_fields + index;
+  if (field->color_by == SDF_COLOR_NONE) return all3((float3)(1.0f));
+#ifdef SDF_DEEP
+  const REAL3 place = sdf_place(index, p, scene->sdf_parameters);
+#else
+  const REAL3 place = p;
+#endif
+  SdfSample s;
+  called_sample(scene, index, &p, &s);
+  return palette_color(scene, field, trap_value(field->color_by, s, place));
 }
 
 #endif
