@@ -1,6 +1,7 @@
 #include "app/options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <CLI/CLI.hpp>
@@ -19,6 +20,7 @@
 #include "base/image_io.h"
 #include "base/names.h"
 #include "base/standard_streams.h"
+#include "scene/integrators.h"
 
 namespace sundog {
 namespace {
@@ -114,7 +116,8 @@ void add_render(Arguments& root, Command& chosen) {
   value(app, "--samples", "N", typed->samples, "samples a pixel");
   value(app, "--max-depth", "N", typed->max_depth,
         "greatest depth of the ray tree; 1: the camera's rays alone");
-  value(app, "--integrator", "NAME", typed->integrator, "how light is followed: whitted");
+  value(app, "--integrator", "NAME", typed->integrator,
+        fmt::format("how light is followed: {}", fmt::join(integrator_names, ", ")));
   values(app, "--set", "POINTER=VALUE", command.overrides, "change the scene, as in /camera/fov=30");
   value(app, "--work-group", "SIZE", typed->work_group, "local size: N, WxH, auto or driver");
   value(app, "--split", "HOW", typed->split,

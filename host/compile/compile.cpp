@@ -141,8 +141,13 @@ std::size_t table_bytes(const SceneTables& tables) {
 CompiledScene compile(const SceneDescription& scene) {
   const auto start = std::chrono::steady_clock::now();
   CompiledScene out;
+  out.integrator = scene.render.integrator;
   out.tracer = scene.render.tracer;
   check_objects(scene);
+  if (!find_integrator(scene.render.integrator))
+    throw SceneError(scene.file.string(), "/render/integrator",
+                     fmt::format("wanted one of {}, found \"{}\"", fmt::join(integrator_names, ", "),
+                                 scene.render.integrator));
   const std::vector<FieldView> views = views_of(scene);
   out.origin = std::ranges::any_of(views, is_deep) ? scene.camera.position : local_origin(scene);
   set_camera(scene, out.origin, out.info);

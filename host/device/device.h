@@ -58,8 +58,8 @@ struct Buffer {
 
 struct ProgramRecord;  // what the binary cache must know of a built program (program.h)
 
-/// A kernel whose arguments have the types Args: Buffer<T> for a __global T*, or a plain 4-byte or 16-byte
-/// value.
+/// A kernel whose arguments have the types Args: Buffer<T> for a __global T*, or a plain value: a scalar, a
+/// vector, a struct.
 template <class... Args>
 struct Kernel {
   cl::Kernel kernel;
@@ -179,7 +179,7 @@ class Device {
   }
   template <class T>
   void set_argument(cl::Kernel& kernel, const std::string& name, cl_uint index, const T& value) {
-    static_assert(sizeof(T) == 4 || sizeof(T) == 16, "kernel values are 4-byte scalars or 16-byte vectors");
+    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 4 == 0, "kernel values are scalars, vectors and plain structs");
     check_argument(kernel.setArg(index, sizeof(T), &value), name, index);
   }
   KernelLimits limits_of(const cl::Kernel& kernel) const;

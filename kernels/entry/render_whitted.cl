@@ -4,39 +4,33 @@
 #include "lib/counters.cl"
 #include "lib/sampler.cl"
 #include "lib/whitted.cl"
-
-// Rectangle of pixels in the image, and what is added to it.
-typedef struct Job {
-  u32 x0, y0, width, height;
-  u32 first_sample, sample_count;
-  bool blocks;
-} Job;
+#include "shared/launch.h"
 
 // Pixel of lane `lane` of work-item `item`, counted from the rectangle's corner. Neighbouring work-items take
 // neighbouring tiles. Those of one pixel go through blocks of 8x4 of them, each in quarters of 4x2, so that
 // the eight or thirty-two that a device runs together have ray trees that are alike; in a launch of two
 // dimensions the group has its own shape.
-static inline uint2 lane_pixel(const Job* job, u32 item, u32 lane) {
+static inline uint2 lane_pixel(const Launch* launch, u32 item, u32 lane) {
 #if BATCH == 1
-  if (job->blocks) {
-    const u32 columns = (job->width + 7u) / 8u, block = item / 32u;
+  if (launch->blocks) {
+    const u32 columns = (launch->width + 7u) / 8u, block = item / 32u;
     return (uint2)(block % columns * 8u + (item >> 1 & 4u) + (item & 3u),
                    block / columns * 4u + (item >> 3 & 2u) + (item >> 2 & 1u));
   }
 #endif
-  const u32 columns = (job->width + TILE_W - 1u) / TILE_W;
+  const u32 columns = (launch->width + TILE_W - 1u) / TILE_W;
   return (uint2)(item % columns * TILE_W + lane % TILE_W, item / columns * TILE_H + lane / TILE_W);
 }
 
 // The camera's rays of one sample. Returns the lanes that have a pixel.
-static inline MASK start_rays(__global const SceneInfo* restrict info, const Job* job, u32 item, u32 sample,
-                              MediaStack around, SceneRays* rays) {
+static inline MASK start_rays(__global const SceneInfo* restrict info, const Launch* launch, u32 item,
+                              u32 sample, MediaStack around, SceneRays* rays) {
   MASK lanes = NO_LANES;
   REAL x = (REAL)(0.0f), y = (REAL)(0.0f);
   for (u32 lane = 0; lane < BATCH; ++lane) {
-    const uint2 at = lane_pixel(job, item, lane);
-    if (at.x >= job->width || at.y >= job->height) continue;
-    const uint2 pixel = (uint2)(job->x0, job->y0) + at;
+    const uint2 at = lane_pixel(launch, item, lane);
+    if (at.x >= launch->width || at.y >= launch->height) continue;
+    const uint2 pixel = (uint2)(launch->x0, launch->y0) + at;
     const float2 in_pixel = pixel_sample(pixel, sample, info->samples);
     REAL_LANE(x, lane) = (float)pixel.x + in_pixel.x;
     REAL_LANE(y, lane) = (float)pixel.y + in_pixel.y;
@@ -48,7 +42,7 @@ static inline MASK start_rays(__global const SceneInfo* restrict info, const Job
 }
 
 // Adds the light of one sample to film and weights.
-static inline void store_sample(const Job* job, u32 item, MASK lanes, const float4* radiance,
+static inline void store_sample(const Launch* launch, u32 item, MASK lanes, const float4* radiance,
                                 __global float4* restrict film, __global float* restrict weights,
                                 u32* counts) {
   for (u32 lane = 0; lane < BATCH; ++lane) {
@@ -58,21 +52,21 @@ static inline void store_sample(const Job* job, u32 item, MASK lanes, const floa
       counts[COUNT_NON_FINITE] += 1u;
       continue;
     }
-    const uint2 at = lane_pixel(job, item, lane);
-    const u32 pixel = at.y * job->width + at.x;
+    const uint2 at = lane_pixel(launch, item, lane);
+    const u32 pixel = at.y * launch->width + at.x;
     film[pixel] += radiance[lane];
     weights[pixel] += 1.0f;
   }
 }
 
 // One work-item of the kernel below.
-NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Job* job, u32 item,
+NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launch* launch, u32 item,
                               __global float4* restrict film, __global float* restrict weights,
                               __global u32* restrict counters) {
   u32 counts[COUNTERS];
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
   RayStack stack;
-  for (u32 sample = job->first_sample; sample < job->first_sample + job->sample_count; ++sample) {
+  for (u32 sample = launch->first_sample; sample < launch->first_sample + launch->sample_count; ++sample) {
     float4 radiance[BATCH];
     for (u32 lane = 0; lane < BATCH; ++lane) radiance[lane] = (float4)(0.0f);
 #if HAS_SDF
@@ -82,11 +76,11 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Job* 
     const MASK lanes = start_rays(scene->info, job, item, sample, around, &rays);
     counts[COUNT_PRIMARY] += lane_count(lanes);
     trace_whitted(scene, &rays, lanes, &stack, radiance, counts);
-    store_sample(job, item, lanes, radiance, film, weights, counts);
+    store_sample(launch, item, lanes, radiance, film, weights, counts);
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);
-  add_finished(counters, counts[COUNT_PRIMARY], job->sample_count);
+  add_finished(counters, counts[COUNT_PRIMARY], launch->sample_count);
 }
 
 // Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of work-items
@@ -94,14 +88,11 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Job* 
 // number to weights (a sample that is not finite counts for nothing); adds to counters.
 __kernel void render_whitted(SCENE_PARAMETERS, __global const u32* restrict camera_media,
                              __global float4* restrict film, __global float* restrict weights,
-                             __global u32* restrict counters, u32 x0, u32 y0, u32 width, u32 height,
-                             u32 row_items, u32 first_item, u32 last_item, u32 first_sample,
-                             u32 sample_count) {
+                             __global u32* restrict counters, const Launch launch) {
   const Scene scene = SCENE_OF_PARAMETERS;
   // Items count through the rectangle row by row; a launch in two dimensions takes whole rows of them.
-  const u32 item = first_item + get_global_id(1) * row_items + get_global_id(0);
-  if (get_global_id(0) >= row_items || item >= last_item) return;
-  const Job job = {x0, y0, width, height, first_sample, sample_count, get_work_dim() == 1u};
-  render_item(&scene, (MediaStack)camera_media[1] << 32 | camera_media[0], &job, item, film, weights,
+  const u32 item = launch.first_item + get_global_id(1) * launch.row_items + get_global_id(0);
+  if (get_global_id(0) >= launch.row_items || item >= launch.last_item) return;
+  render_item(&scene, (MediaStack)camera_media[1] << 32 | camera_media[0], &launch, item, film, weights,
               counters);
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/limits.h"
+#include "scene/integrators.h"
 #include "scene/read/parts.h"
 
 namespace sundog {
@@ -98,13 +99,13 @@ ImageSettings read_image(const JsonValue& value) {
 }
 
 RenderSettings read_render(const JsonValue& value) {
-  static constexpr std::string_view integrators[] = {"whitted"}, tracers[] = {"auto", "wide", "compact"};
+  static constexpr std::string_view tracers[] = {"auto", "wide", "compact"};
   return value.object("render", [](JsonObject& object) {
     RenderSettings render;
     render.max_depth = object.integer("max_depth", render.max_depth, 1, 64);
     render.samples = object.integer("samples", render.samples, 1, 65536);
     render.cutoff = object.number("cutoff", render.cutoff, zero_to_one);
-    render.integrator = object.choice("integrator", render.integrator, integrators);
+    render.integrator = object.choice("integrator", render.integrator, integrator_names);
     const std::string tracer = object.choice("tracer", "auto", tracers);
     render.tracer = tracer == "wide"      ? Tracer::wide
                     : tracer == "compact" ? Tracer::compact

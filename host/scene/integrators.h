@@ -1,0 +1,34 @@
+// The integrators: how light is followed from the camera. One row each; --integrator and /render/integrator
+// choose.
+#pragma once
+#include <array>
+#include <string_view>
+
+namespace sundog {
+
+struct Integrator {
+  std::string_view name;  // as users write it
+  const char* entry;      // kernel file
+  const char*
+      kernel;  // of that file; it takes the scene, the camera's media, film, weights, counters and a Launch
+  bool needs_camera_media;  // the media that the camera is in
+};
+
+inline constexpr std::array integrators{
+    Integrator{"whitted", "entry/render_whitted.cl", "render_whitted", true}};
+
+/// The names, in the table's order.
+inline constexpr auto integrator_names = [] {
+  std::array<std::string_view, integrators.size()> names{};
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = integrators[i].name;
+  return names;
+}();
+
+/// The row of that name; nullptr where there is none.
+constexpr const Integrator* find_integrator(std::string_view name) {
+  for (const Integrator& integrator : integrators)
+    if (integrator.name == name) return &integrator;
+  return nullptr;
+}
+
+}  // namespace sundog

@@ -1,0 +1,144 @@
+// How tiles are cut into launches: every sample once, in any size, and what is asked for after failures.
+#include <map>
+
+#include "catch.h"
+#include "render/launch_sizer.h"
+
+using namespace sundog;
+
+namespace {
+
+const Tile odd_tile{8, 16, 45, 27};
+
+LaunchLimits cpu(unsigned tile = 4) { return {DeviceClass::cpu, 6, tile, tile, 256}; }
+
+WorkGroup fixed(std::size_t x, std::size_t y) { return {WorkGroup::Kind::fixed, x, y}; }
+
+/// Runs all launches of a tile, a launch taking `seconds` of each sample. Counts how often each (item,
+/// sample) is made.
+std::map<std::pair<u32, u32>, int> run(LaunchSizer& sizer, const Tile& tile, unsigned samples,
+                                       double seconds) {
+  std::map<std::pair<u32, u32>, int> made;
+  sizer.begin(tile, samples);
+  while (const auto next = sizer.next()) {
+    const Launch& launch = next->launch;
+    REQUIRE(launch.sample_count > 0);
+    REQUIRE((launch.x0 == 8 && launch.y0 == 16 && launch.width == 45 && launch.height == 27));
+    for (u32 item = launch.first_item; item < launch.last_item; ++item)
+      for (u32 i = 0; i < launch.sample_count; ++i) ++made[{item, launch.first_sample + i}];
+    sizer.note_time(seconds * static_cast<double>(next->samples));
+  }
+  return made;
+}
+
+}  // namespace
+
+TEST_CASE("launches make every sample of every item once") {
+  const double seconds = GENERATE(1e-9, 1e-5, 1e-2);
+  const unsigned samples = GENERATE(1u, 7u, 300u);
+  for (const WorkGroup& group :
+       {WorkGroup{}, fixed(16, 1), fixed(8, 2), WorkGroup{WorkGroup::Kind::driver, 0, 0}})
+    for (const unsigned tile : {1u, 4u}) {
+      INFO(seconds << " s a sample, " << samples << " samples, tile " << tile << ", group " << group.x << "x"
+                   << group.y);
+      LaunchSizer sizer(cpu(tile), group, {}, false);
+      const auto made = run(sizer, odd_tile, samples, seconds);
+      const bool blocks = tile == 1 && !(group.kind == WorkGroup::Kind::fixed && group.y > 1);
+      const unsigned items = blocks ? 6 * 32 * 7 : tile == 1 ? 45 * 27 : 12 * 7;
+      CHECK(made.size() == std::size_t{items} * samples);
+      for (const auto& [key, count] : made) REQUIRE(count == 1);
+      CHECK(sizer.finished_rows() == 27);
+    }
+}
+
+TEST_CASE("a tile that is left early has the rows whose samples are all made") {
+  LaunchSizer sizer(cpu(), {}, {}, false);
+  sizer.begin(odd_tile, 4);
+  CHECK(sizer.finished_rows() == 0);
+  const unsigned row_items = 12;
+  unsigned last = 0;
+  while (const auto next = sizer.next()) {
+    const unsigned whole =
+        next->launch.first_sample + next->launch.sample_count == 4 ? next->launch.last_item : last;
+    CHECK(sizer.finished_rows() == std::min(whole / row_items * 4, 27u));
+    last = whole;
+    sizer.note_time(0.1);
+  }
+  CHECK(sizer.finished_rows() == 27);
+}
+
+TEST_CASE("launches grow to the wanted time and shrink where they take longer") {
+  LaunchSizer sizer(cpu(), {}, {}, false);
+  const Tile tile{0, 0, 4096, 4096};
+  sizer.begin(tile, 16);
+  std::size_t size = 0;
+  for (int i = 0; i < 12; ++i) {
+    size = sizer.next()->samples;
+    sizer.note_time(1e-6 * static_cast<double>(size));
+  }
+  CHECK(size == Approx(50'000).epsilon(0.1));
+  sizer.next();
+  sizer.note_time(5);
+  CHECK(sizer.next()->samples < size / 10);
+  LaunchSizer fields(cpu(), {}, {}, true);
+  fields.begin(tile, 16);
+  CHECK(fields.next()->samples <= 512);
+}
+
+TEST_CASE("failures are answered by less, until there is nothing less") {
+  LaunchSizer sizer(cpu(), {}, {}, false);
+  const Tile tile{0, 0, 512, 512};
+  SECTION("a group that is too large is halved down to one") {
+    LaunchSizer wide({DeviceClass::gpu, 16, 1, 1, 1024}, fixed(256, 1), {}, false);
+    for (std::size_t group = 256; group > 1; group /= 2) {
+      wide.begin(tile, 1);
+      CHECK(wide.next()->size.local_x == group);
+      CHECK(wide.ask_less(LaunchFailure::group_too_large, "why"));
+      CHECK(wide.most_group() == group / 2);
+    }
+    wide.begin(tile, 1);
+    CHECK(wide.next()->size.local_x == 1);
+    CHECK_FALSE(wide.ask_less(LaunchFailure::group_too_large, "why"));
+  }
+  SECTION("resources that run out make launches smaller") {
+    std::size_t before = ~std::size_t{0};
+    int asked = 0;
+    while (true) {
+      sizer.begin(tile, 8);
+      const std::size_t size = sizer.next()->samples;
+      CHECK(size <= before);
+      before = size;
+      const auto note = sizer.ask_less(LaunchFailure::out_of_resources, "why");
+      if (!note) break;
+      CHECK(note->rfind("why: ", 0) == 0);
+      REQUIRE(++asked < 40);
+    }
+    CHECK(before <= 6 * 16);
+    CHECK(asked > 3);
+  }
+  SECTION("loops that are cut short make fewer samples at a time, at last groups of one") {
+    sizer.begin(tile, 64);
+    CHECK(sizer.next()->launch.sample_count > 1);
+    unsigned samples = sizer.tile_samples();
+    while (samples > 1) {
+      REQUIRE(sizer.ask_less(LaunchFailure::loops_cut_short, "why"));
+      sizer.begin(tile, 64);
+      REQUIRE(sizer.next()->launch.sample_count <= samples / 2);
+      samples = sizer.tile_samples();
+    }
+    REQUIRE(sizer.ask_less(LaunchFailure::loops_cut_short, "why"));
+    sizer.begin(tile, 64);
+    CHECK(sizer.next()->size.local_x == 1);
+    CHECK_FALSE(sizer.ask_less(LaunchFailure::loops_cut_short, "why"));
+  }
+}
+
+TEST_CASE("a tuned group that the kernels cannot have is left for the default") {
+  Tuning tuning;
+  tuning.work_group = fixed(512, 1);
+  tuning.surfaces_group = fixed(512, 1);
+  LaunchSizer sizer(cpu(), {}, tuning, false);
+  sizer.begin({0, 0, 1024, 1024}, 1);
+  CHECK(sizer.next()->size.local_x <= 4);
+  CHECK(sizer.surfaces(1 << 20).local_x == 16);
+}
