@@ -1,4 +1,6 @@
 // compile(): from the description to the tables, in the order of their dependence.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -14,6 +16,7 @@
 #include "compile/materials.h"
 #include "compile/mesh_bvh.h"
 #include "compile/sdf_deep.h"
+#include "scene/integrators.h"
 
 namespace sundog {
 namespace {
