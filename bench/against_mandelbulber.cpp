@@ -11,7 +11,7 @@
 
 #include "base/file.h"
 #include "base/image_io.h"
-#include "bench/samples.h"
+#include "bench/report/samples.h"
 #include "run_program.h"
 #include "whole_runs.h"
 

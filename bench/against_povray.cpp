@@ -15,7 +15,7 @@
 #include "base/file.h"
 #include "base/image_compare.h"
 #include "base/image_io.h"
-#include "bench/frame_runner.h"
+#include "bench/frames/frame_runner.h"
 #include "bench_scenes.h"
 #include "compile/compiled_scene.h"
 #include "device/devices.h"

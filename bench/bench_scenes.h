@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/clock.h"
-#include "bench/samples.h"
+#include "bench/report/samples.h"
 #include "scene/description.h"
 
 namespace sundog {

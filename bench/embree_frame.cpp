@@ -14,7 +14,7 @@
 
 #include "base/image_compare.h"
 #include "base/image_io.h"
-#include "bench/frame_runner.h"
+#include "bench/frames/frame_runner.h"
 #include "bench/plain/whitted.h"
 #include "bench_scenes.h"
 #include "device/devices.h"

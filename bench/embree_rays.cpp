@@ -3,14 +3,14 @@
 // what it takes to answer in its own form (a filled RTCRayHit a ray); sundog is charged for launch and wait.
 // --copies and --balls make a model a crowd of instances and exact spheres.
 // Hits are compared: where the two disagree by more than rounding explains, and sundog's answer is the wrong
-// one (bench/check_hits.h tells), the program fails.
+// one (bench/rays/check_hits.h tells), the program fails.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "bench/check_hits.h"
+#include "bench/rays/check_hits.h"
 #include "bench_scenes.h"
 #include "embree_peer.h"
 #include "peer_rays.h"

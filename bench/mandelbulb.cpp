@@ -11,7 +11,7 @@
 #include "base/arguments.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "bench/samples.h"
+#include "bench/report/samples.h"
 #include "compile/sdf.h"
 #include "device/device.h"
 #include "mandelbulb_peer.h"
@@ -67,8 +67,9 @@ class KernelPeer {
     const SdfDescription field = field_of(p, exact);
     const CompiledFields compiled = compile_fields(std::span(&field, 1));
     kernel_ = device
-                  .build("entry/field_picture.cl", {{"LANES", std::to_string(lanes)}, {"SDF_FLAGS", "3"}, {"SDF_TWO_SIDED", "1"}}, nullptr,
-                         {{"generated/sdf.cl", compiled.source}})
+                  .build("entry/field_picture.cl",
+                         {{"LANES", std::to_string(lanes)}, {"SDF_FLAGS", "3"}, {"SDF_TWO_SIDED", "1"}},
+                         nullptr, {{"generated/sdf.cl", compiled.source}})
                   .kernel<Buffer<SdfField>, Buffer<float>, Buffer<float>, Buffer<u32>, float4, float4, float4,
                           float4, float4, u32, u32>("field_picture");
     fields_ = device.upload<SdfField>(compiled.fields);

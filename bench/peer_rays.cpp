@@ -5,7 +5,7 @@
 
 #include "bench_scenes.h"
 #include "crowd.h"
-#include "render/kernel_config.h"
+#include "render/device/kernel_config.h"
 
 namespace sundog {
 namespace {

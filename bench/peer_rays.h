@@ -3,8 +3,8 @@
 #pragma once
 
 #include "base/arguments.h"
-#include "bench/ray_sets.h"
-#include "bench/ray_tracer.h"
+#include "bench/rays/ray_sets.h"
+#include "bench/rays/ray_tracer.h"
 #include "peer_program.h"
 
 namespace sundog {

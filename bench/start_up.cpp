@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
-#include "bench/samples.h"
+#include "bench/report/samples.h"
 #include "run_program.h"
 #include "whole_runs.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/ray_sets.h"
+#include "bench/rays/ray_sets.h"
 #include "device/device.h"
 #include "tinybvh_tables.h"
 

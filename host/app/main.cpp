@@ -8,11 +8,11 @@
 #include <future>
 #include <string_view>
 
-#include "app/commands.h"
-#include "app/devices_command.h"
-#include "app/exit_status.h"
-#include "app/job.h"
-#include "app/options.h"
+#include "app/command_line.h"
+#include "app/commands/devices_command.h"
+#include "app/job/job.h"
+#include "app/options/commands.h"
+#include "app/process/exit_status.h"
 #include "base/error.h"
 #include "device/compile_process.h"
 #include "render/render.h"

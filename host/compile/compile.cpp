@@ -96,7 +96,7 @@ bool absorbs(const Medium& medium) {
   return a.x != 0 || a.y != 0 || a.z != 0;
 }
 
-/// As highlight() of kernels/lib/lights.cl tells them.
+/// As highlight() of kernels/lib/shade/bsdf.cl tells them.
 bool has_fractional_exponent(const Material& material) {
   const float exponent = material.specular.w;
   return exponent != std::floor(exponent) || exponent > GREATEST_WHOLE_EXPONENT;

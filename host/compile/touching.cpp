@@ -235,7 +235,7 @@ class Search {
   }
 
  private:
-  // Further rays start as far off a surface: see offset_distance() in kernels/lib/surface.cl.
+  // Further rays start as far off a surface: see offset_distance() in kernels/lib/shade/interaction.cl.
   double tolerance(const Body& a, const Body& b) const {
     return 0x1p-19 * std::max({a.size, b.size, camera_, 1e-30});
   }

@@ -16,6 +16,7 @@
 
 #include "device/build_options.h"
 #include "device/devices.h"
+#include "device/launches.h"
 #include "device/nvidia.h"
 
 namespace sundog {
@@ -31,23 +32,6 @@ struct BuildReport {
   double seconds = 0;
   std::string log;   // the compiler's, its warnings included
   std::string note;  // why the binary cache could not be used; empty when it could
-};
-
-/// Global and local size of a launch. The global size is padded to whole work-groups; kernels check their
-/// index against the count they are given. local = {0, 0}: the driver's own choice.
-struct LaunchSize {
-  std::size_t x = 1, y = 1;
-  std::size_t local_x = 64, local_y = 1;
-};
-
-/// Sum of the launches of one kernel on one device. device_ms comes from events and is 0 where the driver
-/// gives none. host_ms is by the host's clock, from the first enqueue of a batch to the end of finish(),
-/// shared among the batch's launches as their event times are (equally where there are none). The local sizes
-/// are those of the last launch; 0: the driver's.
-struct KernelTimes {
-  std::uint64_t launches = 0;
-  double device_ms = 0, host_ms = 0;
-  std::size_t local_x = 0, local_y = 0;
 };
 
 template <class T>
@@ -179,7 +163,8 @@ class Device {
   }
   template <class T>
   void set_argument(cl::Kernel& kernel, const std::string& name, cl_uint index, const T& value) {
-    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 4 == 0, "kernel values are scalars, vectors and plain structs");
+    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 4 == 0,
+                  "kernel values are scalars, vectors and plain structs");
     check_argument(kernel.setArg(index, sizeof(T), &value), name, index);
   }
   KernelLimits limits_of(const cl::Kernel& kernel) const;
@@ -191,7 +176,7 @@ class Device {
                     const LaunchSize& size);
 
   DeviceInfo info_;
-  bool fma_ = false;  // has the instruction (kernels/lib/config.h)
+  bool fma_ = false;  // has the instruction (kernels/lib/core/config.h)
   BuildWish wish_;
   cl::Device device_;
   cl::Context context_;

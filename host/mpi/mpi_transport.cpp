@@ -8,7 +8,7 @@
 #include <list>
 #include <map>
 
-#include "render/transport.h"
+#include "render/remote/transport.h"
 
 namespace sundog {
 namespace {

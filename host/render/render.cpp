@@ -6,9 +6,9 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "render/device_server.h"
-#include "render/frame.h"
-#include "render/hash.h"
+#include "render/device/device_server.h"
+#include "render/film/hash.h"
+#include "render/frame/frame.h"
 
 namespace sundog {
 namespace {

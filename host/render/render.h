@@ -13,69 +13,12 @@
 
 #include "base/image.h"
 #include "compile/compiled_scene.h"
-#include "device/device.h"
-#include "device/device_pool.h"
-#include "render/film.h"
-#include "render/part.h"
-#include "render/tuning.h"
+#include "device/devices.h"
+#include "render/film/film.h"
+#include "render/values/options.h"
+#include "render/values/report.h"
 
 namespace sundog {
-
-/// How tiles are shared among devices: by measured speed as they come, or in fixed parts, one a device.
-struct Split {
-  enum class Kind { dynamic, fixed } kind = Kind::dynamic;
-  std::vector<double> shares;  // of a fixed split; empty: by the devices' estimates
-};
-
-struct RenderProgress {
-  std::uint64_t pixels_done = 0, pixels_total = 0;
-  double seconds = 0;
-};
-
-struct RenderOptions {
-  std::shared_ptr<DevicePool> pool;  // where devices wait between frames; none: opened for this one
-  WorkGroup work_group;
-  std::function<Tuning(const DeviceInfo&)> tuning;  // of each device; empty: the defaults
-  int tile = 0;  // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
-  Split split;
-  PartOfFrame part;               // what to render of the frame
-  std::vector<std::string> aovs;  // of aov_names()
-  int channels = 4;  // of the result's image; 3: without coverage; 0: neither it nor AOVs are made
-  std::filesystem::path resume;      // a checkpoint: read when it exists
-  std::filesystem::path checkpoint;  // written on interrupt and on the way, and removed by the caller; empty:
-                                     // that is `resume`
-  double checkpoint_seconds = 60;    // between those written on the way
-  std::atomic<bool>* keep_now = nullptr;                   // set: write one at once, and take this back
-  bool in_haste = false;                                   // when stopped, a moment more may be too long
-  std::function<void(const RenderProgress&)> on_progress;  // called by one thread at a time
-  const std::atomic<bool>* stop = nullptr;                 // set: finish what runs, return what there is
-  bool keep_failed = false;  // when every device failed, return what there is, and the failure, not throw it
-};
-
-/// Sums over the frame, in the order of the COUNT_* constants.
-using RayCounts = std::array<std::uint64_t, COUNTERS>;
-
-struct DeviceReport {
-  DeviceInfo info;
-  std::uint64_t tiles = 0, failures = 0;
-  std::uint64_t pixels = 0;           // in the image from it
-  std::uint64_t outrun = 0;           // tiles that another device finished sooner
-  double busy_seconds = 0;            // on tiles that it finished
-  double share = 0;                   // of the frame's pixels
-  bool ready = false;                 // its kernels were built before the frame's end
-  bool retired = false;               // it failed too often, or hangs
-  bool abandoned = false;             // its driver still had not come back at the end
-  std::vector<std::string> messages;  // its failures
-  std::vector<std::string> notes;     // what it could live with
-  std::map<std::string, KernelTimes> kernels;
-  bool kernels_cached = false;
-};
-
-/// Wall seconds on the frame's clock; what overlaps is charged once.
-struct RenderTimes {
-  double build_kernels = 0, upload = 0, render = 0, readback = 0;
-  bool cached = false;  // every program came from the cache
-};
 
 struct RenderResult {
   Image image;  // linear RGBA; alpha is coverage: 0 where only background was seen or nothing was rendered
@@ -103,9 +46,6 @@ struct ServerPlan {
 
 /// A device of this process.
 ServerPlan plan_local(std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device);
-
-/// The AOVs `render` can make: depth, normal, position, albedo, object, material.
-const std::vector<std::string>& aov_names();
 
 /// Renders on all `devices` at once and waits for each of them to let go. Throws DeviceError when every
 /// device failed, BuildError when the kernels build on none, SceneError for a damaged checkpoint, UsageError

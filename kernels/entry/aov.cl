@@ -1,8 +1,8 @@
 // One stage: what the camera sees first, for the extra images: depth, normal, position, albedo, object and
 // material.
-#include "lib/bsdf.cl"
-#include "lib/counters.cl"
-#include "lib/segment.cl"
+#include "lib/core/counters.cl"
+#include "lib/path/segment.cl"
+#include "lib/shade/bsdf.cl"
 
 // One work-item of the kernel below: the pixels from `first` on.
 NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* restrict camera_media,

@@ -1,5 +1,5 @@
 // One stage: which media the camera is inside of, found by following a line from it to the outside.
-#include "lib/segment.cl"
+#include "lib/path/segment.cl"
 
 // The line leaves `medium`: one that it entered, or one that holds the camera. What is left later was entered
 // earlier: it goes to the far end.

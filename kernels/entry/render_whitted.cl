@@ -1,9 +1,9 @@
 // One stage: the Whitted image of a rectangle of pixels. A work-item takes TILE_W x TILE_H pixels, whose
 // place in the image is a multiple of the tile, so that the pixels it works on together are the same however
 // the frame is cut.
-#include "lib/counters.cl"
-#include "lib/sampler.cl"
-#include "lib/whitted.cl"
+#include "lib/core/counters.cl"
+#include "lib/core/sampler.cl"
+#include "lib/whitted/whitted.cl"
 #include "shared/launch.h"
 
 // Pixel of lane `lane` of work-item `item`, counted from the rectangle's corner. Neighbouring work-items take

@@ -1,6 +1,6 @@
 // One stage: hits for given rays, for tests and benchmarks of the tracer alone. A work-item takes BATCH rays
 // in a row. `coherent` says that they run close together.
-#include "lib/traverse.cl"
+#include "lib/trace/traverse.cl"
 
 #if LANES == 16
 // Eight members of sixteen rays or hits. In memory two lie in a vector one after the other; what gathers a

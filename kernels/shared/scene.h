@@ -108,8 +108,8 @@ SUNDOG_SHARED_SIZE(SceneInfo, 272)
 #define COUNT_MARCH_LIMIT 13        // marches that their step limit ended
 #define COUNT_MARCH_BACK 14         // relaxed steps that were taken back
 #define COUNT_MARCH_BUDGET 15       // marches not made because the sample's budget was used up
-#define COUNT_MARCH_LEFT 16         // no count: what the marches of a sample may still cost (lib/fields.cl)
-#define COUNT_FINISHED 17           // twice the camera rays of work-items whose loops ran to their end (lib/counters.cl)
+#define COUNT_MARCH_LEFT 16         // no count: what the marches of a sample may still cost (lib/path/fields.cl)
+#define COUNT_FINISHED 17           // twice the camera rays of work-items whose loops ran to their end (lib/core/counters.cl)
 #define COUNTERS 18
 
 SUNDOG_SHARED_END

@@ -5,7 +5,7 @@
 
 #include "catch.h"
 #include "cli_scene.h"
-#include "render/part.h"
+#include "render/film/part.h"
 
 using namespace sundog;
 

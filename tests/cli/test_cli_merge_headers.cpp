@@ -6,7 +6,7 @@
 
 #include "catch.h"
 #include "cli_scene.h"
-#include "render/hash.h"
+#include "render/film/hash.h"
 
 using namespace sundog;
 using nlohmann::json;

@@ -17,8 +17,8 @@ constexpr double pi = std::numbers::pi;
 constexpr u32 count = 1u << 15;
 
 const char* const draw_kernel = R"(
-#include "lib/bsdf_sample.cl"
-#include "lib/sampler.cl"
+#include "lib/shade/bsdf_sample.cl"
+#include "lib/core/sampler.cl"
 // One material, ns = ng = +z, the viewer at the cosine `cosine` to it in the plane y = 0; behind it the medium 1. Eight floats
 // a sample: wi, density, weight, whether it is specular.
 __kernel void draw(__global const Material* materials, __global const Medium* media, __global float* out, float cosine,

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "bench/ray_tracer.h"
+#include "bench/rays/ray_tracer.h"
 #include "catch.h"
 #include "devices.h"
 #include "embree_peer.h"

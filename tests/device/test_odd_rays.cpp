@@ -4,8 +4,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
-#include "bench/check_hits.h"
-#include "bench/ray_tracer.h"
+#include "bench/rays/check_hits.h"
+#include "bench/rays/ray_tracer.h"
 #include "catch.h"
 #include "each_tracer.h"
 #include "scenes.h"

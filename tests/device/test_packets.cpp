@@ -8,7 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "base/image_compare.h"
-#include "bench/ray_tracer.h"
+#include "bench/rays/ray_tracer.h"
 #include "catch.h"
 #include "devices.h"
 #include "scene/load.h"

@@ -7,7 +7,7 @@
 
 #include "catch.h"
 #include "devices.h"
-#include "render/device_scene.h"
+#include "render/device/device_scene.h"
 #include "scenes.h"
 
 using namespace sundog;
@@ -69,7 +69,7 @@ std::vector<Chart> charts() {
 }
 
 const char* const chart_kernel = R"(
-#include "lib/parametrize.cl"
+#include "lib/shade/parametrize.cl"
 __kernel void locate(__global const float4* points, __global float* out, u32 shape, u32 part, float4 parameters, u32 count) {
   const u32 i = get_global_id(0);
   if (i >= count) return;
@@ -86,8 +86,8 @@ struct Found {
 };
 
 const char* const look_kernel = R"(
-#include "lib/interaction.cl"
-#include "lib/traverse.cl"
+#include "lib/shade/interaction.cl"
+#include "lib/trace/traverse.cl"
 __kernel void look(SCENE_PARAMETERS, __global const Ray* rays, __global float* out, u32 count) {
   const Scene scene = SCENE_OF_PARAMETERS;
   const u32 i = get_global_id(0);

@@ -143,7 +143,7 @@ TEST_CASE("an estimate has the same bits for 1, 4, 8 and 16 lanes where it uses 
 
 TEST_CASE("the logarithm of the lanes is within two units in the last place") {
   const char* const text = R"(
-    #include "lib/lanes.h"
+    #include "lib/core/lanes.h"
     #include "shared/types.h"
     kernel void run(global const float* in, global float* out, u32 count) {
       const u32 i = get_global_id(0);

@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "bench/ray_tracer.h"
+#include "bench/rays/ray_tracer.h"
 #include "catch.h"
 #include "each_tracer.h"
 #include "test_meshes.h"

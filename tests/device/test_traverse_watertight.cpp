@@ -2,7 +2,7 @@
 // or a vertex.
 #include <random>
 
-#include "bench/ray_tracer.h"
+#include "bench/rays/ray_tracer.h"
 #include "catch.h"
 #include "devices.h"
 #include "test_meshes.h"

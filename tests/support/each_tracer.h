@@ -1,6 +1,6 @@
 // A scene in each way to trace rays through it: sixteen together, alone, and with the compact tracer.
 #pragma once
-#include "bench/ray_tracer.h"
+#include "bench/rays/ray_tracer.h"
 #include "catch.h"
 #include "devices.h"
 

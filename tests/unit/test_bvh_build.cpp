@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "base/error.h"
-#include "bench/exact_tracer.h"
+#include "bench/rays/exact_tracer.h"
 #include "catch.h"
 #include "compile/compiled_scene.h"
 #include "compile/wide_bvh.h"

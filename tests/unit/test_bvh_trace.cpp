@@ -1,7 +1,7 @@
 // Rays through the flattened tables find what a search without the BVH finds.
 #include <random>
 
-#include "bench/exact_tracer.h"
+#include "bench/rays/exact_tracer.h"
 #include "catch.h"
 #include "test_meshes.h"
 

@@ -4,8 +4,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
-#include "bench/check_hits.h"
-#include "bench/exact_tracer.h"
+#include "bench/rays/check_hits.h"
+#include "bench/rays/exact_tracer.h"
 #include "catch.h"
 #include "test_meshes.h"
 

@@ -1,5 +1,5 @@
 // Compact nodes stand for the wide ones: the same children, boxes that contain theirs and are hardly larger.
-#include "render/compact_nodes.h"
+#include "render/device/compact_nodes.h"
 
 #include <bit>
 

@@ -2,7 +2,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "bench/exact_tracer.h"
+#include "bench/rays/exact_tracer.h"
 #include "catch.h"
 #include "compile/wide_bvh.h"
 #include "test_meshes.h"

@@ -2,7 +2,7 @@
 #include <map>
 
 #include "catch.h"
-#include "render/launch_sizer.h"
+#include "render/device/launch_sizer.h"
 
 using namespace sundog;
 

@@ -4,7 +4,7 @@
 #include "catch.h"
 #include "compile/compiled_scene.h"
 #include "compile/local_origin.h"
-#include "render/hash.h"
+#include "render/film/hash.h"
 #include "scene/load.h"
 
 using namespace sundog;

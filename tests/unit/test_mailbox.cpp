@@ -1,7 +1,7 @@
 // Channels between the processes of a job, over a transport within this process; and which rank gets which
 // device.
-#include <render/deal_devices.h>
-#include <render/mailbox.h>
+#include <render/plan/deal_devices.h>
+#include <render/remote/mailbox.h>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // Words that scenes were once written with are read as the ones of today.
 #include <compile/compiled_scene.h>
-#include <render/hash.h>
+#include <render/film/hash.h>
 
 #include "catch.h"
 #include "scene_text.h"

@@ -1,12 +1,12 @@
 // Who gets how much of a frame: the planner, without a device; whole frames in simulated time.
-#include "render/plan.h"
+#include "render/plan/plan.h"
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
 
 #include "catch.h"
-#include "render/tiles.h"
+#include "render/plan/tiles.h"
 
 using namespace sundog;
 

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "bench/report.h"
-#include "bench/samples.h"
-#include "bench/svg.h"
+#include "bench/report/report.h"
+#include "bench/report/samples.h"
+#include "bench/report/svg.h"
 #include "catch.h"
 
 using namespace sundog;

@@ -1,5 +1,5 @@
 // Frames made smaller until they can be measured in time.
-#include "bench/smaller_scene.h"
+#include "bench/frames/smaller_scene.h"
 #include "catch.h"
 
 using namespace sundog;

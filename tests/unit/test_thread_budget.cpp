@@ -1,5 +1,5 @@
 // How long `bench threads` takes, and what it leaves out where that is too long.
-#include "bench/thread_budget.h"
+#include "bench/frames/thread_budget.h"
 #include "catch.h"
 
 using namespace sundog;

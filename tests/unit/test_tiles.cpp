@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "catch.h"
-#include "render/tiles.h"
+#include "render/plan/tiles.h"
 
 using namespace sundog;
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <set>
 
-#include "bench/tune_search.h"
+#include "bench/tune/tune_search.h"
 #include "catch.h"
 
 using namespace sundog;

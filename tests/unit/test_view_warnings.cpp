@@ -1,6 +1,6 @@
 // Views that floats, or a device without doubles, cannot show well are reported with the mend.
 #include "catch.h"
-#include "render/view_warnings.h"
+#include "render/device/view_warnings.h"
 #include "scene_text.h"
 
 using namespace sundog;

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "bench/work_groups.h"
+#include "bench/frames/work_groups.h"
 #include "catch.h"
 
 using namespace sundog;

@@ -9,7 +9,7 @@
 
 #include "base/image_compare.h"
 #include "bench/plain/surface.h"
-#include "bench/random.h"
+#include "bench/rays/random.h"
 
 namespace sundog {
 namespace plain {

@@ -7,8 +7,8 @@
 #include "bench/plain/media.h"
 #include "bench/plain/tracer.h"
 #include "compile/compiled_scene.h"
+#include "render/plan/tiles.h"
 #include "render/render.h"
-#include "render/tiles.h"
 
 namespace sundog {
 

@@ -1,9 +1,9 @@
 // Formulas in double precision, for views from so near that floats do not tell the pixels' points apart. From
-// here to lib/sdf/deep_end.h the names of lib/lanes.h mean lanes of doubles; where a device has none, they
-// mean what they always do, and such views are coarse.
+// here to lib/sdf/deep_end.h the names of lib/core/lanes.h mean lanes of doubles; where a device has none,
+// they mean what they always do, and such views are coarse.
 #ifndef SUNDOG_LIB_SDF_DEEP_BEGIN_H
 #define SUNDOG_LIB_SDF_DEEP_BEGIN_H
-#include "lib/lanes.h"
+#include "lib/core/lanes.h"
 #include "shared/sdf.h"
 
 #define SDF_DEEP 1

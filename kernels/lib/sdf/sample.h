@@ -1,8 +1,8 @@
 // What generated code returns about a point of a field, and how it is called.
 #ifndef SUNDOG_LIB_SDF_SAMPLE_H
 #define SUNDOG_LIB_SDF_SAMPLE_H
-#include "lib/lanes.h"
-#include "lib/tables.h"
+#include "lib/core/lanes.h"
+#include "lib/core/tables.h"
 
 // Tables of a formula's numbers, one of them, and one in the code: doubles in deep views (deep_begin.h).
 #ifndef SDF_TABLE

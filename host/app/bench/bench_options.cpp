@@ -1,0 +1,164 @@
+// See bench_options.h.
+#include "app/bench/bench_options.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "app/options/commands.h"
+#include "app/options/option_helpers.h"
+#include "app/options/option_values.h"
+#include "app/options/output_files.h"
+#include "app/options/pick_devices.h"
+#include "app/process/revision.h"
+#include "app/process/warnings.h"
+#include "base/cache_folder.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "bench/report/machine.h"
+#include "device/build_options.h"
+#include "device/pocl_folder.h"
+#include "scene/json/override.h"
+#include "scene/load.h"
+
+namespace sundog {
+namespace {
+
+std::string& command_line() {
+  static std::string text;
+  return text;
+}
+
+/// As a shell takes it for one word.
+std::string quoted(std::string_view word) {
+  constexpr std::string_view plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string_view::npos) return std::string(word);
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+}  // namespace
+
+void remember_command_line(int argc, const char* const* argv) {
+  std::string& text = command_line();
+  text.clear();
+  for (int i = 0; i < argc; ++i) {
+    if (i > 0) text += ' ';
+    text += quoted(argv[i]);
+  }
+}
+
+void add_bench_options(Arguments* app, BenchOptions& options) {
+  value(app, "SCENE", "FILE", options.scenes, std::string(scene_help) + "; several may be given")->required();
+  values(app, "--device", "SPEC", options.devices, device_help);
+  values(app, "--set", "POINTER=VALUE", options.overrides, "change the scenes, as in /camera/fov=30");
+  app->add_option("--repeat", options.repeat, "runs of each measurement, in turn with the others (default 5)")
+      ->type_name("N")
+      ->range(1, 10000);
+  value(app, "--json", "FILE", options.json, "write the measurements as JSON");
+  value(app, "--csv", "FILE", options.csv, "write the measurements as CSV");
+  value(app, "--html", "FILE", options.html, "write the report as one page with plots");
+  outside_files(app, options.outside_files);
+  app->add_flag("-q,--quiet", options.quiet, "print nothing");
+}
+
+void add_bench_size(Arguments* app, BenchOptions& options) {
+  value(app, "--size", "WxH", options.size, "width and height in pixels (default: the scene's)");
+}
+
+Report new_report(const std::string& name, const std::string& title, const BenchOptions& options) {
+  check_output_files({options.json, options.csv, options.html}, options.scenes);
+  for (const std::string& file : {options.json, options.csv, options.html})
+    if (!file.empty()) check_writable(file);
+  for (const std::string& setting : options.overrides) check_override(setting);
+  Report report;
+  report.name = name;
+  report.title = title;
+  report.facts = machine_facts();
+  report.facts.insert(
+      report.facts.begin(),
+      {{"sundog", SUNDOG_VERSION}, {"revision", build_revision()}, {"command", command_line()}});
+  if (!options.overrides.empty())
+    report.facts.emplace_back("--set", fmt::format("{}", fmt::join(options.overrides, " ")));
+  if (const std::string more = user_build_options(); !more.empty())
+    report.facts.emplace_back("SUNDOG_BUILD_OPTIONS", more);
+  if (const std::string note = busy_note(); !note.empty()) report.notes.push_back(note);
+  if (const std::string why = cache_refusal(); !why.empty()) report.notes.push_back(why);
+  return report;
+}
+
+int publish(const Report& report, const BenchOptions& options) {
+  if (isatty(STDERR_FILENO) && !options.quiet) fmt::print(stderr, "\r\x1b[K");
+  if (!options.json.empty())
+    write_file(options.json,
+               report_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  if (!options.csv.empty()) write_file(options.csv, report_csv(report));
+  if (!options.html.empty()) write_file(options.html, report_html(report));
+  if (!options.quiet) fmt::print("{}", report_text(report));
+  return exit_done;
+}
+
+void show_step(const BenchOptions& options, const std::string& step) {
+  if (!options.quiet && isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K{}", step);
+}
+
+std::string scene_name(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
+CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
+                          const std::vector<std::string>& more) {
+  std::vector<std::string> overrides = more;
+  if (!options.size.empty())
+    for (const std::string& setting : parse_image_size(options.size)) overrides.push_back(setting);
+  overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
+  try {
+    return compile(load_scene(file, overrides, {.outside_files = options.outside_files}));
+  } catch (const SceneError& error) {
+    for (const std::string& setting : overrides)
+      if (error.file == scene_file_name(file) && concerns(setting, error.place))
+        throw UsageError(error.what());
+    throw;
+  }
+}
+
+std::vector<DeviceInfo> bench_devices(const BenchOptions& options) {
+  return pick_devices(enumerate_devices(),
+                      options.devices.empty() ? devices_of_environment() : options.devices);
+}
+
+void add_device_facts(Report& report, const std::vector<DeviceInfo>& devices) {
+  for (const DeviceInfo& device : devices) report.facts.emplace_back("device", device_fact(device));
+  if (std::ranges::any_of(devices, is_pocl)) report.facts.emplace_back("PoCL", pocl_fact());
+}
+
+std::vector<int> parse_list(const char* option, const std::string& text, int low, int high) {
+  std::vector<int> numbers;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');)
+    numbers.push_back(parse_number(option, part, low, high));
+  if (numbers.empty() || text.ends_with(','))
+    throw UsageError(fmt::format("{} '{}': wanted numbers with commas between, such as 1,2,4", option, text));
+  std::ranges::sort(numbers);
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
+void add_bench(Arguments& root, Command& chosen) {
+  Arguments* bench =
+      root.add_subcommand("bench", "Measure, and write tables, JSON, CSV or a page with plots");
+  bench->require_subcommand(1);
+  add_bench_workgroup(*bench, chosen);
+  add_bench_threads(*bench, chosen);
+  add_bench_rays(*bench, chosen);
+  add_bench_samples(*bench, chosen);
+  add_bench_devices(*bench, chosen);
+  add_bench_kernels(*bench, chosen);
+}
+
+}  // namespace sundog

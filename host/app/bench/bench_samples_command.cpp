@@ -1,0 +1,71 @@
+// `sundog bench samples`: time and error by samples a pixel.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/bench/bench_options.h"
+#include "app/options/option_helpers.h"
+#include "base/error.h"
+#include "bench/frames/sample_scaling.h"
+
+namespace sundog {
+namespace {
+
+struct SamplesOptions : BenchOptions {
+  std::string counts = "1,2,4,8,16,32";
+  int reference = 0;  // 0: four times the most
+};
+
+int bench_samples(const SamplesOptions& options) {
+  const std::vector<int> counts = parse_list("--counts", options.counts, 1, 65536);
+  const int reference = options.reference > 0 ? options.reference : 4 * counts.back();
+  if (reference <= counts.back())
+    throw UsageError(fmt::format("--reference {}: wanted more than the {} samples that are compared with it",
+                                 reference, counts.back()));
+  Report report = new_report("samples", "Time and error by samples a pixel", options);
+  const std::vector<DeviceInfo> devices = bench_devices(options);
+  add_device_facts(report, devices);
+  for (const std::string& file : options.scenes)
+    for (const DeviceInfo& device : devices) {
+      SampleScaling plan;
+      plan.scene = scene_name(file);
+      plan.device = device;
+      plan.counts = counts;
+      plan.reference = reference;
+      plan.repeat = options.repeat;
+      plan.compile_for = [&](int samples) {
+        return bench_scene(file, options, {fmt::format("/render/samples={}", samples)});
+      };
+      const auto on_step = [&](const std::string& step) { show_step(options, step); };
+      add_sample_tables(report, plan, measure_samples(plan, on_step));
+    }
+  report.notes.push_back(
+      fmt::format("Median of {} frames after one to warm up; the counts take turns, and the image of each "
+                  "run was compared to "
+                  "the bit before its time counted. The error is the root mean square difference from the "
+                  "same device's picture "
+                  "with {} samples, in linear color; a pixel is visibly wrong if it is off by more than "
+                  "0.02. With independent "
+                  "samples \"error x sqrt(samples)\" would stay constant; these samples are spread evenly "
+                  "over the pixel and do "
+                  "better.",
+                  options.repeat, reference));
+  return publish(report, options);
+}
+
+}  // namespace
+
+void add_bench_samples(Arguments& bench, Command& chosen) {
+  const auto options = std::make_shared<SamplesOptions>();
+  Arguments* app = bench.add_subcommand("samples", "Time and error by samples a pixel");
+  add_bench_options(app, *options);
+  add_bench_size(app, *options);
+  value(app, "--counts", "LIST", options->counts, "samples a pixel (default 1,2,4,8,16,32)");
+  app->add_option("--reference", options->reference,
+                  "samples of the picture that counts as right (default: four times the most)")
+      ->type_name("N")
+      ->range(2, 1 << 18);
+  app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_samples(*options); }}; });
+}
+
+}  // namespace sundog

@@ -1,0 +1,239 @@
+// See check_command.h. This process makes no OpenCL call: every driver and every device is looked at by a
+// child of its own, so that one that crashes or hangs is a line of the report.
+#include "app/commands/check_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/check_report.h"
+#include "app/options/commands.h"
+#include "app/options/option_helpers.h"
+#include "app/options/pick_devices.h"
+#include "app/process/child_process.h"
+#include "base/file.h"
+#include "bench/rays/self_check.h"
+#include "bench/report/machine.h"
+#include "device/machine_topology.h"
+
+namespace sundog {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+struct CheckOptions {
+  std::vector<std::string> devices;
+  std::string worker;  // "P:D" or "P:D/N": this is the child that looks at one device
+  int timeout = 600;
+  bool json = false;
+};
+
+constexpr const char* status_names[] = {"ok", "differs", "failed"};
+
+json check_json(const SelfCheck& check) {
+  return {{"status", status_names[static_cast<int>(check.status)]},
+          {"kernels", check.kernels},
+          {"build_seconds", check.build_seconds},
+          {"render_seconds", check.render_seconds},
+          {"pixels", check.pixels},
+          {"differing", check.differing},
+          {"greatest_difference", check.greatest},
+          {"problem", check.problem.empty() ? json(nullptr) : json(check.problem)},
+          {"log", check.log.empty() ? json(nullptr) : json(check.log)}};
+}
+
+/// A line at once: what follows may end the process.
+void print_line(const std::string& line) {
+  fmt::print("{}\n", line);
+  std::fflush(stdout);
+}
+
+int work(const std::string& spec) {
+  const DeviceInfo device = select_devices(enumerate_devices(), {spec}).front();
+  const SelfCheck check =
+      check_device(device, [](const std::string& stage) { print_line("stage " + stage); });
+  print_line("result " + check_json(check).dump(-1, ' ', false, json::error_handler_t::replace));
+  return exit_done;
+}
+
+std::string end_text(const ChildResult& child, double seconds) {
+  if (child.timed_out) return fmt::format("did not come back within {:.0f} s", seconds);
+  if (child.signal) return fmt::format("crashed (signal {}, {})", child.signal, strsignal(child.signal));
+  return fmt::format("ended with status {}", child.status);
+}
+
+/// The platforms and devices of a list as `sundog devices --json` gives it; `problem` when there is none.
+json list_devices(const std::vector<std::string>& variables, double seconds, std::string& problem) {
+  std::string text;
+  const ChildResult child = run_self({"devices", "--json"}, variables, seconds,
+                                     [&](const std::string& line) { text += line + "\n"; });
+  const json list = json::parse(text, nullptr, false);
+  if (child.status == 0 && list.is_object()) return list.at("devices");
+  problem = end_text(child, seconds);
+  return json::array();
+}
+
+/// What may be advised depends on whether something else works.
+void add_advice(json& rows, const auto& advice_on, const auto& is_sound) {
+  const bool others = std::ranges::any_of(rows, is_sound);
+  for (json& row : rows) {
+    const json& problem = row.at("problem");
+    row["advice"] = problem.is_string() ? json(advice_on(problem, others)) : json(nullptr);
+  }
+}
+
+fs::path vendors_folder() {
+  const char* own = std::getenv("OCL_ICD_VENDORS");
+  return own && *own ? own : "/etc/OpenCL/vendors";
+}
+
+/// Each .icd file alone.
+json check_drivers(const fs::path& folder, double seconds) {
+  json drivers = json::array();
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none))
+    if (entry.path().extension() == ".icd") files.push_back(entry.path());
+  std::ranges::sort(files);
+  for (const fs::path& file : files) {
+    std::string problem, library = read_file(file);
+    library = library.substr(0, library.find('\n'));
+    const json rows = list_devices({"OCL_ICD_VENDORS=" + file.string()}, seconds, problem);
+    const auto devices = std::ranges::count_if(rows, [](const json& row) { return row.contains("index"); });
+    if (problem.empty() && rows.empty()) problem = "cannot be loaded, or has no platform";
+    drivers.push_back({{"file", file.filename().string()},
+                       {"library", library},
+                       {"devices", devices},
+                       {"problem", problem.empty() ? json(nullptr) : json(problem)}});
+  }
+  add_advice(drivers, driver_advice,
+             [](const json& driver) { return driver.at("devices") > 0 && driver.at("problem").is_null(); });
+  return drivers;
+}
+
+json check_one(const std::string& index, double seconds) {
+  json result;
+  std::string stage = "starting";
+  const ChildResult child = run_self({"check", "--worker", index}, {}, seconds, [&](const std::string& line) {
+    if (line.starts_with("stage ")) stage = line.substr(6);
+    if (line.starts_with("result ")) result = json::parse(line.substr(7), nullptr, false);
+  });
+  if (result.is_object()) return result;
+  SelfCheck failed;
+  failed.problem = fmt::format("{} while {}", end_text(child, seconds), stage);
+  return check_json(failed);
+}
+
+/// What a SPEC may ask of a row.
+DeviceInfo as_device(const json& row) {
+  DeviceInfo device;
+  device.platform = row.at("platform");
+  device.platform_name = row.at("platform_name");
+  device.problem = row.at("usable") == true ? "" : row.at("problem").get<std::string>();
+  if (!row.contains("index")) return device;
+  device.device = row.at("device");
+  device.name = row.at("name");
+  device.type = row.at("type");
+  device.compute_units = row.at("compute_units");
+  device.max_sub_devices = row.at("max_sub_devices");
+  device.estimate = row.at("estimate");
+  return device;
+}
+
+/// The rows that are asked for, all without --device; of a sub-device "sub_units" too.
+json wanted_rows(const json& rows, const std::vector<std::string>& specs) {
+  if (specs.empty()) return rows;
+  std::vector<DeviceInfo> all;
+  for (const json& row : rows) all.push_back(as_device(row));
+  json wanted = json::array();
+  for (const DeviceInfo& device : pick_devices(all, specs))
+    for (json row : rows)
+      if (row.value("index", "") == fmt::format("{}:{}", device.platform, device.device)) {
+        if (device.sub_units > 0) row["sub_units"] = device.sub_units;
+        wanted.push_back(std::move(row));
+      }
+  return wanted;
+}
+
+std::string spec_of(const json& row) {
+  const std::string index = row.at("index");
+  return row.contains("sub_units") ? fmt::format("{}/{}", index, row.at("sub_units").get<unsigned>()) : index;
+}
+
+json check_devices(const json& rows, const CheckOptions& options) {
+  json devices = json::array();
+  for (const json& row : rows) {
+    json device = {{"platform", row.at("platform_name")}};
+    for (const char* key : {"index", "sub_units", "name", "driver", "version"})
+      if (row.contains(key)) device[key] = row.at(key);
+    if (row.at("usable") == true) {
+      if (!options.json && isatty(STDERR_FILENO))
+        fmt::print(stderr, "\r\x1b[Kchecking {}", row.at("name").get<std::string>());
+      device.update(check_one(spec_of(row), options.timeout));
+    } else {
+      device.update({{"status", "not usable"}, {"problem", row.at("problem")}});
+    }
+    devices.push_back(std::move(device));
+  }
+  if (!options.json && isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K");
+  add_advice(devices, advice, [](const json& device) { return device.at("status") == "ok"; });
+  return devices;
+}
+
+int exit_status(const json& devices) {
+  const auto has = [&](const char* status) {
+    return std::ranges::any_of(devices, [&](const json& device) { return device.at("status") == status; });
+  };
+  if (has("differs")) return exit_difference;
+  return has("failed") || !has("ok") ? exit_device : exit_done;
+}
+
+int check(const CheckOptions& options) {
+  const fs::path folder = vendors_folder();
+  std::string problem;
+  const json rows = list_devices({}, options.timeout, problem);
+  const json wanted = wanted_rows(rows, options.devices);
+  json report = {{"schema", 1},
+                 {"sundog", SUNDOG_VERSION},
+                 {"compiler", compiler_text()},
+                 {"vendors", folder.string()},
+                 {"note", topology_note()},
+                 {"drivers", check_drivers(folder, options.timeout)},
+                 {"caches", cache_figures()},
+                 {"devices", check_devices(wanted, options)},
+                 {"problem", problem.empty() ? json(nullptr) : json("listing the devices " + problem)}};
+  const std::string text =
+      options.json ? report.dump(2, ' ', false, json::error_handler_t::replace) + "\n" : check_text(report);
+  fmt::print("{}", text);
+  return exit_status(report.at("devices"));
+}
+
+}  // namespace
+
+void add_check(Arguments& root, Command& chosen) {
+  const auto options = std::make_shared<CheckOptions>();
+  Arguments* app =
+      root.add_subcommand("check", "Check drivers, caches and devices; exit status 6 when a picture differs");
+  values(
+      app, "--device", "SPEC", options->devices,
+      "only these devices: P:D, cpu, gpu, accelerator, all, part of a name, or !SPEC to take away; /N for N "
+      "compute units (default: SUNDOG_DEVICE, or every device)");
+  app->add_option("--timeout", options->timeout, "seconds that one device may take (default 600)")
+      ->type_name("N")
+      ->range(1, 86400);
+  app->add_flag("--json", options->json, "as JSON");
+  app->add_option("--worker", options->worker)->hidden();
+  app->callback([options, &chosen] {
+    if (options->devices.empty()) options->devices = devices_of_environment();
+    chosen =
+        RunLater{[options] { return options->worker.empty() ? check(*options) : work(options->worker); }};
+  });
+}
+
+}  // namespace sundog

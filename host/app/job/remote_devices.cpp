@@ -1,0 +1,132 @@
+#include "app/job/remote_devices.h"
+
+#include <nlohmann/json.hpp>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/standard_streams.h"
+#include "render/device/device_server.h"
+#include "render/film/hash.h"
+#include "render/remote/remote_server.h"
+#include "render/remote/remote_values.h"
+#include "render/remote/worker_process.h"
+#include "scene/load.h"
+
+namespace sundog {
+namespace {
+
+using nlohmann::json;
+
+/// The device of that place and name on this side.
+DeviceInfo find_device(const DeviceInfo& wanted) {
+  for (DeviceInfo& device : enumerate_devices())
+    if (device.platform == wanted.platform && device.device == wanted.device && device.name == wanted.name) {
+      device.sub_units = wanted.sub_units;
+      device.first_unit = wanted.first_unit;
+      device.estimate = wanted.estimate;
+      device.rank = wanted.rank;
+      device.host = wanted.host;
+      return device;
+    }
+  throw DeviceError(fmt::format("{}: its process does not find it", wanted.label()));
+}
+
+}  // namespace
+
+json remote_settings(const RenderCommand& command, const DeviceInfo& device) {
+  return {{"scene", command.scene},
+          {"scene_text", is_standard_stream(command.scene) ? json(standard_input()) : json()},
+          {"overrides", command.overrides},
+          {"frame", command.frame ? json(*command.frame) : json()},
+          {"native_code", command.native_code},
+          {"outside_files", command.outside_files},
+          {"aovs", command.aovs},
+          {"work_group", command.work_group},
+          {"device", device},
+          {"nice", false}};
+}
+
+namespace {
+
+std::shared_ptr<const CompiledScene> load_flat(const json& settings) {
+  const auto overrides = settings.at("overrides").get<std::vector<std::string>>();
+  if (settings.at("scene_text").is_string()) set_standard_input(settings["scene_text"].get<std::string>());
+  LoadOptions options{std::nullopt, settings.at("native_code").get<bool>(),
+                      settings.at("outside_files").get<bool>()};
+  if (settings.at("frame").is_number()) options.frame = settings["frame"].get<double>();
+  return std::make_shared<const CompiledScene>(
+      compile(load_scene(settings.at("scene").get<std::string>(), overrides, options)));
+}
+
+/// The devices of one process render the same scene: it is loaded once.
+std::shared_ptr<const CompiledScene> load_once(const json& settings, KeptOpen& kept) {
+  json of_scene;
+  for (const char* key : {"scene", "scene_text", "overrides", "native_code", "outside_files", "frame"})
+    of_scene[key] = settings.at(key);
+  const std::lock_guard lock(kept.mutex);
+  if (kept.scene_settings != of_scene.dump()) kept.scene = load_flat(settings);
+  kept.scene_settings = of_scene.dump();
+  return kept.scene;
+}
+
+std::shared_ptr<std::mutex> in_use(const DeviceInfo& device, KeptOpen& kept) {
+  const std::lock_guard lock(kept.mutex);
+  std::shared_ptr<std::mutex>& mutex = kept.in_use[device.label()];
+  if (!mutex) mutex = std::make_shared<std::mutex>();
+  return mutex;
+}
+
+}  // namespace
+
+OpenedServer open_server(const json& settings, KeptOpen* kept) {
+  struct Frame {
+    std::shared_ptr<std::mutex> mutex;
+    std::unique_lock<std::mutex> in_use;
+    RenderOptions options;
+    std::shared_ptr<const CompiledScene> scene;
+  };
+  const auto device = settings.at("device").get<DeviceInfo>();
+  const auto frame = std::make_shared<Frame>();
+  if (kept) {
+    frame->mutex = in_use(device, *kept);
+    frame->in_use = std::unique_lock(*frame->mutex);
+    frame->options.pool = kept->pool;
+  }
+  frame->options.work_group = settings.at("work_group").get<WorkGroup>();
+  frame->options.aovs = settings.at("aovs").get<std::vector<std::string>>();
+  frame->scene = kept ? load_once(settings, *kept) : load_flat(settings);
+  frame->options.tuning = [flat = frame->scene](const DeviceInfo& info) { return saved_tuning(info, *flat); };
+  OpenedServer opened;
+  opened.scene = hash_scene(*frame->scene);
+  opened.kept = frame;
+  opened.server = std::make_shared<DeviceServer>(find_device(device), frame->scene, frame->options);
+  if (settings.at("nice").get<bool>()) opened.server->be_nice();
+  return opened;
+}
+
+std::vector<DeviceInfo> enumerate_in_worker() {
+  const std::unique_ptr<Channel> channel = start_worker("the list of devices");
+  channel->send({Message::list, {}, {}});
+  while (true) {
+    const std::optional<Message> answer = channel->receive(1);
+    if (!answer) continue;
+    if (answer->kind == Message::failed) throw DeviceError(answer->values.at("what").get<std::string>());
+    channel->send({Message::close, {}, {}});
+    return answer->values.at("devices").get<std::vector<DeviceInfo>>();
+  }
+}
+
+ServerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device, std::uint64_t scene_hash) {
+  const RemoteDevice remote{device,
+                            device.type == "cpu" ? 0 : -1,
+                            [label = device.label()] { return start_worker(label); },
+                            remote_settings(command, device),
+                            scene_hash,
+                            worker_restarts,
+                            worker_restarts + 1};
+  return {device, remote.processor,
+          [remote](const RenderOptions&) { return std::make_shared<RemoteServer>(remote); }};
+}
+
+}  // namespace sundog

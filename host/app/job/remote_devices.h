@@ -1,0 +1,42 @@
+// Devices in other processes, for `render`: what they are told, and how they find what they are told of.
+#pragma once
+#include <map>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "app/options/options.h"
+#include "compile/compiled_scene.h"
+#include "render/remote/tile_worker.h"
+#include "render/render.h"
+
+namespace sundog {
+
+/// What a process needs to render a part of the command's frame on `device` (Message::open).
+nlohmann::json remote_settings(const RenderCommand& command, const DeviceInfo& device);
+
+/// What a process that serves several devices, or several frames, keeps from one to the next. Any thread.
+struct KeptOpen {
+  std::shared_ptr<DevicePool> pool = std::make_shared<DevicePool>();
+  std::mutex mutex;                                           // for what follows
+  std::string scene_settings;                                 // that the scene was loaded by
+  std::shared_ptr<const CompiledScene> scene;                 // the last
+  std::map<std::string, std::shared_ptr<std::mutex>> in_use;  // by the device's label
+};
+
+/// Loads the scene of such settings and makes a server of the device; with `kept`, waits until nobody else in
+/// the process uses that device. Throws SceneError, DeviceError.
+OpenedServer open_server(const nlohmann::json& settings, KeptOpen* kept = nullptr);
+
+/// The devices that a worker process sees: this one makes no OpenCL call.
+std::vector<DeviceInfo> enumerate_in_worker();
+
+/// How often a worker process is started again.
+inline constexpr unsigned worker_restarts = 3;
+
+/// The device in a worker process of its own, for a scene of that hash.
+ServerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device, std::uint64_t scene_hash);
+
+}  // namespace sundog

@@ -1,0 +1,117 @@
+// What the ranks above 0 do: each channel that rank 0 opens is served by a thread, in which a device works,
+// or which passes everything on to a worker process (--isolate).
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "app/job/job.h"
+#include "app/job/remote_devices.h"
+#include "app/options/commands.h"
+#include "render/remote/hang_watch.h"
+#include "render/remote/remote_values.h"
+#include "render/remote/worker_process.h"
+
+namespace sundog {
+namespace {
+
+// At the end of the job, a driver that is still at work gets so long to come back.
+constexpr double closing_grace = 10;
+
+struct Service {
+  KeptOpen kept;
+  std::atomic<int> channels{0}, hanging{0};
+};
+
+/// Gives the first message back to whoever reads the channel next, which tells what the channel is for.
+class ReadAhead : public Channel {
+ public:
+  explicit ReadAhead(Channel& channel) : channel_(channel) {
+    while (!first_) first_ = channel_.receive(1);
+  }
+  const Message& first() const { return *first_; }
+  void send(const Message& message) override { channel_.send(message); }
+  std::optional<Message> receive(double seconds) override {
+    return first_ ? std::exchange(first_, std::nullopt) : channel_.receive(seconds);
+  }
+
+ private:
+  Channel& channel_;
+  std::optional<Message> first_;
+};
+
+/// Until told to close; throws ChannelClosed when either end is gone.
+void pass_on(Channel& job, Channel& worker) {
+  constexpr double look_again = 0.002;
+  while (true) {
+    if (const std::optional<Message> order = job.receive(look_again)) {
+      worker.send(*order);
+      if (order->kind == Message::close) return;
+    }
+    if (const std::optional<Message> answer = worker.receive(look_again)) job.send(*answer);
+  }
+}
+
+void serve_by_worker(ReadAhead& channel) {
+  const nlohmann::json& order = channel.first().values;
+  const std::string name =
+      order.contains("device") ? order["device"].get<DeviceInfo>().label() : "the list of devices";
+  try {
+    pass_on(channel, *start_worker(name));
+  } catch (const DeviceError& error) {
+    channel.send({Message::failed, {{"what", error.what()}, {"closed", true}}, {}});
+  }
+}
+
+void serve_here(Channel& channel, Service& service) {
+  Orders orders(channel, [] {});
+  HangWatch watch([&](const std::string& what) {
+    ++service.hanging;
+    try {
+      channel.send({Message::failed, {{"what", what}, {"closed", true}, {"hangs", true}}, {}});
+    } catch (const ChannelClosed&) {
+      // There is nobody left to tell.
+    }
+  });
+  serve_orders(channel, orders, [&](const nlohmann::json& settings) {
+    OpenedServer opened = open_server(settings, &service.kept);
+    watch.look_at(opened);
+    return opened;
+  });
+}
+
+void serve(Channel& opened, Service& service) {
+  try {
+    ReadAhead channel(opened);
+    if (channel.first().values.value("isolate", false))
+      serve_by_worker(channel);
+    else
+      serve_here(channel, service);
+  } catch (const ChannelClosed&) {
+    // Rank 0 is gone, or the job is over.
+  }
+}
+
+}  // namespace
+
+void serve_job(std::unique_ptr<Mailbox> job) {
+  const auto service = std::make_shared<Service>();
+  while (std::shared_ptr<Channel> channel = job->accept()) {
+    ++service->channels;
+    std::thread([service, channel]() mutable {
+      serve(*channel, *service);
+      channel.reset();
+      --service->channels;
+    }).detach();
+  }
+  const Stopwatch waited;
+  while (service->channels > service->hanging && waited.seconds() < closing_grace)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const bool in_order = job->leave(exit_done);
+  job.reset();
+  ::_exit(in_order ? exit_done : exit_failure);  // a thread may still sit in a driver
+}
+
+}  // namespace sundog

@@ -1,0 +1,108 @@
+#include "app/options/option_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "base/error.h"
+#include "base/limits.h"
+
+namespace sundog {
+namespace {
+
+template <class T>
+std::optional<T> number(std::string_view text, T low, T high) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  if (!whole || !(value >= low && value <= high)) return {};  // so that NaN is refused
+  return value;
+}
+
+/// "WxH", each from 1 to the greatest size; none when the text is anything else.
+std::optional<std::pair<int, int>> number_pair(std::string_view text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string_view::npos) return {};
+  const std::optional<int> width = number(text.substr(0, cross), 1, most_edge);
+  const std::optional<int> height = number(text.substr(cross + 1), 1, most_edge);
+  if (!width || !height) return {};
+  return std::pair(*width, *height);
+}
+
+}  // namespace
+
+int parse_number(const char* option, const std::string& text, int low, int high) {
+  const std::optional<int> value = number(text, low, high);
+  if (!value)
+    throw UsageError(fmt::format("{} {}: wanted a whole number from {} to {}", option, text, low, high));
+  return *value;
+}
+
+WorkGroup parse_work_group(const std::string& text) {
+  using enum WorkGroup::Kind;
+  if (text == "auto") return {automatic};
+  if (text == "driver") return {driver};
+  if (const auto edge = number(text, 1, most_edge)) return {fixed, static_cast<std::size_t>(*edge), 1};
+  if (const auto pair = number_pair(text))
+    return {fixed, static_cast<std::size_t>(pair->first), static_cast<std::size_t>(pair->second)};
+  throw UsageError(
+      fmt::format("--work-group {}: wanted a size (64), width x height (8x8), auto or driver", text));
+}
+
+PartOfFrame parse_part(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  const std::string_view all = text;
+  if (slash != std::string::npos) {
+    const std::optional<int> count = number(all.substr(slash + 1), 1, most_parts);
+    const std::optional<int> index = number(all.substr(0, slash), 1, count.value_or(0));
+    if (index) return {*index, *count};
+  }
+  throw UsageError(fmt::format("--tiles {}: wanted I/N, N parts from 1 to {} and I from 1 to N, such as 2/8",
+                               text, most_parts));
+}
+
+Split parse_split(const std::string& text) {
+  using enum Split::Kind;
+  if (text == "dynamic") return {dynamic, {}};
+  if (text == "static") return {fixed, {}};
+  Split split{fixed, {}};
+  double sum = 0;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::optional<double> share = number(std::string_view(text).substr(at, end - at), 0.0, 1e9);
+    if (!share)
+      throw UsageError(fmt::format("--split {}: wanted dynamic, static, or shares such as 3,1", text));
+    split.shares.push_back(*share);
+    sum += *share;
+    at = end + 1;
+  }
+  if (sum <= 0) throw UsageError(fmt::format("--split {}: one share at least must be more than 0", text));
+  return split;
+}
+
+double parse_tolerance(const std::string& text) {
+  const std::optional<double> value = number(text, 0.0, 1e300);
+  if (!value) throw UsageError(fmt::format("--tolerance {}: wanted a number, 0 or more", text));
+  return *value;
+}
+
+std::vector<std::string> parse_image_size(const std::string& text) {
+  const auto size = number_pair(text);
+  if (!size)
+    throw UsageError(
+        fmt::format("--size {}: wanted WIDTHxHEIGHT, each from 1 to {}, such as 640x480", text, most_edge));
+  return {fmt::format("/image/width={}", size->first), fmt::format("/image/height={}", size->second)};
+}
+
+void check_override(const std::string& setting) {
+  const std::size_t equals = setting.find('=');
+  if (equals == std::string::npos || equals < 2 || setting[0] != '/')
+    throw UsageError(fmt::format("--set {}: wanted JSON_POINTER=VALUE, such as /camera/fov=30", setting));
+}
+
+}  // namespace sundog

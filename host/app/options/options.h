@@ -1,0 +1,74 @@
+// The command line as values: what the user asked for, checked as far as it can be without reading a file.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "app/options/frames.h"
+#include "render/values/options.h"
+
+namespace sundog {
+
+/// A picture that a command writes.
+struct PictureOptions {
+  std::string out;           // "-": the standard output
+  std::string format;        // of image_formats(), for the standard output
+  bool full_floats = false;  // an EXR's colours as 32-bit floats
+};
+
+struct RenderCommand : PictureOptions {
+  std::string scene;
+  std::vector<std::string> devices;    // --device SPECs, or those of SUNDOG_DEVICE
+  std::vector<std::string> overrides;  // "JSON_POINTER=VALUE", those of --size, --samples... among them
+  WorkGroup work_group;
+  Split split;
+  std::optional<PartOfFrame> part;  // OUT is a part of the frame, not an image
+  int tile = 0;
+  std::optional<FrameRange> frames;  // of an animation; the files are numbered
+  std::optional<double> frame;       // the one of them that is rendered now
+  std::string stats, resume;         // files; empty: none
+  std::vector<std::string> aovs;
+  bool isolate = false;        // each device in a process of its own
+  bool native_code = false;    // the scene may carry OpenCL C
+  bool outside_files = false;  // the scene and its models may name files outside their folders
+  bool quiet = false, verbose = false;
+};
+
+struct DevicesOptions {
+  bool json = false;
+};
+
+struct InfoCommand {
+  std::string scene;
+  bool outside_files = false;          // as for render
+  std::vector<std::string> overrides;  // "JSON_POINTER=VALUE"
+  bool json = false;
+};
+
+struct CompareCommand {
+  std::string a, b, diff;
+  double tolerance = 0;
+  bool json = false;
+};
+
+struct MergeCommand : PictureOptions {
+  std::vector<std::string> parts;
+};
+
+/// --help or --version: a text for stdout. Without a command: the short help, for stderr.
+struct ShowText {
+  std::string text;
+  int status = 0;  // exit status
+};
+
+/// A command that needs no value here: its own file declares its options and does its work.
+struct RunLater {
+  std::function<int()> run;  // returns the exit status
+};
+
+using Command = std::variant<RenderCommand, DevicesOptions, InfoCommand, CompareCommand, MergeCommand,
+                             RunLater, ShowText>;
+
+}  // namespace sundog

@@ -1,0 +1,22 @@
+// What a command would write over by mistake.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "app/options/options.h"
+
+namespace sundog {
+
+/// The name that the picture's format is read from: that of the file, or "picture.png" for the standard
+/// output.
+std::string format_name(const PictureOptions& picture);
+
+/// Throws UsageError where the picture's name is of no format, or its format cannot hold what is asked, or
+/// the standard output is a terminal; IoError where the file could not be written.
+void check_picture(const PictureOptions& picture, bool with_aovs);
+
+/// Throws UsageError where two of the outputs are one file, or an output is a file that is read. Empty names
+/// are none; "-" is the standard output, or input.
+void check_output_files(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
+
+}  // namespace sundog

@@ -1,0 +1,22 @@
+// What goes wrong becomes one line on stderr and an exit status: the one place that catches everything.
+#pragma once
+#include <functional>
+
+namespace sundog {
+
+/// The exit statuses, a contract with scripts.
+enum ExitStatus {
+  exit_done = 0,
+  exit_failure = 1,  // internal or I/O
+  exit_usage = 2,
+  exit_scene = 3,       // the scene or an input file is bad
+  exit_device = 4,      // no such device, or every device failed
+  exit_build = 5,       // a kernel did not build
+  exit_difference = 6,  // compare found one
+  exit_interrupted = 130,
+};
+
+/// Runs the command; its status, or, when it throws, that of the error, which is printed if `speaks`.
+int exit_status_of(const std::function<int()>& command, bool speaks = true);
+
+}  // namespace sundog

@@ -1,0 +1,95 @@
+#include "app/process/interrupt.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <mutex>
+#include <thread>
+
+#include "app/process/exit_status.h"
+#include "app/process/warnings.h"
+
+namespace sundog {
+namespace {
+
+enum class Answer { ask, end, end_silently };
+
+/// Lives as long as the process does, and so does the thread that waits for signals.
+struct Waiting {
+  std::atomic<bool> stop_asked = false, was_continued = false;
+  std::mutex mutex;  // for what follows
+  Answer answer = Answer::ask;
+  std::string why;
+};
+
+Waiting& waiting() {
+  static auto* const one = new Waiting;
+  return *one;
+}
+
+sigset_t set_of(std::initializer_list<int> signals) {
+  sigset_t set;
+  ::sigemptyset(&set);
+  for (const int signal : signals) ::sigaddset(&set, signal);
+  return set;
+}
+
+/// As nohup leaves SIGHUP.
+bool is_ignored(int signal) {
+  struct sigaction action {};
+  return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+/// A terminal that is closed may send SIGHUP twice, by itself and by its shell: that is not a second wish.
+void answer_stop(Waiting& state, bool hang_up) {
+  const std::lock_guard lock(state.mutex);
+  if (state.answer == Answer::end) tell(fmt::format("sundog: interrupted: {}\n", state.why));
+  if (state.answer == Answer::ask && (!state.stop_asked.exchange(true) || hang_up)) return;
+  ::_exit(exit_interrupted);
+}
+
+void wait_for_signals(Waiting& state) {
+  sigset_t set = set_of({SIGINT, SIGTERM, SIGCONT});
+  if (!is_ignored(SIGHUP)) ::sigaddset(&set, SIGHUP);
+  for (int signal = 0; ::sigwait(&set, &signal) == 0;) {
+    if (signal == SIGCONT)
+      state.was_continued = true;
+    else
+      answer_stop(state, signal == SIGHUP);
+  }
+}
+
+void set_answer(Answer answer, const std::string& why = "") {
+  Waiting& state = waiting();
+  const std::lock_guard lock(state.mutex);
+  state.answer = answer;
+  state.why = why;
+}
+
+}  // namespace
+
+void hold_back(std::initializer_list<int> signals) {
+  const sigset_t set = set_of(signals);
+  ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+StopOnSignal::StopOnSignal() {
+  hold_back({SIGINT, SIGTERM, SIGHUP, SIGCONT});
+  waiting().stop_asked = waiting().was_continued = false;
+  asks();
+  static std::once_flag begun;
+  std::call_once(begun, [] { std::thread([] { wait_for_signals(waiting()); }).detach(); });
+}
+
+StopOnSignal::~StopOnSignal() { set_answer(Answer::end_silently); }
+
+void StopOnSignal::asks() const { set_answer(Answer::ask); }
+
+void StopOnSignal::ends_all(const std::string& why) const { set_answer(Answer::end, why); }
+
+const std::atomic<bool>& StopOnSignal::flag() const { return waiting().stop_asked; }
+
+std::atomic<bool>& StopOnSignal::continued() const { return waiting().was_continued; }
+
+}  // namespace sundog

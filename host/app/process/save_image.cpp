@@ -1,0 +1,74 @@
+#include "app/process/save_image.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "base/standard_streams.h"
+
+namespace sundog {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The path, whose extension is the format.
+fs::path named(const Picture& picture, const fs::path& path) {
+  return is_standard_stream(path) ? fs::path("picture." + picture.format) : path;
+}
+
+void write(const Picture& picture, const fs::path& path) {
+  write_output(path, encode_image(picture.image, named(picture, path), picture.aovs,
+                                  picture.full_floats ? ExrColor::full : ExrColor::half));
+}
+
+bool keep_checkpoint(const Picture& picture) {
+  if (picture.checkpoint.empty()) return false;
+  try {
+    write_checkpoint(picture.checkpoint, picture.film, picture.key);
+    return true;
+  } catch (const IoError&) {
+    return false;
+  }
+}
+
+/// Where the frame went instead, as the end of an error message. `write_to` writes the file that could not be
+/// written to another place.
+template <class Write>
+std::string rescue(const Picture& picture, const fs::path& path, const char* what, const Write& write_to) {
+  if (keep_checkpoint(picture))
+    return fmt::format("; all of it is in {}: make room and give the same command again",
+                       picture.checkpoint.string());
+  std::error_code none;
+  const fs::path elsewhere =
+      fs::temp_directory_path(none) /
+      fmt::format("sundog-{}-{}", ::getpid(), named(picture, path).filename().string());
+  try {
+    write_to(elsewhere);
+    return fmt::format("; the {} is in {}", what, elsewhere.string());
+  } catch (const IoError&) {
+    return "; nor is there room for it elsewhere, and it is lost";
+  }
+}
+
+template <class Write>
+void save(const Picture& picture, const fs::path& path, const char* what, const Write& write_to) {
+  try {
+    write_to(path);
+  } catch (const IoError& error) {
+    throw IoError(error.what() + rescue(picture, path, what, write_to));
+  }
+}
+
+}  // namespace
+
+bool drops_alpha(const fs::path& path) { return path.extension() != ".exr" && path.extension() != ".EXR"; }
+
+void save_image(const Picture& picture, const fs::path& path) {
+  save(picture, path, "image", [&](const fs::path& to) { write(picture, to); });
+}
+
+void save_part(const Picture& picture, const PartHeader& header, const fs::path& path) {
+  save(picture, path, "part", [&](const fs::path& to) { write_part(to, header, picture.film); });
+}
+
+}  // namespace sundog

@@ -1,0 +1,37 @@
+// The end of a render: the image, or a part of the frame, on disk, or, when the disk fails, kept where it can
+// be.
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "base/image_io.h"
+#include "render/film/film.h"
+#include "render/film/part.h"
+
+namespace sundog {
+
+/// What is to be saved: a developed frame and what it was developed from.
+struct Picture {
+  const Image& image;  // linear, of image_channels() of the file
+  const AovImages& aovs;
+  const Film& film;
+  std::uint64_t key = 0;             // of the scene, for a checkpoint
+  std::filesystem::path checkpoint;  // may be used in need; empty: none was asked for
+  bool full_floats = false;
+  std::string format = "png";  // of image_formats(), where the path is "-"
+};
+
+/// True where a program would show an alpha channel of coverage as holes.
+bool drops_alpha(const std::filesystem::path& path);
+
+/// The channels that a file of this name keeps: 3, or 4 with coverage.
+inline int image_channels(const std::filesystem::path& path) { return drops_alpha(path) ? 3 : 4; }
+
+/// Writes `path`; "-" is the standard output. When that fails the frame is kept as a checkpoint, or as an
+/// image in the folder for temporary files: IoError says what happened and where it is.
+void save_image(const Picture& picture, const std::filesystem::path& path);
+
+/// The same for a part of a frame.
+void save_part(const Picture& picture, const PartHeader& header, const std::filesystem::path& path);
+
+}  // namespace sundog

@@ -1,0 +1,141 @@
+#include "app/process/scene_figures.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <type_traits>
+
+namespace sundog {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array shape_names = {"mesh", "sphere", "plane", "box",      "cylinder",
+                                    "cone", "disk",   "torus", "roundbox", "field"};
+static_assert(shape_names.size() == std::variant_size_v<Shape>);
+constexpr std::array light_names = {"ambient", "directional", "point", "spot"};
+
+json count_shapes(const SceneDescription& scene) {
+  json counts = json::object();
+  for (const Object& object : scene.objects) {
+    json& count = counts[shape_names[object.shape.index()]];
+    count = count.is_null() ? 1 : count.get<int>() + 1;
+  }
+  return counts;
+}
+
+json count_lights(const SceneDescription& scene) {
+  json counts = json::object();
+  for (const LightDescription& light : scene.lights) {
+    json& count = counts[light_names[static_cast<std::size_t>(light.type)]];
+    count = count.is_null() ? 1 : count.get<int>() + 1;
+  }
+  return counts;
+}
+
+std::size_t placed_triangles(const SceneDescription& scene) {
+  std::size_t count = 0;
+  for (const Object& object : scene.objects)
+    if (const auto* shape = std::get_if<MeshShape>(&object.shape))
+      count += scene.meshes[static_cast<std::size_t>(shape->mesh)].triangles.size();
+  return count;
+}
+
+template <class T>
+std::size_t bytes_of(const std::vector<T>& table) {
+  return table.size() * sizeof(T);
+}
+
+json bytes_by_kind(const CompiledScene& flat) {
+  const std::size_t bvh = bytes_of(flat.nodes) + bytes_of(flat.blocks);
+  const std::size_t shading = bytes_of(flat.triangles) + bytes_of(flat.vertices);
+  const std::size_t total = table_bytes(flat);
+  return {{"bvh", bvh}, {"shading", shading}, {"tables", total - bvh - shading}, {"total", total}};
+}
+
+json bounds(const CompiledScene& flat) {
+  const Bounds& box = flat.figures.box;
+  if (box.empty()) return nullptr;
+  json corners[2];
+  for (int axis = 0; axis < 3; ++axis) {
+    corners[0].push_back(double(box.lower[axis]) + flat.origin[axis]);
+    corners[1].push_back(double(box.upper[axis]) + flat.origin[axis]);
+  }
+  return {{"min", corners[0]}, {"max", corners[1]}};
+}
+
+/// The intervals of the fields, each as far as it is cut and placed.
+json field_bounds(const SceneDescription& scene) {
+  json list = json::array();
+  for (const Object& object : scene.objects) {
+    const auto* shape = std::get_if<FieldShape>(&object.shape);
+    if (!shape) continue;
+    const SdfDescription& field = scene.fields[static_cast<std::size_t>(shape->field)];
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+    for (int corner = 0; corner < 8; ++corner) {
+      glm::dvec3 p;
+      for (int axis = 0; axis < 3; ++axis) {
+        double lower = field.lower[axis], upper = field.upper[axis];
+        if (field.sphere) {
+          lower = std::max(lower, (*field.sphere)[axis] - field.sphere->w);
+          upper = std::min(upper, (*field.sphere)[axis] + field.sphere->w);
+        }
+        p[axis] = corner >> axis & 1 ? upper : lower;
+      }
+      const glm::dvec3 world(object.world_from_object * glm::dvec4(p, 1));
+      low = glm::min(low, world);
+      high = glm::max(high, world);
+    }
+    list.push_back({{"name", object.name.empty() ? field.name : object.name},
+                    {"min", {low.x, low.y, low.z}},
+                    {"max", {high.x, high.y, high.z}}});
+  }
+  return list;
+}
+
+/// Both together.
+json whole_bounds(json box, const json& fields) {
+  for (const json& field : fields)
+    for (std::size_t axis = 0; axis < 3 && !box.is_null(); ++axis) {
+      box["min"][axis] = std::min(box["min"][axis].get<double>(), field["min"][axis].get<double>());
+      box["max"][axis] = std::max(box["max"][axis].get<double>(), field["max"][axis].get<double>());
+    }
+  if (!box.is_null() || fields.empty()) return box;
+  return whole_bounds({{"min", fields[0]["min"]}, {"max", fields[0]["max"]}}, fields);
+}
+
+json planes(const CompiledScene& flat) {
+  return std::count_if(flat.instances.begin(), flat.instances.end(),
+                       [](const Instance& instance) { return instance.shape == SHAPE_PLANE; });
+}
+
+}  // namespace
+
+json scene_figures(const SceneDescription& scene, const CompiledScene& flat) {
+  return {{"file", scene.file.string()},
+          {"triangles", flat.figures.triangles},
+          {"placed_triangles", placed_triangles(scene)},
+          {"meshes", scene.meshes.size()},
+          {"instances", flat.instances.size()},
+          {"unbounded", planes(flat)},
+          {"objects", count_shapes(scene)},
+          {"lights", count_lights(scene)},
+          {"materials", scene.materials.size()},
+          {"media", scene.media.size()},
+          {"fields", scene.fields.size()},
+          {"bvh",
+           {{"nodes", flat.figures.nodes},
+            {"blocks", flat.figures.blocks},
+            {"mean_block_fill", flat.figures.mean_block_fill},
+            {"sah_cost", flat.figures.sah_cost},
+            {"sah_cost_unit",
+             "nodes and blocks (or solids) that a ray through the scene's box visits, by surface area"},
+            {"build_seconds", flat.figures.build_seconds},
+            {"build_seconds_unit", "seconds on the wall's clock, of the whole compiled scene"}}},
+          {"bytes", bytes_by_kind(flat)},
+          {"field_bounds", field_bounds(scene)},
+          {"bounds", whole_bounds(bounds(flat), field_bounds(scene))}};
+}
+
+}  // namespace sundog

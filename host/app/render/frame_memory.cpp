@@ -1,0 +1,64 @@
+#include "app/render/frame_memory.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+#include "app/process/save_image.h"
+#include "base/memory.h"
+
+namespace sundog {
+namespace fs = std::filesystem;
+namespace {
+
+// Sums, weight, and whether it is done; three vectors of AOVs.
+constexpr std::uint64_t film_bytes = 16 + 4 + 1, film_aov_bytes = 48;
+
+/// Floats of an AOV's image.
+std::uint64_t aov_floats(const std::string& name) {
+  return name == "normal" || name == "position" || name == "albedo" ? 3 : 1;
+}
+
+/// What an encoder has at once beside the image: rows as they are written, packed, and the file's bytes,
+/// where the picture is noise that no compression makes smaller.
+std::uint64_t encoder_bytes(const std::string& file, std::uint64_t aovs) {
+  const fs::path extension = fs::path(file).extension();
+  if (!drops_alpha(file)) return 2 * 2 * 4 + aovs;  // half floats; AOVs stay floats
+  if (extension == ".png" || extension == ".PNG") return 4 * 3;
+  if (extension == ".hdr" || extension == ".HDR") return 14;
+  return extension == ".pfm" || extension == ".PFM" ? 12 : 2 * 3;
+}
+
+// Tiles that are on their way, on the device and off it, and what the allocator keeps of them: measured where
+// frames are drawn so fast that tiles are large.
+constexpr std::uint64_t tile_bytes = 4;
+
+}  // namespace
+
+std::uint64_t bytes_a_pixel(const FrameOutput& output) {
+  const std::uint64_t film = film_bytes + (output.aovs.empty() ? 0 : film_aov_bytes);
+  std::uint64_t aovs = 0;
+  for (const std::string& name : output.aovs) aovs += 4 * aov_floats(name);
+  const std::uint64_t image = drops_alpha(output.file) ? 12 : 16;
+  const bool part = output.file.ends_with(".part");
+  const std::uint64_t at_end = film + (part ? film : image + aovs + encoder_bytes(output.file, aovs));
+  return tile_bytes + (output.checkpoints ? std::max(3 * film, at_end) : at_end);
+}
+
+void check_frame_memory(int width, int height, const FrameOutput& output) {
+  const auto pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  const auto edge = [&](int whole) { return static_cast<std::uint64_t>(std::min(output.tile, whole)); };
+  const std::uint64_t film = film_bytes + (output.aovs.empty() ? 0 : film_aov_bytes);
+  const std::uint64_t wanted = pixels * bytes_a_pixel(output) + 2 * film * edge(width) * edge(height);
+  const auto there = available_memory();
+  if (!there || wanted <= *there) return;
+  throw std::runtime_error(fmt::format(
+      "a frame of {}x{} pixels takes {:.1f} GiB of memory ({} bytes a pixel), and {:.1f} GiB are available: "
+      "make it smaller, or render it on a machine with more",
+      width, height, static_cast<double>(wanted) / (1 << 30), bytes_a_pixel(output),
+      static_cast<double>(*there) / (1 << 30)));
+}
+
+}  // namespace sundog

@@ -1,0 +1,31 @@
+// `sundog merge PART... -o OUT`: the image from the parts that `render --tiles i/N` wrote.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/options/commands.h"
+#include "app/options/output_files.h"
+#include "app/process/save_image.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/standard_streams.h"
+#include "render/film/part.h"
+
+namespace sundog {
+
+int merge_command(const MergeCommand& command) {
+  check_output_files({command.out}, command.parts);
+  check_picture(command, false);
+  if (is_standard_stream(command.out)) claim_standard_output();
+  remove_left_over(command.out);
+  const PartFile whole = merge_parts({command.parts.begin(), command.parts.end()});
+  check_image_path(format_name(command), !whole.aovs.empty());
+  const Image image = whole.film.develop(image_channels(format_name(command)));
+  AovImages aovs;
+  for (const std::string& name : whole.aovs) aovs[name] = whole.film.develop_aov(name);
+  save_image({image, aovs, whole.film, whole.key, {}, command.full_floats, command.format}, command.out);
+  fmt::print("{}: {}x{} from {} parts\n", command.out, image.width, image.height, command.parts.size());
+  return exit_done;
+}
+
+}  // namespace sundog

@@ -1,0 +1,115 @@
+// See render_result.h.
+#include "app/render/render_result.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+
+#include "app/job/job.h"
+#include "app/options/commands.h"
+#include "app/options/output_files.h"
+#include "app/process/save_image.h"
+#include "app/process/warnings.h"
+#include "base/error.h"
+#include "render/film/hash.h"
+#include "render/film/part.h"
+
+namespace sundog {
+namespace {
+
+/// What the parts of a frame must have in common besides the scene's file.
+std::map<std::string, std::string> settings_of(const RenderCommand& command, const CompiledScene& scene) {
+  std::map<std::string, std::string> settings;
+  for (const std::string& setting : command.overrides) {
+    const std::size_t equals = setting.find('=');
+    settings["--set " + setting.substr(0, equals)] = setting.substr(equals + 1);
+  }
+  for (const char* told_otherwise : {"/image/width", "/image/height", "/render/samples", "/render/max_depth"})
+    settings.erase(std::string("--set ") + told_otherwise);
+  settings["samples"] = fmt::format("{}", scene.info.samples);
+  settings["max_depth"] = fmt::format("{}", scene.info.max_depth);
+  if (command.frame) settings["frame"] = fmt::format("{}", *command.frame);
+  return settings;
+}
+
+double percent_done(const RenderResult& result) {
+  const auto& done = result.film.done;
+  const double pixels = static_cast<double>(std::max<std::size_t>(1, done.size()));
+  return 100 * static_cast<double>(std::ranges::count(done, 1)) / pixels;
+}
+
+std::string part_text(const RenderCommand& command, const RenderResult& result) {
+  if (command.part)
+    return fmt::format("{} is not written{}", command.out,
+                       command.resume.empty() ? "" : "; the same command goes on from its checkpoint");
+  return fmt::format("{:.3g} % of the pixels are in {}{}", percent_done(result), command.out,
+                     command.resume.empty() ? "" : "; the same command goes on from there");
+}
+
+void warn(const SceneDescription& scene, const RenderResult& result) {
+  print_warnings(losses(result.counts, scene));
+  for (const DeviceReport& report : result.devices) print_warnings(failures_text(report));
+}
+
+void summarise(const RenderCommand& command, const RenderResult& result, const TimeLedger& times) {
+  if (command.quiet) return;
+  const double rays = static_cast<double>(ray_count(result.counts));
+  const double seconds = times.render.render + times.render.readback;
+  fmt::print("{}: {}x{}, {:.4g} Mrays in {:.2f} s ({:.3g} Mrays/s), {:.2f} s in all\n", command.out,
+             result.film.width, result.film.height, rays / 1e6, seconds,
+             seconds > 0 ? rays / 1e6 / seconds : 0, times.total);
+  if (!command.verbose) return;
+  const double pixels = static_cast<double>(result.film.done.size());
+  const std::uint64_t each = bytes_a_pixel(frame_output(command));
+  fmt::print("{}  {:<22} {:10.1f} MiB, {} bytes a pixel\n", details_text(result, times),
+             "memory of the frame", pixels * static_cast<double>(each) / (1 << 20), each);
+}
+
+}  // namespace
+
+FrameOutput frame_output(const RenderCommand& command) {
+  return {format_name(command), command.aovs, !command.resume.empty() || job_rank() >= 0, command.tile};
+}
+
+void save_result(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result,
+                 const std::string& checkpoint) {
+  Picture picture{result.image, result.aovs,         result.film,   result.key,
+                  checkpoint,   command.full_floats, command.format};
+  if (picture.key == 0) picture.key = hash_scene(scene);
+  if (!command.part)
+    save_image(picture, command.out);
+  else if (result.complete)
+    save_part(picture, {*command.part, picture.key, command.scene, settings_of(command, scene), command.aovs},
+              command.out);
+  if (!result.checkpoint_error.empty()) throw IoError(result.checkpoint_error);
+  if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint);
+}
+
+void tell_kept(const RenderResult& result, const std::string& checkpoint) {
+  tell(fmt::format(
+      "sundog: interrupted: {:.3g} % of the pixels are in {}; the same command with --resume {} goes on "
+      "from there\n",
+      percent_done(result), checkpoint, checkpoint));
+}
+
+void tell_result(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result,
+                 const TimeLedger& times) {
+  warn(scene, result);
+  summarise(command, result, times);
+}
+
+int conclude(const RenderCommand& command, const RenderResult& result, bool told) {
+  if (result.complete) return exit_done;
+  if (result.failure) {
+    tell(fmt::format("sundog: every device failed: {}\n", part_text(command, result)));
+    std::rethrow_exception(result.failure);
+  }
+  if (!told) tell(fmt::format("sundog: interrupted: {}\n", part_text(command, result)));
+  return exit_interrupted;
+}
+
+}  // namespace sundog

@@ -1,0 +1,32 @@
+// The end of a frame: its picture or part is saved, what became of it is told, and it has an exit status.
+#pragma once
+#include <string>
+
+#include "app/options/options.h"
+#include "app/render/frame_memory.h"
+#include "app/render/stats.h"
+#include "compile/compiled_scene.h"
+#include "render/render.h"
+
+namespace sundog {
+
+/// What the command's frame takes memory for.
+FrameOutput frame_output(const RenderCommand& command);
+
+/// Writes the image, whole or in part, and takes the checkpoint of a whole one away: not before it is safe.
+void save_result(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result,
+                 const std::string& checkpoint);
+
+/// Tells of an interrupted frame that its checkpoint has it. Before the picture is written, for which mpirun
+/// may leave no time.
+void tell_kept(const RenderResult& result, const std::string& checkpoint);
+
+/// Warnings of what was lost on stderr, and the frame's figures on stdout.
+void tell_result(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result,
+                 const TimeLedger& times);
+
+/// The exit status of a frame of which what there is has been saved. An interrupt is told of, if it was not
+/// yet `told`. Throws the failure of a frame for which every device failed.
+int conclude(const RenderCommand& command, const RenderResult& result, bool told);
+
+}  // namespace sundog

@@ -1,0 +1,208 @@
+#include "app/render/stats.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "app/process/scene_figures.h"
+#include "app/render/stray_exits.h"
+
+namespace sundog {
+namespace {
+
+using nlohmann::json;
+
+json image_json(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result) {
+  return {{"file", command.out},
+          {"width", scene.image.width},
+          {"height", scene.image.height},
+          {"samples", scene.render.samples},
+          {"max_depth", scene.render.max_depth},
+          {"integrator", scene.render.integrator},
+          {"aovs", command.aovs},
+          {"complete", result.complete}};
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+/// [x, y], or "driver" where the driver chose.
+json work_group_json(const KernelTimes& times) {
+  return times.local_x > 0 ? json{times.local_x, times.local_y} : json("driver");
+}
+
+json device_json(const DeviceReport& report) {
+  json kernels = json::object();
+  for (const auto& [name, times] : report.kernels)
+    kernels[name] = {{"launches", times.launches},
+                     {"device_ms", times.device_ms},
+                     {"host_ms", times.host_ms},
+                     {"work_group", work_group_json(times)}};
+  return {{"index", fmt::format("{}:{}", report.info.platform, report.info.device)},
+          {"platform", report.info.platform_name},
+          {"name", report.info.name},
+          {"driver", report.info.driver},
+          {"rank", report.info.rank},
+          {"host", report.info.host.empty() ? host_name() : report.info.host},
+          {"sub_units", report.info.sub_units},
+          {"first_unit", report.info.first_unit},
+          {"tiles", report.tiles},
+          {"outrun", report.outrun},
+          {"pixels", report.pixels},
+          {"share", report.share},
+          {"failures", report.failures},
+          {"ready", report.ready},
+          {"retired", report.retired},
+          {"abandoned", report.abandoned},
+          {"busy_seconds", report.busy_seconds},
+          {"kernels_cached", report.kernels_cached},
+          {"messages", report.messages},
+          {"notes", report.notes},
+          {"kernels", kernels}};
+}
+
+json counters_json(const RayCounts& counts) {
+  return {{"primary_hit", counts[COUNT_PRIMARY_HIT]},
+          {"cut_off", counts[COUNT_CUT_OFF]},
+          {"depth_limit", counts[COUNT_DEPTH_LIMIT]},
+          {"ray_stack_overflow", counts[COUNT_RAY_STACK_OVERFLOW]},
+          {"media_stack_overflow", counts[COUNT_MEDIA_STACK_OVERFLOW]},
+          {"non_finite", counts[COUNT_NON_FINITE]},
+          {"stray_exit", counts[COUNT_STRAY_EXIT]},
+          {"shadow_limit", counts[COUNT_SHADOW_LIMIT]},
+          {"march_limit", counts[COUNT_MARCH_LIMIT]},
+          {"march_budget", counts[COUNT_MARCH_BUDGET]},
+          {"march_taken_back", counts[COUNT_MARCH_BACK]}};
+}
+
+json rays_json(const RayCounts& counts) {
+  return {{"primary", counts[COUNT_PRIMARY]},
+          {"reflection", counts[COUNT_REFLECTION]},
+          {"refraction", counts[COUNT_REFRACTION]},
+          {"shadow", counts[COUNT_SHADOW]},
+          {"march_steps", counts[COUNT_MARCH_STEPS]}};
+}
+
+/// The ledger's entries, in the order of the work.
+std::vector<std::pair<const char*, double>> entries(const TimeLedger& times) {
+  return {{"load", times.load},
+          {"compile_scene", times.compile_scene},
+          {"build_kernels", times.render.build_kernels},
+          {"upload", times.render.upload},
+          {"render", times.render.render},
+          {"readback", times.render.readback},
+          {"write", times.write},
+          {"other", times.other()},
+          {"total", times.total}};
+}
+
+json seconds_json(const TimeLedger& times) {
+  json seconds;
+  for (const auto& [step, value] : entries(times)) seconds[step] = value;
+  return seconds;
+}
+
+}  // namespace
+
+json stats_json(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
+                const RenderResult& result, const TimeLedger& times) {
+  json devices = json::array();
+  for (const DeviceReport& report : result.devices) devices.push_back(device_json(report));
+  return {{"schema", 1},
+          {"sundog", SUNDOG_VERSION},
+          {"scene", scene_figures(scene, flat)},
+          {"image", image_json(command, scene, result)},
+          {"devices", devices},
+          {"efficiency", result.efficiency},
+          {"rays", rays_json(result.counts)},
+          {"counters", counters_json(result.counts)},
+          {"seconds", seconds_json(times)},
+          {"kernels_cached", times.render.cached}};
+}
+
+std::uint64_t ray_count(const RayCounts& counts) {
+  return counts[COUNT_PRIMARY] + counts[COUNT_REFLECTION] + counts[COUNT_REFRACTION] + counts[COUNT_SHADOW];
+}
+
+std::vector<std::string> losses(const RayCounts& counts, const SceneDescription& scene) {
+  struct Loss {
+    int counter;
+    const char* what;
+  };
+  constexpr Loss kinds[] = {
+      {COUNT_RAY_STACK_OVERFLOW, "rays were dropped because the ray stack was full: lower max_depth"},
+      {COUNT_MEDIA_STACK_OVERFLOW, "rays entered more solids inside each other than the media stack holds"},
+      {COUNT_SHADOW_LIMIT, "shadow rays were given up after too many transmissive surfaces"},
+      {COUNT_MARCH_BUDGET,
+       "marches through a field were not made because the pixels had cost too much: lower its iterations, "
+       "step_limit or max_depth"},
+      {COUNT_NON_FINITE, "samples were dropped because they were not finite"}};
+  std::vector<std::string> sentences;
+  for (const Loss& kind : kinds)
+    if (const std::uint64_t count = counts[static_cast<std::size_t>(kind.counter)])
+      sentences.push_back(fmt::format("{} {}", count, kind.what));
+  // A handful of stray exits comes from rays that start within rounding of an edge of a closed mesh; an open
+  // mesh gives many more.
+  constexpr std::uint64_t rays_per_stray = 1'000'000;
+  const std::uint64_t strays = counts[COUNT_STRAY_EXIT];
+  if (strays > 0 && strays * rays_per_stray >= ray_count(counts))
+    for (std::string& sentence : explain_stray_exits(strays, scene)) sentences.push_back(std::move(sentence));
+  return sentences;
+}
+
+std::vector<std::string> failures_text(const DeviceReport& report) {
+  std::vector<std::string> sentences;
+  // A driver that fails may fail many times in the same way.
+  for (std::size_t i = 0; i < report.messages.size(); ++i) {
+    const std::string& message = report.messages[i];
+    std::size_t times = 1;
+    for (; i + 1 < report.messages.size() && report.messages[i + 1] == message; ++i) ++times;
+    sentences.push_back(times > 1 ? fmt::format("{} ({} times)", message, times) : message);
+  }
+  if (report.retired && !sentences.empty()) sentences.back() += "; the device was retired";
+  return sentences;
+}
+
+namespace {
+
+std::string work_group_text(const KernelTimes& times) {
+  return times.local_x > 0 ? fmt::format("{}x{}", times.local_x, times.local_y) : "chosen by the driver";
+}
+
+std::string device_text(const DeviceReport& report) {
+  std::string text = fmt::format("  {}: {:.1f} % of the pixels, {} tiles in {:.3f} s", report.info.label(),
+                                 100 * report.share, report.tiles, report.busy_seconds);
+  if (report.outrun > 0) text += fmt::format(", {} outrun by others", report.outrun);
+  if (report.ready)
+    text += report.kernels_cached ? ", kernels from the cache" : ", kernels compiled";
+  else if (!report.retired)
+    text += ", not ready before the end";
+  if (report.retired) text += ", retired";
+  text += "\n";
+  for (const std::string& note : report.notes) text += fmt::format("    {}\n", note);
+  for (const auto& [name, kernel] : report.kernels)
+    text += fmt::format("    {:<20} {:6} launches {:10.1f} ms  work-group {}\n", name, kernel.launches,
+                        kernel.device_ms > 0 ? kernel.device_ms : kernel.host_ms, work_group_text(kernel));
+  return text;
+}
+
+}  // namespace
+
+std::string details_text(const RenderResult& result, const TimeLedger& times) {
+  std::string text;
+  for (const auto& [step, seconds] : entries(times))
+    text += fmt::format("  {:<22} {:10.1f} ms\n", step, 1000 * seconds);
+  for (const json& group : {rays_json(result.counts), counters_json(result.counts)})
+    for (const auto& [kind, count] : group.items())
+      text += fmt::format("  {:<22} {:10}\n", kind, count.get<std::uint64_t>());
+  for (const DeviceReport& report : result.devices) text += device_text(report);
+  if (result.devices.size() > 1)
+    text += fmt::format("  {:<22} {:10.1f} %\n", "efficiency", 100 * result.efficiency);
+  return text;
+}
+
+}  // namespace sundog

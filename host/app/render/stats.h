@@ -1,0 +1,40 @@
+// What a render did, for --stats and --verbose.
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+
+#include "app/options/options.h"
+#include "compile/compiled_scene.h"
+#include "render/render.h"
+
+namespace sundog {
+
+/// Wall seconds of the whole command. What none of the named steps took is `other` (choosing devices,
+/// checks), so that they add up to `total`.
+struct TimeLedger {
+  double load = 0, compile_scene = 0, write = 0, total = 0;
+  RenderTimes render;
+
+  double other() const {
+    return total - (load + compile_scene + render.build_kernels + render.upload + render.render +
+                    render.readback + write);
+  }
+};
+
+/// The statistics file, "schema": 1 (docs/command-line.md describes it).
+nlohmann::json stats_json(const RenderCommand& command, const SceneDescription& scene,
+                          const CompiledScene& flat, const RenderResult& result, const TimeLedger& times);
+
+/// Rays of all kinds: primary, reflection, refraction and shadow.
+std::uint64_t ray_count(const RayCounts& counts);
+
+/// One sentence for each kind of loss that a picture may suffer (full stacks, dropped samples), and why rays
+/// left solids of `scene` that they had not entered; empty: none.
+std::vector<std::string> losses(const RayCounts& counts, const SceneDescription& scene);
+
+/// A sentence for each failure of the device that others, or another try, made good.
+std::vector<std::string> failures_text(const DeviceReport& report);
+
+/// Many lines: the times, the rays, and each device's kernels.
+std::string details_text(const RenderResult& result, const TimeLedger& times);
+
+}  // namespace sundog

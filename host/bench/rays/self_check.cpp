@@ -1,0 +1,165 @@
+// See self_check.h.
+#include "bench/rays/self_check.h"
+
+#include <fmt/format.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/image_compare.h"
+#include "bench/plain/whitted.h"
+#include "compile/compiled_scene.h"
+#include "device/embedded_kernels.h"
+#include "render/device/kernel_config.h"
+#include "render/render.h"
+
+namespace sundog {
+namespace {
+
+// A visible difference, and how many pixels may have one: rays on silhouettes and on the borders of checkers
+// fall to either side by rounding.
+constexpr double visible_difference = 0.02;
+constexpr std::uint64_t pixels_per_flip = 200;
+
+int add(SceneDescription& scene, const MaterialDescription& material) {
+  scene.materials.push_back(material);
+  return static_cast<int>(scene.materials.size()) - 1;
+}
+
+int add_glass(SceneDescription& scene, double ior, const dvec3& absorption) {
+  MediumDescription medium;
+  medium.ior = ior;
+  medium.absorption = absorption;
+  scene.media.push_back(medium);
+  MaterialDescription glass;
+  glass.type = MaterialType::dielectric;
+  glass.ambient = glass.diffuse = dvec3(0);
+  glass.reflection = glass.transmission = dvec3(1);
+  glass.medium = static_cast<int>(scene.media.size()) - 1;
+  return add(scene, glass);
+}
+
+void place(SceneDescription& scene, const Shape& shape, int material, const dvec3& at) {
+  Object object;
+  object.shape = shape;
+  object.material = material;
+  object.world_from_object = glm::translate(dmat4(1), at);
+  scene.objects.push_back(object);
+}
+
+/// A four-sided pyramid.
+Mesh pyramid() {
+  Mesh mesh;
+  mesh.positions = {{-0.6f, -1, -0.6f}, {0.6f, -1, -0.6f}, {0.6f, -1, 0.6f}, {-0.6f, -1, 0.6f}, {0, 0.4f, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0}};
+  return mesh;
+}
+
+/// Builds every kernel file that there is, as a render would.
+void build_kernels(Device& device, const CompiledScene& scene, SelfCheck& check,
+                   const std::function<void(const std::string&)>& on_stage) {
+  const Stopwatch clock;
+  const KernelConfig config = make_kernel_config(scene, device.info());
+  for (const EmbeddedKernel& file : embedded_kernels()) {
+    if (!file.path.starts_with("entry/")) continue;
+    on_stage(fmt::format("building {}", file.path));
+    device.build(std::string(file.path), config.defines, nullptr, config.generated);
+    ++check.kernels;
+  }
+  check.build_seconds = clock.seconds();
+}
+
+void compare(const CompiledScene& scene, const Image& image, SelfCheck& check) {
+  const ImageDifference difference = compare_images(image, render_plain(scene), visible_difference);
+  check.pixels = difference.pixels;
+  check.differing = difference.over_tolerance;
+  check.greatest = difference.max;
+  const bool same =
+      difference.over_tolerance * pixels_per_flip <= difference.pixels && difference.non_finite == 0;
+  check.status = same ? SelfCheck::Status::ok : SelfCheck::Status::differs;
+}
+
+}  // namespace
+
+SceneDescription self_check_scene() {
+  SceneDescription scene;
+  scene.camera.position = {0.4, 1.6, 5.5};
+  scene.camera.target = {0, -0.2, 0};
+  scene.image = {64, 48, {0.5, 0.6, 0.7}, {0.1, 0.2, 0.5}};
+  scene.render.samples = 2;
+  scene.media.push_back({"world", 1, dvec3(0), world_priority});
+  LightDescription ambient, point;
+  ambient.type = LightType::ambient;
+  point.position = {-3, 5, 4};
+  scene.lights = {ambient, point};
+  MaterialDescription floor, mirror, matt;
+  floor.checker = true;
+  floor.checker_diffuse = {0.1, 0.3, 0.2};
+  mirror.reflection = dvec3(0.7);
+  mirror.specular = dvec3(0.5);
+  matt.diffuse = {0.8, 0.4, 0.2};
+  scene.meshes.push_back(pyramid());
+  place(scene, PlaneShape{}, add(scene, floor), {0, -1, 0});
+  place(scene, SphereShape{0.9}, add_glass(scene, 1.5, {0.1, 0.05, 0.02}), {-0.9, -0.1, 0.6});
+  place(scene, SphereShape{0.5}, add_glass(scene, 1.33, {0.4, 0.9, 1.2}), {-0.9, -0.1, 0.6});
+  place(scene, SphereShape{0.8}, add(scene, mirror), {1.1, -0.2, -0.4});
+  place(scene, MeshShape{0}, add(scene, matt), {0.5, 0, 1.4});
+  return scene;
+}
+
+SelfCheck check_device(const DeviceInfo& info, const std::function<void(const std::string&)>& on_stage) {
+  SelfCheck check;
+  try {
+    on_stage("opening the device");
+    const CompiledScene scene = compile(self_check_scene());
+    {
+      Device device(info);
+      build_kernels(device, scene, check, on_stage);
+    }
+    on_stage("rendering");
+    const Stopwatch clock;
+    const Image image = render(scene, {info}).image;
+    check.render_seconds = clock.seconds();
+    on_stage("comparing");
+    compare(scene, image, check);
+  } catch (const BuildError& error) {
+    check.problem = error.what();
+    check.log = error.log;
+  } catch (const std::exception& error) {
+    check.problem = error.what();
+  }
+  return check;
+}
+
+std::string advice(const std::string& problem, bool others) {
+  const auto says = [&](const char* part) { return problem.find(part) != std::string::npos; };
+  const std::string leave =
+      others ? "leave it out: --device '!P:D'"
+             : "no other device here is sound: install another driver (Debian: pocl-opencl-icd)";
+  if (says("no device"))
+    return "its driver finds no hardware that it serves: remove its package, or leave it (rusticl wants "
+           "RUSTICL_ENABLE, as in "
+           "RUSTICL_ENABLE=llvmpipe)";
+  if (says("crashed") || says("did not come back"))
+    return (others ? "update or remove its driver; until then " : "update its driver; ") + leave;
+  if (says("did not build") || says("no kernels"))
+    return "a fault of its compiler or of sundog: SUNDOG_DUMP_KERNELS=FOLDER keeps the program for a "
+           "report; " +
+           (others ? "until then " + leave : leave);
+  if (says("cannot be loaded")) return "install the library, or remove the .icd file";
+  if (says("OpenCL C")) return "it is too old; a newer driver may speak OpenCL C 1.2";
+  if (says("MEM_OBJECT") || says("OUT_OF"))
+    return "other programs may hold its memory: close them and try again";
+  return leave;
+}
+
+std::string driver_advice(const std::string& problem, bool others) {
+  // Every driver is loaded to list the devices: --device comes too late for one that ends the process.
+  if (problem.find("crashed") == std::string::npos && problem.find("did not come back") == std::string::npos)
+    return advice(problem, others);
+  return others ? "update or remove it; until then name a folder with the other .icd files by OCL_ICD_VENDORS"
+                : "update it, or install another driver (Debian: pocl-opencl-icd)";
+}
+
+}  // namespace sundog

@@ -1,0 +1,83 @@
+// See machine.h.
+#include "bench/report/machine.h"
+
+#include <fmt/format.h>
+#include <sys/utsname.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <string_view>
+#include <thread>
+
+namespace sundog {
+namespace {
+
+std::string processor_name() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("model name"))
+      if (const std::size_t colon = line.find(": "); colon != std::string::npos)
+        return line.substr(colon + 2);
+  return "unknown";
+}
+
+std::string system_name() {
+  utsname names{};
+  return ::uname(&names) == 0 ? fmt::format("{} {}, {}", names.sysname, names.release, names.machine)
+                              : "unknown";
+}
+
+std::string load_text() {
+  std::array<double, 1> load{};
+  return ::getloadavg(load.data(), 1) == 1 ? fmt::format("{:.1f}", load[0]) : "unknown";
+}
+
+std::string time_text() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  ::gmtime_r(&now, &parts);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &parts);
+  return text.data();
+}
+
+}  // namespace
+
+Facts machine_facts() {
+  return {{"processor",
+           fmt::format("{}, {} logical cores", processor_name(), std::thread::hardware_concurrency())},
+          {"system", system_name()},
+          {"load before", load_text()},
+          {"time", time_text()}};
+}
+
+std::string busy_note() {
+  constexpr double disturbing = 0.25;  // of a core, for each core
+  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  std::array<double, 1> load{};
+  if (::getloadavg(load.data(), 1) != 1 || load[0] < disturbing * cores) return {};
+  return fmt::format(
+      "Other programs were using the machine before the start (load {:.1f} on {} logical cores): times may "
+      "be longer "
+      "and vary more than on an idle machine.",
+      load[0], cores);
+}
+
+std::string compiler_text() { return fmt::format("{} ({})", SUNDOG_COMPILER, SUNDOG_COMPILER_OPTIONS); }
+
+std::string pocl_fact() {
+  const char* value = std::getenv("POCL_WORK_GROUP_SPECIALIZATION");
+  const bool on = !value || std::string_view(value) != "0";  // PoCL's own default
+  return fmt::format("POCL_WORK_GROUP_SPECIALIZATION={}: a kernel is compiled {}", value ? value : "",
+                     on ? "again for each work-group size" : "once for all work-group sizes");
+}
+
+std::string device_fact(const DeviceInfo& device) {
+  return fmt::format("{}, {} compute unit{}, driver {}", device.label(), device.compute_units,
+                     device.compute_units == 1 ? "" : "s", device.driver);
+}
+
+}  // namespace sundog

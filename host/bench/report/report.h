@@ -1,0 +1,106 @@
+// What a benchmark found, as plain values. A benchmark fills a Report; the writers below turn any Report into
+// text, JSON, CSV or a page, and know no benchmark.
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "bench/report/samples.h"
+
+namespace sundog {
+
+/// Nothing, a word, a number (`spread.median`), or a number measured several times.
+struct Cell {
+  enum class Kind { none, word, number, spread } kind = Kind::none;
+  std::string word;
+  Spread spread;
+
+  Cell() = default;
+  Cell(std::string text) : kind(Kind::word), word(std::move(text)) {}
+  Cell(const char* text) : kind(Kind::word), word(text) {}
+  Cell(double number) : kind(Kind::number), spread{number, number, number} {}
+  Cell(const Spread& measured) : kind(Kind::spread), spread(measured) {}
+};
+
+/// `unit` may be empty. A Spread takes three columns of a CSV: name, name_min, name_max.
+struct Column {
+  std::string name, unit;
+};
+
+/// Every row has a cell for each column.
+struct Table {
+  std::string title;
+  std::vector<Column> columns;
+  std::vector<std::vector<Cell>> rows;
+};
+
+struct CurvePoint {
+  double x = 0;
+  Spread y;
+};
+struct Curve {
+  std::string name;
+  std::vector<CurvePoint> points;  // ascending x
+};
+/// Curves over an axis that counts in powers of two; with `ideal` the line y = x is drawn too.
+struct CurvePlot {
+  std::string title, x_label, y_label;
+  std::vector<Curve> curves;
+  bool ideal = false;
+};
+
+struct Bar {
+  std::string label;
+  Spread value;
+  std::string note;  // drawn behind the bar
+};
+/// Lying bars with their spread.
+struct BarPlot {
+  std::string title, unit;
+  std::vector<Bar> bars;
+};
+
+/// Times in two dimensions. values[row][column]; empty: not measured. With `has_best` the least is outlined.
+struct HeatMap {
+  std::string title, unit, x_label, y_label;
+  std::vector<std::string> columns, rows;
+  std::vector<std::vector<std::optional<double>>> values;
+  bool has_best = false;
+};
+
+using Part = std::variant<Table, CurvePlot, BarPlot, HeatMap>;
+
+struct Report {
+  std::string name;   // "threads": of `sundog bench threads`
+  std::string title;  // the page's headline
+  std::vector<std::pair<std::string, std::string>>
+      facts;                       // device, driver, scene...: what the figures hold for
+  std::vector<std::string> notes;  // a sentence each: how it was measured, what failed
+  std::vector<Part> parts;         // what a person reads, in this order
+  Table measurements;              // tidy: a row a measurement, for other programs
+};
+
+/// Facts, the tables among the parts (the measurements when there are none), notes.
+std::string report_text(const Report& report);
+
+/// {"schema": 1, "bench": name, "facts", "notes", "measurements": [{column: value}]}; a Spread is an object
+/// of median, min, max and the runs.
+nlohmann::json report_json(const Report& report);
+
+/// The measurements alone, as RFC 4180 has it, with one line of names.
+std::string report_csv(const Report& report);
+
+/// One page that needs nothing else: tables and SVG plots, in the reader's light or dark colours, and fit for
+/// print.
+std::string report_html(const Report& report);
+
+/// A number with about three digits that count: "0.0123", "4.57", "12.3", "1234".
+std::string number_text(double value);
+
+/// "12.3 ±4%": the median, and half the range in per cent of it. Empty for nothing.
+std::string cell_text(const Cell& cell);
+
+}  // namespace sundog

@@ -1,0 +1,129 @@
+// Lying bars with their spread, and heat maps with the figures in the cells.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bench/report/svg.h"
+
+namespace sundog {
+namespace {
+
+// A system font's letter is taken to be this wide, to keep room for labels.
+constexpr double letter = 7.2;
+
+double label_room(const std::vector<std::string>& labels) {
+  std::size_t longest = 4;
+  for (const std::string& label : labels) longest = std::max(longest, label.size());
+  return std::min(static_cast<double>(longest), 44.0) * letter + 12;
+}
+
+struct ValueRange {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+};
+
+ValueRange range_of(const HeatMap& map) {
+  ValueRange range;
+  for (const auto& row : map.values)
+    for (const auto& value : row)
+      if (value) range = {std::min(range.least, *value), std::max(range.most, *value)};
+  return range;
+}
+
+/// From the best (dark green) over yellow to red, by how many times slower than the best. Lightness rises all
+/// the way to the middle and hue tells the rest; the figures stand in the cells for those who see no colours.
+std::string heat_color(double share) {
+  constexpr std::array<std::array<double, 3>, 4> stops{
+      {{26, 110, 92}, {122, 188, 120}, {247, 224, 130}, {208, 84, 60}}};
+  const double at = std::clamp(share, 0.0, 1.0) * (stops.size() - 1);
+  const std::size_t first = std::min<std::size_t>(static_cast<std::size_t>(at), stops.size() - 2);
+  const double t = at - static_cast<double>(first);
+  std::array<int, 3> mixed{};
+  for (std::size_t i = 0; i < 3; ++i)
+    mixed[i] = static_cast<int>(std::lround(stops[first][i] * (1 - t) + stops[first + 1][i] * t));
+  return fmt::format("#{:02x}{:02x}{:02x}", mixed[0], mixed[1], mixed[2]);
+}
+
+/// 0 at the best, 1 from twice its time on.
+double heat_share(double value, double least) { return least > 0 ? std::log2(value / least) : 0; }
+
+}  // namespace
+
+std::string svg(const BarPlot& plot) {
+  std::vector<std::string> labels;
+  double most = 0;
+  for (const Bar& bar : plot.bars) {
+    labels.push_back(bar.label);
+    most = std::max(most, bar.value.max);
+  }
+  const double left = label_room(labels), row = 30, width = 760, right = 150;
+  const double height = row * static_cast<double>(plot.bars.size()) + 44;
+  const double length = width - left - right, end = axis_ticks(most > 0 ? most : 1).back();
+  const auto x = [&](double value) { return left + value / end * length; };
+  std::string text =
+      fmt::format("<svg viewBox=\"0 0 {0} {1}\" style=\"--width:{0}px\" role=\"img\" aria-label=\"{2}\">",
+                  width, height, escape_html(plot.title));
+  for (const double tick : axis_ticks(end))
+    text += fmt::format(
+        "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"4\" y2=\"{1}\"/><text class=\"mid\" "
+        "x=\"{0:.1f}\" y=\"{2}\">{3}</text>",
+        x(tick), height - 40, height - 24, fmt::format("{:g}", tick));
+  text += fmt::format("<text class=\"mid axis\" x=\"{}\" y=\"{}\">{}</text>", left + length / 2, height - 6,
+                      escape_html(plot.unit));
+  double y = 6;
+  for (const Bar& bar : plot.bars) {
+    text += fmt::format(
+        "<g><title>{}: {}</title><rect class=\"bar\" x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"20\"/>",
+        escape_html(bar.label), cell_text(bar.value), left, y, x(bar.value.median) - left);
+    text += fmt::format(
+        "<path class=\"whisker\" d=\"M{0:.1f} {2} v8 M{0:.1f} {3} H{1:.1f} M{1:.1f} {2} v8\"/></g>",
+        x(bar.value.min), x(bar.value.max), y + 6, y + 10);
+    text += fmt::format(
+        "<text class=\"end\" x=\"{}\" y=\"{}\">{}</text><text x=\"{:.1f}\" y=\"{}\">{}</text>", left - 8,
+        y + 15, escape_html(bar.label), x(bar.value.max) + 8, y + 15,
+        escape_html(number_text(bar.value.median) + (bar.note.empty() ? "" : " (" + bar.note + ")")));
+    y += row;
+  }
+  return text + "</svg>";
+}
+
+std::string svg(const HeatMap& map) {
+  const double left = label_room(map.rows) + 24, top = 44, cell_h = 28;
+  const double cell_w = std::clamp(
+      (760 - left) / static_cast<double>(std::max<std::size_t>(map.columns.size(), 1)), 40.0, 84.0);
+  const double width = left + cell_w * static_cast<double>(map.columns.size()) + 4,
+               height = top + cell_h * static_cast<double>(map.rows.size()) + 4;
+  const ValueRange range = range_of(map);
+  std::string text = fmt::format(
+      "<svg viewBox=\"0 0 {0} {1}\" style=\"--width:{0}px;max-width:{0}px\" role=\"img\" aria-label=\"{2}\">",
+      width, height, escape_html(map.title));
+  text += fmt::format("<text class=\"mid axis\" x=\"{}\" y=\"14\">{}</text>", (left + width) / 2,
+                      escape_html(map.x_label));
+  text += fmt::format("<text class=\"mid axis\" transform=\"translate(14 {}) rotate(-90)\">{}</text>",
+                      (top + height) / 2, escape_html(map.y_label));
+  for (std::size_t i = 0; i < map.columns.size(); ++i)
+    text += fmt::format("<text class=\"mid\" x=\"{:.1f}\" y=\"34\">{}</text>",
+                        left + cell_w * (static_cast<double>(i) + 0.5), escape_html(map.columns[i]));
+  for (std::size_t r = 0; r < map.rows.size(); ++r) {
+    const double y = top + cell_h * static_cast<double>(r);
+    text += fmt::format("<text class=\"end\" x=\"{}\" y=\"{}\">{}</text>", left - 8, y + 18,
+                        escape_html(map.rows[r]));
+    for (std::size_t c = 0; c < map.values[r].size(); ++c) {
+      if (!map.values[r][c]) continue;
+      const double value = *map.values[r][c], share = heat_share(value, range.least),
+                   x = left + cell_w * static_cast<double>(c);
+      text += fmt::format(
+          "<g><title>{} × {}: {} {}</title><rect class=\"cell{}\" x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" "
+          "height=\"{}\" style=\"fill:{}\"/><text class=\"mid {}\" x=\"{:.1f}\" y=\"{}\">{}</text></g>",
+          escape_html(map.columns[c]), escape_html(map.rows[r]), number_text(value), escape_html(map.unit),
+          map.has_best && value == range.least ? " best" : "", x + 1, y + 1, cell_w - 2, cell_h - 2,
+          heat_color(share), share < 0.2 || share > 0.9 ? "on-dark" : "on-light", x + cell_w / 2, y + 18,
+          number_text(value));
+    }
+  }
+  return text + "</svg>";
+}
+
+}  // namespace sundog

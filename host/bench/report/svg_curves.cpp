@@ -1,0 +1,153 @@
+// Curves over powers of two, each with its own color, dash and marker, so that they stay apart in black and
+// white.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "bench/report/svg.h"
+
+namespace sundog {
+namespace {
+
+constexpr double width = 760, height = 380, left = 64, right = 200, top = 16, bottom = 56;
+constexpr double plot_width = width - left - right, plot_height = height - top - bottom;
+constexpr int styles = 8;
+
+struct Axes {
+  double low = 0, high = 1;  // log2 of x
+  double most = 1;           // y
+
+  double x(double value) const {
+    return left + (high > low ? (std::log2(value) - low) / (high - low) : 0.5) * plot_width;
+  }
+  double y(double value) const { return top + (1 - value / most) * plot_height; }
+};
+
+/// A curve's marker about a point: disc, square, triangle, diamond in turn.
+std::string marker(std::size_t index, double x, double y) {
+  const auto shape = [&](const char* points) {
+    return fmt::format("<polygon class=\"m c{}\" transform=\"translate({:.1f} {:.1f})\" points=\"{}\"/>",
+                       index % styles, x, y, points);
+  };
+  switch (index % 4) {
+    case 1:
+      return shape("-4,-4 4,-4 4,4 -4,4");
+    case 2:
+      return shape("0,-5 5,4 -5,4");
+    case 3:
+      return shape("0,-5.5 5.5,0 0,5.5 -5.5,0");
+    default:
+      return fmt::format("<circle class=\"m c{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\"/>", index % styles, x,
+                         y);
+  }
+}
+
+std::set<double> all_x(const CurvePlot& plot) {
+  std::set<double> values;
+  for (const Curve& curve : plot.curves)
+    for (const CurvePoint& point : curve.points) values.insert(point.x);
+  return values;
+}
+
+Axes make_axes(const CurvePlot& plot) {
+  Axes axes;
+  const std::set<double> values = all_x(plot);
+  double most = 0;
+  for (const Curve& curve : plot.curves)
+    for (const CurvePoint& point : curve.points) most = std::max(most, point.y.max);
+  if (!values.empty()) {
+    axes.low = std::log2(*values.begin());
+    axes.high = std::log2(*values.rbegin());
+    // The whole of y = x where it does not press the curves into less than half of the plot.
+    if (plot.ideal && *values.rbegin() <= 2 * most) most = std::max(most, *values.rbegin());
+  }
+  axes.most = axis_ticks(most > 0 ? most : 1).back();
+  return axes;
+}
+
+std::string frame(const CurvePlot& plot, const Axes& axes) {
+  std::string text;
+  for (const double tick : axis_ticks(axes.most))
+    text += fmt::format(
+        "<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/><text class=\"end\" "
+        "x=\"{3}\" y=\"{4:.1f}\">{5}</text>",
+        left, width - right, axes.y(tick), left - 8, axes.y(tick) + 4, fmt::format("{:g}", tick));
+  for (const double value : all_x(plot))
+    text += fmt::format("<text class=\"mid\" x=\"{:.1f}\" y=\"{}\">{}</text>", axes.x(value),
+                        height - bottom + 20, number_text(value));
+  text += fmt::format("<text class=\"mid axis\" x=\"{}\" y=\"{}\">{}</text>", left + plot_width / 2,
+                      height - 12, escape_html(plot.x_label));
+  return text + fmt::format("<text class=\"mid axis\" transform=\"translate(16 {}) rotate(-90)\">{}</text>",
+                            top + plot_height / 2, escape_html(plot.y_label));
+}
+
+/// y = x over a logarithmic axis bends, so it is drawn in short pieces, to the right or the upper border.
+std::string ideal_line(const Axes& axes) {
+  std::string points;
+  const double high = std::min(axes.high, std::log2(axes.most));
+  for (int i = 0; i <= 64 && high >= axes.low; ++i) {
+    const double value = std::exp2(axes.low + (high - axes.low) * i / 64);
+    points += fmt::format("{:.1f},{:.1f} ", axes.x(value), axes.y(value));
+  }
+  return fmt::format("<polyline class=\"ideal\" points=\"{}\"/>", points);
+}
+
+std::string draw(const Curve& curve, std::size_t index, const Axes& axes) {
+  std::string points, marks;
+  for (const CurvePoint& point : curve.points) {
+    const double x = axes.x(point.x);
+    points += fmt::format("{:.1f},{:.1f} ", x, axes.y(point.y.median));
+    marks +=
+        fmt::format("<line class=\"l c{0}\" x1=\"{1:.1f}\" x2=\"{1:.1f}\" y1=\"{2:.1f}\" y2=\"{3:.1f}\"/>",
+                    index % styles, x, axes.y(point.y.min), axes.y(point.y.max));
+    marks += fmt::format("<g><title>{}, {}: {}</title>{}</g>", escape_html(curve.name), number_text(point.x),
+                         cell_text(point.y), marker(index, x, axes.y(point.y.median)));
+  }
+  return fmt::format("<polyline class=\"l c{} d{}\" points=\"{}\"/>{}", index % styles, index % 4, points,
+                     marks);
+}
+
+std::string legend(const CurvePlot& plot) {
+  std::string text;
+  const double x = width - right + 20;
+  double y = top + 10;
+  for (std::size_t i = 0; i < plot.curves.size(); ++i, y += 22)
+    text += fmt::format(
+        "<line class=\"l c{0} d{1}\" x1=\"{2}\" x2=\"{3}\" y1=\"{4}\" y2=\"{4}\"/>{5}<text x=\"{6}\" "
+        "y=\"{7}\">{8}</text>",
+        i % styles, i % 4, x, x + 32, y, marker(i, x + 16, y), x + 40, y + 4,
+        escape_html(plot.curves[i].name));
+  if (plot.ideal)
+    text += fmt::format(
+        "<line class=\"ideal\" x1=\"{0}\" x2=\"{1}\" y1=\"{2}\" y2=\"{2}\"/><text x=\"{3}\" "
+        "y=\"{4}\">ideal</text>",
+        x, x + 32, y, x + 40, y + 4);
+  return text;
+}
+
+}  // namespace
+
+std::vector<double> axis_ticks(double most, int count) {
+  const double rough = most / count, power = std::pow(10.0, std::floor(std::log10(rough)));
+  double step = 10 * power;
+  for (const double factor : {5.0, 2.5, 2.0, 1.0})
+    if (factor * power >= rough * (1 - 1e-9)) step = factor * power;
+  std::vector<double> ticks{0};
+  while (ticks.back() < most * (1 - 1e-9)) ticks.push_back(step * static_cast<double>(ticks.size()));
+  return ticks;
+}
+
+std::string svg(const CurvePlot& plot) {
+  const Axes axes = make_axes(plot);
+  std::string text =
+      fmt::format("<svg viewBox=\"0 0 {0} {1}\" style=\"--width:{0}px\" role=\"img\" aria-label=\"{2}\">",
+                  width, height, escape_html(plot.title));
+  text += frame(plot, axes);
+  if (plot.ideal) text += ideal_line(axes);
+  for (std::size_t i = 0; i < plot.curves.size(); ++i) text += draw(plot.curves[i], i, axes);
+  return text + legend(plot) + "</svg>";
+}
+
+}  // namespace sundog

@@ -1,0 +1,78 @@
+// See tune_search.h.
+#include "bench/tune/tune_search.h"
+
+#include <map>
+
+namespace sundog {
+namespace {
+
+constexpr double worthwhile = 0.98;  // of the time, for a change to count
+
+struct Search {
+  const TuneProblem& problem;
+  TuneResult result;
+  std::map<TunePoint, std::optional<double>> known;
+
+  /// Takes the point when it is faster. A point that is not affordable is left out; a cheaper one may still
+  /// be.
+  void offer(const TunePoint& point) {
+    if (known.count(point)) return;
+    if (!problem.affordable(point)) {
+      known[point] = {};
+      ++result.left_out;
+      return;
+    }
+    const std::optional<double> seconds = known[point] = problem.measure(point);
+    ++result.tried;
+    if (!seconds)
+      ++result.rejected;
+    else if (*seconds < worthwhile * result.best_seconds) {
+      result.best = point;
+      result.best_seconds = *seconds;
+    }
+  }
+
+  /// Every second value of an axis from the best point on, both ways, or with `fine` its neighbours.
+  void sweep(std::size_t axis, bool fine) {
+    const TunePoint from = result.best;
+    const std::size_t here = from[axis], count = problem.axes[axis];
+    for (std::size_t value = 0; value < count; ++value) {
+      const std::size_t away = value > here ? value - here : here - value;
+      const bool wanted = fine ? away == 1 : away % 2 == 0 || value == 0 || value + 1 == count;
+      TunePoint point = from;
+      point[axis] = value;
+      if (wanted) offer(point);
+    }
+  }
+};
+
+}  // namespace
+
+TuneResult search_tuning(const TuneProblem& problem) {
+  Search search{problem, {}, {}};
+  TuneResult& result = search.result;
+  result.best = problem.start;
+  const std::optional<double> usual = search.known[problem.start] = problem.measure(problem.start);
+  result.tried = 1;
+  if (!usual) {  // the default itself does not work: there is nothing to compare with
+    result.rejected = 1;
+    return result;
+  }
+  result.default_seconds = result.best_seconds = *usual;
+  for (std::size_t axis = 0; axis < problem.axes.size(); ++axis) search.sweep(axis, false);
+  for (bool better = true; better;) {
+    const TunePoint before = result.best;
+    for (std::size_t axis = 0; axis < problem.axes.size(); ++axis) search.sweep(axis, true);
+    better = result.best != before;
+  }
+  if (result.best == problem.start) return result;
+  const auto [usual_again, best_again] = problem.measure_again(problem.start, result.best);
+  result.default_seconds = usual_again;
+  result.best_seconds = best_again;
+  if (best_again < worthwhile * usual_again) return result;
+  result.best = problem.start;
+  result.best_seconds = usual_again;
+  return result;
+}
+
+}  // namespace sundog

@@ -1,0 +1,44 @@
+// DeviceScene: a compiled scene's tables in one device's memory. A buffer has the same name here, in
+// CompiledScene and in the kernels.
+#pragma once
+#include "compile/compiled_scene.h"
+#include "device/device.h"
+
+namespace sundog {
+
+struct DeviceScene {
+  Buffer<SceneInfo> info;
+#define SUNDOG_TABLE_BUFFER(type, host_type, name, label) Buffer<type> name;
+  SCENE_TABLES(SUNDOG_TABLE_BUFFER)
+#undef SUNDOG_TABLE_BUFFER
+  Buffer<u32> camera_media;  // the MediaStack at the camera (kernels/lib/path/media.cl), low word first
+};
+
+/// Bytes that upload_scene will take.
+std::size_t scene_bytes(const CompiledScene& scene);
+
+/// Throws DeviceError when the device cannot hold the scene. camera_media is empty.
+DeviceScene upload_scene(Device& device, const CompiledScene& scene);
+
+#define SUNDOG_TABLE_TYPE(type, host_type, name, label) , Buffer<type>
+#define SUNDOG_TABLE_ARGUMENT(type, host_type, name, label) , scene.name
+/// A kernel that reads the scene: SCENE_PARAMETERS (kernels/lib/core/tables.h), then Args.
+template <class... Args>
+using SceneKernel = Kernel<Buffer<SceneInfo> SCENE_TABLES(SUNDOG_TABLE_TYPE), Args...>;
+
+/// Throws BuildError as Program::kernel() does.
+template <class... Args>
+SceneKernel<Args...> scene_kernel(const Program& program, const std::string& name) {
+  return program.kernel<Buffer<SceneInfo> SCENE_TABLES(SUNDOG_TABLE_TYPE), Args...>(name);
+}
+
+/// Device::run() with the scene's tables before `args`.
+template <class... Args>
+cl::Event run_scene_kernel(Device& device, SceneKernel<Args...>& kernel, const LaunchSize& size,
+                           const DeviceScene& scene, const std::type_identity_t<Args>&... args) {
+  return device.run(kernel, size, scene.info SCENE_TABLES(SUNDOG_TABLE_ARGUMENT), args...);
+}
+#undef SUNDOG_TABLE_TYPE
+#undef SUNDOG_TABLE_ARGUMENT
+
+}  // namespace sundog

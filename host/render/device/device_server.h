@@ -1,0 +1,38 @@
+// A device of this process as a TileServer.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "render/device/launch_watch.h"
+#include "render/device/tile_renderer.h"
+#include "render/frame/tile_server.h"
+
+namespace sundog {
+
+class DeviceServer : public TileServer {
+ public:
+  /// `options` must outlive it. Opens nothing yet.
+  DeviceServer(DeviceInfo info, std::shared_ptr<const CompiledScene> scene, const RenderOptions& options);
+
+  const DeviceInfo& info() const override { return info_; }
+  RenderTimes open() override;
+  TileResult render(const Tile& tile, const StopFlags& flags) override;
+  ServerFigures figures() const override;
+  void close() override;
+  double overdue() const override { return watch_.overdue(); }
+  bool compiles() const override { return watch_.compiles(); }
+  /// For the calling thread, and those that the driver starts from it.
+  void be_nice() override;
+
+ private:
+  DeviceInfo info_;
+  std::shared_ptr<const CompiledScene> scene_;
+  const RenderOptions& options_;
+  LaunchWatch watch_;
+  std::unique_ptr<Device> device_;
+  std::optional<TileRenderer> renderer_;
+  bool works_ = false;    // nothing has failed since it was opened: fit for the pool
+  ServerFigures closed_;  // of what was opened before
+};
+
+}  // namespace sundog

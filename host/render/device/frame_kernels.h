@@ -1,0 +1,29 @@
+// The kernels of a frame on one device, built for its scene, and the scene's tables there.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "render/device/device_scene.h"
+#include "render/device/kernel_config.h"
+#include "render/values/options.h"
+#include "render/values/report.h"
+#include "shared/launch.h"
+
+namespace sundog {
+
+struct FrameKernels {
+  KernelConfig config;
+  DeviceScene tables;
+  SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch> integrator;
+  SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32> first_surfaces;  // only with AOVs
+  std::size_t most_group = 0;      // work-items that a group of theirs may have; 0: not known
+  std::vector<std::string> notes;  // why a cache could not be used
+};
+
+/// Builds the integrator's kernel, with `aovs` that of the AOVs too, uploads the scene and finds out which
+/// media the camera is in; fills `times`. Throws DeviceError, BuildError; UsageError when the group asked for
+/// cannot be had.
+FrameKernels build_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,
+                                 const WorkGroup& asked, bool aovs, RenderTimes& times);
+
+}  // namespace sundog

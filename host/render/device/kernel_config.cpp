@@ -1,0 +1,93 @@
+#include "render/device/kernel_config.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include "device/choice.h"
+
+namespace sundog {
+namespace {
+
+// A CPU's driver keeps the private memory of a whole group on a thread's stack, 8 MiB by default, and crashes
+// when that is full. What a work-item holds is its ray stack and its batch.
+constexpr std::size_t group_memory = std::size_t{6} << 20, ray_bytes = 80, batch_bytes = 640;
+
+/// Shadow rays of one surface that wait at a time: a light each, as far as that is a moderate number, and
+/// rounded up, so that similar scenes share their kernels.
+unsigned light_room(const CompiledScene& scene) {
+  return std::clamp(std::bit_ceil(scene.info.light_count), 2u, 16u);
+}
+
+/// Rays that are marched together: all of a work-item's, as far as there are vectors for it.
+unsigned marched_lanes(unsigned batch) {
+  for (const unsigned lanes : {16u, 8u, 4u})
+    if (batch % lanes == 0) return lanes;
+  return 1;
+}
+
+/// What the scene uses; `define` takes a name and a number.
+template <class Define>
+void define_features(const SceneFeatures& features, const Define& define) {
+  static constexpr const char* shape_names[SHAPE_SDF] = {"HAS_MESH", "HAS_SPHERE",   "HAS_PLANE",
+                                                         "HAS_BOX",  "HAS_CYLINDER", "HAS_CONE",
+                                                         "HAS_DISK", "HAS_TORUS",    "HAS_ROUNDBOX"};
+  for (unsigned shape = 0; shape < SHAPE_SDF; ++shape) define(shape_names[shape], features.shapes[shape]);
+  define("HAS_SDF", features.shapes[SHAPE_SDF]);
+#define SUNDOG_DEFINE_FEATURE(type, definition, name) define(#definition, features.name);
+  SCENE_FEATURES(SUNDOG_DEFINE_FEATURE)
+#undef SUNDOG_DEFINE_FEATURE
+}
+
+}  // namespace
+
+std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& device) {
+  if (device.device_class != DeviceClass::cpu) return device.max_work_group;
+  const std::size_t item = config.ray_stack * ray_bytes + config.tile_w * config.tile_h * batch_bytes;
+  return std::min(device.max_work_group, group_memory / item);
+}
+
+bool traces_compact(const CompiledScene& scene, const DeviceInfo& device) {
+  if (scene.tracer != Tracer::automatic) return scene.tracer == Tracer::compact;
+  return !wants_vectors(device);
+}
+
+KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
+  KernelConfig config;
+  const bool vectors = !traces_compact(scene, device);
+  if (!vectors) config.tile_w = config.tile_h = 1;
+  if (tuning.tile_w > 0) {
+    config.tile_w = tuning.tile_w;
+    config.tile_h = tuning.tile_h;
+  }
+  const unsigned batch = config.tile_w * config.tile_h;
+  KernelDefines& defines = config.defines;
+  const auto define = [&](const char* name, unsigned value) { defines[name] = std::to_string(value); };
+  define("TILE_W", config.tile_w);
+  define("TILE_H", config.tile_h);
+  define("WIDE_VECTORS", vectors);
+  if (tuning.packet_least > 0) define("PACKET_LEAST", tuning.packet_least);
+  // Depth first, `batch` rays at a time, at most that many wait on each level, and one batch of children
+  // more. Beyond 32 levels the kernel counts what does not fit, and the frame reports it.
+  const unsigned rays =
+      scene.features.secondary_rays ? batch * (std::min(scene.info.max_depth, 32u) + 2u) : batch;
+  define("RAY_STACK", rays);
+  config.ray_stack = rays;
+  if (batch == 1) {
+    define("LIGHT_ROOM", light_room(scene));
+    config.ray_stack += light_room(scene) + 1;
+  }
+  // Rounded up, so that similar scenes share their kernels.
+  define("BVH_STACK", (scene.features.bvh_stack + 31u) / 32u * 32u);
+  define_features(scene.features, define);
+  const unsigned lanes = marched_lanes(batch), few_solids = std::max(2u, lanes * 3 / 2);
+  define("FEW_SOLIDS", few_solids);
+  // Packets gain by a tree over fewer; over very few nothing, and its kernels take long to compile.
+  const unsigned without_tree = vectors && batch == 16 ? 6 : few_solids;
+  define("HAS_BVH", scene.features.shapes[SHAPE_MESH] || scene.info.bounded_count > without_tree);
+  define("LANES", lanes);
+  if (!scene.field_source.empty()) config.generated["generated/sdf.cl"] = scene.field_source;
+  return config;
+}
+
+}  // namespace sundog

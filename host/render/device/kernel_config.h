@@ -1,0 +1,28 @@
+// What the kernels are specialised to: the scene's features and the device's class, as sorted -D definitions.
+#pragma once
+#include "compile/compiled_scene.h"
+#include "device/device.h"
+#include "render/device/tuning.h"
+
+namespace sundog {
+
+/// The shape of a work-item's pixels, and the definitions that the kernels are built with
+/// (kernels/lib/core/config.h has their defaults).
+struct KernelConfig {
+  unsigned tile_w = 4, tile_h = 4;  // pixels a work-item
+  unsigned ray_stack = 0;           // rays that may wait in a work-item
+  KernelDefines defines;
+  GeneratedFiles generated;  // the scene's formulas as kernel code
+};
+
+/// Whether the device runs one ray a lane over compact nodes: by its class, unless the scene says which.
+bool traces_compact(const CompiledScene& scene, const DeviceInfo& device);
+
+/// Pure. Devices with vectors take 4x4 pixels a work-item and eight boxes an instruction, the others a pixel.
+KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device,
+                                const Tuning& tuning = {});
+
+/// Most work-items that a group of the render kernels may have; 0: the device does not say.
+std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& device);
+
+}  // namespace sundog

@@ -1,0 +1,36 @@
+#include "render/device/launch_watch.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+
+namespace sundog {
+namespace {
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+double launch_limit(double expected_seconds, bool first) {
+  constexpr double least = 30, compiling = 300, patience = 100;
+  if (const char* text = std::getenv("SUNDOG_LAUNCH_LIMIT"))
+    if (const double seconds = std::strtod(text, nullptr); seconds > 0) return seconds;
+  return first ? compiling : std::max(least, patience * expected_seconds);
+}
+
+void LaunchWatch::begin(double limit_seconds, bool first) {
+  limit_ = limit_seconds;
+  first_ = first;
+  started_ = now();
+}
+
+void LaunchWatch::end() { started_ = -1; }
+
+double LaunchWatch::overdue() const {
+  const double started = started_, seconds = now() - started;
+  return started >= 0 && seconds > limit_ ? seconds : 0;
+}
+
+}  // namespace sundog

@@ -1,0 +1,147 @@
+#include "render/device/tile_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/faults.h"
+#include "device/cl_status.h"
+#include "render/plan/tiles.h"
+
+namespace sundog {
+namespace {
+
+/// The driver ended a kernel's loops before their end: smaller launches may be within its limit.
+struct LoopsCutShort : DeviceError {
+  using DeviceError::DeviceError;
+};
+
+Tuning tuning_of(const RenderOptions& options, const DeviceInfo& device) {
+  return options.tuning ? options.tuning(device) : Tuning{};
+}
+
+LaunchLimits limits_of(const DeviceInfo& device, const FrameKernels& kernels) {
+  return {device.device_class, device.compute_units, kernels.config.tile_w, kernels.config.tile_h,
+          kernels.most_group};
+}
+
+/// What a failed launch may be answered with; nothing when smaller launches would not help.
+std::optional<LaunchFailure> failure_of(const DeviceError& error) {
+  if (dynamic_cast<const LoopsCutShort*>(&error)) return LaunchFailure::loops_cut_short;
+  if (is_work_group_too_large(error.status)) return LaunchFailure::group_too_large;
+  if (is_out_of_resources(error.status)) return LaunchFailure::out_of_resources;
+  return std::nullopt;
+}
+
+}  // namespace
+
+TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options,
+                           RenderTimes& times, LaunchWatch& watch)
+    : device_(device),
+      options_(options),
+      samples_(scene.info.samples),
+      kernels_(build_frame_kernels(device, scene, tuning_of(options, device.info()), options.work_group,
+                                   !options.aovs.empty(), times)),
+      sizer_(limits_of(device.info(), kernels_), options.work_group, tuning_of(options, device.info()),
+             !scene.sdf_fields.empty()),
+      watch_(watch) {}
+
+void TileRenderer::launch_samples(const StopFlags& flags) {
+  while (!flags.set()) {
+    const std::optional<SizedLaunch> next = sizer_.next();
+    if (!next) return;
+    const Stopwatch clock;
+    const WatchedLaunch watched(watch_, next->expected_seconds, next->expected_seconds <= 0);
+    run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
+        device_, kernels_.integrator, next->size, kernels_.tables, kernels_.tables.camera_media, film_,
+        weights_, counters_, next->launch);
+    device_.finish();
+    sizer_.note_time(clock.seconds());
+  }
+}
+
+void TileRenderer::launch_aovs(const Tile& tile, std::vector<float4>& aovs) {
+  const std::size_t pixels = pixel_count(tile);
+  if (aovs_.count < 3 * pixels) aovs_ = device_.make<float4>(3 * pixels);
+  aovs.resize(3 * pixels);
+  if (pixels == 0) return;
+  constexpr double expected = 3;  // not known: only what stands for minutes is stuck
+  const WatchedLaunch watched(watch_, expected, !aovs_launched_);
+  run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32>(
+      device_, kernels_.first_surfaces, sizer_.surfaces(pixels), kernels_.tables,
+      kernels_.tables.camera_media, aovs_, counters_, static_cast<u32>(tile.x), static_cast<u32>(tile.y),
+      static_cast<u32>(tile.width), static_cast<u32>(pixels));
+  device_.finish();
+  aovs_launched_ = true;
+  device_.read(aovs_, std::span<float4>(aovs));
+}
+
+// Whether every sample was traced to its end: a driver may end a kernel's loops early without an error.
+void TileRenderer::check_finished(const Tile& asked, const TileResult& made) {
+  const auto primary = static_cast<u32>(made.counts[COUNT_PRIMARY]);  // the device's sums are modulo 2^32
+  auto finished = static_cast<u32>(made.counts[COUNT_FINISHED]);
+  const auto wanted = static_cast<u32>(pixel_count(made.tile) * samples_);
+  const auto aovs = options_.aovs.empty() ? 0u : static_cast<u32>(pixel_count(made.tile));
+  if (fault("cut", fmt::format("{}:{}", device_.info().platform, device_.info().device),
+            sizer_.tile_samples()))
+    finished = 0;
+  // A tile that was stopped may have samples of rows that are not finished.
+  if (finished == 2 * (primary + aovs) && (primary == wanted || made.tile != asked)) return;
+  throw LoopsCutShort(
+      fmt::format("{}: the driver ends the kernel's loops too early ({} of {} samples were traced to "
+                  "their end)",
+                  device_.info().label(), finished / 2, std::max(wanted, primary)));
+}
+
+TileResult TileRenderer::render(const Tile& tile, const StopFlags& flags) {
+  while (true) {
+    try {
+      TileResult made = try_render(tile, flags);
+      check_finished(tile, made);
+      return made;
+    } catch (const DeviceError& error) {
+      const std::optional<LaunchFailure> failure = failure_of(error);
+      if (!failure) throw;
+      const std::optional<std::string> note = sizer_.ask_less(*failure, error.what());
+      if (note) {
+        kernels_.notes.push_back(*note);
+        continue;
+      }
+      if (*failure != LaunchFailure::loops_cut_short) throw;
+      throw DeviceError(std::string(error.what()) +
+                        "; a single sample of a pixel is too much for it: choose another device");
+    }
+  }
+}
+
+// A failed launch may have added some of its samples, so a tile is always begun from nothing.
+TileResult TileRenderer::try_render(const Tile& tile, const StopFlags& flags) {
+  const std::size_t pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+  TileResult result;
+  result.tile = tile;
+  result.sums.resize(pixels);
+  result.weights.resize(pixels);
+  std::array<u32, COUNTERS> counts{};
+  if (film_.count < pixels) {
+    film_ = device_.make<float4>(pixels);
+    weights_ = device_.make<float>(pixels);
+  }
+  device_.write(film_, std::span<const float4>(result.sums));
+  device_.write(weights_, std::span<const float>(result.weights));
+  counters_ = device_.upload(std::span<const u32>(counts));
+  sizer_.begin(tile, samples_);
+  launch_samples(flags);
+  result.tile.height = static_cast<int>(sizer_.finished_rows());
+  if (!options_.aovs.empty()) launch_aovs(result.tile, result.aovs);
+  const Stopwatch reading;
+  device_.read(film_, std::span<float4>(result.sums));
+  device_.read(weights_, std::span<float>(result.weights));
+  device_.read(counters_, std::span<u32>(counts));
+  readback_seconds_ += reading.seconds();
+  std::copy(counts.begin(), counts.end(), result.counts.begin());
+  return result;
+}
+
+}  // namespace sundog

@@ -1,0 +1,54 @@
+// One device at work on a frame: launches that make a tile, run in turn, and what is done when one fails.
+#pragma once
+#include <vector>
+
+#include "render/device/frame_kernels.h"
+#include "render/device/launch_sizer.h"
+#include "render/device/launch_watch.h"
+#include "render/film/film.h"
+#include "render/frame/tile_server.h"
+#include "render/values/options.h"
+#include "render/values/report.h"
+
+namespace sundog {
+
+class TileRenderer {
+ public:
+  /// Builds the kernels and uploads the scene; fills `times`. Reports each launch to `watch`. Throws
+  /// DeviceError, BuildError.
+  TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options, RenderTimes& times,
+               LaunchWatch& watch);
+
+  /// Renders all samples of a tile in launches of bounded time. Where the device runs out of memory or
+  /// resources, once more in launches of half the size, and so on; where its driver ended the kernel's loops
+  /// early, in launches of half the samples, at last in work-groups of one; where a work-group is too large
+  /// for it, in groups of half the size. Throws DeviceError.
+  TileResult render(const Tile& tile, const StopFlags& flags);
+
+  /// Most work-items that a group of its kernels may have; 0: not known.
+  std::size_t greatest_group() const { return sizer_.most_group(); }
+  double readback_seconds() const { return readback_seconds_; }
+  /// What did not stop it: a cache that could not be used, launches that had to be made smaller.
+  const std::vector<std::string>& notes() const { return kernels_.notes; }
+
+ private:
+  TileResult try_render(const Tile& tile, const StopFlags& flags);
+  void launch_samples(const StopFlags& flags);
+  void launch_aovs(const Tile& tile, std::vector<float4>& aovs);
+  void check_finished(const Tile& asked, const TileResult& made);
+
+  Device& device_;
+  const RenderOptions& options_;
+  unsigned samples_;
+  FrameKernels kernels_;
+  LaunchSizer sizer_;
+  LaunchWatch& watch_;
+  bool aovs_launched_ = false;
+  Buffer<float4> film_;
+  Buffer<float> weights_;
+  Buffer<float4> aovs_;
+  Buffer<u32> counters_;
+  double readback_seconds_ = 0;
+};
+
+}  // namespace sundog

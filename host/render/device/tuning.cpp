@@ -1,0 +1,133 @@
+// See tuning.h.
+#include "render/device/tuning.h"
+
+#include <nlohmann/json.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/cache_folder.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "device/embedded_kernels.h"
+#include "device/program_cache.h"
+
+namespace sundog {
+namespace {
+
+using nlohmann::json;
+using enum WorkGroup::Kind;
+
+json entry_json(const TuningEntry& entry) {
+  return {{"kernel", entry.kernel},
+          {"class", entry.scene_class},
+          {"scene", entry.scene},
+          {"work_group", work_group_text(entry.tuning.work_group)},
+          {"surfaces_group", work_group_text(entry.tuning.surfaces_group)},
+          {"tile_w", entry.tuning.tile_w},
+          {"tile_h", entry.tuning.tile_h},
+          {"packet_least", entry.tuning.packet_least},
+          {"launch_ms", entry.tuning.launch_ms},
+          {"tile_ms", entry.tuning.tile_ms},
+          {"default_ms", entry.default_ms},
+          {"tuned_ms", entry.tuned_ms}};
+}
+
+}  // namespace
+
+std::string work_group_text(const WorkGroup& group) {
+  if (group.kind == automatic) return "default";
+  if (group.kind == driver) return "driver";
+  return group.y > 1 ? fmt::format("{}x{}", group.x, group.y) : fmt::format("{}", group.x);
+}
+
+std::string tuning_text(const Tuning& tuning) {
+  std::vector<std::string> parts;
+  if (tuning.work_group.kind != automatic)
+    parts.push_back("work-group " + work_group_text(tuning.work_group));
+  if (tuning.surfaces_group.kind != automatic)
+    parts.push_back("work-group " + work_group_text(tuning.surfaces_group));
+  if (tuning.tile_w) parts.push_back(fmt::format("{}x{} pixels a work-item", tuning.tile_w, tuning.tile_h));
+  if (tuning.packet_least) parts.push_back(fmt::format("packets of more than {}", tuning.packet_least));
+  if (tuning.launch_ms > 0) parts.push_back(fmt::format("launches of {} ms", tuning.launch_ms));
+  if (tuning.tile_ms > 0) parts.push_back(fmt::format("tiles of {} ms", tuning.tile_ms));
+  return parts.empty() ? "the defaults" : fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string scene_class(const CompiledScene& scene) {
+  const auto& shapes = scene.features.shapes;
+  std::string kind = shapes[SHAPE_SDF] ? "fields" : shapes[SHAPE_MESH] ? "meshes" : "solids";
+  if (scene.tracer == Tracer::wide) kind += "+wide";
+  if (scene.tracer == Tracer::compact) kind += "+compact";
+  return scene.features.secondary_rays ? kind + "+rays" : kind;
+}
+
+std::string kernels_hash() {
+  std::string all;
+  for (const EmbeddedKernel& file : embedded_kernels())
+    all += fmt::format("{}\n{}\n", file.path, embedded_kernel(std::string(file.path)));
+  return hash128(all);
+}
+
+std::filesystem::path tuning_folder() { return cache_folder("tuning"); }
+
+std::filesystem::path tuning_path(const DeviceInfo& device) {
+  const std::filesystem::path folder = tuning_folder();
+  if (folder.empty()) return folder;
+  const std::string key =
+      fmt::format("{}\n{}\n{}\n{}", device.platform_name, device.name, device.driver, device.sub_units);
+  return folder / (hash128(key) + ".json");
+}
+
+json to_json(const TuningFile& file) {
+  json entries = json::array();
+  for (const TuningEntry& entry : file.entries) entries.push_back(entry_json(entry));
+  return {{"schema", 1},           {"platform", file.platform}, {"device", file.device},
+          {"driver", file.driver}, {"kernels", file.kernels},   {"units", file.units},
+          {"entries", entries}};
+}
+
+std::optional<TuningFile> load_tuning(const DeviceInfo& device) {
+  const std::filesystem::path path = tuning_path(device);
+  if (path.empty() || !std::filesystem::exists(path)) return {};
+  try {
+    TuningFile file = read_tuning_file(path);
+    if (file.kernels == kernels_hash()) return file;
+  } catch (const std::runtime_error&) {  // damaged: as if it were not there
+  }
+  return {};
+}
+
+void keep_tuning(const DeviceInfo& device, const TuningEntry& entry) {
+  const std::filesystem::path path = tuning_path(device);
+  if (path.empty()) {
+    const std::string why = cache_refusal();
+    throw IoError(why.empty() ? "there is no cache folder to keep the result in: set XDG_CACHE_HOME" : why);
+  }
+  TuningFile file = load_tuning(device).value_or(
+      TuningFile{device.platform_name, device.name, device.driver, kernels_hash(), device.sub_units, {}});
+  std::erase_if(file.entries, [&](const TuningEntry& old) {
+    return old.kernel == entry.kernel && old.scene_class == entry.scene_class;
+  });
+  file.entries.push_back(entry);
+  make_cache_folder(path.parent_path());
+  write_file(path, to_json(file).dump(2) + "\n");
+}
+
+Tuning saved_tuning(const DeviceInfo& device, const CompiledScene& scene) {
+  const std::optional<TuningFile> file = load_tuning(device);
+  if (!file) return {};
+  Tuning tuning;
+  WorkGroup surfaces_group;
+  for (const TuningEntry& entry : file->entries) {
+    if (entry.scene_class != scene_class(scene)) continue;
+    if (entry.kernel == surfaces_kernel)
+      surfaces_group = entry.tuning.surfaces_group;
+    else
+      tuning = entry.tuning;
+  }
+  tuning.surfaces_group = surfaces_group;
+  return tuning;
+}
+
+}  // namespace sundog

@@ -1,0 +1,99 @@
+// A tuning result from JSON: what is kept for a device, and what `sundog tune --import` is given. Every error
+// names the file and the place in it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "render/device/tuning.h"
+#include "scene/json/parse.h"
+
+namespace sundog {
+namespace {
+
+constexpr const char* kept = "as `sundog tune --export` writes it";
+
+/// What scene_class() may say.
+std::string scene_class_from(const JsonValue& value) {
+  const std::string found = value.text();
+  for (const char* kind : {"fields", "meshes", "solids"})
+    for (const char* tracer : {"", "+wide", "+compact"})
+      for (const char* rays : {"", "+rays"})
+        if (found == std::string(kind) + tracer + rays) return found;
+  value.wanted(
+      "a class of scenes: solids, meshes or fields, then +wide or +compact where a tracer was asked "
+      "for, then +rays where there are secondary rays");
+}
+
+WorkGroup work_group_from(const JsonValue& value) {
+  using enum WorkGroup::Kind;
+  const std::string text = value.text();
+  if (text == "default") return {};
+  if (text == "driver") return {driver, 0, 0};
+  unsigned x = 0, y = 1;
+  char rest = 0;
+  const int found = std::sscanf(text.c_str(), "%ux%u%c", &x, &y, &rest);
+  const bool plain = found == 1 && text == std::to_string(x);
+  if ((!plain && found != 2) || x == 0 || y == 0 || x > 65536 || y > 65536)
+    value.wanted("a size such as \"64\" or \"8x8\", \"default\" or \"driver\"");
+  return {fixed, x, y};
+}
+
+TuningEntry entry_from(JsonObject& entry) {
+  constexpr Range milliseconds{.low = 0, .high = 10000};
+  constexpr std::array<std::string_view, 2> kernels = {frame_kernel, surfaces_kernel};
+  const auto whole = [&](const char* key, int most) {
+    return static_cast<unsigned>(entry.at(key, kept).integer(0, most));
+  };
+  TuningEntry result;
+  Tuning& tuning = result.tuning;
+  result.kernel = entry.at("kernel", kept).choice(kernels);
+  result.scene_class = scene_class_from(entry.at("class", kept));
+  result.scene = entry.at("scene", kept).text();
+  tuning.work_group = work_group_from(entry.at("work_group", kept));
+  tuning.surfaces_group = work_group_from(entry.at("surfaces_group", kept));
+  tuning.tile_w = whole("tile_w", 16);
+  tuning.tile_h = whole("tile_h", 16);
+  // What a batch of rays has vectors for.
+  constexpr std::array<unsigned, 5> batches = {0, 1, 4, 8, 16};
+  const unsigned batch = tuning.tile_w * tuning.tile_h;
+  if ((tuning.tile_w == 0) != (tuning.tile_h == 0) || std::ranges::find(batches, batch) == batches.end())
+    entry.value().fail(
+        fmt::format("wanted tile_w and tile_h both 0, or with a product of 1, 4, 8 or 16, found {} and {}",
+                    tuning.tile_w, tuning.tile_h));
+  tuning.packet_least = whole("packet_least", 64);
+  tuning.launch_ms = entry.at("launch_ms", kept).number(milliseconds);
+  tuning.tile_ms = entry.at("tile_ms", kept).number(milliseconds);
+  result.default_ms = entry.at("default_ms", kept).number(at_least_0);
+  result.tuned_ms = entry.at("tuned_ms", kept).number(at_least_0);
+  return result;
+}
+
+}  // namespace
+
+TuningFile read_tuning(const JsonValue& value) {
+  constexpr int most_units = 1 << 20;
+  return value.object("tuning", [](JsonObject& object) {
+    object.at("schema", kept).integer(1, 1);
+    TuningFile file;
+    file.platform = object.at("platform", kept).text();
+    file.device = object.at("device", kept).text();
+    file.driver = object.at("driver", kept).text();
+    file.kernels = object.at("kernels", kept).text();
+    file.units = static_cast<unsigned>(object.at("units", kept).integer(0, most_units));
+    for (const JsonValue& entry : object.at("entries", kept).items("tuning results"))
+      file.entries.push_back(entry.object("entry", entry_from));
+    return file;
+  });
+}
+
+TuningFile read_tuning_file(const std::filesystem::path& file) {
+  const JsonContext context{.file = file};
+  const nlohmann::json json = read_json_file(file);
+  return read_tuning(JsonValue(json, context));
+}
+
+}  // namespace sundog

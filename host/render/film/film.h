@@ -1,0 +1,55 @@
+// Film: the sums of a frame's samples in linear RGBA, and which pixels are finished.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/image.h"
+#include "shared/types.h"
+
+namespace sundog {
+
+/// A rectangle of pixels.
+struct Tile {
+  int x = 0, y = 0, width = 0, height = 0;
+  friend bool operator==(const Tile&, const Tile&) = default;
+};
+
+/// width * height pixels, row 0 at the top. `aovs` holds three float4 a pixel when the frame has AOVs, else
+/// nothing.
+struct Film {
+  int width = 0, height = 0;
+  std::vector<float4> sums;    // rgb and coverage
+  std::vector<float> weights;  // samples that count
+  std::vector<float4> aovs;
+  std::vector<std::uint8_t> done;  // 1: the pixel has all its samples
+
+  Film() = default;
+  Film(int width, int height, bool with_aovs);
+  bool is_done(const Tile& tile) const;
+  /// Puts a finished tile's pixels, row by row, in their places. Spans as long as the tile (aovs: three
+  /// times, or empty). Returns how many of them were not done before.
+  std::uint64_t put(const Tile& tile, std::span<const float4> tile_sums, std::span<const float> tile_weights,
+                    std::span<const float4> tile_aovs);
+  /// The mean of the samples; alpha, if there are 4 channels, is coverage; pixels that are not done are 0.
+  Image develop(int channels = 4) const;
+  /// The named AOV (one of aov_names()); pixels that are not done are 0.
+  Image develop_aov(const std::string& name) const;
+};
+
+/// Writes the film for a later --resume; `key` identifies scene and settings. Throws IoError.
+void write_checkpoint(const std::filesystem::path& path, const Film& film, std::uint64_t key);
+
+/// The key of the checkpoint in that file; none where there is no file, or another one.
+std::optional<std::uint64_t> checkpoint_key(const std::filesystem::path& path);
+
+/// Reads a checkpoint into `film`, which has the frame's size. Throws UsageError when it belongs to another
+/// scene or setting, IoError when it is damaged.
+void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_t key);
+
+/// The AOVs `render` can make: depth, normal, position, albedo, object, material.
+const std::vector<std::string>& aov_names();
+
+}  // namespace sundog

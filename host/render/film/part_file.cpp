@@ -1,0 +1,155 @@
+// A part's file: a line of JSON with the sizes, a byte for each pixel that tells whether it is there, the
+// done pixels' sums, weights and AOVs, and a checksum of all that in 16 digits.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/input.h"
+#include "base/limits.h"
+#include "base/memory.h"
+#include "render/film/hash.h"
+#include "render/film/part.h"
+
+namespace sundog {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* format_name = "sundog part 1";
+constexpr std::size_t checksum_digits = 16;
+
+template <class T>
+void append_done(std::string& bytes, const std::vector<T>& values, const std::vector<std::uint8_t>& done) {
+  const std::size_t each = values.size() / std::max<std::size_t>(done.size(), 1);
+  for (std::size_t i = 0; i < done.size(); ++i)
+    if (done[i]) bytes.append(reinterpret_cast<const char*>(values.data() + each * i), each * sizeof(T));
+}
+
+/// Takes what append_done() has put; false when there is too little of it.
+template <class T>
+bool take_done(const std::string& bytes, std::size_t& at, std::vector<T>& values,
+               const std::vector<std::uint8_t>& done) {
+  const std::size_t each = values.size() / std::max<std::size_t>(done.size(), 1), size = each * sizeof(T);
+  for (std::size_t i = 0; i < done.size(); ++i) {
+    if (!done[i]) continue;
+    if (at + size > bytes.size()) return false;
+    std::memcpy(values.data() + each * i, bytes.data() + at, size);
+    at += size;
+  }
+  return true;
+}
+
+std::string checksum(const std::string& bytes) {
+  return fmt::format("{:016x}", hash_bytes(bytes.data(), bytes.size()));
+}
+
+/// A whole number of the header; none where it is anything else or not within the bounds.
+std::optional<int> whole(const json& head, const char* key, int least, int most) {
+  const json& value = head.at(key);
+  if (!value.is_number_unsigned()) return std::nullopt;
+  const auto number = value.get<std::uint64_t>();
+  if (number < static_cast<std::uint64_t>(least) || number > static_cast<std::uint64_t>(most))
+    return std::nullopt;
+  return static_cast<int>(number);
+}
+
+/// The values are distinct names of AOVs.
+bool are_aovs(const std::vector<std::string>& names) {
+  const auto known = [](const std::string& name) { return std::ranges::count(aov_names(), name) == 1; };
+  return std::ranges::all_of(names, known) &&
+         std::set<std::string>(names.begin(), names.end()).size() == names.size();
+}
+
+/// The header's values, with a film without pixels of its size; none where they cannot be true. Throws what
+/// JSON throws.
+std::optional<PartFile> read_header(const json& head) {
+  const auto count = whole(head, "parts", 1, most_parts);
+  const auto index = whole(head, "part", 1, count.value_or(0));
+  const auto width = whole(head, "width", 1, most_edge), height = whole(head, "height", 1, most_edge);
+  if (!index || !width || !height || !is_frame_size(*width, *height)) return std::nullopt;
+  if (!head.at("key").is_number_unsigned()) return std::nullopt;
+  PartFile file;
+  file.part = {*index, *count};
+  file.key = head.at("key").get<std::uint64_t>();
+  file.scene = head.at("scene").get<std::string>();
+  file.aovs = head.at("aovs").get<std::vector<std::string>>();
+  file.settings = head.at("settings").get<std::map<std::string, std::string>>();
+  file.film.width = *width;
+  file.film.height = *height;
+  if (!are_aovs(file.aovs)) return std::nullopt;
+  return file;
+}
+
+/// A frame of few pixels done is small as a file.
+void check_memory(const std::filesystem::path& path, const PartFile& file) {
+  const auto pixels =
+      static_cast<std::uint64_t>(file.film.width) * static_cast<std::uint64_t>(file.film.height);
+  const std::uint64_t wanted = pixels * (file.aovs.empty() ? 21 : 69),
+                      there = available_memory().value_or(wanted);
+  if (wanted > there)
+    throw SceneError(
+        path.string(), "",
+        fmt::format("its frame of {}x{} pixels takes {:.1f} GiB of memory, and {:.1f} GiB are available",
+                    file.film.width, file.film.height, static_cast<double>(wanted) / (1 << 30),
+                    static_cast<double>(there) / (1 << 30)));
+}
+
+/// The film after the header, of a file whose checksum is right. Memory is taken for no more pixels than the
+/// file has flags for.
+bool read_film(const std::string& bytes, std::size_t at, bool with_aovs, Film& film) {
+  const auto pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
+  if (pixels > bytes.size() - at) return false;
+  film = Film(film.width, film.height, with_aovs);
+  std::memcpy(film.done.data(), bytes.data() + at, pixels);
+  at += pixels;
+  if (std::ranges::any_of(film.done, [](std::uint8_t done) { return done > 1; })) return false;
+  return take_done(bytes, at, film.sums, film.done) && take_done(bytes, at, film.weights, film.done) &&
+         take_done(bytes, at, film.aovs, film.done) && at == bytes.size();
+}
+
+}  // namespace
+
+void write_part(const std::filesystem::path& path, const PartHeader& header, const Film& film) {
+  const json head = {{"format", format_name}, {"part", header.part.index}, {"parts", header.part.count},
+                     {"key", header.key},     {"scene", header.scene},     {"aovs", header.aovs},
+                     {"width", film.width},   {"height", film.height},     {"settings", header.settings}};
+  std::string bytes = head.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+  const auto done = static_cast<std::size_t>(std::ranges::count(film.done, std::uint8_t{1}));
+  bytes.reserve(bytes.size() + film.done.size() + done * (film.aovs.empty() ? 20 : 68) + checksum_digits);
+  bytes.append(reinterpret_cast<const char*>(film.done.data()), film.done.size());
+  append_done(bytes, film.sums, film.done);
+  append_done(bytes, film.weights, film.done);
+  append_done(bytes, film.aovs, film.done);
+  bytes += checksum(bytes);
+  write_file(path, bytes);
+}
+
+PartFile read_part(const std::filesystem::path& path) {
+  std::string bytes = read_input(path, most_frame_bytes);
+  const auto refuse = [&](const char* why) { return SceneError(path.string(), "", why); };
+  if (!bytes.starts_with('{') || bytes.find(format_name) == std::string::npos)
+    throw refuse("is no part of a frame: `sundog render --tiles` writes them");
+  const std::string damaged = "is damaged: render this part again";
+  if (bytes.size() < checksum_digits) throw refuse(damaged.c_str());
+  const std::string sum = bytes.substr(bytes.size() - checksum_digits);
+  bytes.resize(bytes.size() - checksum_digits);
+  if (sum != checksum(bytes)) throw refuse(damaged.c_str());
+  const std::size_t line = std::min(bytes.find('\n'), bytes.size() - 1);
+  std::optional<PartFile> file;
+  try {
+    file = read_header(json::parse(bytes.substr(0, line)));
+  } catch (const json::exception&) {
+    throw refuse(damaged.c_str());
+  }
+  if (file) check_memory(path, *file);
+  if (!file || !read_film(bytes, line + 1, !file->aovs.empty(), file->film)) throw refuse(damaged.c_str());
+  return std::move(*file);
+}
+
+}  // namespace sundog

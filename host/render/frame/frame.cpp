@@ -1,0 +1,250 @@
+#include "render/frame/frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "base/error.h"
+#include "device/cl_status.h"
+
+namespace sundog {
+namespace {
+
+using Phase = Frame::Phase;
+
+// A launch in flight may take this long after the frame's end before its thread is left behind; keeping the
+// compiled kernels for the next time may take longer, unless someone waits for the program to stop.
+constexpr double launch_grace = 0.15, stop_grace = 0.5, closing_grace = 10;
+constexpr double look_again = 0.02;
+
+// Below so many pixels, a tile for which resources do not suffice is not made smaller.
+constexpr std::uint64_t least_pixels = 1024;
+
+std::atomic<unsigned> left_behind{0};
+
+void set_phase(Frame& frame, std::size_t i, Phase phase) {
+  const std::lock_guard lock(frame.mutex);
+  frame.servers[i].phase = phase;
+  frame.changed.notify_all();
+}
+
+void report_progress(Frame& frame) {
+  if (!frame.options.on_progress) return;
+  frame.options.on_progress(
+      {frame.pixels_done, static_cast<std::uint64_t>(frame.film.done.size()), frame.clock.seconds()});
+}
+
+/// Passes on the caller's wish to stop. Only while the caller waits in run_frame.
+void look_for_stop(Frame& frame) {
+  if (!frame.options.stop || !frame.options.stop->load()) return;
+  frame.stop = true;
+  frame.queue.close();
+}
+
+/// Keeps what is done against what gives no warning: a process killed, a machine that goes down.
+void keep_checkpoint(Frame& frame) {
+  const RenderOptions& options = frame.options;
+  const bool now = options.keep_now && options.keep_now->exchange(false);
+  if (checkpoint_path(options).empty()) return;
+  if (!now && frame.since_checkpoint.seconds() < options.checkpoint_seconds) return;
+  frame.since_checkpoint = Stopwatch();
+  Film film;
+  {
+    const std::lock_guard lock(frame.mutex);
+    if (frame.pixels_done == frame.pixels_kept) return;
+    frame.pixels_kept = frame.pixels_done;
+    film = frame.film;
+  }
+  try {
+    write_checkpoint(checkpoint_path(options), film, frame.key);
+  } catch (const IoError&) {
+    // What keeps it from being written is told at the end, if the frame does not come to its end.
+  }
+}
+
+/// Puts a tile, or the finished rows of one, into the film.
+void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
+  const std::lock_guard lock(frame.mutex);
+  if (frame.over || made.tile.height == 0) return;
+  frame.pixels_done += frame.film.put(made.tile, made.sums, made.weights, made.aovs);
+  for (std::size_t c = 0; c < COUNTERS; ++c) frame.counts[c] += made.counts[c];
+  frame.servers[i].report.pixels += pixel_count(made.tile);
+  report_progress(frame);
+  look_for_stop(frame);
+}
+
+/// Takes a failure down. Returns false when the server has failed too often.
+bool note_failure(Frame& frame, std::size_t i, const char* what) {
+  const std::lock_guard lock(frame.mutex);
+  DeviceReport& report = frame.servers[i].report;
+  report.messages.push_back(what);
+  return ++report.failures < frame.servers[i].server->failures_allowed();
+}
+
+/// Opens the server; an OpenCL call that fails meanwhile is a failure like a later one. What no second time
+/// would mend is thrown at once: kernels that do not build, a process that is gone.
+RenderTimes open(Frame& frame, std::size_t i) {
+  while (true) {
+    try {
+      return frame.servers[i].server->open();
+    } catch (const DeviceError& error) {
+      if (error.status == 0 || frame.stop || !note_failure(frame, i, error.what())) throw;
+    }
+  }
+}
+
+/// Makes one tile; throws what the server throws.
+void make_tile(Frame& frame, std::size_t i, const TileJob& job) {
+  const StopFlags flags{&frame.stop, &frame.queue.cancelled(i)};
+  const Stopwatch busy;
+  const TileResult made = frame.servers[i].server->render(job.tile, flags);
+  const bool whole = made.tile == job.tile;
+  const bool first = whole ? frame.queue.finished(i, job, busy.seconds()) : frame.queue.given_up(i, job);
+  if (first) keep_tile(frame, i, made);
+  const std::lock_guard lock(frame.mutex);
+  (first ? frame.servers[i].report.tiles : frame.servers[i].report.outrun) += whole || !first;
+}
+
+/// Takes tiles until there are none, the frame is stopped, or the server has failed too often (which throws).
+void work(Frame& frame, std::size_t i) {
+  while (const std::optional<TileJob> job = frame.queue.take(i)) {
+    try {
+      make_tile(frame, i, *job);
+    } catch (const DeviceError& error) {
+      const bool too_large = is_out_of_resources(error.status) && pixel_count(job->tile) > least_pixels;
+      if (too_large) frame.queue.halve(i, job->tile);
+      frame.queue.failed(i, *job);
+      if (frame.stop) return;
+      if (!too_large && !note_failure(frame, i, error.what())) throw;
+      open(frame, i);  // a driver that has failed once may have lost more than the launch
+    }
+  }
+}
+
+/// A device that is expected to be of little use beside a fast one on the same cores takes only idle ones.
+void be_nice(const Frame& frame, std::size_t i) {
+  const auto estimate = [&](std::size_t k) { return frame.servers[k].server->info().estimate; };
+  const int processor = frame.servers[i].server->processor();
+  for (std::size_t k = 0; k < frame.servers.size(); ++k)
+    if (processor >= 0 && frame.servers[k].server->processor() == processor &&
+        estimate(k) > burden_factor * estimate(i))
+      return frame.servers[i].server->be_nice();
+}
+
+void begin_work(Frame& frame, std::size_t i, const RenderTimes& times) {
+  const std::lock_guard lock(frame.mutex);
+  frame.servers[i].report.kernels_cached = times.cached;
+  frame.servers[i].report.ready = true;
+  if (!frame.timed) frame.times = times;
+  frame.timed = true;
+  frame.servers[i].phase = Phase::working;
+}
+
+void take_figures(Frame& frame, std::size_t i) {
+  const ServerFigures figures = frame.servers[i].server->figures();
+  const std::lock_guard lock(frame.mutex);
+  frame.servers[i].report.kernels = figures.kernels;
+  frame.servers[i].report.notes = figures.notes;
+  frame.readback = std::max(frame.readback, figures.readback_seconds);
+}
+
+/// The server is out: what it held goes to others; without any other, the frame ends.
+void retire(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error) {
+  frame.queue.retire(i);
+  const std::lock_guard lock(frame.mutex);
+  Frame::Server& server = frame.servers[i];
+  if (server.failed) return;
+  server.failed = server.report.retired = true;
+  if (server.report.messages.empty() || server.report.messages.back() != why)
+    server.report.messages.push_back(why);
+  frame.last_error = std::move(error);
+  if (std::ranges::all_of(frame.servers, &Frame::Server::failed)) frame.queue.close();
+}
+
+void serve(const std::shared_ptr<Frame>& frame, std::size_t i) {
+  TileServer& server = *frame->servers[i].server;
+  try {
+    be_nice(*frame, i);
+    if (frame->queue.wait_until_needed(i)) {
+      const RenderTimes times = open(*frame, i);
+      begin_work(*frame, i, times);
+      frame->queue.ready(i);
+      work(*frame, i);
+    }
+  } catch (const std::exception& error) {
+    retire(*frame, i, error.what(), std::current_exception());
+  }
+  set_phase(*frame, i, Phase::closing);
+  take_figures(*frame, i);
+  try {
+    server.close();
+  } catch (const std::exception&) {
+    // It is let go of as well as can be; the frame has what it made.
+  }
+  set_phase(*frame, i, Phase::gone);
+}
+
+/// Waits until the frame is over, and retires servers that hang.
+void watch(Frame& frame) {
+  while (!frame.queue.wait(look_again)) {
+    look_for_stop(frame);
+    keep_checkpoint(frame);
+    for (std::size_t i = 0; i < frame.servers.size(); ++i) {
+      const double seconds = frame.servers[i].server->overdue();
+      if (seconds <= 0) continue;
+      const std::string why = fmt::format("{}: a launch has not come back for {:.0f} s: the driver hangs",
+                                          frame.servers[i].server->info().label(), seconds);
+      retire(frame, i, why, std::make_exception_ptr(DeviceError(why)));
+    }
+  }
+}
+
+/// Gives those that may soon be gone the time for it.
+void wait_for_threads(Frame& frame, bool stopped) {
+  const bool in_haste = stopped && frame.options.in_haste;
+  std::unique_lock lock(frame.mutex);
+  const auto wait = [&](double seconds, Phase phase) {
+    frame.changed.wait_for(lock, std::chrono::duration<double>(seconds), [&] {
+      return std::ranges::none_of(frame.servers, [&](const Frame::Server& server) {
+        return !server.failed && server.phase == phase &&
+               !(phase == Phase::working && server.server->compiles());
+      });
+    });
+  };
+  wait(stopped && !in_haste ? stop_grace : launch_grace, Phase::working);
+  if (!in_haste) wait(stopped ? stop_grace : closing_grace, Phase::closing);
+}
+
+}  // namespace
+
+unsigned threads_left_behind() { return left_behind; }
+
+void run_frame(const std::shared_ptr<Frame>& frame, bool wait) {
+  std::vector<std::thread> threads;
+  left_behind += static_cast<unsigned>(frame->servers.size());
+  for (std::size_t i = 0; i < frame->servers.size(); ++i)
+    threads.emplace_back([mine = frame, i]() mutable {
+      serve(mine, i);
+      mine.reset();
+      --left_behind;
+    });
+  watch(*frame);
+  const bool stopped = frame->stop.exchange(true);
+  if (!wait) wait_for_threads(*frame, stopped);
+  for (std::size_t i = 0; i < threads.size(); ++i) {
+    std::unique_lock lock(frame->mutex);
+    Frame::Server& server = frame->servers[i];
+    if (wait || server.phase == Phase::gone) {
+      lock.unlock();
+      threads[i].join();
+    } else {
+      server.report.abandoned = true;
+      threads[i].detach();
+    }
+  }
+  const std::lock_guard lock(frame->mutex);
+  frame->over = true;
+}
+
+}  // namespace sundog

@@ -1,0 +1,57 @@
+// A frame at work: one thread a server takes tiles from the queue, while the caller's thread watches for the
+// end, for an interrupt and for drivers that hang. Internal to the render layer.
+#pragma once
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "base/clock.h"
+#include "render/frame/tile_server.h"
+#include "render/plan/tile_queue.h"
+
+namespace sundog {
+
+/// What the threads share. It lives until the last of them is gone, which may be after the frame's end.
+struct Frame {
+  Frame(RenderOptions options_, Film film_, TilePlan plan, std::vector<DeviceSpeed> speeds)
+      : options(std::move(options_)), film(std::move(film_)), queue(std::move(plan), std::move(speeds)) {}
+
+  enum class Phase { opening, working, closing, gone };
+  struct Server {
+    std::shared_ptr<TileServer> server;
+    DeviceReport report;
+    Phase phase = Phase::opening;
+    bool failed = false;  // for good
+  };
+
+  const RenderOptions options;
+  std::vector<Server> servers;
+  std::mutex mutex;  // for everything below, and the servers' reports and phases
+  std::condition_variable changed;
+  Film film;
+  TileQueue queue;
+  RayCounts counts{};
+  RenderTimes times;  // of the first server to be ready
+  bool timed = false;
+  double readback = 0;
+  std::exception_ptr last_error;
+  std::uint64_t pixels_done = 0, pixels_kept = 0;  // the latter are in the checkpoint
+  std::uint64_t key = 0;                           // the checkpoint's
+  Stopwatch clock, since_checkpoint;
+  bool over = false;  // the result is being gathered: nothing more goes in
+  std::atomic<bool> stop{false};
+};
+
+/// Where a frame that does not come to its end is kept; empty: nowhere.
+inline const std::filesystem::path& checkpoint_path(const RenderOptions& options) {
+  return options.checkpoint.empty() ? options.resume : options.checkpoint;
+}
+
+/// Runs the frame to its end: finished, stopped (options.stop), or out of servers. With `wait`, every thread
+/// has ended on return; else those in a driver are left behind (see threads_left_behind()).
+void run_frame(const std::shared_ptr<Frame>& frame, bool wait);
+
+}  // namespace sundog

@@ -1,0 +1,63 @@
+// What makes tiles: a device of this process, one in a worker process of its own, or one of another machine.
+#pragma once
+#include <atomic>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "render/film/film.h"
+#include "render/values/options.h"
+#include "render/values/report.h"
+
+namespace sundog {
+
+/// A tile's pixels and ray counts. `tile` is what was finished: less rows than asked for when it was stopped
+/// on the way.
+struct TileResult {
+  Tile tile;
+  std::vector<float4> sums;
+  std::vector<float> weights;
+  std::vector<float4> aovs;
+  RayCounts counts{};
+};
+
+/// Asked between launches: whether to give back what there is.
+struct StopFlags {
+  const std::atomic<bool>* stop = nullptr;       // the frame is over
+  const std::atomic<bool>* cancelled = nullptr;  // another device has finished the tile
+  bool set() const { return (stop && stop->load()) || (cancelled && cancelled->load()); }
+};
+
+/// What a server did, told when it is asked for and at the end.
+struct ServerFigures {
+  std::map<std::string, KernelTimes> kernels;
+  double readback_seconds = 0;
+  std::vector<std::string> notes;  // what did not stop it: smaller launches, a cache that could not be used
+};
+
+/// Used by one thread, overdue() and compiles() by any.
+class TileServer {
+ public:
+  virtual ~TileServer() = default;
+  virtual const DeviceInfo& info() const = 0;
+  /// Makes it ready: kernels built, scene uploaded. Called again after a failure, to begin afresh. Throws
+  /// DeviceError, BuildError.
+  virtual RenderTimes open() = 0;
+  /// All samples of the tile. Throws DeviceError; then it must be opened again.
+  virtual TileResult render(const Tile& tile, const StopFlags& flags) = 0;
+  virtual ServerFigures figures() const = 0;
+  /// Lets go of the device, and keeps its compiled kernels for the next time.
+  virtual void close() = 0;
+  /// Seconds that a launch has run when it has passed its limit, else 0: the driver hangs.
+  virtual double overdue() const { return 0; }
+  /// Whether a kernel's first launch is in hand, in which its driver may compile for long.
+  virtual bool compiles() const { return false; }
+  /// Asked before open(): to use only time that nobody else wants.
+  virtual void be_nice() {}
+  /// After so many failures it is not tried again.
+  virtual unsigned failures_allowed() const { return 3; }
+  /// Which cores it runs on (DeviceSpeed::processor).
+  virtual int processor() const { return info().type == "cpu" ? 0 : -1; }
+};
+
+}  // namespace sundog

@@ -1,0 +1,148 @@
+// Guided self-scheduling: Polychronopoulos and Kuck, "Guided self-scheduling: a practical scheduling scheme
+// for parallel supercomputers" (1987), with shares by measured speed.
+#include "render/plan/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace sundog {
+namespace {
+
+constexpr double longest_tile = 0.25;     // seconds: a progress bar moves, a checkpoint loses little
+constexpr double shortest_tile = 0.02;    // seconds: long against what a tile costs beside its launches
+constexpr double growth = 4;              // of a tile over those that its speed was measured by
+constexpr std::uint64_t cell = 16;        // pixels: a tile of 4x4 is the smallest there is
+constexpr std::uint64_t probe = 4096;     // pixels of a first tile
+constexpr std::uint64_t tiny_probe = 64;  // of a device that is expected to be a burden
+// A device that takes so many times longer than expected, and so many seconds, is stuck.
+constexpr double stuck_factor = 4, stuck_seconds = 1;
+// A repeated tile must be likely to win: speeds differ over the image.
+constexpr double clear_win = 0.8;
+
+/// Estimates do not count here: a device that boasts would leave crumbs to the others.
+double total_speed(std::span<const DeviceSpeed> devices) {
+  double total = 0;
+  for (const DeviceSpeed& device : devices)
+    if (device.working) total += device.measured;
+  return total;
+}
+
+/// Seconds that a device can be expected to need for so many pixels; 0 when there is nothing to go by.
+double expected_seconds(std::span<const DeviceSpeed> devices, std::size_t device, std::uint64_t pixels) {
+  const double speed = expected_speed(devices, device);
+  return speed > 0 ? static_cast<double>(pixels) / speed : 0;
+}
+
+bool is_fastest(std::span<const DeviceSpeed> devices, std::size_t device) {
+  const double own = devices[device].measured;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    if (i == device || !devices[i].working) continue;
+    const double other = devices[i].measured;
+    if (other > own || (other == own && i < device)) return false;
+  }
+  return true;
+}
+
+/// Whether a device on the same cores that is many times faster is at work. Before the device's own speed is
+/// known, by its estimate.
+bool is_burden(std::span<const DeviceSpeed> devices, std::size_t device) {
+  const double own = expected_speed(devices, device);
+  if (devices[device].processor < 0 || own <= 0) return false;
+  return std::ranges::any_of(devices, [&](const DeviceSpeed& other) {
+    return other.working && other.processor == devices[device].processor &&
+           other.measured > burden_factor * own;
+  });
+}
+
+}  // namespace
+
+double expected_speed(std::span<const DeviceSpeed> devices, std::size_t device) {
+  if (devices[device].measured > 0) return devices[device].measured;
+  double measured = 0, estimates = 0;
+  for (const DeviceSpeed& other : devices)
+    if (other.measured > 0 && other.estimate > 0) {
+      measured += other.measured;
+      estimates += other.estimate;
+    }
+  return estimates > 0 ? measured * devices[device].estimate / estimates : 0;
+}
+
+std::uint64_t guided_pixels(std::span<const DeviceSpeed> devices, std::size_t device, std::uint64_t left) {
+  if (left == 0) return 0;
+  const double own = devices[device].measured;
+  const bool slowing = is_burden(devices, device);
+  if (own <= 0) {
+    const std::uint64_t share = left / (4 * devices.size());
+    return std::min(left, std::clamp<std::uint64_t>(share, cell, slowing ? tiny_probe : probe));
+  }
+  const bool alone = devices.size() == 1;
+  const double total = std::max(total_speed(devices), own), others = total - own;
+  const auto waiting = static_cast<double>(left);
+  if (!alone && !is_fastest(devices, device)) {
+    if (slowing) return 0;
+    if (others > 0 && static_cast<double>(std::min(cell, left)) / own > waiting / others) return 0;
+  }
+  // Half its share where there are equals to even out with; all of it beside those that hardly count.
+  double pixels = waiting * own / total / (1 + std::min(1.0, others / own));
+  const double longest = devices[device].tile_seconds > 0 ? devices[device].tile_seconds : longest_tile;
+  pixels = std::clamp(pixels, own * std::min(shortest_tile, longest), own * longest);
+  if (devices[device].sample > 0) pixels = std::min(pixels, growth * devices[device].sample);
+  // Never more than brings all devices to the end together.
+  pixels = std::min(pixels, waiting * own / total);
+  return std::min(left, std::max(cell, static_cast<std::uint64_t>(pixels)));
+}
+
+bool is_spared(std::span<const DeviceSpeed> devices, std::size_t device) {
+  const DeviceSpeed& own = devices[device];
+  return own.processor >= 0 && std::ranges::any_of(devices, [&](const DeviceSpeed& other) {
+           return !other.failed && other.processor == own.processor &&
+                  other.estimate > hopeless_factor * own.estimate;
+         });
+}
+
+bool is_stuck(std::span<const DeviceSpeed> devices, const HeldTile& tile, const HeldTile::Holder& holder) {
+  const double expected = expected_seconds(devices, holder.device, tile.pixels);
+  return holder.seconds > stuck_seconds && holder.seconds > stuck_factor * expected;
+}
+
+double seconds_left(std::span<const DeviceSpeed> devices, const HeldTile& tile) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const HeldTile::Holder& holder : tile.holders) {
+    if (is_stuck(devices, tile, holder)) continue;
+    const double expected = expected_seconds(devices, holder.device, tile.pixels);
+    least = std::min(least, std::abs(expected - holder.seconds));
+  }
+  return least;
+}
+
+std::optional<std::size_t> tile_to_repeat(std::span<const DeviceSpeed> devices, std::size_t device,
+                                          std::span<const HeldTile> tiles) {
+  const double speed = expected_speed(devices, device);
+  std::optional<std::size_t> longest;
+  double most = 0;
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const auto is_own = [&](const HeldTile::Holder& holder) { return holder.device == device; };
+    if (std::ranges::any_of(tiles[i].holders, is_own)) continue;
+    const double theirs = seconds_left(devices, tiles[i]);
+    const double own = speed > 0 ? static_cast<double>(tiles[i].pixels) / speed : shortest_tile;
+    if (own > clear_win * theirs || theirs <= most) continue;
+    most = theirs;
+    longest = i;
+  }
+  return longest;
+}
+
+double efficiency(std::span<const DeviceWork> devices) {
+  double kept = 0, possible = 0;
+  for (const DeviceWork& work : devices) {
+    if (work.busy_seconds <= 0) continue;
+    kept += static_cast<double>(work.kept_pixels);
+    possible += static_cast<double>(work.pixels) / work.busy_seconds *
+                std::max(work.ready_seconds, work.busy_seconds);
+  }
+  return possible > 0 ? kept / possible : 1;
+}
+
+}  // namespace sundog

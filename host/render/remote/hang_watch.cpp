@@ -1,0 +1,34 @@
+#include "render/remote/hang_watch.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace sundog {
+
+HangWatch::HangWatch(std::function<void(const std::string&)> on_hang, std::function<void()> always)
+    : on_hang_(std::move(on_hang)), always_(std::move(always)), thread_([this] { watch(); }) {}
+
+HangWatch::~HangWatch() {
+  leaving_ = true;
+  thread_.join();
+}
+
+void HangWatch::look_at(const OpenedServer& opened) {
+  const std::lock_guard lock(mutex_);
+  opened_ = opened;
+}
+
+void HangWatch::watch() {
+  for (; !leaving_; std::this_thread::sleep_for(std::chrono::milliseconds(50))) {
+    if (always_) always_();
+    const std::lock_guard lock(mutex_);
+    const double seconds = opened_.server ? opened_.server->overdue() : 0;
+    if (seconds <= 0) continue;
+    on_hang_(fmt::format("{}: a launch has not come back for {:.0f} s: the driver hangs",
+                         opened_.server->info().label(), seconds));
+    return;
+  }
+}
+
+}  // namespace sundog

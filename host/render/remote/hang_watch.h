@@ -1,0 +1,35 @@
+// Looks after a server's launches from another thread, in a process that serves others.
+#pragma once
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "render/remote/tile_worker.h"
+
+namespace sundog {
+
+class HangWatch {
+ public:
+  /// `on_hang` is called once, with a sentence, by the watch's thread, when a launch has passed its limit;
+  /// `always` about twenty times a second.
+  explicit HangWatch(std::function<void(const std::string&)> on_hang, std::function<void()> always = {});
+  ~HangWatch();
+  HangWatch(const HangWatch&) = delete;
+  HangWatch& operator=(const HangWatch&) = delete;
+
+  void look_at(const OpenedServer& opened);
+
+ private:
+  void watch();
+
+  std::function<void(const std::string&)> on_hang_;
+  std::function<void()> always_;
+  std::mutex mutex_;
+  OpenedServer opened_;
+  std::atomic<bool> leaving_{false};
+  std::thread thread_;
+};
+
+}  // namespace sundog

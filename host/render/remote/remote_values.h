@@ -1,0 +1,31 @@
+// The values that go through a channel, as JSON.
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "render/frame/tile_server.h"
+
+namespace sundog {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, platform, device, platform_name, platform_version, name,
+                                   vendor, driver, version, c_version, extensions, type, compute_units,
+                                   clock_mhz, native_vector_width, preferred_vector_width, global_memory,
+                                   max_allocation, local_memory, cache, max_work_group, timer_resolution_ns,
+                                   max_sub_devices, little_endian, compiler_available, available,
+                                   host_unified_memory, device_class, problem, estimate, sub_units,
+                                   first_unit, identity, rank, host)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Tile, x, y, width, height)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkGroup, kind, x, y)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RenderTimes, build_kernels, upload, render, readback, cached)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KernelTimes, launches, device_ms, host_ms, local_x, local_y)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ServerFigures, kernels, readback_seconds, notes)
+
+/// {tile, counts} and the pixels' bytes.
+struct PackedTile {
+  nlohmann::json values;
+  std::string data;
+};
+PackedTile pack_tile(const TileResult& result);
+/// Throws DeviceError when the bytes are not those of the tile.
+TileResult unpack_tile(const nlohmann::json& values, const std::string& data);
+
+}  // namespace sundog

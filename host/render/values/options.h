@@ -1,0 +1,54 @@
+// How a frame is to be rendered.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "device/devices.h"
+#include "render/values/tuning.h"
+
+namespace sundog {
+
+class DevicePool;
+
+/// How tiles are shared among devices: by measured speed as they come, or in fixed parts, one a device.
+struct Split {
+  enum class Kind { dynamic, fixed } kind = Kind::dynamic;
+  std::vector<double> shares;  // of a fixed split; empty: by the devices' estimates
+};
+
+/// Part `index` (from 1) of `count`.
+struct PartOfFrame {
+  int index = 1, count = 1;
+};
+
+struct RenderProgress {
+  std::uint64_t pixels_done = 0, pixels_total = 0;
+  double seconds = 0;
+};
+
+struct RenderOptions {
+  std::shared_ptr<DevicePool> pool;  // where devices wait between frames; none: opened for this one
+  WorkGroup work_group;
+  std::function<Tuning(const DeviceInfo&)> tuning;  // of each device; empty: the defaults
+  int tile = 0;  // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
+  Split split;
+  PartOfFrame part;               // what to render of the frame
+  std::vector<std::string> aovs;  // of aov_names()
+  int channels = 4;  // of the result's image; 3: without coverage; 0: neither it nor AOVs are made
+  std::filesystem::path resume;      // a checkpoint: read when it exists
+  std::filesystem::path checkpoint;  // written on interrupt and on the way, and removed by the caller; empty:
+                                     // that is `resume`
+  double checkpoint_seconds = 60;    // between those written on the way
+  std::atomic<bool>* keep_now = nullptr;                   // set: write one at once, and take this back
+  bool in_haste = false;                                   // when stopped, a moment more may be too long
+  std::function<void(const RenderProgress&)> on_progress;  // called by one thread at a time
+  const std::atomic<bool>* stop = nullptr;                 // set: finish what runs, return what there is
+  bool keep_failed = false;  // when every device failed, return what there is, and the failure, not throw it
+};
+
+}  // namespace sundog

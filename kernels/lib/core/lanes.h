@@ -1,0 +1,277 @@
+// One source for every number of lanes: REAL is a float or a vector of LANES floats, MASK an int or a vector
+// of ints whose lanes are 0 or -1 (all bits set) for scalars too, so that select(), any() and the bit
+// operators mean the same for LANES = 1, 4, 8 and 16. Comparisons go through MASK_OF(a < b). Everything here
+// gives the same bits for every number of lanes. Included once a program: LANES is a definition of the whole
+// build.
+#ifndef SUNDOG_LIB_LANES_H
+#define SUNDOG_LIB_LANES_H
+#include "lib/core/config.h"
+#include "lib/core/masks.cl"
+
+#ifndef LANES
+#define LANES BATCH
+#endif
+
+#if LANES == 1
+typedef float REAL;
+typedef int MASK;
+#define MASK_OF(comparison) (-(int)(comparison))
+#define AS_MASK(x) as_int(x)
+#define AS_REAL(x) as_float(x)
+#define TO_MASK(x) convert_int_rtz(x)
+#define TO_REAL(x) convert_float(x)
+#define LANE_BITS (MASK)(1)
+#elif LANES == 4
+typedef float4 REAL;
+typedef int4 MASK;
+#define MASK_OF(comparison) (comparison)
+#define AS_MASK(x) as_int4(x)
+#define AS_REAL(x) as_float4(x)
+#define TO_MASK(x) convert_int4_rtz(x)
+#define TO_REAL(x) convert_float4(x)
+#define LANE_BITS (MASK)(1, 2, 4, 8)
+#elif LANES == 8
+typedef float8 REAL;
+typedef int8 MASK;
+#define MASK_OF(comparison) (comparison)
+#define AS_MASK(x) as_int8(x)
+#define AS_REAL(x) as_float8(x)
+#define TO_MASK(x) convert_int8_rtz(x)
+#define TO_REAL(x) convert_float8(x)
+#define LANE_BITS (MASK)(1, 2, 4, 8, 16, 32, 64, 128)
+#elif LANES == 16
+typedef float16 REAL;
+typedef int16 MASK;
+#define MASK_OF(comparison) (comparison)
+#define AS_MASK(x) as_int16(x)
+#define AS_REAL(x) as_float16(x)
+#define TO_MASK(x) convert_int16_rtz(x)
+#define TO_REAL(x) convert_float16(x)
+#define LANE_BITS (MASK)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768)
+#else
+#error "LANES must be 1, 4, 8 or 16"
+#endif
+
+#define NO_LANES ((MASK)(0))
+#define ALL_LANES ((MASK)(-1))
+
+// True when some lane of the mask is set: one instruction where there is one; OpenCL's any() is a chain of
+// branches in PoCL.
+static inline int any_lane(MASK m) {
+#if LANES == 1
+  return m;
+#elif LANES == 16 && defined(__AVX512DQ__) && !defined(SUNDOG_PORTABLE)
+  return __builtin_ia32_cvtd2mask512(m) != 0;
+#elif LANES == 8 && defined(__AVX__) && !defined(SUNDOG_PORTABLE)
+  return __builtin_ia32_movmskps256(as_float8(m)) != 0;
+#elif LANES == 4 && defined(__SSE__) && !defined(SUNDOG_PORTABLE)
+  return __builtin_ia32_movmskps(as_float4(m)) != 0;
+#else
+#if LANES == 16
+  const int8 eight = m.lo | m.hi;
+#elif LANES == 8
+  const int8 eight = m;
+#endif
+#if LANES == 4
+  const int4 four = m;
+#else
+  const int4 four = eight.lo | eight.hi;
+#endif
+  const int2 two = four.lo | four.hi;
+  return two.x | two.y;
+#endif
+}
+
+// Bit i of the result is set where lane i of the mask is, and the other way round.
+static inline u32 lane_bits(MASK m) {
+#if LANES == 1
+  return (u32)m & 1u;
+#elif LANES == 4
+  return lane_mask((int8)(m, m)) & 15u;
+#elif LANES == 8
+  return lane_mask(m);
+#elif defined(__AVX512DQ__) && !defined(SUNDOG_PORTABLE)
+  return (u32)(ushort)__builtin_ia32_cvtd2mask512(m);
+#else
+  return lane_mask(m.lo) | lane_mask(m.hi) << 8;
+#endif
+}
+static inline MASK lanes_of(u32 bits) { return MASK_OF(((MASK)((int)bits) & LANE_BITS) != 0); }
+static inline u32 lane_count(MASK m) { return popcount(lane_bits(m)); }
+
+// Lane i of a private REAL or MASK variable, to read or to write.
+#define REAL_LANE(variable, i) (((float*)&(variable))[i])
+#define MASK_LANE(variable, i) (((int*)&(variable))[i])
+
+// Takes the lanes that have the same index as the first one out of `left`, which holds some: a table's entry
+// is then read once for all of them.
+static inline MASK take_alike(MASK index, MASK* left, u32* value) {
+  *value = (u32)MASK_LANE(index, lowest_bit(lane_bits(*left)));
+  const MASK alike = *left & MASK_OF(index == (MASK)((int)*value));
+  *left &= ~alike;
+  return alike;
+}
+
+// Writes the lanes of the mask one after another. Up to LANES - 1 values behind them may be overwritten.
+static inline void write_packed(float* to, REAL v, MASK m) {
+#if LANES == 1
+  *to = v;
+#elif LANES == 16 && defined(__AVX512F__) && !defined(SUNDOG_PORTABLE)
+  vstore16(__builtin_ia32_compresssf512_mask(v, v, (ushort)lane_bits(m)), 0, to);
+#elif LANES == 8 && defined(__AVX512VL__) && !defined(SUNDOG_PORTABLE)
+  vstore8(__builtin_ia32_compresssf256_mask(v, v, (uchar)lane_bits(m)), 0, to);
+#else
+  for (u32 bits = lane_bits(m), k = 0; bits; bits &= bits - 1u) to[k++] = REAL_LANE(v, lowest_bit(bits));
+#endif
+}
+static inline REAL read_lanes(const float* from) {
+#if LANES == 1
+  return *from;
+#elif LANES == 4
+  return vload4(0, from);
+#elif LANES == 8
+  return vload8(0, from);
+#else
+  return vload16(0, from);
+#endif
+}
+
+typedef struct REAL3 {
+  REAL x, y, z;
+} REAL3;
+
+static inline REAL3 real3(REAL x, REAL y, REAL z) {
+  REAL3 r = {x, y, z};
+  return r;
+}
+static inline REAL3 add3(REAL3 a, REAL3 b) { return real3(a.x + b.x, a.y + b.y, a.z + b.z); }
+static inline REAL3 subtract3(REAL3 a, REAL3 b) { return real3(a.x - b.x, a.y - b.y, a.z - b.z); }
+static inline REAL3 negate3(REAL3 a) { return real3(-a.x, -a.y, -a.z); }
+static inline REAL3 scale3(REAL3 a, REAL s) { return real3(a.x * s, a.y * s, a.z * s); }
+// a + s b: the point at distance s along a ray.
+static inline REAL3 along3(REAL3 a, REAL s, REAL3 b) {
+  return real3(fma(s, b.x, a.x), fma(s, b.y, a.y), fma(s, b.z, a.z));
+}
+static inline REAL dot3(REAL3 a, REAL3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+static inline REAL3 select3(REAL3 a, REAL3 b, MASK m) {
+  return real3(select(a.x, b.x, m), select(a.y, b.y, m), select(a.z, b.z, m));
+}
+
+static inline REAL3 multiply3(REAL3 a, REAL3 b) { return real3(a.x * b.x, a.y * b.y, a.z * b.z); }
+// The same vector in every lane; lane i of vectors, to read or to write.
+static inline REAL3 all3(float3 a) { return real3((REAL)(a.x), (REAL)(a.y), (REAL)(a.z)); }
+static inline float3 get3(const REAL3* a, u32 i) {
+  return (float3)(REAL_LANE(a->x, i), REAL_LANE(a->y, i), REAL_LANE(a->z, i));
+}
+static inline void set3(REAL3* a, u32 i, float3 value) {
+  REAL_LANE(a->x, i) = value.x;
+  REAL_LANE(a->y, i) = value.y;
+  REAL_LANE(a->z, i) = value.z;
+}
+
+// One instruction each, which fmin and fmax are not: a NaN in a gives b.
+static inline REAL real_min(REAL a, REAL b) { return select(b, a, MASK_OF(a < b)); }
+static inline REAL real_max(REAL a, REAL b) { return select(b, a, MASK_OF(a > b)); }
+static inline REAL real_clamp(REAL a, REAL low, REAL high) { return real_min(real_max(a, low), high); }
+
+// 1 / sqrt(x) and 1 / x: the rough ones to 1e-4, for the scale of an estimate; the others to 2 ulp for x > 0
+// that are normal and below 1e37. AVX-512 starts from estimates of 14 bits, of the same bits in registers of
+// every width, in a quarter of the time that exact roots and quotients take; elsewhere these are used.
+#if defined(__AVX512VL__) && !defined(SUNDOG_PORTABLE)
+#if LANES == 16
+#define ROUGHLY(what, x) __builtin_ia32_##what##14ps512_mask(x, x, (ushort)0xFFFFu)
+#elif LANES == 8
+#define ROUGHLY(what, x) __builtin_ia32_##what##14ps256_mask(x, x, (uchar)0xFFu)
+#elif LANES == 4
+#define ROUGHLY(what, x) __builtin_ia32_##what##14ps128_mask(x, x, (uchar)0xFFu)
+#else
+#define ROUGHLY(what, x) first_of(__builtin_ia32_##what##14ps128_mask((float4)(x), (float4)(x), (uchar)0xFFu))
+static inline float first_of(float4 four) { return four.x; }
+#endif
+static inline REAL rough_rsqrt(REAL x) { return ROUGHLY(rsqrt, x); }
+static inline REAL rough_inverse(REAL x) { return ROUGHLY(rcp, x); }
+static inline REAL real_rsqrt(REAL x) {
+  const REAL y = rough_rsqrt(x), half_x = 0.5f * x;
+  return fma(y, fma(-half_x * y, y, (REAL)(0.5f)), y);
+}
+static inline REAL real_inverse(REAL x) {
+  const REAL y = rough_inverse(x);
+  return fma(y, fma(-x, y, (REAL)(1.0f)), y);
+}
+#else
+static inline REAL rough_rsqrt(REAL x) { return 1.0f / sqrt(x); }
+static inline REAL rough_inverse(REAL x) { return 1.0f / x; }
+static inline REAL real_rsqrt(REAL x) { return 1.0f / sqrt(x); }
+static inline REAL real_inverse(REAL x) { return 1.0f / x; }
+#endif
+// x^(-n/2), n constant; n ulp. With y the rough root and e = 1 - x y^2 it is y^n (1 - e)^(-n/2).
+static inline REAL inverse_root_power(REAL x, int n) {
+  const REAL y = rough_rsqrt(x);
+  REAL square = y * y, power = n & 1 ? y : (REAL)(1.0f);
+  const REAL mend = fma(fma(-x, square, (REAL)(1.0f)), (REAL)(0.5f * (float)n), (REAL)(1.0f));
+  for (int k = n >> 1; k; k >>= 1) {
+    if (k & 1) power *= square;
+    square *= square;
+  }
+  return power * mend;
+}
+static inline REAL real_sqrt(REAL x) { return sqrt(x); }
+
+static inline REAL greatest3(REAL3 a) { return real_max(a.x, real_max(a.y, a.z)); }
+static inline REAL length3(REAL3 a) { return real_sqrt(dot3(a, a)); }
+
+// Unit length; a vector without a direction gives +x.
+static inline REAL3 unit3(REAL3 a) {
+  const REAL square = dot3(a, a);
+  const MASK good = MASK_OF(square > 0.0f) & MASK_OF(square < INFINITY);
+  const REAL inverse = real_rsqrt(select((REAL)(1.0f), square, good));
+  return select3(real3((REAL)(1.0f), (REAL)(0.0f), (REAL)(0.0f)), scale3(a, inverse), good);
+}
+
+// Unit length for vectors of any length: a scene may be in nanometres or light years, and the square of a
+// length has no room for that. A power of two takes the greatest component to [1, 2) first. Zero stays,
+// infinity too.
+static inline REAL3 safe_unit3(REAL3 a) {
+  const REAL size = real_max(fabs(a.x), real_max(fabs(a.y), fabs(a.z)));
+  const REAL scale = AS_REAL(max(0x7f000000 - (AS_MASK(size) & 0x7f800000), (MASK)(0x00800000)));
+  const REAL3 b = scale3(a, scale);
+  return select3(a, scale3(b, real_rsqrt(dot3(b, b))), MASK_OF(size > 0.0f) & MASK_OF(size < INFINITY));
+}
+// For moderate lengths, such as of a sum of unit vectors.
+static inline REAL3 renormalized3(REAL3 a) { return scale3(a, real_rsqrt(dot3(a, a))); }
+
+// b where it is far enough from zero to divide by, else the nearest such number.
+static inline REAL nonzero(REAL b) {
+  return select(b, copysign((REAL)(1e-30f), b), MASK_OF(fabs(b) < 1e-30f));
+}
+
+// Natural logarithm of a positive normal number, to 2 ulp or 1e-7 absolute where that is more. Unlike the
+// library's it has the same bits on every device. x = 2^e m with m in [sqrt(1/2), sqrt(2)); log m = y - y^2/2
+// + y^3 p(y) in y = m - 1, p fitted on Chebyshev's nodes (error of the logarithm 7e-9). No division.
+static inline REAL real_log(REAL x) {
+  const MASK bits = AS_MASK(x) - 0x3f3504f3;  // of sqrt(1/2)
+  const REAL e = TO_REAL(bits >> 23);
+  const REAL y = AS_REAL((bits & 0x007fffff) + 0x3f3504f3) - 1.0f, z = y * y;
+  const REAL p01 = fma(y, (REAL)(-0.250003064f), (REAL)(0.333333307f));
+  const REAL p23 = fma(y, (REAL)(-0.166412815f), (REAL)(0.200010451f));
+  const REAL p45 = fma(y, (REAL)(-0.129981838f), (REAL)(0.142144959f));
+  const REAL p67 = fma(y, (REAL)(-0.0790274377f), (REAL)(0.126223198f));
+  const REAL p = fma(z * z, fma(z, p67, p45), fma(z, p23, p01));
+  const REAL tail = fma(y * z, p, e * 1.42860677e-6f);  // ln 2 in two parts: the first has few bits
+  return fma(e, (REAL)(0.693145752f), y + fma((REAL)(-0.5f), z, tail));
+}
+
+// e^x to 3 ulp; 0 below e^-87, and above e^88 that.
+static inline REAL real_exp(REAL x) {
+  const REAL y = real_clamp(x, (REAL)(-87.0f), (REAL)(88.0f));
+  const REAL n = fma(y, (REAL)(1.44269504f), (REAL)(12582912.0f)) - 12582912.0f;  // to the nearest integer
+  const REAL r = fma(n, (REAL)(-1.42860677e-6f), fma(n, (REAL)(-0.693145752f), y));
+  REAL p = fma(r, (REAL)(1.0f / 720.0f), (REAL)(1.0f / 120.0f));
+  p = fma(r, p, (REAL)(1.0f / 24.0f));
+  p = fma(r, p, (REAL)(1.0f / 6.0f));
+  p = fma(r, p, (REAL)(0.5f));
+  p = fma(r * r, p, r) + 1.0f;
+  return select(AS_REAL(AS_MASK(p) + (TO_MASK(n) << 23)), (REAL)(0.0f), MASK_OF(x < -87.0f));
+}
+
+#endif

@@ -1,0 +1,74 @@
+// Real roots of the depressed quartic x^4 + a2 x^2 + a1 x + a0 in an interval, by the extrema of its
+// derivatives (Yuksel 2022, "High-Performance Polynomial Root Finding for Graphics"): between two
+// neighbouring extrema a polynomial is monotone, so each root is bracketed and none is missed but a double
+// one within rounding.
+#ifndef SUNDOG_LIB_QUARTIC_CL
+#define SUNDOG_LIB_QUARTIC_CL
+#include "lib/core/config.h"
+#include "shared/types.h"
+
+// x^4 coefficient in s[4] ... constant in s[0]; lower degrees carry zeros above.
+static inline float polynomial(const float* c, float x) {
+  return fma(fma(fma(fma(c[4], x, c[3]), x, c[2]), x, c[1]), x, c[0]);
+}
+
+// The root in [low, high], over which the polynomial is monotone and changes its sign: bisection with Newton
+// steps.
+static inline float bracketed_root(const float* c, const float* derivative, float low, float high) {
+  const bool rising = polynomial(c, high) > polynomial(c, low);
+  float x = 0.5f * (low + high);
+#pragma unroll 1
+  for (u32 i = 0; i < 40u && low < high; ++i) {
+    const float f = polynomial(c, x);
+    if (f == 0.0f) return x;
+    if ((f > 0.0f) == rising)
+      high = x;
+    else
+      low = x;
+    const float slope = polynomial(derivative, x);
+    const float newton = slope != 0.0f ? x - f / slope : low;
+    const float next = newton > low && newton < high ? newton : 0.5f * (low + high);
+    if (next == x) break;
+    x = next;
+  }
+  return x;
+}
+
+// Roots between the `count` ascending extrema and the ends; returns how many, ascending.
+static inline u32 roots_between(const float* c, const float* derivative, float low, float high,
+                                const float* extrema, u32 count, float* roots) {
+  u32 found = 0;
+  float left = low, f_left = polynomial(c, low);
+#pragma unroll 1
+  for (u32 i = 0; i <= count; ++i) {
+    const float right = i < count ? clamp(extrema[i], low, high) : high;
+    const float f_right = polynomial(c, right);
+    if (f_left == 0.0f && (found == 0u || roots[found - 1u] != left))
+      roots[found++] = left;
+    else if ((f_left < 0.0f) != (f_right < 0.0f) && f_right != 0.0f)
+      roots[found++] = bracketed_root(c, derivative, left, right);
+    left = right;
+    f_left = f_right;
+  }
+  if (f_left == 0.0f && (found == 0u || roots[found - 1u] != left)) roots[found++] = left;
+  return found;
+}
+
+static inline u32 quartic_roots(float a2, float a1, float a0, float low, float high, float* roots) {
+  const float quartic[5] = {a0, a1, a2, 0.0f, 1.0f}, cubic[5] = {a1, 2.0f * a2, 0.0f, 4.0f, 0.0f},
+              quadratic[5] = {2.0f * a2, 0.0f, 12.0f, 0.0f, 0.0f};
+  float turns[2], extrema[4];
+  u32 turn_count = 0;
+  if (a2 < 0.0f) {
+    turns[1] = sqrt(-a2 / 6.0f);
+    turns[0] = -turns[1];
+    turn_count = 2;
+  }
+  const u32 count = roots_between(cubic, quadratic, low, high, turns, turn_count, extrema);
+  float all[8];
+  const u32 found = min(roots_between(quartic, cubic, low, high, extrema, count, all), 4u);
+  for (u32 i = 0; i < found; ++i) roots[i] = all[i];
+  return found;
+}
+
+#endif

@@ -1,0 +1,55 @@
+// Rays and normals between world and object space.
+#ifndef SUNDOG_LIB_TRANSFORM_CL
+#define SUNDOG_LIB_TRANSFORM_CL
+#include "lib/core/lanes.h"
+#include "shared/bvh.h"
+
+static inline float3 object_point(__global const Instance* instance, float3 p) {
+  const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
+               r2 = instance->object_from_world[2];
+  return (float3)(fma(r0.x, p.x, fma(r0.y, p.y, fma(r0.z, p.z, r0.w))),
+                  fma(r1.x, p.x, fma(r1.y, p.y, fma(r1.z, p.z, r1.w))),
+                  fma(r2.x, p.x, fma(r2.y, p.y, fma(r2.z, p.z, r2.w))));
+}
+
+static inline float3 object_vector(__global const Instance* instance, float3 d) {
+  const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
+               r2 = instance->object_from_world[2];
+  return (float3)(fma(r0.x, d.x, fma(r0.y, d.y, r0.z * d.z)), fma(r1.x, d.x, fma(r1.y, d.y, r1.z * d.z)),
+                  fma(r2.x, d.x, fma(r2.y, d.y, r2.z * d.z)));
+}
+
+// The same, a ray a lane.
+static inline REAL3 object_points(__global const Instance* instance, REAL3 p) {
+  const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
+               r2 = instance->object_from_world[2];
+  return real3(fma((REAL)(r0.x), p.x, fma((REAL)(r0.y), p.y, fma((REAL)(r0.z), p.z, (REAL)(r0.w)))),
+               fma((REAL)(r1.x), p.x, fma((REAL)(r1.y), p.y, fma((REAL)(r1.z), p.z, (REAL)(r1.w)))),
+               fma((REAL)(r2.x), p.x, fma((REAL)(r2.y), p.y, fma((REAL)(r2.z), p.z, (REAL)(r2.w)))));
+}
+
+static inline REAL3 object_vectors(__global const Instance* instance, REAL3 d) {
+  const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
+               r2 = instance->object_from_world[2];
+  return real3(fma((REAL)(r0.x), d.x, fma((REAL)(r0.y), d.y, r0.z * d.z)),
+               fma((REAL)(r1.x), d.x, fma((REAL)(r1.y), d.y, r1.z * d.z)),
+               fma((REAL)(r2.x), d.x, fma((REAL)(r2.y), d.y, r2.z * d.z)));
+}
+
+// A normal is a covector: it goes to world space by the transpose of object_from_world. Not normalised.
+static inline REAL3 world_normals(__global const Instance* instance, REAL3 n) {
+  const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
+               r2 = instance->object_from_world[2];
+  return real3(fma((REAL)(r0.x), n.x, fma((REAL)(r1.x), n.y, r2.x * n.z)),
+               fma((REAL)(r0.y), n.x, fma((REAL)(r1.y), n.y, r2.y * n.z)),
+               fma((REAL)(r0.z), n.x, fma((REAL)(r1.z), n.y, r2.z * n.z)));
+}
+
+static inline float3 world_normal(__global const Instance* instance, float3 n) {
+  const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
+               r2 = instance->object_from_world[2];
+  return (float3)(fma(r0.x, n.x, fma(r1.x, n.y, r2.x * n.z)), fma(r0.y, n.x, fma(r1.y, n.y, r2.y * n.z)),
+                  fma(r0.z, n.x, fma(r1.z, n.y, r2.z * n.z)));
+}
+
+#endif

@@ -1,0 +1,58 @@
+// Where light comes from: the scene's lights, and what glows by itself. A point or a ray a lane.
+#ifndef SUNDOG_LIB_LIGHT_CL
+#define SUNDOG_LIB_LIGHT_CL
+#include "lib/core/tables.h"
+#include "lib/path/scene_ray.cl"
+
+typedef struct LightSamples {
+  REAL3 wi;        // unit, from the surface to the light
+  REAL distance;   // infinite for a directional light
+  REAL3 radiance;  // before shadowing; of a delta light the irradiance on a surface that faces it
+  REAL density;    // of wi, per steradian; of a delta light 1
+  MASK delta;      // all light comes along wi: no other way of sampling finds it
+} LightSamples;
+
+// A way from the points p to the light `index`, chosen by the two numbers u in [0, 1)^2, which lights without
+// extent leave alone.
+static inline LightSamples sample_light(const Scene* scene, u32 index, REAL3 p, REAL u_x, REAL u_y) {
+  __global const Light* light = scene->lights + index;
+  LightSamples sample;
+  sample.density = (REAL)(1.0f);
+  sample.delta = ALL_LANES;
+  sample.radiance = all3(light->color.xyz);
+  if (light->kind == LIGHT_DIRECTIONAL) {
+    sample.wi = all3(-light->direction.xyz);
+    sample.distance = (REAL)(INFINITY);
+    return sample;
+  }
+  const REAL3 to = subtract3(all3(light->position.xyz), p);
+  sample.wi = safe_unit3(to);
+  const REAL d = dot3(to, sample.wi);
+  sample.distance = d;
+  if (light->falloff_linear != 0.0f || light->falloff_quadratic != 0.0f || light->falloff_constant != 1.0f) {
+    const REAL falloff = fma(light->falloff_quadratic * d, d,
+                             fma((REAL)(light->falloff_linear), d, (REAL)(light->falloff_constant)));
+    sample.radiance =
+        real3(sample.radiance.x / falloff, sample.radiance.y / falloff, sample.radiance.z / falloff);
+  }
+  if (light->kind == LIGHT_SPOT) {
+    const REAL cosine = -dot3(sample.wi, all3(light->direction.xyz));
+    const float outer = light->direction.w, inner = light->color.w;
+    const REAL one = (REAL)(1.0f), zero = (REAL)(0.0f);
+    const REAL s = inner > outer ? real_clamp((cosine - outer) / (inner - outer), zero, one)
+                                 : select(zero, one, MASK_OF(cosine >= outer));
+    sample.radiance = scale3(sample.radiance, s * s * (3.0f - 2.0f * s));
+  }
+  return sample;
+}
+
+// What the rays have gathered from fields that glow.
+static inline REAL3 emitted(const SceneRays* rays) {
+#if HAS_GLOW
+  return rays->glow;
+#else
+  return all3((float3)(0.0f));
+#endif
+}
+
+#endif

@@ -1,0 +1,148 @@
+// How much of a light reaches the points of a batch. Media absorb. Opaque scenes end at the first occluder;
+// else transmissive things are filters: each interface lets its transmission through (1 - F of a dielectric,
+// on the straight line).
+#ifndef SUNDOG_LIB_SHADOW_CL
+#define SUNDOG_LIB_SHADOW_CL
+#include "lib/core/optics.cl"
+#include "lib/path/ray_stack.cl"
+#include "lib/path/segment.cl"
+
+#define MAX_FILTERS 64
+
+#if HAS_SHADOW_FILTERS
+// A dielectric's part of light that straight shadow rays let through. The straight ray stands for one that
+// bends, whose slant is this one in the rarer medium: a pane at any angle then loses (1 - F)^2, and nothing
+// to a total reflection that the bent ray would not meet.
+static inline REAL straight_transmittance(__global const Medium* restrict media, MASK here, MASK there,
+                                          REAL3 normal, REAL3 wi, MASK lanes) {
+  const REAL ratio = refraction_index(media, there, lanes) / refraction_index(media, here, lanes);
+  const REAL eta = real_max(ratio, 1.0f / ratio);
+  const REAL cos_i = real_min(fabs(dot3(safe_unit3(normal), wi)), (REAL)(1.0f));
+  return 1.0f - fresnel_reflectance(cos_i, refracted_cosine(cos_i, eta), eta);
+}
+
+// Multiplies `through` by the transmission of the surfaces that the lanes of `lanes` pass.
+static inline void filter_light(__global const Material* restrict materials,
+                                __global const Medium* restrict media, const Faces* faces, MASK here,
+                                MASK there, REAL3 wi, MASK lanes, REAL3* through) {
+  MASK dielectric = NO_LANES;
+  u32 index;
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(faces->material, &left, &index);
+    *through = select3(*through, multiply3(*through, all3(materials[index].transmission.xyz)), mine);
+    if (materials[index].kind == MATERIAL_DIELECTRIC) dielectric |= mine;
+  }
+  if (!any_lane(dielectric)) return;
+  const REAL kept = straight_transmittance(media, here, there, faces->outward, wi, dielectric);
+  *through = select3(*through, scale3(*through, kept), dielectric);
+}
+
+#if HAS_TOUCHING
+// The lanes of `lanes`, whose faces may touch others: hits and faces become those of what touches there, the
+// media of `behind` those behind it.
+static inline void pass_touching(const Scene* scene, const SceneRays* rays, Hits* hits, Faces* faces,
+                                 SceneRays* behind, MASK lanes) {
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    Seen seen;
+    float apart;
+    REAL_LANE(hits->t, i) = meet_touching(scene, rays, i, MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE, hits,
+                                          faces, &seen, &apart);
+    set_media(behind, i, seen.behind);
+  }
+}
+#endif
+
+// The lanes of `waiting` at their next hits. Returns those that go on to the light, of which `light` is left.
+static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits, MASK waiting, REAL3* light) {
+  const MASK hit = waiting & hit_anything(hits);
+  const MASK here = current_media(scene->media, rays, waiting);
+  Faces faces = hit_faces(scene, rays->d, hits, hit);
+  const int kind = (int)(MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE);
+  MASK passing = hit & MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
+#if HAS_TOUCHING
+  SceneRays behind = *rays;
+  const MASK touching = may_touch(scene->instances, hits, passing);
+  pass_touching(scene, rays, hits, &faces, &behind, touching);
+  passing &= MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
+#endif
+  *light = select3(*light, all3((float3)(0.0f)), hit & ~passing);
+  MASK through = passing;
+#if HAS_MEDIA
+  const MASK interface = passing & MASK_OF((faces.flags & (int)MATERIAL_THIN) == 0);
+  MASK there = here;
+  for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    MediaStack stack = get_media(rays, i);
+#if HAS_TOUCHING
+    if (MASK_LANE(touching, i))
+      stack = get_media(&behind, i);
+    else
+#endif
+      cross_boundary(&stack, (u32)MASK_LANE(faces.medium, i), MASK_LANE(faces.entering, i));
+    set_media(rays, i, stack);
+    MASK_LANE(there, i) = (int)current_medium(scene->media, stack);
+  }
+#if HAS_TOUCHING
+  rays->media_low = select(rays->media_low, behind.media_low, touching & passing);
+  rays->media_high = select(rays->media_high, behind.media_high, touching & passing);
+#endif
+  const MASK changes = interface & MASK_OF(there != here);
+  const REAL3 kept = absorb(scene->media, here, hits->t - rays->since, (waiting & ~hit) | changes);
+  *light = multiply3(*light, kept);
+  rays->since = select(rays->since, hits->t, changes);
+  through = (passing & ~interface) | changes;
+#else
+  const MASK there = here;
+#endif
+  if (!any_lane(passing)) return NO_LANES;
+  filter_light(scene->materials, scene->media, &faces, here, there, rays->d, through, light);
+  continue_behind(scene->info, rays, hits, faces.entering, passing);
+  return passing & MASK_OF(greatest3(*light) > 0.0f);
+}
+#endif
+
+// The shadow rays of `lanes` at what they met: what reaches the lights is added to the pixels. Returns those
+// that go on.
+static inline MASK reach_filters(const Scene* scene, SceneRays* rays, PathStates* paths, Hits* hits,
+                                 MASK lanes, float4* radiance, u32* counts) {
+#if HAS_SHADOW_FILTERS
+  const MASK passing = pass_filters(scene, rays, hits, lanes, &paths->throughput);
+  const MASK too_many = passing & MASK_OF(rays->crossings >= MAX_FILTERS);
+  counts[COUNT_SHADOW_LIMIT] += lane_count(too_many);
+  add_to_pixels(paths->throughput, paths->pixel, lanes & ~passing, radiance);
+  return passing & ~too_many;
+#else
+  const MASK arriving = lanes & ~hit_anything(hits);
+  REAL3 light = paths->throughput;
+#if HAS_MEDIA
+  light = multiply3(light,
+                    absorb(scene->media, current_media(scene->media, rays, arriving), rays->t_max, arriving));
+#endif
+  add_to_pixels(light, paths->pixel, arriving, radiance);
+  return NO_LANES;
+#endif
+}
+
+#if BATCH > 1
+// Takes the newest shadow rays, at most `most`, to the light or to their next filters, where those that pass
+// wait again. `coherent`: the rays run close together.
+NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 most, bool coherent,
+                                  float4* radiance, u32* counts) {
+  SceneRays rays;
+  PathStates paths;
+  const MASK lanes = pop_shadows(stack, most, &rays, &paths);
+  Hits hits;
+#if HAS_SHADOW_FILTERS
+  nearest_hits(scene, &rays, lanes, coherent, true, &hits, counts);
+#else
+  hits = no_hits(rays.t_max);
+  const MASK occluded = any_hits(scene, &rays, lanes, coherent, counts);
+  hits.instance = select(hits.instance, NO_LANES, occluded);
+#endif
+  const MASK passing = reach_filters(scene, &rays, &paths, &hits, lanes, radiance, counts);
+  push_shadows(stack, &rays, &paths, passing);
+}
+#endif
+
+#endif

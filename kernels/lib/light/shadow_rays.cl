@@ -1,0 +1,45 @@
+// Shadow rays from surfaces to the lights, left on a stack with the light that each would bring.
+#ifndef SUNDOG_LIB_SHADOW_RAYS_CL
+#define SUNDOG_LIB_SHADOW_RAYS_CL
+#include "lib/light/field_light.cl"
+#include "lib/light/light.cl"
+#include "lib/path/ray_stack.cl"
+#include "lib/shade/bsdf.cl"
+
+// What surfaces and the rays that met them are, for all that is done there.
+typedef struct Shading {
+  SurfaceInteractions s;
+  Bsdfs bsdf;
+} Shading;
+
+// Sends shadow rays from the surfaces of `lanes` to one light, with what it would do there: Ij (kd n.l +
+// ks (r.v)^b) Vj.
+static inline void cast_shadows(const Scene* scene, u32 index, const SceneRays* rays, const PathStates* paths,
+                                MASK lanes, const Hits* hits, const Shading* at, ShadowStack* stack,
+                                u32* counts) {
+  const SurfaceInteractions* s = &at->s;
+  const REAL middle = (REAL)(0.5f);
+  const LightSamples light = sample_light(scene, index, s->p, middle, middle);
+  const MASK facing = lanes & MASK_OF(dot3(s->ns, light.wi) > 0.0f);
+  if (!any_lane(facing)) return;
+  const REAL3 possible =
+      multiply3(light.radiance, bsdf_eval(scene, &at->bsdf, negate3(rays->d), light.wi, facing));
+  // A high power of (r.v) may leave less than the least normal float, which some devices take for zero: not
+  // worth a ray.
+  const MASK lit = facing & MASK_OF(greatest3(possible) >= FLT_MIN);
+  if (!any_lane(lit)) return;
+  counts[COUNT_SHADOW] += lane_count(lit);
+  SceneRays to_light = *rays;
+  start_on_surfaces(scene->info, &to_light, hits, ~s->entering, lit);
+  to_light.o = along3(s->p, s->offset, s->ng);
+  to_light.d = light.wi;
+  to_light.t_min = (REAL)(0.0f);
+  to_light.t_max = light.distance;
+  PathStates weights = *paths;
+  weights.depth = NO_LANES;
+  weights.throughput = multiply3(paths->throughput, possible);
+  weights.throughput = scale3(weights.throughput, soft_shadows(scene, &to_light, lit, counts));
+  push_shadows(stack, &to_light, &weights, lit);
+}
+
+#endif

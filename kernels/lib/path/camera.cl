@@ -1,0 +1,38 @@
+// The pinhole camera and what lies behind everything.
+#ifndef SUNDOG_LIB_CAMERA_CL
+#define SUNDOG_LIB_CAMERA_CL
+#include "lib/core/lanes.h"
+#include "lib/core/tables.h"
+
+typedef struct CameraRays {
+  REAL3 o, d;  // d unit
+  REAL t_min, t_max;
+} CameraRays;
+
+static inline CameraRays camera_rays(__global const SceneInfo* restrict info, REAL x, REAL y) {
+  CameraRays rays;
+  const REAL3 along = along3(along3(all3(info->camera_corner.xyz), x, all3(info->camera_dx.xyz)), y,
+                             all3(info->camera_dy.xyz));
+  const REAL depth_to_t = length3(along);  // `along` has length 1 along the view
+  rays.o = all3(info->camera_position.xyz);
+  rays.d = scale3(along, 1.0f / depth_to_t);
+  rays.t_min = info->camera_forward.w * depth_to_t;
+  rays.t_max = info->background_bottom.w * depth_to_t;
+  return rays;
+}
+
+// How much wider a pixel's footprint becomes on each unit of a ray's way.
+static inline float pixel_spread(__global const SceneInfo* restrict info) {
+  const float3 dx = info->camera_dx.xyz;
+  return sqrt(dot(dx, dx));
+}
+
+// What a ray sees that meets nothing, by its unit direction.
+static inline REAL3 background_along(__global const SceneInfo* restrict info, REAL3 d) {
+  const float3 bottom = info->background_bottom.xyz;
+  const REAL sine = dot3(d, all3(info->up.xyz));
+  const REAL s = real_clamp(fma(sine, (REAL)(0.5f), (REAL)(0.5f)), (REAL)(0.0f), (REAL)(1.0f));
+  return along3(all3(bottom), s, all3(info->background_top.xyz - bottom));
+}
+
+#endif

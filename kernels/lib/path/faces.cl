@@ -1,0 +1,47 @@
+// Which side of which material rays hit, before anything is shaded: interfaces and shadow rays need no more.
+// A ray a lane.
+#ifndef SUNDOG_LIB_FACES_CL
+#define SUNDOG_LIB_FACES_CL
+#include "lib/core/tables.h"
+#include "lib/core/transform.cl"
+#include "lib/trace/hits.cl"
+
+// Which side of what a ray hit.
+typedef struct Faces {
+  REAL3 outward;       // world, not normalised; its sign against the direction tells entering from leaving
+  MASK entering;       // the ray comes from outside
+  MASK material;       // index
+  MASK flags, medium;  // of the material
+} Faces;
+
+// The faces of the hits of `lanes`.
+static inline Faces hit_faces(const Scene* scene, REAL3 d, const Hits* hits, MASK lanes) {
+  Faces faces;
+  faces.outward = hits->ng;
+  faces.material = NO_LANES;
+  faces.flags = NO_LANES;
+  faces.medium = NO_LANES;
+  u32 index;
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(hits->instance, &left, &index);
+    __global const Instance* instance = scene->instances + index;
+    if (!(instance->flags & INSTANCE_IDENTITY))
+      faces.outward = select3(faces.outward, world_normals(instance, hits->ng), mine);
+    if (instance->material != NO_MATERIAL)
+      faces.material = select(faces.material, (MASK)((int)instance->material), mine);
+    else
+      for (u32 bits = lane_bits(mine); bits; bits &= bits - 1u) {
+        const u32 i = lowest_bit(bits);
+        MASK_LANE(faces.material, i) = (int)scene->triangles[MASK_LANE(hits->prim, i)].material;
+      }
+  }
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(faces.material, &left, &index);
+    faces.flags = select(faces.flags, (MASK)((int)scene->materials[index].flags), mine);
+    faces.medium = select(faces.medium, (MASK)((int)scene->materials[index].medium), mine);
+  }
+  faces.entering = MASK_OF(dot3(faces.outward, d) < 0.0f);
+  return faces;
+}
+
+#endif

@@ -1,0 +1,185 @@
+// The scene's distance fields among its other things: a batch of world-space rays is marched through each of
+// them, as far as the nearest hit that is known. Instances [instance_count, field_end) place the fields.
+#ifndef SUNDOG_LIB_FIELDS_CL
+#define SUNDOG_LIB_FIELDS_CL
+#include "lib/core/tables.h"
+#include "lib/core/transform.cl"
+#include "lib/path/scene_ray.cl"
+#include "lib/sdf/surface.cl"
+
+#if HAS_SDF
+// A point as marching counts it: in the field's space, in deep views from the place of the world's origin.
+static inline REAL3 field_points(__global const Instance* instance, REAL3 p) {
+#ifdef SDF_DEEP
+  return object_vectors(instance, p);
+#else
+  return object_points(instance, p);
+#endif
+}
+
+// The rays of a batch as marching sees them.
+typedef struct RayLanes {
+  REAL3 o, d;  // world
+  REAL t_min, t_best, footprint;
+  MASK from;  // SceneRays.from
+  MASK active;
+  // Of the nearest hit among the fields:
+  MASK winner;       // its instance, or -1
+  MASK inside, cut;  // MarchRays.inside, MarchHits.cut
+  REAL threshold;
+#if HAS_GLOW
+  REAL3 glow;
+#endif
+} RayLanes;
+
+static inline RayLanes load_lanes(const SceneRays* rays, REAL t_best, MASK active) {
+  RayLanes lanes;
+  lanes.o = rays->o;
+  lanes.d = rays->d;
+  lanes.t_min = rays->t_min;
+  lanes.t_best = t_best;
+  lanes.footprint = rays->footprint;
+  lanes.from = rays->from;
+  lanes.active = active;
+  lanes.winner = ALL_LANES;
+  lanes.inside = NO_LANES;
+  lanes.cut = NO_LANES;
+  lanes.threshold = (REAL)(0.0f);
+#if HAS_GLOW
+  lanes.glow = all3((float3)(0.0f));
+#endif
+  return lanes;
+}
+
+// Lanes that start in the interval.
+static inline MASK starts_within(__global const SdfField* restrict field, const MarchRays* rays) {
+  const REAL3 p = along3(rays->origin, rays->t_min, rays->direction);
+  return MASK_OF(p.x >= field->lower.x) & MASK_OF(p.x <= field->upper.x) & MASK_OF(p.y >= field->lower.y) &
+         MASK_OF(p.y <= field->upper.y) & MASK_OF(p.z >= field->lower.z) & MASK_OF(p.z <= field->upper.z);
+}
+
+// The rays in the field's own space, and on which side of its surface they start.
+static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided, const RayLanes* lanes) {
+  __global const Instance* instance = scene->instances + index;
+  MarchRays rays;
+  rays.origin = field_points(instance, lanes->o);
+  rays.direction = object_vectors(instance, lanes->d);
+  rays.t_min = lanes->t_min;
+  rays.t_max = lanes->t_best;
+  rays.footprint = lanes->footprint;
+  rays.spread = (REAL)(pixel_spread(scene->info));
+  rays.active = lanes->active;
+  rays.leaving = MASK_OF((lanes->from | 1) == (int)(index * 2u + 1u));
+  rays.inside = NO_LANES;
+#if SDF_TWO_SIDED
+  if (two_sided) {
+    rays.inside = rays.leaving & MASK_OF((lanes->from & 1) != 0);
+    // A ray that starts elsewhere asks the field itself.
+    const MASK ask = rays.active & ~rays.leaving & starts_within(scene->sdf_fields + instance->root, &rays);
+    if (any_lane(ask)) {
+      const REAL3 start = along3(rays.origin, rays.t_min, rays.direction);
+      rays.inside |= ask & MASK_OF(sdf_signed(instance->root, start, ask, scene->sdf_parameters) < 0.0f);
+    }
+  }
+#endif
+  return rays;
+}
+
+// What a work-item's marches of one sample may cost, in iterations of formulas: so much that no picture that
+// anyone waits for comes near it, and so little that no launch runs for long, however hard the fractal. What
+// finds nothing left is counted and reported.
+#define MARCH_WORK 2000000u
+
+// Steps through a field that are left to the sample.
+static inline u32 steps_left(__global const SdfField* restrict field, const u32* counts) {
+  return counts[COUNT_MARCH_LEFT] / field->iterations;
+}
+static inline void pay_for_steps(__global const SdfField* restrict field, u32 steps, u32* counts) {
+  counts[COUNT_MARCH_LEFT] -= min(steps * field->iterations, counts[COUNT_MARCH_LEFT]);
+}
+
+// Marches through one field and keeps what is nearer.
+static inline void march_field(const Scene* scene, u32 index, RayLanes* lanes, u32* counts) {
+  __global const SdfField* restrict field = scene->sdf_fields + scene->instances[index].root;
+  const u32 flags = scene->materials[scene->instances[index].material].flags;
+  const bool two_sided = (flags & MATERIAL_TRANSMITS) && !(flags & MATERIAL_THIN);
+  MarchRays rays = march_from(scene, index, two_sided, lanes);
+  rays.step_limit = min(field->step_limit, steps_left(field, counts));
+  if (rays.step_limit == 0u) {
+    counts[COUNT_MARCH_BUDGET] += 1u;
+    return;
+  }
+  const MarchHits hits = march_rays(scene, scene->instances[index].root, &rays);
+  const MASK nearer = hits.hit & MASK_OF(hits.t < lanes->t_best);
+  lanes->t_best = select(lanes->t_best, hits.t, nearer);
+  lanes->threshold = select(lanes->threshold, hits.threshold, nearer);
+  lanes->winner = select(lanes->winner, (MASK)((int)index), nearer);
+  lanes->inside = select(lanes->inside, rays.inside, nearer);
+  lanes->cut = select(lanes->cut, hits.cut, nearer);
+#if HAS_GLOW
+  if (field->glow.w > 0.0f) {
+    const REAL passed = select(exp(hits.nearest * (-1.0f / field->glow.w)), (REAL)(0.0f), hits.hit);
+    lanes->glow = along3(lanes->glow, passed,
+                         real3((REAL)(field->glow.x), (REAL)(field->glow.y), (REAL)(field->glow.z)));
+  }
+#endif
+  u32 most = 0;
+  for (u32 i = 0; i < LANES; ++i) {
+    most = max(most, (u32)MASK_LANE(hits.steps, i));
+    counts[COUNT_MARCH_STEPS] += (u32)MASK_LANE(hits.steps, i);
+    counts[COUNT_MARCH_BACK] += (u32)MASK_LANE(hits.taken_back, i);
+    counts[COUNT_MARCH_LIMIT] += MASK_LANE(hits.limited, i) ? 1u : 0u;
+  }
+  pay_for_steps(field, most, counts);
+}
+
+// Normals of the lanes that met instance `index`.
+static inline void shade_lanes(const Scene* scene, u32 index, const RayLanes* lanes, Hits* hits) {
+  const MASK mine = MASK_OF(lanes->winner == (int)index);
+  if (!any_lane(mine)) return;
+  const REAL3 o = field_points(scene->instances + index, lanes->o),
+              d = object_vectors(scene->instances + index, lanes->d);
+  const REAL3 normal = sdf_normal(scene, scene->instances[index].root, along3(o, lanes->t_best, d),
+                                  lanes->threshold, mine, lanes->cut);
+  // A normal must not contradict the side that the ray comes from: it is bent as far as the silhouette.
+  const REAL speed = length3(d), towards = dot3(normal, d) / speed;
+  const MASK inside = lanes->inside;
+  const REAL limit = select((REAL)(-1e-3f), (REAL)(1e-3f), inside);
+  const MASK wrong = select(MASK_OF(towards > limit), MASK_OF(towards < limit), inside);
+  const REAL3 bent = along3(normal, select((REAL)(0.0f), (limit - towards) / speed, wrong), d);
+  hits->t = select(hits->t, lanes->t_best, mine);
+  hits->instance = select(hits->instance, (MASK)((int)index), mine);
+  hits->ng = select3(hits->ng, bent, mine);
+  hits->u = select(hits->u, (REAL)(0.0f), mine);
+  hits->v = select(hits->v, (REAL)(0.0f), mine);
+  hits->prim = select(hits->prim, NO_LANES, mine);
+}
+
+// What of a hit is wanted: all; all, on the way to a light, so that fields with soft shadows are left to
+// soft_shadows(); only its instance, on such a way.
+#define MARCH_TO_SEE 0u
+#define MARCH_TO_LIGHT 1u
+#define MARCH_TO_BLOCK 2u
+
+// Takes `hits`, which holds the nearest ones so far, to a field's where that is nearer, for the lanes of
+// `active`. Adds to the rays' glow.
+NEVER_INLINE void march_fields(const Scene* scene, SceneRays* rays, MASK active, u32 purpose, Hits* hits,
+                               u32* counts) {
+  const bool to_light = purpose != MARCH_TO_SEE;
+  RayLanes lanes = load_lanes(rays, hits->t, active);
+  for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index)
+    if (!(to_light && scene->sdf_fields[scene->instances[index].root].shadow_hardness > 0.0f))
+      march_field(scene, index, &lanes, counts);
+  if (purpose == MARCH_TO_BLOCK) {
+    hits->instance = select(hits->instance, lanes.winner, MASK_OF(lanes.winner >= 0));
+    return;
+  }
+  for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index)
+    shade_lanes(scene, index, &lanes, hits);
+#if HAS_GLOW
+  if (!to_light) rays->glow = select3(rays->glow, add3(rays->glow, lanes.glow), active);
+#endif
+}
+
+#endif
+#endif

@@ -1,0 +1,83 @@
+// The stack of media that travels with a ray. Where solids overlap, the medium of the highest priority is the
+// one light is in; of equal priorities the one entered last (Schmidt and Budge 2002, "Simple Nested
+// Dielectrics in Ray Traced Images").
+#ifndef SUNDOG_LIB_MEDIA_CL
+#define SUNDOG_LIB_MEDIA_CL
+#include "lib/core/lanes.h"
+#include "lib/core/tables.h"
+
+// Up to eight media in the order of entry, the last in the lowest byte; a byte holds the medium's index plus
+// one, 0 is empty. One register, so that a waiting ray stays small. The host refuses scenes of more than
+// MAX_MEDIA media.
+typedef ulong MediaStack;
+
+// Index of the medium that light is in; 0 is the world's.
+static inline u32 current_medium(__global const Medium* restrict media, MediaStack stack) {
+  if (!stack) return 0u;
+  u32 best = (u32)(stack & 0xFFu) - 1u;
+#pragma unroll 1
+  for (stack >>= 8; stack; stack >>= 8) {
+    const u32 medium = (u32)(stack & 0xFFu) - 1u;
+    if (media[medium].priority > media[best].priority) best = medium;
+  }
+  return best;
+}
+
+// Enters or leaves `medium`. Returns false when that cannot be: the stack is full, or the medium was never
+// entered.
+static inline bool cross_boundary(MediaStack* stack, u32 medium, bool entering) {
+  const MediaStack entry = medium + 1u;
+  if (entering) {
+    if (*stack >> 56) return false;
+    *stack = *stack << 8 | entry;
+    return true;
+  }
+#pragma unroll 1
+  for (u32 shift = 0; shift < 64u; shift += 8u) {
+    if ((*stack >> shift & 0xFFu) != entry) continue;
+    const MediaStack newer = *stack & ((1ul << shift) - 1ul), older = *stack >> shift >> 8;
+    *stack = older << shift | newer;
+    return true;
+  }
+  return false;
+}
+
+// Beer-Lambert: what is left of light after `distance` in the medium of each lane of `lanes`, 1 elsewhere.
+static inline REAL3 absorb(__global const Medium* restrict media, MASK medium, REAL distance, MASK lanes) {
+  REAL3 kept = all3((float3)(1.0f));
+#if HAS_ABSORPTION
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(medium, &lanes, &index);
+    const float3 a = media[index].absorption.xyz;
+    // A colour that is not absorbed keeps its bits, over infinite distances too.
+    if (a.x != 0.0f) kept.x = select(kept.x, real_exp(-a.x * distance), mine);
+    if (a.y != 0.0f) kept.y = select(kept.y, real_exp(-a.y * distance), mine);
+    if (a.z != 0.0f) kept.z = select(kept.z, real_exp(-a.z * distance), mine);
+  }
+#endif
+  return kept;
+}
+
+// Index of refraction of the medium of each lane of `lanes`, 1 elsewhere.
+static inline REAL refraction_index(__global const Medium* restrict media, MASK medium, MASK lanes) {
+  REAL index = (REAL)(1.0f);
+  u32 at;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(medium, &lanes, &at);
+    index = select(index, (REAL)(media[at].absorption.w), mine);
+  }
+  return index;
+}
+
+// Index of refraction behind the interfaces of `lanes` over that before them, 1 elsewhere.
+static inline REAL relative_index(__global const Medium* restrict media, MASK before, MASK after,
+                                  MASK lanes) {
+#if HAS_MEDIA
+  return refraction_index(media, after, lanes) / refraction_index(media, before, lanes);
+#else
+  return (REAL)(1.0f);
+#endif
+}
+
+#endif

@@ -1,0 +1,53 @@
+// Nearest hits of a batch of rays among all that a scene holds: the BVH's instances and the planes from the
+// tracer, then the marched fields, which only look as far as that.
+#ifndef SUNDOG_LIB_NEAREST_CL
+#define SUNDOG_LIB_NEAREST_CL
+#include "lib/core/config.h"
+#include "lib/core/tables.h"
+#include "lib/path/scene_ray.cl"
+#include "lib/trace/traverse.cl"
+
+#if HAS_SDF
+#include "lib/path/fields.cl"
+#endif
+
+// The hits of the lanes of `active`; elsewhere nothing is hit. `to_light`: of shadow rays.
+static inline void nearest_hits(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
+                                bool to_light, Hits* hits, u32* counts) {
+  trace_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, active, coherent, hits);
+#if HAS_SDF
+  march_fields(scene, rays, active, to_light ? MARCH_TO_LIGHT : MARCH_TO_SEE, hits, counts);
+#endif
+}
+
+// The lanes of `active` that hit anything.
+static inline MASK any_hits(const Scene* scene, SceneRays* rays, MASK active, bool coherent, u32* counts) {
+  MASK occluded = occluded_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, active, coherent);
+#if HAS_SDF
+  const MASK open = active & ~occluded;
+  if (any_lane(open)) {
+    Hits hits = no_hits(rays->t_max);
+    march_fields(scene, rays, open, MARCH_TO_BLOCK, &hits, counts);
+    occluded |= open & hit_anything(&hits);
+  }
+#endif
+  return occluded;
+}
+
+#if BATCH == 1
+// One ray of either kind, so that the lanes of a group that follow different kinds go on together: the
+// nearest hit, or of an opaque scene's shadow ray any.
+static inline void next_hits(const Scene* scene, SceneRays* rays, MASK active, bool to_light, Hits* hits,
+                             u32* counts) {
+  const bool any = to_light && !HAS_SHADOW_FILTERS;
+  find_hits(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, active, false, any, hits);
+  finish_triangles(scene, false, hits);
+#if HAS_SDF
+  const u32 purpose = any ? MARCH_TO_BLOCK : to_light ? MARCH_TO_LIGHT : MARCH_TO_SEE;
+  if (any) active &= ~hit_anything(hits);
+  if (any_lane(active)) march_fields(scene, rays, active, purpose, hits, counts);
+#endif
+}
+#endif
+
+#endif

@@ -1,0 +1,118 @@
+// Rays that wait, with what each adds to its pixel. Arrays by member, so that a batch is pushed and taken in
+// whole vectors.
+#ifndef SUNDOG_LIB_RAY_STACK_CL
+#define SUNDOG_LIB_RAY_STACK_CL
+#include "lib/path/scene_ray.cl"
+
+// What rays carry besides their way.
+typedef struct PathStates {
+  REAL3 throughput;  // of a shadow ray: the light that it would bring
+  MASK pixel;        // in the work-item's tile
+  MASK depth;        // the camera's ray has 1, a shadow ray 0
+} PathStates;
+
+// What is kept of each waiting ray, in this order: from this list come the count, the writing and the
+// reading.
+#if BATCH > 1
+#define STACKED_PIXEL(REALS, MASKS) MASKS(paths->pixel)
+#else
+#define STACKED_PIXEL(REALS, MASKS)
+#endif
+#if RAYS_CROSS
+#define STACKED_CROSSINGS(REALS, MASKS) MASKS(rays->crossings)
+#else
+#define STACKED_CROSSINGS(REALS, MASKS)
+#endif
+#if HAS_MEDIA
+#define STACKED_MEDIA(REALS, MASKS) MASKS(rays->media_low) MASKS(rays->media_high) REALS(rays->since)
+#else
+#define STACKED_MEDIA(REALS, MASKS)
+#endif
+#if HAS_SDF
+#define STACKED_FIELDS(REALS, MASKS) MASKS(rays->from) REALS(rays->footprint)
+#else
+#define STACKED_FIELDS(REALS, MASKS)
+#endif
+#define STACKED(REALS, MASKS)                                                                              \
+  REALS(rays->o.x)                                                                                         \
+  REALS(rays->o.y)                                                                                         \
+  REALS(rays->o.z)                                                                                         \
+  REALS(rays->d.x) REALS(rays->d.y) REALS(rays->d.z) REALS(rays->t_min) REALS(rays->t_max)                 \
+      REALS(paths->throughput.x) REALS(paths->throughput.y) REALS(paths->throughput.z) MASKS(paths->depth) \
+          STACKED_PIXEL(REALS, MASKS) STACKED_CROSSINGS(REALS, MASKS) STACKED_MEDIA(REALS, MASKS)          \
+              STACKED_FIELDS(REALS, MASKS)
+#define COUNT_MEMBER(member) +1u
+#define STACK_MEMBERS (0u STACKED(COUNT_MEMBER, COUNT_MEMBER))
+
+// Arrays are BATCH longer than what may wait: see write_packed().
+#if BATCH > 1
+#define STACK_LENGTH (RAY_STACK + BATCH)
+#define SHADOW_LENGTH (3u * BATCH)  // fewer than a batch wait when another comes
+typedef struct ShadowStack {
+  float members[STACK_MEMBERS * SHADOW_LENGTH];
+  u32 count;
+} ShadowStack;
+#else
+// Rays of both kinds wait together: children, then at most one ray that goes on later, then shadow rays.
+#define STACK_LENGTH (RAY_STACK + LIGHT_ROOM + 1)
+#define SHADOW_LENGTH STACK_LENGTH
+#define ShadowStack RayStack
+#endif
+typedef struct RayStack {
+  float members[STACK_MEMBERS * STACK_LENGTH];
+  u32 count;
+} RayStack;
+
+// Writes the lanes of `lanes` one behind the other; member k goes to to[k * stride].
+NEVER_INLINE void write_rays(float* to, u32 stride, const SceneRays* rays, const PathStates* paths,
+                             MASK lanes) {
+#define WRITE_REALS(member) write_packed(to, member, lanes), to += stride;
+#define WRITE_MASKS(member) WRITE_REALS(AS_REAL(member))
+  STACKED(WRITE_REALS, WRITE_MASKS)
+}
+
+// Reads a ray for every lane.
+NEVER_INLINE void read_rays(const float* from, u32 stride, SceneRays* rays, PathStates* paths) {
+  paths->pixel = NO_LANES;
+  rays->media_low = NO_LANES;
+  rays->media_high = NO_LANES;
+  forget_glow(rays);
+#define READ_REALS(member) member = read_lanes(from), from += stride;
+#define READ_MASKS(member) member = AS_MASK(read_lanes(from)), from += stride;
+  STACKED(READ_REALS, READ_MASKS)
+}
+
+// The lanes of `lanes`; there must be room.
+static inline void push_rays(RayStack* stack, const SceneRays* rays, const PathStates* paths, MASK lanes) {
+  write_rays(stack->members + stack->count, STACK_LENGTH, rays, paths, lanes);
+  stack->count += lane_count(lanes);
+}
+static inline void push_shadows(ShadowStack* stack, const SceneRays* rays, const PathStates* paths,
+                                MASK lanes) {
+  write_rays(stack->members + stack->count, SHADOW_LENGTH, rays, paths, lanes);
+  stack->count += lane_count(lanes);
+}
+
+// Takes the newest rays, at most `most`, which is at most BATCH. Returns their lanes.
+static inline MASK pop_rays(RayStack* stack, u32 most, SceneRays* rays, PathStates* paths) {
+  const u32 count = min(stack->count, most);
+  stack->count -= count;
+  read_rays(stack->members + stack->count, STACK_LENGTH, rays, paths);
+  return lanes_of((1u << count) - 1u);
+}
+static inline MASK pop_shadows(ShadowStack* stack, u32 most, SceneRays* rays, PathStates* paths) {
+  const u32 count = min(stack->count, most);
+  stack->count -= count;
+  read_rays(stack->members + stack->count, SHADOW_LENGTH, rays, paths);
+  return lanes_of((1u << count) - 1u);
+}
+
+// Adds light to the pixels of `lanes`, one lane after another: several may have the same pixel.
+static inline void add_to_pixels(REAL3 light, MASK pixel, MASK lanes, float4* radiance) {
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    radiance[MASK_LANE(pixel, i)].xyz += get3(&light, i);
+  }
+}
+
+#endif

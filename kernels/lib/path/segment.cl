@@ -1,0 +1,192 @@
+// A batch of rays from their starts to the next surfaces that they can see: interfaces overruled by priority
+// are crossed on the way, the media stack is kept and absorption is gathered.
+#ifndef SUNDOG_LIB_SEGMENT_CL
+#define SUNDOG_LIB_SEGMENT_CL
+#include "lib/core/config.h"
+#include "lib/path/faces.cl"
+#include "lib/path/media.cl"
+#include "lib/path/nearest.cl"
+#include "lib/path/touching.cl"
+
+// What rays meet. `before` and `after` are the media on the two sides as a ray crosses; equal where nothing
+// is crossed.
+typedef struct Encounters {
+  Hits hit;
+  Faces face;
+  MASK before, after;
+  REAL3 absorbed;  // factor on the ray's light from its start to the hit
+#if HAS_TOUCHING
+  MASK behind_low, behind_high;  // the words of the MediaStack behind
+  REAL apart;                    // how far the faces that touch there may be apart
+#endif
+} Encounters;
+
+#if HAS_MEDIA
+// Lane i at an interface behind which the media are `crossed`. There is nothing to see where both sides are
+// one medium, nor where a clear material parts media of equal index; then the ray's stack becomes the one
+// behind. Returns whether that is so.
+static inline bool cross_if_unseen(__global const Medium* restrict media, SceneRays* rays, Encounters* met,
+                                   u32 i, MediaStack crossed) {
+  const u32 before = (u32)MASK_LANE(met->before, i), after = current_medium(media, crossed);
+  MASK_LANE(met->after, i) = (int)after;
+#if HAS_TOUCHING
+  MASK_LANE(met->behind_low, i) = (int)crossed;
+  MASK_LANE(met->behind_high, i) = (int)(crossed >> 32);
+#endif
+  const bool clear = (u32)MASK_LANE(met->face.flags, i) & MATERIAL_CLEAR;
+  const bool unseen = after == before || (clear && media[after].absorption.w == media[before].absorption.w);
+  if (!unseen || MASK_LANE(rays->crossings, i) >= MAX_CROSSINGS) return false;
+  set_media(rays, i, crossed);
+  return true;
+}
+
+// The stack of media behind the interface that lane i has met.
+static inline MediaStack media_behind(const SceneRays* rays, const Encounters* met, u32 i, u32* counts) {
+  const bool entering = MASK_LANE(met->face.entering, i);
+  MediaStack crossed = get_media(rays, i);
+  if (!cross_boundary(&crossed, (u32)MASK_LANE(met->face.medium, i), entering))
+    counts[entering ? COUNT_MEDIA_STACK_OVERFLOW : COUNT_STRAY_EXIT] += 1u;
+  return crossed;
+}
+
+#define INTERFACE (MATERIAL_TRANSMITS | MATERIAL_THIN)  // flags to look at: an interface only transmits
+
+#if HAS_TOUCHING
+// The lanes of `lanes`, whose faces may touch others. Returns those that go on, as in cross_unseen().
+static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounters* met, MASK lanes,
+                                  u32* counts) {
+  MASK unseen = NO_LANES;
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    Seen seen;
+    float apart;
+    const float end = meet_touching(scene, rays, i, MATERIAL_TRANSMITS, &met->hit, &met->face, &seen, &apart);
+    REAL_LANE(met->apart, i) = apart;
+    MASK_LANE(met->behind_low, i) = (int)seen.behind;
+    MASK_LANE(met->behind_high, i) = (int)(seen.behind >> 32);
+    counts[COUNT_MEDIA_STACK_OVERFLOW] += seen.overflows;
+    counts[COUNT_STRAY_EXIT] += seen.strays;
+    if (((u32)MASK_LANE(met->face.flags, i) & INTERFACE) != MATERIAL_TRANSMITS) continue;
+    if (!cross_if_unseen(scene->media, rays, met, i, seen.behind)) continue;
+    MASK_LANE(unseen, i) = -1;
+    REAL_LANE(met->hit.t, i) = end;
+  }
+  return unseen;
+}
+#endif
+
+// The lanes of `waiting` at their next hits. Returns those that go on through invisible interfaces: their
+// rays are then what holds behind.
+static inline MASK cross_unseen(const Scene* scene, SceneRays* rays, Encounters* met, MASK waiting,
+                                u32* counts) {
+  const MASK hit = waiting & hit_anything(&met->hit);
+  const MASK here = current_media(scene->media, rays, waiting);
+  met->before = select(met->before, here, waiting);
+  met->after = select(met->after, here, waiting);
+  const Faces faces = hit_faces(scene, rays->d, &met->hit, hit);
+  met->face.outward = select3(met->face.outward, faces.outward, hit);
+  met->face.entering = select(met->face.entering, faces.entering, hit);
+  met->face.material = select(met->face.material, faces.material, hit);
+  met->face.flags = select(met->face.flags, faces.flags, hit);
+  met->face.medium = select(met->face.medium, faces.medium, hit);
+  MASK interface = hit & MASK_OF((faces.flags & (int)INTERFACE) == (int)MATERIAL_TRANSMITS);
+  MASK unseen = NO_LANES;
+#if HAS_TOUCHING
+  met->behind_low = select(met->behind_low, rays->media_low, waiting);
+  met->behind_high = select(met->behind_high, rays->media_high, waiting);
+  met->apart = select(met->apart, (REAL)(0.0f), waiting);
+  const MASK touching =
+      may_touch(scene->instances, &met->hit, hit & MASK_OF((faces.flags & (int)MATERIAL_TRANSMITS) != 0));
+  interface &= ~touching;
+  unseen |= cross_touching(scene, rays, met, touching, counts);
+#endif
+  for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    if (cross_if_unseen(scene->media, rays, met, i, media_behind(rays, met, i, counts)))
+      MASK_LANE(unseen, i) = -1;
+  }
+  const MASK leaves = (waiting & ~unseen) | (unseen & MASK_OF(met->after != met->before));
+  const REAL3 kept = absorb(scene->media, here, met->hit.t - rays->since, leaves);
+  met->absorbed = multiply3(met->absorbed, kept);
+  if (any_lane(unseen)) {
+    rays->since = select(rays->since, met->hit.t, unseen & leaves);
+    continue_behind(scene->info, rays, &met->hit, met->face.entering, unseen);
+  }
+  return unseen;
+}
+#endif
+
+// The lanes of `active` at the interfaces met->hit. Returns those that cannot see them: their rays are then
+// what holds behind. The media of the others are those just before the surface. Crossed interfaces do not
+// move the origin, so what lies behind a vanished interface keeps its bits.
+static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK active, Encounters* met,
+                                    u32* counts) {
+  met->absorbed = all3((float3)(1.0f));
+  met->before = NO_LANES;
+  met->after = NO_LANES;
+#if HAS_MEDIA
+  met->face.outward = all3((float3)(0.0f));
+  met->face.entering = NO_LANES;
+  met->face.material = NO_LANES;
+  met->face.flags = NO_LANES;
+  met->face.medium = NO_LANES;
+#if HAS_TOUCHING
+  met->behind_low = NO_LANES;
+  met->behind_high = NO_LANES;
+  met->apart = (REAL)(0.0f);
+#endif
+  return cross_unseen(scene, rays, met, active, counts);
+#else
+  met->face = hit_faces(scene, rays->d, &met->hit, active & hit_anything(&met->hit));
+  return NO_LANES;
+#endif
+}
+
+// Takes the lanes of `active` in (t_min, t_max] there. `coherent`: the rays run close together.
+static inline MASK next_interfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
+                                   Encounters* met, u32* counts) {
+  nearest_hits(scene, rays, active, coherent, false, &met->hit, counts);
+  return reach_interfaces(scene, rays, active, met, counts);
+}
+
+// The same to their next visible surfaces.
+static inline void next_surfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
+                                 Encounters* met, u32* counts) {
+  MASK waiting = next_interfaces(scene, rays, active, coherent, met, counts);
+  while (any_lane(waiting)) {
+#if HAS_MEDIA
+    Hits hits;
+    nearest_hits(scene, rays, waiting, false, false, &hits, counts);
+    met->hit = select_hits(&met->hit, &hits, waiting);
+    waiting = cross_unseen(scene, rays, met, waiting, counts);
+#endif
+  }
+}
+
+// How far off the surface further rays start, where faces that touch may be apart.
+static inline REAL offset_beyond(const Encounters* met, REAL offset) {
+#if HAS_TOUCHING
+  return real_max(offset, met->apart);
+#else
+  return offset;
+#endif
+}
+
+// The children of `lanes`, copies of `rays`, are in the media behind what those have met; thin surfaces
+// change none.
+static inline void enter_behind(const Encounters* met, const SceneRays* rays, MASK lanes, SceneRays* child) {
+#if HAS_TOUCHING
+  child->media_low = select(child->media_low, met->behind_low, lanes);
+  child->media_high = select(child->media_high, met->behind_high, lanes);
+#elif HAS_MEDIA
+  const MASK bends = lanes & MASK_OF((met->face.flags & (int)MATERIAL_THIN) == 0);
+  for (u32 bits = lane_bits(bends); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    MediaStack crossed = get_media(rays, i);
+    cross_boundary(&crossed, (u32)MASK_LANE(met->face.medium, i), MASK_LANE(met->face.entering, i));
+    set_media(child, i, crossed);
+  }
+#endif
+}
+
+#endif

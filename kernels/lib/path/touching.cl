@@ -1,0 +1,303 @@
+// Surfaces that touch. Where faces of several solids lie in one place, exactly or to rounding, a ray crosses
+// all of them at once: from the media before to the media behind, with one reflection and one refraction
+// between them. Were they crossed one after another, the next ray would start beyond those that it has not
+// met yet, or be turned back by a gap that is not there. The host marks the instances that may touch others.
+#ifndef SUNDOG_LIB_TOUCHING_CL
+#define SUNDOG_LIB_TOUCHING_CL
+#include "lib/core/config.h"
+#if HAS_TOUCHING
+#include "lib/path/faces.cl"
+#include "lib/path/media.cl"
+#include "lib/path/scene_ray.cl"
+#include "lib/trace/stretch.cl"
+
+static inline float greatest_component(float3 a) { return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z))); }
+
+static inline float3 unit_normal(float3 n) {
+  const float size = greatest_component(n);
+  return size > 0.0f ? normalize(n / size) : n;
+}
+
+static inline float3 normal_of(const Hit* hit) { return (float3)(hit->ng_x, hit->ng_y, hit->ng_z); }
+
+// In world space, not normalised.
+static inline float3 outward_of(__global const Instance* restrict instances, const Hit* hit) {
+  return world_normal(instances + hit->instance, normal_of(hit));
+}
+
+// How far rounding may place a hit off its surface: `least` or what the size of the surface asks for. Twice
+// as much separates what are two surfaces from what is one.
+static inline float rounding_of(const Scene* scene, const Hit* hit, float3 outward, float least) {
+  __global const Instance* instance = scene->instances + hit->instance;
+  float size = greatest_component(instance->world_center.xyz) + instance->world_center.w;
+#if HAS_MESH
+  if (instance->shape == SHAPE_MESH)
+    size = scene->triangles[hit->prim].extent * greatest_component(normal_of(hit)) /
+           fmax(greatest_component(outward), FLT_MIN);
+#endif
+  return fmax(least, size * 0x1p-21f);
+}
+
+// The faces that a ray crosses together with one of them.
+typedef struct Touching {
+  Stretch met;
+  float end;    // t of the last one
+  float apart;  // how far the faces may be apart
+} Touching;
+
+// The faces beyond `t_min` that touch the one at `first`, itself among them. Some may lie before it by their
+// rounding: the tracer leaves out boxes that begin behind a hit.
+static inline void find_touching(const Scene* scene, float3 o, float3 d, float t_min, const Hit* first,
+                                 Touching* touching) {
+  Stretch* met = &touching->met;
+  const float3 outward = outward_of(scene->instances, first), p = o + first->t * d;
+  const float least = fmax(greatest_component(o), greatest_component(p)) * 0x1p-19f;
+  const float own = rounding_of(scene, first, outward, least);
+  const float slope = fabs(dot(unit_normal(outward), d));
+  met->o = o;
+  met->d = d;
+  const float reach = fmax(own, scene->instances[first->instance].touch) / fmax(slope, 1e-3f);
+  met->from = fmax(t_min, first->t - reach);
+  met->to = first->t + reach;
+  met->box_from = fmax(met->from - reach, 0.0f);
+  met->box_to = met->to + reach;
+  note_all(scene, met);
+  bool found = false;
+  for (u32 i = 0; i < met->count; ++i) found |= same_face(&met->hits[i], first);
+  if (!found) met->hits[min(met->count++, MOST_TOUCHING - 1u)] = *first;
+  met->count = min(met->count, MOST_TOUCHING);
+  touching->end = first->t;
+  touching->apart = own;
+  for (u32 i = 0; i < met->count; ++i) {
+    const Hit* hit = &met->hits[i];
+    const float3 other = outward_of(scene->instances, hit);
+    const float limit = fmax(own, rounding_of(scene, hit, other, least));
+    const float further = hit->t - first->t;
+    if (further * fmax(slope, fabs(dot(unit_normal(other), d))) > limit) continue;
+    touching->end = fmax(touching->end, hit->t);
+    touching->apart = fmax(touching->apart, limit);
+  }
+  u32 kept = 0;
+  for (u32 i = 0; i < met->count; ++i)
+    if (met->hits[i].t <= touching->end) met->hits[kept++] = met->hits[i];
+  met->count = kept;
+}
+
+static inline u32 material_of(__global const Instance* restrict instances,
+                              __global const TriangleShading* restrict triangles, const Hit* hit) {
+  const u32 material = instances[hit->instance].material;
+  return material != NO_MATERIAL ? material : triangles[hit->prim].material;
+}
+
+// Whether two hits are one, on an edge that two triangles of a mesh share.
+static inline bool on_shared_edge(__global const Instance* restrict instances, const Hit* a, const Hit* b) {
+  if (a->instance != b->instance || instances[a->instance].shape != SHAPE_MESH) return false;
+  const float near_a = fmin(fmin(a->u, a->v), 1.0f - a->u - a->v),
+              near_b = fmin(fmin(b->u, b->v), 1.0f - b->u - b->v);
+  return fmax(near_a, near_b) < 1e-5f && dot(normal_of(a), normal_of(b)) > 0.0f;
+}
+
+// What the faces of one crossing change: bits of `met` whose media are entered and left. A medium that is
+// left and entered again stays as it is, and neither face is seen.
+typedef struct Changes {
+  u32 entered, left, thin;
+  u32 material[MOST_TOUCHING];
+} Changes;
+
+static inline Changes faces_of(__global const Instance* restrict instances,
+                               __global const TriangleShading* restrict triangles,
+                               __global const Material* restrict materials, const Stretch* met) {
+  Changes changes;
+  changes.entered = 0;
+  changes.left = 0;
+  changes.thin = 0;
+  for (u32 i = 0; i < met->count; ++i) {
+    const Hit* hit = &met->hits[i];
+    changes.material[i] = material_of(instances, triangles, hit);
+    bool again = false;
+    for (u32 k = 0; k < i; ++k) again |= on_shared_edge(instances, &met->hits[k], hit);
+    const u32 flags = materials[changes.material[i]].flags;
+    if (again || !(flags & MATERIAL_TRANSMITS)) continue;
+    if (flags & MATERIAL_THIN)
+      changes.thin |= 1u << i;
+    else if (dot(outward_of(instances, hit), met->d) < 0.0f)
+      changes.entered |= 1u << i;
+    else
+      changes.left |= 1u << i;
+  }
+  return changes;
+}
+
+// Takes out faces that leave and enter the same medium, two by two; those that face each other first, so that
+// of a corner the right face is left.
+static inline void take_out_pairs(__global const Instance* restrict instances,
+                                  __global const Material* restrict materials, const Stretch* met,
+                                  Changes* changes) {
+  for (u32 facing = 2; facing-- > 0;)
+    for (u32 entered = changes->entered; entered; entered &= entered - 1u) {
+      const u32 i = lowest_bit(entered), medium = materials[changes->material[i]].medium;
+      const float3 normal = unit_normal(outward_of(instances, &met->hits[i]));
+      for (u32 left = changes->left; left; left &= left - 1u) {
+        const u32 k = lowest_bit(left);
+        if (materials[changes->material[k]].medium != medium) continue;
+        if (facing && dot(normal, unit_normal(outward_of(instances, &met->hits[k]))) > -0.9f) continue;
+        changes->entered &= ~(1u << i);
+        changes->left &= ~(1u << k);
+        break;
+      }
+    }
+}
+
+// Whether, of two solids that are entered in one place, the first counts as the outer one: the larger. Else
+// the media decide, so that the order in the file does not.
+static inline bool is_outer(__global const Instance* restrict instances,
+                            __global const Medium* restrict media, const Hit* a, u32 medium_a, const Hit* b,
+                            u32 medium_b) {
+  const float size_a = instances[a->instance].world_center.w, size_b = instances[b->instance].world_center.w;
+  if (size_a != size_b) return size_a == 0.0f || (size_b != 0.0f && size_a > size_b);
+  const float index_a = media[medium_a].absorption.w, index_b = media[medium_b].absorption.w;
+  return index_a != index_b ? index_a < index_b : medium_a < medium_b;
+}
+
+// Of the faces of `bits`, which is not 0, the one whose solid counts as the outermost, or else the innermost.
+static inline u32 pick_face(__global const Instance* restrict instances,
+                            __global const Material* restrict materials,
+                            __global const Medium* restrict media, const Stretch* met, const Changes* changes,
+                            u32 bits, bool outermost) {
+  u32 best = lowest_bit(bits), medium = materials[changes->material[best]].medium;
+  for (bits &= bits - 1u; bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits), other = materials[changes->material[i]].medium;
+    if (is_outer(instances, media, &met->hits[i], other, &met->hits[best], medium) != outermost) continue;
+    best = i;
+    medium = other;
+  }
+  return best;
+}
+
+// Enters the media of `changes`, the outer ones first. Returns how many found no room.
+static inline u32 enter_all(__global const Instance* restrict instances,
+                            __global const Material* restrict materials,
+                            __global const Medium* restrict media, const Stretch* met, const Changes* changes,
+                            MediaStack* stack) {
+  u32 lost = 0;
+  for (u32 left = changes->entered; left;) {
+    const u32 outer = pick_face(instances, materials, media, met, changes, left, true);
+    left &= ~(1u << outer);
+    if (!cross_boundary(stack, materials[changes->material[outer]].medium, true)) ++lost;
+  }
+  return lost;
+}
+
+// Which of the faces that touch a ray sees.
+typedef struct Seen {
+  Hit hit;
+  u32 material;
+  MediaStack behind;  // the media behind all of them
+  u32 after;          // the one that light is in there
+  u32 overflows, strays;
+} Seen;
+
+static inline bool comes_first(const Hit* a, const Hit* b) {
+  if (a->t != b->t) return a->t < b->t;
+  return a->instance != b->instance ? a->instance < b->instance : a->prim < b->prim;
+}
+
+// How much a face has to say where two media meet: greater is seen. Nothing where it parts neither of them.
+static inline u32 say_of(__global const Material* restrict material, u32 before, u32 after) {
+  if (material->flags & MATERIAL_THIN) return 3u;
+  if (material->medium != before && material->medium != after) return 0u;
+  return material->flags & MATERIAL_CLEAR ? 1u : 2u;
+}
+
+// Whether face a is seen, and not b. Of one material the outer one is: the first that is entered, the last
+// that is left.
+static inline bool is_seen_before(const Scene* scene, const Hit* a, u32 material_a, const Hit* b,
+                                  u32 material_b, u32 before, u32 after, bool left) {
+  __global const Material *ma = scene->materials + material_a, *mb = scene->materials + material_b;
+  const u32 say_a = say_of(ma, before, after), say_b = say_of(mb, before, after);
+  if (say_a != say_b) return say_a > say_b;
+  __global const Medium *inside_a = scene->media + ma->medium, *inside_b = scene->media + mb->medium;
+  if (inside_a->priority != inside_b->priority) return inside_a->priority > inside_b->priority;
+  if (inside_a->absorption.w != inside_b->absorption.w)
+    return inside_a->absorption.w > inside_b->absorption.w;
+  if (material_a != material_b) return material_a < material_b;
+  return left ? comes_first(b, a) : comes_first(a, b);
+}
+
+// What a ray in the media `before` makes of faces that touch. Something opaque among them, whose flags are
+// not `passable` under `mask`, is seen from the media before: what lies at its surface, light does not enter.
+static inline void join_faces(const Scene* scene, const Touching* touching, u32 mask, MediaStack before,
+                              Seen* seen) {
+  const Stretch* met = &touching->met;
+  const u32 current = current_medium(scene->media, before);
+  seen->behind = before;
+  seen->after = current;
+  seen->overflows = 0;
+  seen->strays = 0;
+  bool opaque = false;
+  for (u32 i = 0; i < met->count; ++i) {
+    const u32 material = material_of(scene->instances, scene->triangles, &met->hits[i]);
+    if ((scene->materials[material].flags & mask) == MATERIAL_TRANSMITS) continue;
+    if (opaque && comes_first(&seen->hit, &met->hits[i])) continue;
+    opaque = true;
+    seen->hit = met->hits[i];
+    seen->material = material;
+  }
+  if (opaque) return;
+  Changes changes = faces_of(scene->instances, scene->triangles, scene->materials, met);
+  take_out_pairs(scene->instances, scene->materials, met, &changes);
+  for (u32 left = changes.left; left; left &= left - 1u)
+    if (!cross_boundary(&seen->behind, scene->materials[changes.material[lowest_bit(left)]].medium, false))
+      ++seen->strays;
+  seen->overflows = enter_all(scene->instances, scene->materials, scene->media, met, &changes, &seen->behind);
+  seen->after = current_medium(scene->media, seen->behind);
+  const u32 some = changes.thin | changes.entered | changes.left;
+  u32 best = some ? lowest_bit(some) : 0u;
+  for (u32 bits = some; bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    if (is_seen_before(scene, &met->hits[i], changes.material[i], &met->hits[best], changes.material[best],
+                       current, seen->after, changes.left >> i & 1u))
+      best = i;
+  }
+  seen->hit = met->hits[best];
+  seen->material = changes.material[best];
+}
+
+// Lane i of `rays`, which has met a face of an instance that may touch others: hit and face become those of
+// the face that is seen, `behind` and `after` what lies behind all that touch there. `mask`: as above. The
+// distance of what is seen stays that of the first face; returns that of the last, and in `apart` how far the
+// faces may be apart.
+NEVER_INLINE float meet_touching(const Scene* scene, const SceneRays* rays, u32 i, u32 mask, Hits* hits,
+                                 Faces* faces, Seen* seen, float* apart) {
+  Touching touching;
+  const Hit first = get_hit(hits, i);
+  find_touching(scene, get3(&rays->o, i), get3(&rays->d, i), REAL_LANE(rays->t_min, i), &first, &touching);
+  join_faces(scene, &touching, mask, get_media(rays, i), seen);
+  *apart = touching.apart;
+  seen->hit.t = first.t;
+  set_hit(hits, i, &seen->hit);
+  const float3 outward = outward_of(scene->instances, &seen->hit);
+  set3(&faces->outward, i, outward);
+  MASK_LANE(faces->entering, i) = dot(outward, get3(&rays->d, i)) < 0.0f ? -1 : 0;
+  MASK_LANE(faces->material, i) = (int)seen->material;
+  u32 flags = scene->materials[seen->material].flags;
+  // A thin surface on an interface bends like one.
+  if (seen->after != current_medium(scene->media, get_media(rays, i))) flags &= ~MATERIAL_THIN;
+  MASK_LANE(faces->flags, i) = (int)flags;
+  MASK_LANE(faces->medium, i) = (int)scene->materials[seen->material].medium;
+  return touching.end;
+}
+
+// The lanes of `lanes` whose hits are on instances that may touch others.
+static inline MASK may_touch(__global const Instance* restrict instances, const Hits* hits, MASK lanes) {
+  MASK found = NO_LANES;
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(hits->instance, &lanes, &index);
+    if (instances[index].touch > 0.0f) found |= mine;
+  }
+  return found;
+}
+#endif
+
+#endif

@@ -1,0 +1,154 @@
+// What surfaces do to light: Phong's and Blinn's local terms (Phong 1975, Blinn 1977) and the perfect
+// reflection and transmission of Whitted's model (1980). A surface a lane; wo points to the viewer, wi to
+// where light comes from.
+#ifndef SUNDOG_LIB_BSDF_CL
+#define SUNDOG_LIB_BSDF_CL
+#include "lib/core/optics.cl"
+#include "lib/path/media.cl"
+#include "lib/shade/interaction.cl"
+
+typedef struct Bsdfs {
+  REAL3 ng, ns;            // unit, both on the side of the viewer
+  REAL3 ambient, diffuse;  // ka and kd, with pattern and colour
+  MASK material, flags;    // index; of the material
+  MASK before, after;      // media on the viewer's side and behind
+} Bsdfs;
+
+// Whether points, in units of the pattern, lie in odd cells of the checker.
+static inline MASK odd_cell(REAL3 p, float frequency) {
+  // Half a cell in 2^16 off the lattice, so that a face on a cell's border is one colour.
+  const REAL3 cell = real3(floor(p.x * frequency + 0x1p-17f), floor(p.y * frequency + 0x1p-17f),
+                           floor(p.z * frequency + 0x1p-17f));
+  const REAL parity = cell.x + cell.y + cell.z;
+  return MASK_OF(parity - 2.0f * floor(parity * 0.5f) != 0.0f);
+}
+
+// The checker of the lanes of `lanes`, all of one material. It is fixed to each instance's own space.
+static inline void add_checker(const Scene* scene, __global const Material* material,
+                               const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(s->instance, &lanes, &index);
+    __global const Instance* instance = scene->instances + index;
+    const REAL3 q = multiply3(object_points(instance, s->p), all3(instance->pattern_scale.xyz));
+    const MASK odd = mine & odd_cell(q, material->checker_diffuse.w);
+    bsdf->ambient = select3(bsdf->ambient, all3(material->checker_ambient.xyz), odd);
+    bsdf->diffuse = select3(bsdf->diffuse, all3(material->checker_diffuse.xyz), odd);
+  }
+}
+
+// The Bsdfs of the surfaces of `lanes`, between the media `before` and `after`.
+static inline Bsdfs make_bsdfs(const Scene* scene, const SurfaceInteractions* s, MASK before, MASK after,
+                               MASK lanes) {
+  const REAL3 none = all3((float3)(0.0f));
+  Bsdfs bsdf = {s->ng, s->ns, none, none, s->material, s->flags, before, after};
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(s->material, &lanes, &index);
+    __global const Material* material = scene->materials + index;
+    bsdf.ambient = select3(bsdf.ambient, all3(material->ambient.xyz), mine);
+    bsdf.diffuse = select3(bsdf.diffuse, all3(material->diffuse.xyz), mine);
+    if (material->flags & MATERIAL_CHECKER) add_checker(scene, material, s, mine, &bsdf);
+  }
+  bsdf.ambient = multiply3(bsdf.ambient, s->color);
+  bsdf.diffuse = multiply3(bsdf.diffuse, s->color);
+  return bsdf;
+}
+
+// x^e for x in [0, 1]. Whole exponents, which most are, by squaring.
+static inline REAL highlight(REAL x, float e) {
+#if HAS_FRACTIONAL_EXPONENTS
+  if (e != floor(e) || e > GREATEST_WHOLE_EXPONENT)
+    return select(real_exp(e * real_log(real_max(x, (REAL)(1e-37f)))), (REAL)(0.0f), MASK_OF(x < 1e-37f));
+#endif
+  REAL result = (REAL)(1.0f);
+  for (u32 bits = (u32)e; bits; bits >>= 1) {
+    if (bits & 1u) result *= x;
+    x *= x;
+  }
+  return result;
+}
+
+// Cosine of the angle that a highlight falls off with: between the mirrored light and the viewer, or for
+// Blinn between the normal and the half vector.
+static inline REAL highlight_cosine(u32 flags, REAL3 ns, REAL3 wo, REAL3 wi) {
+  if (flags & MATERIAL_BLINN) return dot3(ns, safe_unit3(add3(wi, wo)));
+  return -dot3(subtract3(wi, scale3(ns, 2.0f * dot3(ns, wi))), wo);
+}
+
+// kd (n.l) + ks max(r.v, 0)^beta, or max(n.h, 0)^beta for Blinn, where 0^0 is 1: with a beta of 0 a highlight
+// is the same from everywhere. This is pi times the BSDF times the cosine, in the classical units where a
+// white surface that faces a light of intensity 1 has the radiance 1. Perfect reflection and transmission are
+// not in it. For n.l > 0.
+static inline REAL3 bsdf_eval(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes) {
+  REAL3 sum = scale3(bsdf->diffuse, dot3(bsdf->ns, wi));
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(bsdf->material, &lanes, &index);
+    const float4 specular = scene->materials[index].specular;
+    if (specular.x == 0.0f && specular.y == 0.0f && specular.z == 0.0f) continue;
+    const REAL cosine = highlight_cosine(scene->materials[index].flags, bsdf->ns, wo, wi);
+    const REAL shine = highlight(real_clamp(cosine, (REAL)(0.0f), (REAL)(1.0f)), specular.w);
+    const MASK shines = specular.w == 0.0f ? mine : mine & MASK_OF(cosine > 0.0f);
+    sum = select3(sum, along3(sum, shine, all3(specular.xyz)), shines);
+  }
+  return sum;
+}
+
+// How perfect reflection and transmission share the light of surfaces.
+typedef struct SpecularSplits {
+  REAL3 kr, kt;
+  MASK branches, transmits;  // does either; transmits
+  REAL eta, cos_i, cos_t;    // index behind over index before; cosines to ns, 1 where nothing bends
+} SpecularSplits;
+
+static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes) {
+  const REAL3 none = all3((float3)(0.0f));
+  const REAL one = (REAL)(1.0f), zero = (REAL)(0.0f);
+  SpecularSplits split = {none, none, NO_LANES, NO_LANES, one, one, one};
+  MASK dielectric = NO_LANES;
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(bsdf->material, &lanes, &index);
+    __global const Material* material = scene->materials + index;
+    if (!(material->flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS))) continue;
+    split.kr = select3(split.kr, all3(material->reflection.xyz), mine);
+    split.kt = select3(split.kt, all3(material->transmission.xyz), mine);
+    split.branches |= mine;
+    if (material->kind == MATERIAL_DIELECTRIC) dielectric |= mine;
+  }
+  split.transmits = split.branches & MASK_OF((bsdf->flags & (int)MATERIAL_TRANSMITS) != 0);
+  if (!any_lane(split.transmits | dielectric)) return split;
+  const MASK bends = split.transmits & MASK_OF((bsdf->flags & (int)MATERIAL_THIN) == 0);
+  split.cos_i = real_clamp(dot3(bsdf->ns, wo), zero, one);
+  split.eta = relative_index(scene->media, bsdf->before, bsdf->after, bends);
+  split.cos_t = refracted_cosine(split.cos_i, split.eta);
+  const REAL f = select(zero, fresnel_reflectance(split.cos_i, split.cos_t, split.eta), bends);
+  // Total internal reflection turns everything into reflection.
+  const MASK total = split.transmits & ~dielectric & MASK_OF(split.cos_t <= 0.0f);
+  split.kr = select3(split.kr, add3(split.kr, split.kt), total);
+  split.kt = select3(split.kt, none, total);
+  split.kr = select3(split.kr, scale3(split.kr, f), dielectric);
+  split.kt = select3(split.kt, scale3(split.kt, 1.0f - f), dielectric);
+  return split;
+}
+
+// Where perfect reflection sends light; a shading normal must not send it inside.
+static inline REAL3 reflected_direction(const Bsdfs* bsdf, REAL3 wo) {
+  const REAL3 d = negate3(wo), by_shading = reflect_direction(d, bsdf->ns);
+  const MASK good = MASK_OF(dot3(by_shading, bsdf->ng) > 0.0f);
+  return select3(reflect_direction(d, bsdf->ng), by_shading, good);
+}
+
+// Where transmission sends it; a shading normal must not send it outside again.
+static inline REAL3 transmitted_direction(const Bsdfs* bsdf, const SpecularSplits* split, REAL3 wo) {
+  const REAL3 d = negate3(wo);
+  const REAL3 by_shading = refract_direction(d, bsdf->ns, split->cos_i, split->cos_t, split->eta);
+  const MASK good = MASK_OF(dot3(by_shading, bsdf->ng) < 0.0f), straight = MASK_OF(split->eta == 1.0f);
+  const REAL cos_g = real_clamp(dot3(bsdf->ng, wo), (REAL)(0.0f), (REAL)(1.0f));
+  const REAL3 by_face =
+      refract_direction(d, bsdf->ng, cos_g, refracted_cosine(cos_g, split->eta), split->eta);
+  return select3(select3(by_face, by_shading, good), d, straight);
+}
+
+#endif

@@ -1,0 +1,132 @@
+// From raw hits to what shading needs: where on which surface a ray arrived, on which side, and the surface's
+// coordinates there. A ray a lane.
+#ifndef SUNDOG_LIB_INTERACTION_CL
+#define SUNDOG_LIB_INTERACTION_CL
+#include "lib/path/faces.cl"
+#include "lib/shade/parametrize.cl"
+#if HAS_SDF
+#include "lib/path/fields.cl"
+#endif
+
+typedef struct SurfaceInteractions {
+  REAL3 p;                // world
+  REAL3 ng, ns;           // unit, both against the ray
+  REAL offset;            // distance off the surface at which a further ray starts
+  REAL3 color;            // vertex or field colour, a factor on ambient and diffuse
+  MASK instance;          // index
+  MASK material, flags;   // index; of the material
+  MASK medium, entering;  // inside the surface; the ray comes from outside
+#if HAS_UV
+  Coordinates at;  // u, v and dpdu
+#endif
+} SurfaceInteractions;
+
+static inline REAL greatest_size(REAL3 a) { return greatest3(real3(fabs(a.x), fabs(a.y), fabs(a.z))); }
+
+// How far from the surface a new ray must start: a few of the float's spacings at the magnitudes that made
+// the position (the idea of Waechter and Binder 2019, without their absolute threshold, so that a scene works
+// in any unit).
+static inline REAL offset_distance(REAL3 o, REAL3 p) {
+  return real_max(greatest_size(o), greatest_size(p)) * 0x1p-19f;
+}
+
+// The same on triangles: corners that are far away round the hit as well, in the mesh's space. `normal` is
+// the normal there and `outward` in the world: the quotient of their lengths takes what is measured along it
+// to the world.
+static inline REAL triangle_offset(REAL extent, REAL3 normal, REAL3 outward) {
+  return extent * 0x1p-21f * greatest_size(normal) / nonzero(greatest_size(outward));
+}
+
+// Takes positions on a sphere onto its surface by one Newton step; rounding of t is largest for far origins.
+static inline REAL3 settle_on_sphere(__global const Instance* instance, REAL3 p) {
+  const REAL3 q = object_points(instance, p);
+  const REAL3 gradient = world_normals(instance, q);
+  return along3(p, -0.5f * (dot3(q, q) - 1.0f) / dot3(gradient, gradient), gradient);
+}
+
+// Normals of the corners and their colours, interpolated, for the lanes of `lanes`, and the triangles'
+// extents. World space, unit.
+NEVER_INLINE REAL3 shading_normals(const Scene* scene, __global const Instance* instance, const Hits* hits,
+                                   MASK lanes, REAL3* color, REAL* extent) {
+  REAL3 normal = hits->ng;
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    __global const TriangleShading* triangle = scene->triangles + MASK_LANE(hits->prim, i);
+    const Vertex a = scene->vertices[triangle->vertex[0]], b = scene->vertices[triangle->vertex[1]],
+                 c = scene->vertices[triangle->vertex[2]];
+    REAL_LANE(*extent, i) = triangle->extent;
+    const float u = REAL_LANE(hits->u, i), v = REAL_LANE(hits->v, i), w = 1.0f - u - v;
+    set3(color, i, w * (float3)(a.r, a.g, a.b) + u * (float3)(b.r, b.g, b.b) + v * (float3)(c.r, c.g, c.b));
+    set3(&normal, i,
+         w * (float3)(a.nx, a.ny, a.nz) + u * (float3)(b.nx, b.ny, b.nz) + v * (float3)(c.nx, c.ny, c.nz));
+  }
+  return safe_unit3(world_normals(instance, normal));
+}
+
+// Shading normals `ns` of a mesh, turned against the rays; the geometric ones where they say nothing. One
+// that is turned from the viewer would light the back of things: it is bent no further than the silhouette.
+static inline REAL3 facing_normals(REAL3 ns, REAL3 ng, MASK entering, REAL3 d) {
+  const REAL3 facing = select3(negate3(ns), ns, entering);
+  const REAL towards = dot3(facing, d);
+  const REAL3 bent = safe_unit3(along3(facing, -(towards + 1e-4f), d));
+  const REAL3 normal = select3(bent, facing, MASK_OF(towards < 0.0f));
+  return select3(ng, normal, MASK_OF(dot3(facing, facing) > 0.0f));
+}
+
+#if HAS_SDF
+// The colours of instance `index` where the world's rays (o, d) met it, at the distances t.
+NEVER_INLINE REAL3 field_colors(const Scene* scene, u32 index, const REAL3* o, const REAL3* d, REAL t) {
+  __global const Instance* instance = scene->instances + index;
+  const REAL3 p = along3(field_points(instance, *o), t, object_vectors(instance, *d));
+  return sdf_color(scene, instance->root, p);
+}
+#endif
+
+// Vertex colours count where the material says so, field colours always.
+static inline MASK has_color(const Faces* faces, MASK on_field) {
+  return on_field | MASK_OF((faces->flags & (int)MATERIAL_VERTEX_COLOR) != 0);
+}
+
+// What the rays (o, d) met at the hits of `lanes`.
+static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hits, const Faces* faces,
+                            MASK lanes, SurfaceInteractions* s) {
+  const REAL3 outward = safe_unit3(faces->outward), white = all3((float3)(1.0f));
+  s->ng = select3(negate3(outward), outward, faces->entering);
+  s->ns = s->ng;
+  s->p = along3(o, hits->t, d);
+  s->instance = hits->instance;
+  s->material = faces->material;
+  s->flags = faces->flags;
+  s->medium = faces->medium;
+  s->entering = faces->entering;
+  REAL extent = (REAL)(0.0f);
+  REAL3 color = white;
+  MASK on_field = NO_LANES;
+  u32 index;
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(hits->instance, &left, &index);
+    __global const Instance* instance = scene->instances + index;
+#if HAS_SPHERE
+    if (instance->shape == SHAPE_SPHERE) s->p = select3(s->p, settle_on_sphere(instance, s->p), mine);
+#endif
+#if HAS_MESH
+    if (instance->shape == SHAPE_MESH) {
+      const REAL3 ns = shading_normals(scene, instance, hits, mine, &color, &extent);
+      s->ns = select3(s->ns, facing_normals(ns, s->ng, faces->entering, d), mine);
+    }
+#endif
+#if HAS_SDF
+    if (instance->shape == SHAPE_SDF) {
+      color = select3(color, field_colors(scene, index, &o, &d, hits->t), mine);
+      on_field |= mine;
+    }
+#endif
+  }
+  s->color = select3(white, color, has_color(faces, on_field));
+  s->offset = real_max(triangle_offset(extent, hits->ng, faces->outward), offset_distance(o, s->p));
+#if HAS_UV
+  find_coordinates(scene, hits, &s->p, lanes, &s->at);
+#endif
+}
+
+#endif

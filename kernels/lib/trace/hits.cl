@@ -1,0 +1,94 @@
+// What the rays of a batch met, a ray a lane, and the exact solids offered to them.
+#ifndef SUNDOG_LIB_HITS_CL
+#define SUNDOG_LIB_HITS_CL
+#include "lib/core/config.h"
+#include "lib/core/lanes.h"
+#include "lib/core/transform.cl"
+#include "lib/trace/solids.cl"
+
+// The members of Hit; `instance` is -1 (NO_INSTANCE) where nothing was hit, and t then the ray's t_max.
+typedef struct Hits {
+  REAL t, u, v;
+  MASK prim, instance;
+  REAL3 ng;
+} Hits;
+
+static inline Hits no_hits(REAL t_max) {
+  const REAL zero = (REAL)(0.0f);
+  const Hits hits = {t_max, zero, zero, (MASK)((int)NO_PRIM), (MASK)((int)NO_INSTANCE), {zero, zero, zero}};
+  return hits;
+}
+
+static inline MASK hit_anything(const Hits* hits) { return MASK_OF(hits->instance != (int)NO_INSTANCE); }
+
+static inline Hit get_hit(const Hits* hits, u32 i) {
+  const Hit hit = {REAL_LANE(hits->t, i),
+                   REAL_LANE(hits->u, i),
+                   REAL_LANE(hits->v, i),
+                   (u32)MASK_LANE(hits->prim, i),
+                   (u32)MASK_LANE(hits->instance, i),
+                   REAL_LANE(hits->ng.x, i),
+                   REAL_LANE(hits->ng.y, i),
+                   REAL_LANE(hits->ng.z, i)};
+  return hit;
+}
+
+static inline void set_hit(Hits* hits, u32 i, const Hit* hit) {
+  REAL_LANE(hits->t, i) = hit->t;
+  REAL_LANE(hits->u, i) = hit->u;
+  REAL_LANE(hits->v, i) = hit->v;
+  MASK_LANE(hits->prim, i) = (int)hit->prim;
+  MASK_LANE(hits->instance, i) = (int)hit->instance;
+  set3(&hits->ng, i, (float3)(hit->ng_x, hit->ng_y, hit->ng_z));
+}
+
+static inline Hits select_hits(const Hits* a, const Hits* b, MASK m) {
+  const Hits hits = {select(a->t, b->t, m),
+                     select(a->u, b->u, m),
+                     select(a->v, b->v, m),
+                     select(a->prim, b->prim, m),
+                     select(a->instance, b->instance, m),
+                     select3(a->ng, b->ng, m)};
+  return hits;
+}
+
+// Solids of one shape, `index` a lane, in (t_min, hits->t] for the lanes of `active`; object-space rays. Of
+// equal distances the lower index counts.
+ALWAYS_INLINE void offer_solids(u32 shape, float4 parameters, MASK index, REAL3 o, REAL3 d, REAL t_min,
+                                MASK active, Hits* hits) {
+  const REAL zero = (REAL)(0.0f);
+  SolidHits solid = {hits->t, hits->ng, NO_LANES, NO_LANES};
+  closest_in_solid(shape, parameters, o, d, t_min, active, &solid);
+  const MASK earlier = MASK_OF(hits->instance != (int)NO_INSTANCE) & MASK_OF(hits->instance <= index);
+  const MASK found = solid.found & ~(earlier & MASK_OF(solid.t == hits->t));
+  if (!any_lane(found)) return;
+  hits->t = select(hits->t, solid.t, found);
+  hits->u = select(hits->u, zero, found);
+  hits->v = select(hits->v, zero, found);
+  hits->prim = select(hits->prim, solid.part, found);
+  hits->instance = select(hits->instance, index, found);
+  hits->ng = select3(hits->ng, solid.ng, found);
+}
+
+// The instances [first, last), all solids, for the lanes of `active`; world-space rays. With `any`, lanes
+// that have found something are done. The loop stands in the function, so that rays and hits stay in
+// registers.
+NEVER_INLINE void hit_solids(__global const Instance* restrict instances, u32 first, u32 last,
+                             const REAL3* rays_o, const REAL3* rays_d, const REAL* rays_t_min, MASK active,
+                             bool any, Hits* hits) {
+  const REAL3 o = *rays_o, d = *rays_d;
+  const REAL t_min = *rays_t_min;
+  Hits found = *hits;
+  for (u32 i = first; i < last; ++i) {
+    if (any) active &= ~hit_anything(&found);
+    if (!any_lane(active)) break;
+    __global const Instance* instance = instances + i;
+    const bool moves = !(instance->flags & INSTANCE_IDENTITY);
+    offer_solids(instance->shape, instance->parameters, (MASK)((int)i),
+                 moves ? object_points(instance, o) : o, moves ? object_vectors(instance, d) : d, t_min,
+                 active, &found);
+  }
+  *hits = found;
+}
+
+#endif

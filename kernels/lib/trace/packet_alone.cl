@@ -1,0 +1,25 @@
+// Rays of a packet that go on by themselves.
+#ifndef SUNDOG_LIB_PACKET_ALONE_CL
+#define SUNDOG_LIB_PACKET_ALONE_CL
+#include "lib/core/config.h"
+#if PACKETS
+#include "lib/core/tables.h"
+#include "lib/trace/packet_nodes.cl"
+#include "lib/trace/walk.cl"
+
+// The rays of `active` by themselves, from `word` of the scene BVH or of `instance`'s mesh BVH on. Returns
+// whether any hits something nearer.
+NEVER_INLINE bool walk_lanes(const Scene* scene, const PacketRays* rays, PacketHits* hits, u32 active,
+                             u32 word, u32 instance, bool any) {
+  const REAL3 o = real3(rays->o[0], rays->o[1], rays->o[2]), d = real3(rays->d[0], rays->d[1], rays->d[2]);
+  const REAL before = hits->found->t;
+  const WalkRays walkers = {&o, &d, &hits->t_min, hits->found};
+  walk_rays(scene, &walkers, active, word, instance, any);
+  const MASK nearer = MASK_OF(hits->found->t < before);
+  if (any) end_lanes(hits, lanes_of(active));
+  return any_lane(nearer);
+}
+
+#endif
+
+#endif

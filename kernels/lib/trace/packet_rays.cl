@@ -1,0 +1,199 @@
+// Sixteen rays that run close together as a value: each by itself, a lane a ray, and the interval that they
+// span. Nothing is found here; packet.cl takes them through the BVH.
+#ifndef SUNDOG_LIB_PACKET_RAYS_CL
+#define SUNDOG_LIB_PACKET_RAYS_CL
+#include "lib/core/config.h"
+#include "lib/core/transform.cl"
+#include "lib/trace/hits.cl"
+#include "lib/trace/nodes.cl"
+#include "lib/trace/triangles.cl"
+
+#if PACKETS
+#define ALL_RAYS 0xFFFFu
+
+// A plane at b across an axis lies at fma(b, rcp, shift).
+typedef struct Crossing {
+  float rcp[4], shift[4];
+} Crossing;
+
+// The rays in world or object space; arrays are by axis.
+typedef struct PacketRays {
+  float16 o[3], d[3];
+  // SlabRay and ShearRay, a lane a ray.
+  float16 rcp_near[3], rcp_far[3], shift_near[3], shift_far[3], sx, sy, sz;
+  // The interval: where some ray may enter and leave, where all have entered and still none has left.
+  Crossing first_in, last_out, last_in, first_out;
+  // A beam that holds all rays, in the axes of a ShearRay: its middle at beam_z and its slopes, and how far
+  // it reaches on both sides. See triangles_in_packet.
+  float beam_x, beam_y, beam_z, beam_sx, beam_sy, spread_x, spread_y, spread_sx, spread_sy;
+  // What all rays share: float offsets into Bvh8Node, and the axes that a ShearRay permutes to x, y, z.
+  u32 near[4], far[4], axis[3];
+} PacketRays;
+
+// What the rays found so far. A lane without a ray, and with `any` one that has found something, has a t
+// below 0: it crosses nothing.
+typedef struct PacketHits {
+  Hits* found;  // prim of a triangle is its place (see finish_triangle)
+  float16 t_min;
+  float t_least, t_most;  // of t_min and t over the rays
+  u32 live;               // rays whose t is not below 0
+} PacketHits;
+
+static inline float get_lane(const float16* v, u32 i) { return ((const float*)v)[i]; }
+
+static inline float least_of(float16 v) {
+  const float8 a = least8(v.lo, v.hi);
+  const float4 b = select(a.hi, a.lo, a.lo < a.hi);
+  const float2 c = select(b.hi, b.lo, b.lo < b.hi);
+  return c.x < c.y ? c.x : c.y;
+}
+static inline float most_of(float16 v) { return -least_of(-v); }
+
+// What is known of all rays, after hits.
+static inline void renew_bounds(PacketHits* hits) {
+  hits->t_most = most_of(hits->found->t);
+  hits->live = ~lane_bits(as_int16(hits->found->t)) & ALL_RAYS;
+}
+
+static inline float16 least16(float16 a, float16 b) { return select(b, a, a < b); }
+
+// The lower half of the result is the least of neighbours in a, the upper one of those in b.
+ALWAYS_INLINE float16 least_of_pairs(float16 a, float16 b) {
+  return least16((float16)(a.even, b.even), (float16)(a.odd, b.odd));
+}
+
+// Lane i of the result is the least of v[i]. Overwrites v.
+ALWAYS_INLINE float16 least_of_each(float16* v) {
+#pragma unroll
+  for (u32 count = 8; count > 0u; count >>= 1)
+#pragma unroll
+    for (u32 i = 0; i < count; ++i) v[i] = least_of_pairs(v[2u * i], v[2u * i + 1u]);
+  return v[0];
+}
+ALWAYS_INLINE float4 least_of_four(float16 a, float16 b, float16 c, float16 d) {
+  const float16 all = least_of_pairs(least_of_pairs(a, b), least_of_pairs(c, d));
+  const float8 pairs = least8(all.even, all.odd);
+  return select(pairs.odd, pairs.even, pairs.even < pairs.odd);
+}
+
+ALWAYS_INLINE void set_crossing(Crossing* crossing, float4 rcp, float4 shift) {
+  vstore4(rcp, 0, crossing->rcp);
+  vstore4(shift, 0, crossing->shift);
+}
+
+// The interval that the rays span, from the least and the greatest origins and reciprocals of directions. A
+// ray enters first with the origin that is farthest on and with the smallest reciprocal: that a plane behind
+// the origin is then not the first does not matter, for no ray starts before 0.
+ALWAYS_INLINE void span_packet(PacketRays* rays, float4 least_o, float4 most_o, float4 least_rcp,
+                               float4 most_rcp, int4 negative) {
+  const int4 lower = (int4)(0, 8, 16, 0), upper = lower + 24;
+  vstore4(as_uint4(select(lower, upper, negative)), 0, rays->near);
+  vstore4(as_uint4(select(upper, lower, negative)), 0, rays->far);
+  const float4 ahead = select(most_o, least_o, negative), behind = select(least_o, most_o, negative);
+  const float4 small = select(least_rcp, most_rcp, negative), large = select(most_rcp, least_rcp, negative);
+  const float4 first = small * 0.9999994f, last = large * 1.0000006f;
+  const float4 in = ahead * first, out = behind * last, slack = along_face(large);
+  set_crossing(&rays->first_in, first, -(in + fma(fabs(in), (float4)(4.8e-7f), slack)));
+  set_crossing(&rays->last_out, last, -(out - fma(fabs(out), (float4)(4.8e-7f), slack)));
+  set_crossing(&rays->last_in, large, -behind * large);
+  set_crossing(&rays->first_out, small, -ahead * small);
+}
+
+// The beam; `slopes` are the least of sx and sy and their negative greatest. It is widened by more than
+// rounding moves a corner in packet_triangle, which is relative to how far that is from the rays' start.
+ALWAYS_INLINE void make_beam(PacketRays* rays, float4 slopes, float4 o_spread) {
+  const u32 ax = rays->axis[0], ay = rays->axis[1], az = rays->axis[2];
+  const float z = get_lane(rays->o + az, 0);
+  float2 least = (float2)(get_lane(rays->o + ax, 0), get_lane(rays->o + ay, 0)), most = least;
+  const float apart = max(max(o_spread.x, o_spread.y), o_spread.z);
+  if (apart > 0.0f) {
+    const float16 dz = z - rays->o[az];
+    const float16 x = fma(rays->sx, dz, rays->o[ax]), y = fma(rays->sy, dz, rays->o[ay]);
+    const float4 ends = least_of_four(x, y, -x, -y);
+    least = ends.xy;
+    most = -ends.zw;
+  }
+  const float2 middle = 0.5f * (least + most), wide = 0.5f * (most - least) + 1e-6f * (fabs(middle) + apart);
+  const float2 slope = 0.5f * (slopes.xy - slopes.zw), turn = -0.5f * (slopes.xy + slopes.zw) + 1e-6f;
+  rays->beam_x = middle.x;
+  rays->beam_y = middle.y;
+  rays->beam_z = z;
+  rays->beam_sx = slope.x;
+  rays->beam_sy = slope.y;
+  rays->spread_x = wide.x;
+  rays->spread_y = wide.y;
+  rays->spread_sx = turn.x;
+  rays->spread_sy = turn.y;
+}
+
+// Prepares the rays for the tests, given o and d. Returns false when they cannot go as one: directions of
+// different signs or of different largest components.
+NEVER_INLINE bool aim_packet(PacketRays* rays) {
+  const float16 x = fabs(rays->d[0]), y = fabs(rays->d[1]), z = fabs(rays->d[2]);
+  const int16 along_x = (x >= y) & (x >= z);
+  const u32 xs = lane_bits(along_x), ys = lane_bits(~along_x & (y >= z));
+  if ((xs != 0u && xs != ALL_RAYS) || (ys != 0u && ys != ALL_RAYS)) return false;
+  rays->axis[2] = xs ? 0u : ys ? 1u : 2u;
+  rays->axis[0] = xs ? 1u : ys ? 2u : 0u;
+  rays->axis[1] = xs ? 2u : ys ? 0u : 1u;
+  const float16 along = 1.0f / rays->d[rays->axis[2]];
+  rays->sx = rays->d[rays->axis[0]] * along;
+  rays->sy = rays->d[rays->axis[1]] * along;
+  rays->sz = -along;
+  float16 ends[16];
+#pragma unroll
+  for (u32 axis = 0; axis < 3u; ++axis) {
+    const float16 o = rays->o[axis];
+    const float16 rcp = aim_slabs(o, rays->d[axis], &rays->rcp_near[axis], &rays->rcp_far[axis],
+                                  &rays->shift_near[axis], &rays->shift_far[axis]);
+    ends[axis] = o;
+    ends[4u + axis] = -o;
+    ends[8u + axis] = rcp;
+    ends[12u + axis] = -rcp;
+  }
+  ends[3] = rays->sx;
+  ends[7] = -rays->sx;
+  ends[11] = rays->sy;
+  ends[15] = -rays->sy;
+  const float16 least = least_of_each(ends);
+  const float4 least_rcp = least.s89ab, most_rcp = -least.scdef;
+  const int4 negative = most_rcp < 0.0f, apart = ~negative & (least_rcp <= 0.0f);
+  if (apart.x | apart.y | apart.z) return false;
+  span_packet(rays, least.s0123, -least.s4567, least_rcp, most_rcp, negative);
+  make_beam(rays, least.s3b7f, -least.s4567 - least.s0123);
+  return true;
+}
+
+// The rays as an instance sees them. A ray that is not in `active` becomes one that is.
+NEVER_INLINE void packet_in_object(__global const Instance* instance, const PacketRays* world, u32 active,
+                                   PacketRays* object) {
+  const u32 stand_in = lowest_bit(active);
+  const int16 lanes = lanes_of(active);
+  float16 o[3], d[3];
+  for (u32 axis = 0; axis < 3u; ++axis) {
+    o[axis] = select((float16)(get_lane(&world->o[axis], stand_in)), world->o[axis], lanes);
+    d[axis] = select((float16)(get_lane(&world->d[axis], stand_in)), world->d[axis], lanes);
+  }
+  for (u32 axis = 0; axis < 3u; ++axis) {
+    const float4 row = instance->object_from_world[axis];
+    object->o[axis] = fma((float16)(row.x), o[0],
+                          fma((float16)(row.y), o[1], fma((float16)(row.z), o[2], (float16)(row.w))));
+    object->d[axis] = fma((float16)(row.x), d[0], fma((float16)(row.y), d[1], (float16)(row.z) * d[2]));
+  }
+}
+
+static inline float3 packet_origin(const PacketRays* rays, u32 i) {
+  return (float3)(get_lane(rays->o, i), get_lane(rays->o + 1, i), get_lane(rays->o + 2, i));
+}
+static inline float3 packet_direction(const PacketRays* rays, u32 i) {
+  return (float3)(get_lane(rays->d, i), get_lane(rays->d + 1, i), get_lane(rays->d + 2, i));
+}
+
+// Lanes that have found something are switched off.
+static inline void end_lanes(PacketHits* hits, MASK lanes) {
+  hits->found->t = select(hits->found->t, (REAL)(-1.0f), lanes & hit_anything(hits->found));
+}
+
+#endif
+
+#endif

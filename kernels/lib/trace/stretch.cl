@@ -1,0 +1,170 @@
+// All that a ray meets in a short part of its way, where the tracer gives the nearest hit alone.
+#ifndef SUNDOG_LIB_STRETCH_CL
+#define SUNDOG_LIB_STRETCH_CL
+#include "lib/core/config.h"
+#if HAS_TOUCHING
+#include "lib/core/tables.h"
+#include "lib/trace/nodes.cl"
+#include "lib/trace/traverse.cl"
+
+#define MOST_TOUCHING 16u
+
+// A short part of a ray, and all that it meets there in (from, to], in no order. Boxes are asked about more:
+// rounding may place a hit beside its box, by more than boxes are widened.
+typedef struct Stretch {
+  float3 o, d;
+  float from, to, box_from, box_to;
+  u32 count;
+  Hit hits[MOST_TOUCHING];
+} Stretch;
+
+static inline bool same_face(const Hit* a, const Hit* b) {
+  return a->instance == b->instance && a->prim == b->prim;
+}
+
+// A triangle may be in several leaves of its tree.
+static inline void note_hit(Stretch* stretch, const Hit* hit) {
+  for (u32 i = 0; i < stretch->count; ++i)
+    if (same_face(&stretch->hits[i], hit) && stretch->hits[i].t == hit->t) return;
+  if (stretch->count < MOST_TOUCHING) stretch->hits[stretch->count++] = *hit;
+}
+
+#if HAS_SOLID
+// Whether the stretch may meet the ball around the instance, if it has one.
+static inline bool comes_near(__global const Instance* restrict instance, const Stretch* stretch) {
+  const float4 ball = instance->world_center;
+  const float3 p = stretch->o + stretch->from * stretch->d;
+  const float reach = ball.w + (stretch->box_to - stretch->from);
+  return ball.w == 0.0f || !(distance(p, ball.xyz) > reach + 1e-5f * (reach + length(p)));
+}
+
+static inline void note_solid(__global const Instance* restrict instances, u32 index, Stretch* stretch) {
+  const REAL3 o = all3(stretch->o), d = all3(stretch->d);
+  REAL from = (REAL)(stretch->from);
+  for (u32 i = 0; i < 4u; ++i) {
+    Hits hits = no_hits((REAL)(stretch->to));
+    hit_solids(instances, index, index + 1u, &o, &d, &from, lanes_of(1u), false, &hits);
+    const Hit hit = get_hit(&hits, 0);
+    if (hit.instance == NO_INSTANCE) return;
+    note_hit(stretch, &hit);
+    from = (REAL)(hit.t);
+  }
+}
+#endif
+
+#if HAS_BVH
+// Pushes the children of a node that the stretch crosses. Returns the stack's new top.
+static inline u32 push_all_crossed(__global const u32* nodes, u32 word, const SlabRay* slabs,
+                                   const Stretch* stretch, u32* stack, u32 top) {
+  u32 keys[8];
+  __global const BvhNode* node = node_at(nodes, word);
+  for (u32 bits = cross_children(node, slabs, stretch->box_from, stretch->box_to, keys); bits;
+       bits &= bits - 1u)
+    stack[top++] = child_word(node, lowest_bit(bits));
+  return top;
+}
+#endif
+
+#if HAS_MESH
+static inline void note_triangle(__global const TriangleBlock* restrict blocks, u32 place, float t, float u,
+                                 float v, u32 instance, Stretch* stretch) {
+  Hit hit;
+  hit.t = t;
+  hit.u = u;
+  hit.v = v;
+  hit.prim = place;
+  hit.instance = instance;
+  finish_triangle(blocks, &hit);
+  note_hit(stretch, &hit);
+}
+
+static inline void note_block(__global const TriangleBlock* restrict blocks, u32 index, const ShearRay* shear,
+                              u32 instance, Stretch* stretch) {
+#if WIDE_VECTORS
+  const BlockTest test = test_block(blocks + index, shear, stretch->from, stretch->to);
+  if (!test.lanes) return;
+  float t[8], u[8], v[8];
+  vstore8(test.t, 0, t);
+  vstore8(test.u, 0, u);
+  vstore8(test.v, 0, v);
+  for (u32 bits = test.lanes; bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    note_triangle(blocks, index * 8u + i, t[i], u[i], v[i], instance, stretch);
+  }
+#else
+  for (u32 i = 0; i < 8u && blocks[index].prim[i] != NO_PRIM; ++i) {
+    float t, u, v;
+    if (hits_triangle(blocks[index].v0_x + i, shear, stretch->from, stretch->to, &t, &u, &v))
+      note_triangle(blocks, index * 8u + i, t, u, v, instance, stretch);
+  }
+#endif
+}
+
+static inline void note_mesh(const Scene* scene, u32 index, Stretch* stretch, u32* stack) {
+  __global const Instance* instance = scene->instances + index;
+  float3 o = stretch->o, d = stretch->d;
+  if (!(instance->flags & INSTANCE_IDENTITY)) {
+    o = object_point(instance, o);
+    d = object_vector(instance, d);
+  }
+  const SlabRay slabs = make_slab_ray(o, d);
+  const ShearRay shear = make_shear_ray(o, d);
+  u32 top = 0;
+  stack[top++] = instance->root;
+  while (top) {
+    const u32 word = stack[--top];
+    if (word & BVH_LEAF) {
+      const u32 first = word & BVH_FIRST_MASK,
+                last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+      for (u32 i = first; i <= last; ++i) note_block(scene->blocks, i, &shear, index, stretch);
+    } else
+      top = push_all_crossed(scene->nodes, word, &slabs, stretch, stack, top);
+  }
+}
+#endif
+
+#if HAS_BVH
+static inline void note_bounded(const Scene* scene, Stretch* stretch) {
+  u32 stack[BVH_STACK + 1];
+  u32 top = 0;
+  if (scene->info->bounded_count)
+    stack[top++] = scene->info->bounded_count == 1u ? BVH_LEAF : scene->info->tlas_root;
+  const SlabRay slabs = make_slab_ray(stretch->o, stretch->d);
+  while (top) {
+    const u32 word = stack[--top];
+    if (!(word & BVH_LEAF)) {
+      top = push_all_crossed(scene->nodes, word, &slabs, stretch, stack, top);
+      continue;
+    }
+    const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+    for (u32 i = first; i <= last; ++i) {
+#if HAS_MESH
+      if (scene->instances[i].shape == SHAPE_MESH) {
+        note_mesh(scene, i, stretch, stack + top);
+        continue;
+      }
+#endif
+#if HAS_SOLID
+      note_solid(scene->instances, i, stretch);
+#endif
+    }
+  }
+}
+#endif
+
+NEVER_INLINE void note_all(const Scene* scene, Stretch* stretch) {
+  stretch->count = 0;
+#if HAS_BVH
+  note_bounded(scene, stretch);
+  const u32 first = scene->info->bounded_count;
+#else
+  const u32 first = 0;
+#endif
+#if HAS_SOLID
+  for (u32 i = first; i < scene->info->instance_count; ++i)
+    if (comes_near(scene->instances + i, stretch)) note_solid(scene->instances, i, stretch);
+#endif
+}
+#endif
+
+#endif

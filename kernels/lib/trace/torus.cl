@@ -1,0 +1,57 @@
+// One ray against a torus about the y axis: (|p|^2 + 1 - r^2)^2 = 4 (x^2 + z^2), major radius 1, minor radius
+// r. All four roots are isolated by the extrema of the quartic.
+#ifndef SUNDOG_LIB_TORUS_CL
+#define SUNDOG_LIB_TORUS_CL
+#include "lib/core/config.h"
+#include "lib/core/quartic.cl"
+
+#if HAS_TORUS
+typedef struct TorusHit {
+  float t;
+  float3 ng;
+} TorusHit;
+
+// Returns whether there is a hit in (t_min, hit->t].
+NEVER_INLINE bool closest_in_one_torus(float r, float3 o, float3 d, float t_min, TorusHit* hit) {
+  const float length_d = sqrt(dot(d, d));
+  const float3 e = d / length_d;
+  const float shift = -dot(o, e);  // the line's point nearest to the centre, in units of length
+  const float3 s = o + shift * e;
+  // A little beyond the ball around the torus, or rounding takes the change of sign at its equator for none.
+  const float reach2 = 1.001f * (1.0f + r) * (1.0f + r) - dot(s, s);
+  if (!(reach2 > 0.0f)) return false;
+  const float reach = sqrt(reach2);
+  // With p = s + x e and s.e = 0: |p|^2 = x^2 + |s|^2.
+  const float g = dot(s, s) + 1.0f - r * r;
+  const float a2 = fma(-4.0f, fma(e.x, e.x, e.z * e.z), 2.0f * g);
+  const float a1 = -8.0f * fma(s.x, e.x, s.z * e.z);
+  const float a0 = fma(g, g, -4.0f * fma(s.x, s.x, s.z * s.z));
+  float roots[4];
+  const u32 count = quartic_roots(a2, a1, a0, -reach, reach, roots);
+  bool found = false;
+#pragma unroll 1
+  for (u32 i = 0; i < count; ++i) {
+    float x = roots[i];
+    float3 p = s + x * e;
+    // Newton on the distance itself, which keeps more digits than the quartic.
+    for (u32 step = 0; step < 2u; ++step) {
+      const float rho = sqrt(fma(p.x, p.x, p.z * p.z));
+      const float ring = rho - 1.0f, tube = sqrt(fma(ring, ring, p.y * p.y));
+      const float slope =
+          ((p.x * e.x + p.z * e.z) * (ring / fmax(rho, 1e-12f)) + p.y * e.y) / fmax(tube, 1e-12f);
+      if (fabs(slope) < 0.05f) break;
+      x -= (tube - r) / slope;
+      p = s + x * e;
+    }
+    const float rho = sqrt(fma(p.x, p.x, p.z * p.z)), inward = 1.0f - 1.0f / fmax(rho, 1e-12f);
+    const float t = (x + shift) / length_d;
+    if (!(t > t_min && t <= hit->t)) continue;
+    hit->t = t;
+    hit->ng = (float3)(p.x * inward, p.y, p.z * inward);
+    found = true;
+  }
+  return found;
+}
+#endif
+
+#endif

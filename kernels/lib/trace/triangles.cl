@@ -1,0 +1,198 @@
+// Eight triangles against one ray, watertight (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle
+// Intersection"): corners are moved into a space in which the ray is the z axis, and there the sign of an
+// edge's function is right, so neighbours agree on each edge: a ray cannot pass between them, nor meet a
+// triangle that it sees edge on beside it. The result does not depend on the order in which blocks are
+// visited: equal t goes to the lower index.
+#ifndef SUNDOG_LIB_TRIANGLES_CL
+#define SUNDOG_LIB_TRIANGLES_CL
+#include "lib/core/config.h"
+#include "lib/core/masks.cl"
+#include "shared/bvh.h"
+
+// A ray as the test sees it: axes permuted so that z is where the direction is largest.
+typedef struct ShearRay {
+  u32 x, y, z;       // float offsets of the permuted axes in a corner of a TriangleBlock
+  float ox, oy, oz;  // origin, permuted
+  float sx, sy;      // the direction's slopes: x/z, y/z
+  float sz;          // -1 / direction z
+} ShearRay;
+
+static inline ShearRay make_shear_ray(float3 o, float3 d) {
+  const float3 size = fabs(d);
+  const int3 along_x = (int3)(-(size.x >= size.y && size.x >= size.z)),
+             along_y = (int3)(-(size.x < size.y && size.y >= size.z));
+  const float3 dd = select(select(d, d.zxy, along_y), d.yzx, along_x),
+               oo = select(select(o, o.zxy, along_y), o.yzx, along_x);
+  ShearRay ray;
+  ray.z = along_x.x ? 0u : along_y.x ? 8u : 16u;
+  ray.x = along_x.x ? 8u : along_y.x ? 16u : 0u;
+  ray.y = 24u - ray.x - ray.z;
+  ray.ox = oo.x;
+  ray.oy = oo.y;
+  ray.oz = oo.z;
+  const float along = 1.0f / dd.z;
+  ray.sx = dd.x * along;
+  ray.sy = dd.y * along;
+  ray.sz = -along;
+  return ray;
+}
+
+// The geometric normal of a triangle and its index, for a hit whose prim is still `block * 8 + lane`.
+static inline void finish_triangle(__global const TriangleBlock* restrict blocks, Hit* hit) {
+  __global const TriangleBlock* block = blocks + (hit->prim >> 3);
+  const u32 i = hit->prim & 7u;
+  const float3 v0 = (float3)(block->v0_x[i], block->v0_y[i], block->v0_z[i]);
+  const float3 e1 = (float3)(block->v1_x[i], block->v1_y[i], block->v1_z[i]) - v0;
+  const float3 e2 = (float3)(block->v2_x[i], block->v2_y[i], block->v2_z[i]) - v0;
+  const float3 ng = cross(e1, e2);
+  hit->prim = block->prim[i];
+  hit->ng_x = ng.x;
+  hit->ng_y = ng.y;
+  hit->ng_z = ng.z;
+}
+
+// Whether a triangle at the same t as *hit goes before it.
+static inline bool wins_tie(__global const TriangleBlock* restrict blocks, u32 instance, u32 place,
+                            const Hit* hit) {
+  if (instance != hit->instance) return instance < hit->instance;  // NO_INSTANCE is the greatest
+  return blocks[place >> 3].prim[place & 7u] < blocks[hit->prim >> 3].prim[hit->prim & 7u];
+}
+
+// Takes the triangle at `place` as the hit when it is nearer than *hit, or as near and earlier in the tables.
+ALWAYS_INLINE void offer_triangle(__global const TriangleBlock* blocks, u32 place, float t, float u, float v,
+                                  u32 instance, Hit* hit) {
+  if (t > hit->t || (t == hit->t && !wins_tie(blocks, instance, place, hit))) return;
+  hit->t = t;
+  hit->u = u;
+  hit->v = v;
+  hit->prim = place;
+  hit->instance = instance;
+}
+
+// Nothing is divided before a hit: t is `scaled_t` over the determinant, and whether it lies in (t_min,
+// t_max], where 0 <= t_min, is asked by products. Their bounds are wider by this share, more than the
+// rounding of a division in OpenCL (2.5 ulp) and what goes with it; who is let through is divided and asked
+// exactly.
+#define RANGE_SLACK 2e-6f
+
+// a x b, 0 only where a and b are in line: with the error of one product added (Kahan), or where there is no
+// instruction for that, with those of both products where these are equal (Dekker 1971).
+#if HAS_FMA
+#define EDGE_FUNCTION(name, real)                               \
+  static inline real name(real ax, real ay, real bx, real by) { \
+    const real product = ay * bx;                               \
+    return fma(ax, by, -product) + fma(-ay, bx, product);       \
+  }
+#else
+#define EDGE_FUNCTION(name, real)                                                       \
+  static inline real name##_error(real a, real b, real product) {                       \
+    const real wide_a = a * 4097.0f, wide_b = b * 4097.0f;                              \
+    const real high_a = wide_a - (wide_a - a), high_b = wide_b - (wide_b - b);          \
+    const real low_a = a - high_a, low_b = b - high_b;                                  \
+    return high_a * high_b - product + high_a * low_b + low_a * high_b + low_a * low_b; \
+  }                                                                                     \
+  static inline real name(real ax, real ay, real bx, real by) {                         \
+    const real p = ax * by, q = ay * bx;                                                \
+    return p == q ? name##_error(ax, by, p) - name##_error(ay, bx, q) : p - q;          \
+  }
+#endif
+
+#if WIDE_VECTORS
+EDGE_FUNCTION(edge_function8, float8)
+
+// What the eight lanes have in common with the hit test; t, u, v are set where `lanes` is not 0.
+typedef struct BlockTest {
+  float8 t, u, v;
+  u32 lanes;
+} BlockTest;
+
+// Lanes hit in (t_min, t_max].
+ALWAYS_INLINE BlockTest test_block(__global const TriangleBlock* block, const ShearRay* ray, float t_min,
+                                   float t_max) {
+  __global const float *vx = block->v0_x + ray->x, *vy = block->v0_x + ray->y, *vz = block->v0_x + ray->z;
+  const float8 z0 = ray->oz - vload8(0, vz), z1 = ray->oz - vload8(3, vz), z2 = ray->oz - vload8(6, vz);
+  const float8 x0 = fma(-(float8)(ray->sx), z0, ray->ox - vload8(0, vx)),
+               x1 = fma(-(float8)(ray->sx), z1, ray->ox - vload8(3, vx)),
+               x2 = fma(-(float8)(ray->sx), z2, ray->ox - vload8(6, vx));
+  const float8 y0 = fma(-(float8)(ray->sy), z0, ray->oy - vload8(0, vy)),
+               y1 = fma(-(float8)(ray->sy), z1, ray->oy - vload8(3, vy)),
+               y2 = fma(-(float8)(ray->sy), z2, ray->oy - vload8(6, vy));
+  const float8 e0 = edge_function8(x2, y2, x1, y1), e1 = edge_function8(x0, y0, x2, y2),
+               e2 = edge_function8(x1, y1, x0, y0);
+  const int8 inside = (least8(least8(e0, e1), e2) >= 0.0f) | (greatest8(greatest8(e0, e1), e2) <= 0.0f);
+  const float8 det = e0 + e1 + e2, size = fabs(det);
+  const float8 scaled_t = fma(e0, z0, fma(e1, z1, e2 * z2)) * ray->sz;
+  const float8 signed_t = as_float8(as_int8(scaled_t) ^ (as_int8(det) ^ as_int8(size)));
+  BlockTest test;
+  // The only branch, so of a ray alone the way is foretold once a block.
+  test.lanes = lane_mask(inside & (signed_t > (t_min * (1.0f - RANGE_SLACK)) * size) &
+                         (signed_t <= (t_max * (1.0f + RANGE_SLACK)) * size));
+  if (!test.lanes) return test;
+  const float8 scale = 1.0f / det;
+  test.u = e1 * scale;
+  test.v = e2 * scale;
+  test.t = scaled_t * scale;
+  test.lanes &= lane_mask((test.t > t_min) & (test.t <= t_max) & (test.t < INFINITY));
+  return test;
+}
+
+// Takes the nearest of the lanes hit, of which there are some, when it goes before *hit, whose prim becomes
+// the triangle's place (see finish_triangle).
+ALWAYS_INLINE void nearest_of_block(__global const TriangleBlock* blocks, u32 index, const BlockTest* test,
+                                    u32 instance, Hit* hit) {
+  float t[8], u[8], v[8];
+  vstore8(test->t, 0, t);
+  vstore8(test->u, 0, u);
+  vstore8(test->v, 0, v);
+  for (u32 lanes = test->lanes; lanes; lanes &= lanes - 1u) {
+    const u32 i = lowest_bit(lanes);
+    offer_triangle(blocks, index * 8u + i, t[i], u[i], v[i], instance, hit);
+  }
+}
+
+// Nearest hit of the block in (t_min, hit->t].
+ALWAYS_INLINE void closest_in_block(__global const TriangleBlock* blocks, u32 index, const ShearRay* ray,
+                                    float t_min, u32 instance, Hit* hit) {
+  const BlockTest test = test_block(blocks + index, ray, t_min, hit->t);
+  if (test.lanes) nearest_of_block(blocks, index, &test, instance, hit);
+}
+#else
+EDGE_FUNCTION(edge_function, float)
+
+// The triangle of a block whose first corner's x is at `corner`, in (t_min, t_max].
+ALWAYS_INLINE bool hits_triangle(__global const float* corner, const ShearRay* ray, float t_min, float t_max,
+                                 float* t, float* u, float* v) {
+  __global const float *vx = corner + ray->x, *vy = corner + ray->y, *vz = corner + ray->z;
+  const float z0 = ray->oz - vz[0], z1 = ray->oz - vz[24], z2 = ray->oz - vz[48];
+  const float x0 = fma(-ray->sx, z0, ray->ox - vx[0]), x1 = fma(-ray->sx, z1, ray->ox - vx[24]),
+              x2 = fma(-ray->sx, z2, ray->ox - vx[48]);
+  const float y0 = fma(-ray->sy, z0, ray->oy - vy[0]), y1 = fma(-ray->sy, z1, ray->oy - vy[24]),
+              y2 = fma(-ray->sy, z2, ray->oy - vy[48]);
+  const float e0 = edge_function(x2, y2, x1, y1), e1 = edge_function(x0, y0, x2, y2),
+              e2 = edge_function(x1, y1, x0, y0);
+  if (!((e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) || (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f))) return false;
+  const float det = e0 + e1 + e2, size = fabs(det);
+  const float scaled_t = fma(e0, z0, fma(e1, z1, e2 * z2)) * ray->sz;
+  const float signed_t = det < 0.0f ? -scaled_t : scaled_t;
+  if (!(signed_t > (t_min * (1.0f - RANGE_SLACK)) * size &&
+        signed_t <= (t_max * (1.0f + RANGE_SLACK)) * size))
+    return false;
+  const float scale = 1.0f / det;
+  *t = scaled_t * scale;
+  *u = e1 * scale;
+  *v = e2 * scale;
+  return *t > t_min && *t <= t_max && *t < INFINITY;
+}
+
+ALWAYS_INLINE void closest_in_block(__global const TriangleBlock* blocks, u32 index, const ShearRay* ray,
+                                    float t_min, u32 instance, Hit* hit) {
+#pragma unroll 1
+  for (u32 i = 0; i < 8u && blocks[index].prim[i] != NO_PRIM; ++i) {
+    float t, u, v;
+    if (hits_triangle(blocks[index].v0_x + i, ray, t_min, hit->t, &t, &u, &v))
+      offer_triangle(blocks, index * 8u + i, t, u, v, instance, hit);
+  }
+}
+#endif
+
+#endif

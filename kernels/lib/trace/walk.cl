@@ -1,0 +1,233 @@
+// Rays by themselves through the two-level BVH. Where an incoherent ray goes next cannot be foretold, so the
+// walks of a batch are listed by what comes next, a node or a leaf, and taken a list at a time: eight boxes
+// or eight triangles an instruction, hardly a branch that depends on a ray, and while one walk waits for
+// memory or for its own arithmetic, the next ones go on. In: rays and where they begin. Out: their hits,
+// which do not depend on the rays that go along.
+#ifndef SUNDOG_LIB_WALK_CL
+#define SUNDOG_LIB_WALK_CL
+#include "lib/core/config.h"
+#if WALKS_IN_TURN
+#include "lib/core/tables.h"
+#include "lib/core/transform.cl"
+#include "lib/trace/aimed_rays.cl"
+#include "lib/trace/hits.cl"
+#include "lib/trace/nodes.cl"
+#include "lib/trace/triangles.cl"
+#include "lib/trace/walk_solids.cl"
+
+// Words on a walk's stack that are no child: below all others, and below those of a mesh.
+#define WALK_END 0xFFFFFFFFu
+#define WALK_BACK 0xFFFFFFFEu
+
+// Room for the nodes that wait, for those two words, for what else waits of a leaf, and for the places behind
+// them that whole vectors read and overwrite.
+#define WALK_STACK (BVH_STACK + 3 + (LANES > 8 ? LANES : 8))
+
+typedef struct Walk {
+  const AimedRays* rays;  // in the space of the BVH
+  u32 ray;
+  u32 instance;   // in whose mesh the walk is; NO_INSTANCE: in the scene BVH
+  u32 top, base;  // below base waits the scene BVH while the walk is in a mesh
+  u32 stack[WALK_STACK];
+  float stack_t[WALK_STACK];  // where the ray enters what waits, never behind its hit; not written for `any`
+} Walk;
+
+// Lanes of rays; hits->t is where they end.
+typedef struct WalkRays {
+  const REAL3 *o, *d;
+  const REAL* t_min;
+  Hits* hits;
+} WalkRays;
+
+static inline void push_word(Walk* walk, u32 word) {
+  walk->stack[walk->top] = word;
+  walk->stack_t[walk->top++] = -INFINITY;
+}
+
+static inline void start_walk(Walk* walk, const AimedRays* rays, u32 ray, u32 word, u32 instance) {
+  walk->rays = rays;
+  walk->ray = ray;
+  walk->instance = instance;
+  walk->top = walk->base = 0;
+  push_word(walk, WALK_END);
+  push_word(walk, word);
+}
+
+// Takes what lies behind t off the stack, from place `from` on.
+ALWAYS_INLINE void drop_behind(Walk* walk, u32 from, float t) {
+  u32 to = from;
+  for (u32 i = from; i < walk->top; i += LANES) {
+    const u32 count = min(walk->top - i, (u32)LANES);
+    const REAL words = read_lanes((const float*)(walk->stack + i)), entries = read_lanes(walk->stack_t + i);
+    const MASK kept = MASK_OF(entries <= t) & lanes_of((1u << count) - 1u);
+    write_packed((float*)(walk->stack + to), words, kept);
+    write_packed(walk->stack_t + to, entries, kept);
+    to += lane_count(kept);
+  }
+  walk->top = to;
+}
+
+// Into the mesh `index`. Returns whether the ray is to be aimed anew in its space.
+static inline bool enter_mesh(__global const Instance* restrict instances, Walk* walk, u32 index) {
+  __global const Instance* instance = instances + index;
+  walk->instance = index;
+  walk->base = walk->top;
+  push_word(walk, WALK_BACK);
+  push_word(walk, instance->root);
+  return !(instance->flags & INSTANCE_IDENTITY);
+}
+
+// Aims the rays of `entering` in the spaces of the meshes that they have entered, those of one mesh at once.
+NEVER_INLINE void aim_in_meshes(__global const Instance* restrict instances, const WalkRays* rays,
+                                AimedRays* turned, Walk* walks, u32 entering) {
+  while (entering) {
+    const u32 index = walks[lowest_bit(entering)].instance;
+    u32 alike = 0;
+    for (u32 bits = entering; bits; bits &= bits - 1u) {
+      const u32 ray = lowest_bit(bits);
+      if (walks[ray].instance == index) alike |= 1u << ray;
+      walks[ray].rays = turned;
+    }
+    entering &= ~alike;
+    const REAL3 o = object_points(instances + index, *rays->o),
+                d = object_vectors(instances + index, *rays->d);
+    aim_rays(turned, &o, &d, alike);
+  }
+}
+
+// From a mesh back to the scene BVH.
+static inline void leave_mesh(Walk* walk, const AimedRays* world) {
+  walk->rays = world;
+  walk->instance = NO_INSTANCE;
+  walk->base = 0;
+}
+
+// The first block of a leaf; the others wait.
+ALWAYS_INLINE void walk_block(__global const TriangleBlock* blocks, const REAL* t_min, Hits* hits, Walk* walk,
+                              u32 word) {
+  const u32 index = word & BVH_FIRST_MASK, ray = walk->ray;
+  walk->stack[walk->top] = word - (1u << BVH_LEAF_SHIFT) + 1u;
+  walk->top += (word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK) != 0u;
+  const ShearRay shear = get_shear(walk->rays, ray);
+  const BlockTest test = test_block(blocks + index, &shear, REAL_LANE(*t_min, ray), REAL_LANE(hits->t, ray));
+  if (!test.lanes) return;
+  Hit hit = get_hit(hits, ray);
+  nearest_of_block(blocks, index, &test, walk->instance, &hit);
+  set_hit(hits, ray, &hit);
+  drop_behind(walk, walk->base, hit.t);
+}
+
+// What is left to do for a walk after a leaf's word, for all walks of the round at once.
+#define LEAF_TURN 1u   // it has entered a mesh: its ray is aimed in the mesh's space
+#define LEAF_SOLID 2u  // it has come to a solid
+
+// The next word of a walk, a leaf.
+ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const AimedRays* world, Walk* walk,
+                            u32 word, bool any) {
+#if HAS_MESH
+  if (word == WALK_BACK) {
+    leave_mesh(walk, world);
+    if (!any) drop_behind(walk, 1u, REAL_LANE(rays->hits->t, walk->ray));
+    return 0u;
+  }
+  if (walk->instance != NO_INSTANCE) {
+    walk_block(scene->blocks, rays->t_min, rays->hits, walk, word);
+    return 0u;
+  }
+#endif
+  // The first of the leaf's scene->instances; the others wait.
+  const u32 index = word & BVH_FIRST_MASK;
+  if (word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK) push_word(walk, word - (1u << BVH_LEAF_SHIFT) + 1u);
+  if (!HAS_MESH || scene->instances[index].shape != SHAPE_MESH) return LEAF_SOLID;
+  return enter_mesh(scene->instances, walk, index) ? LEAF_TURN : 0u;
+}
+
+// The walks of `bits`, which is not 0, at solids[ray]. Returns those that go on.
+NEVER_INLINE u32 walk_solids(__global const Instance* restrict instances, const u32* solids, u32 bits,
+                             const WalkRays* rays, Walk* walks, bool any) {
+  const REAL before = rays->hits->t;
+  hit_solids_by_lane(instances, solids, bits, rays->o, rays->d, rays->t_min, rays->hits);
+  if (any) return bits & ~lane_bits(hit_anything(rays->hits));
+  for (u32 nearer = bits & lane_bits(MASK_OF(rays->hits->t < before)); nearer; nearer &= nearer - 1u) {
+    const u32 ray = lowest_bit(nearer);
+    drop_behind(&walks[ray], 1u, REAL_LANE(rays->hits->t, ray));
+  }
+  return bits;
+}
+
+// The next word of a walk, a node.
+ALWAYS_INLINE void walk_node(__global const u32* nodes, const REAL* t_min, const Hits* hits, Walk* walk,
+                             u32 word, bool any) {
+  const u32 ray = walk->ray, top = walk->top - 1u;
+  const SlabRay slabs = get_slabs(walk->rays, ray);
+  __global const BvhNode* node = node_at(nodes, word);
+  const float from = REAL_LANE(*t_min, ray), to = REAL_LANE(hits->t, ray);
+  u32* stack = walk->stack + top;
+  float* stack_t = walk->stack_t + top;
+  walk->top = top + (any ? push_in_any_order(node, &slabs, from, to, stack, stack_t)
+                         : push_crossed(node, &slabs, from, to, stack, stack_t));
+}
+
+// Puts a walk on the list where its next word belongs; one that has ended goes on none. No branch, and the
+// counts stay in registers: a list that is found by its index would be written and read too close together.
+ALWAYS_INLINE void list_walk(Walk* walk, Walk** at_node, u32* node_words, u32* node_count, Walk** at_leaf,
+                             u32* leaf_count) {
+  const u32 word = walk->stack[walk->top - 1u], leaf = word >> 31;
+  at_node[*node_count] = walk;
+  node_words[*node_count] = word;
+  at_leaf[*leaf_count] = walk;
+  *node_count += 1u - leaf;
+  *leaf_count += leaf - (word == WALK_END ? 1u : 0u);
+}
+#define LIST_WALK(walk) list_walk(walk, at_node, node_words, &node_count, at_leaf, &leaf_count)
+
+// The nearest hits, or with `any` whichever come first, of the lanes of `bits`, which is not 0, from `word`
+// of the scene BVH on; or, rays in object space, of the mesh BVH of `instance`.
+NEVER_INLINE void walk_rays(const Scene* scene, const WalkRays* rays, u32 bits, u32 word, u32 instance,
+                            bool any) {
+  const REAL* t_min = rays->t_min;
+  Hits* hits = rays->hits;
+  AimedRays world, turned;
+  aim_rays(&world, rays->o, rays->d, bits);
+  Walk walks[LANES];
+  Walk *at_node[LANES + 1], *at_leaf[LANES + 1];
+  u32 node_words[LANES + 1], node_count = 0, leaf_count = 0;
+  u32 solids[LANES];  // that the rays have come to
+  for (; bits; bits &= bits - 1u) {
+    const u32 ray = lowest_bit(bits);
+    start_walk(&walks[ray], &world, ray, word, instance);
+    LIST_WALK(&walks[ray]);
+  }
+  while (node_count | leaf_count) {
+    // The longer list, so that there is always much to overlap.
+    if (node_count > leaf_count) {
+      const u32 count = node_count;
+      for (u32 k = 0; k < count; ++k) walk_node(scene->nodes, t_min, hits, at_node[k], node_words[k], any);
+      // Only now, when what was pushed has arrived, is it looked at.
+      node_count = 0;
+      for (u32 k = 0; k < count; ++k) LIST_WALK(at_node[k]);
+    } else {
+      const u32 count = leaf_count;
+      u32 entering = 0, at_solid = 0;
+      leaf_count = 0;
+      for (u32 k = 0; k < count; ++k) {
+        Walk* walk = at_leaf[k];
+        const u32 word = walk->stack[--walk->top], ray = walk->ray;
+        const u32 left = walk_leaf(scene, rays, &world, walk, word, any);
+        solids[ray] = word & BVH_FIRST_MASK;
+        entering |= (left & LEAF_TURN) << ray;
+        at_solid |= (left / LEAF_SOLID) << ray;
+        if (left == LEAF_SOLID || (any && MASK_LANE(hits->instance, ray) != (int)NO_INSTANCE)) continue;
+        LIST_WALK(walk);
+      }
+      if (entering) aim_in_meshes(scene->instances, rays, &turned, walks, entering);
+      if (!HAS_SOLID || !at_solid) continue;
+      for (u32 on = walk_solids(scene->instances, solids, at_solid, rays, walks, any); on; on &= on - 1u)
+        LIST_WALK(&walks[lowest_bit(on)]);
+    }
+  }
+}
+
+#endif
+
+#endif

@@ -1,0 +1,79 @@
+// What Whitted's integrator does with rays where they end: the light that they see on the way and there, each
+// kind by a step of its own. Each takes the rays of some lanes and returns the light that their pixels
+// receive.
+#ifndef SUNDOG_LIB_STEPS_CL
+#define SUNDOG_LIB_STEPS_CL
+#include "lib/light/shadow_rays.cl"
+#include "lib/path/camera.cl"
+#include "lib/whitted/children.cl"
+
+// Light of the fields that glow along the rays.
+static inline REAL3 see_emitted(const SceneRays* rays, const PathStates* paths) {
+  return HAS_GLOW ? multiply3(paths->throughput, emitted(rays)) : all3((float3)(0.0f));
+}
+
+// The world's fog, for rays of `ended` that were not inside anything: what it adds, and what it takes from
+// all behind it.
+static inline REAL3 see_fog(const Scene* scene, const Encounters* met, MASK ended, PathStates* paths) {
+#if HAS_FOG
+  const MASK foggy = ended & MASK_OF(met->before == 0);
+  const float4 fog = scene->info->fog;
+  const REAL clear = select((REAL)(1.0f), real_exp(-fog.w * met->hit.t), foggy);
+  const REAL3 light = multiply3(scale3(paths->throughput, 1.0f - clear), all3(fog.xyz));
+  paths->throughput = scale3(paths->throughput, clear);
+  return light;
+#else
+  return all3((float3)(0.0f));
+#endif
+}
+
+static inline REAL3 see_background(const Scene* scene, const SceneRays* rays, const PathStates* paths) {
+  return multiply3(paths->throughput, background_along(scene->info, rays->d));
+}
+
+// Ambient light on surfaces, less in the crevices of fields.
+static inline REAL3 see_ambient(const Scene* scene, const SceneRays* rays, const PathStates* paths,
+                                const Hits* hits, const Bsdfs* bsdf, MASK lanes) {
+  REAL3 own = multiply3(bsdf->ambient, all3(scene->info->ambient.xyz));
+  own = scale3(own, field_openness(scene, rays, hits, lanes));
+  return multiply3(paths->throughput, own);
+}
+
+// Marks the pixels whose camera rays have hit something.
+static inline void note_first_hits(const PathStates* paths, MASK lanes, float4* radiance, u32* counts) {
+  const MASK first = lanes & MASK_OF(paths->depth == 1);
+  counts[COUNT_PRIMARY_HIT] += lane_count(first);
+  for (u32 bits = lane_bits(first); bits; bits &= bits - 1u)
+    radiance[MASK_LANE(paths->pixel, lowest_bit(bits))].w = 1.0f;
+}
+
+// The surfaces of `lanes` and what they do to light.
+static inline void shade_hits(const Scene* scene, const SceneRays* rays, const Encounters* met, MASK lanes,
+                              Shading* at) {
+  interact(scene, rays->o, rays->d, &met->hit, &met->face, lanes, &at->s);
+  at->s.offset = offset_beyond(met, at->s.offset);
+  at->bsdf = make_bsdfs(scene, &at->s, met->before, met->after, lanes);
+}
+
+// The rays of `lanes` at what they met: the surfaces of those that hit something, which are returned, and
+// what the `fresh` ones see and spawn there. The rays of `unseen` saw only what lay before.
+static inline MASK meet_surfaces(const Scene* scene, const SceneRays* rays, PathStates* paths, MASK lanes,
+                                 MASK unseen, MASK fresh, const Encounters* met, Shading* at, REAL3* light,
+                                 RayStack* stack, float4* radiance, u32* counts) {
+  REAL3 seen = see_emitted(rays, paths);
+  paths->throughput = multiply3(paths->throughput, met->absorbed);
+  if (BATCH > 1 && any_lane(unseen)) push_rays(stack, rays, paths, unseen);
+  const MASK ended = lanes & ~unseen, hit = ended & hit_anything(&met->hit);
+  if (HAS_FOG) seen = add3(seen, see_fog(scene, met, ended, paths));
+  seen = select3(seen, add3(seen, see_background(scene, rays, paths)), ended & ~hit);
+  if (any_lane(hit)) {
+    shade_hits(scene, rays, met, hit, at);
+    seen = select3(seen, add3(seen, see_ambient(scene, rays, paths, &met->hit, &at->bsdf, hit)), hit);
+    spawn_children(scene, &at->s, &at->bsdf, met, rays, paths, hit & fresh, stack, counts);
+    note_first_hits(paths, hit & fresh, radiance, counts);
+  }
+  *light = seen;
+  return hit;
+}
+
+#endif

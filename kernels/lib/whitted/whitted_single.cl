@@ -1,0 +1,57 @@
+// Whitted's ray tree of one pixel, for devices that run a lane a ray: one loop takes path and shadow rays
+// alike. The lanes of a group follow trees of their own, and are quick only where they trace at the same
+// time: so a surface's shadow rays wait on the stack, above its children, and each round takes a ray of
+// whatever kind.
+#ifndef SUNDOG_LIB_WHITTED_SINGLE_CL
+#define SUNDOG_LIB_WHITTED_SINGLE_CL
+#include "lib/light/shadow.cl"
+#include "lib/whitted/steps.cl"
+
+#if BATCH == 1
+// A ray that met a surface with more lights than the stack has room for waits itself, to meet it once more:
+// its depth then holds the next light in the bits from here on.
+#define DEPTH_BITS 8u
+
+// Takes a ray to what it meets next. Returns whether it goes on.
+static inline MASK follow_ray(const Scene* scene, SceneRays* rays, PathStates* paths, RayStack* stack,
+                              float4* radiance, u32* counts) {
+  Encounters met;
+  const bool to_light = paths->depth == 0;
+  next_hits(scene, rays, ALL_LANES, to_light, &met.hit, counts);
+  if (to_light) return reach_filters(scene, rays, paths, &met.hit, ALL_LANES, radiance, counts);
+  const MASK unseen = reach_interfaces(scene, rays, ALL_LANES, &met, counts);
+  const PathStates whole = *paths;
+  u32 light = (u32)paths->depth >> DEPTH_BITS;
+  const MASK fresh = MASK_OF(light == 0u);
+  paths->depth &= (1 << DEPTH_BITS) - 1;
+  Shading at;
+  REAL3 seen;
+  const MASK hit =
+      meet_surfaces(scene, rays, paths, ALL_LANES, unseen, fresh, &met, &at, &seen, stack, radiance, counts);
+  add_to_pixels(seen, paths->pixel, fresh, radiance);
+  forget_glow(rays);
+  if (!hit) return unseen;
+  const u32 last = min(scene->info->light_count, light + LIGHT_ROOM);
+  if (last < scene->info->light_count) {
+    PathStates again = whole;
+    again.depth = paths->depth | (int)(last << DEPTH_BITS);
+    push_rays(stack, rays, &again, ALL_LANES);
+  }
+  for (; light < last; ++light) cast_shadows(scene, light, rays, paths, hit, &met.hit, &at, stack, counts);
+  return NO_LANES;
+}
+
+// The camera's ray in `rays`, with all that comes of it. radiance->xyz receives the light of the pixel, w
+// whether the ray hit anything.
+static inline void trace_whitted(const Scene* scene, SceneRays* rays, MASK lanes, RayStack* stack,
+                                 float4* radiance, u32* counts) {
+  PathStates paths = {all3((float3)(1.0f)), NO_LANES, (MASK)(1)};
+  stack->count = 0;
+  while (any_lane(lanes)) {
+    lanes = follow_ray(scene, rays, &paths, stack, radiance, counts);
+    if (!any_lane(lanes) && stack->count) lanes = pop_rays(stack, 1u, rays, &paths);
+  }
+}
+#endif
+
+#endif
