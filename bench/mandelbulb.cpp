@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "bench/report/samples.h"
-#include "compile/sdf.h"
+#include "compile/fields/sdf.h"
 #include "device/device.h"
 #include "mandelbulb_peer.h"
 #include "scene/formula/list.h"

@@ -11,11 +11,11 @@
 #include "base/error.h"
 #include "compile/camera.h"
 #include "compile/compiled_scene.h"
+#include "compile/fields/sdf_deep.h"
 #include "compile/instances.h"
 #include "compile/local_origin.h"
 #include "compile/materials.h"
 #include "compile/mesh_bvh.h"
-#include "compile/sdf_deep.h"
 #include "scene/integrators.h"
 
 namespace sundog {

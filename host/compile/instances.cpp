@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "compile/bvh/wide_bvh.h"
 #include "compile/instance_bounds.h"
 #include "compile/local_origin.h"
 #include "compile/shapes.h"
-#include "compile/touching.h"
-#include "compile/wide_bvh.h"
+#include "compile/touching/touching.h"
 
 namespace sundog {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
+#include "compile/bvh/wide_bvh.h"
 #include "compile/compiled_scene.h"
-#include "compile/wide_bvh.h"
 
 namespace sundog {
 

@@ -73,7 +73,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     counts[COUNT_MARCH_LEFT] = MARCH_WORK;
 #endif
     SceneRays rays;
-    const MASK lanes = start_rays(scene->info, job, item, sample, around, &rays);
+    const MASK lanes = start_rays(scene->info, launch, item, sample, around, &rays);
     counts[COUNT_PRIMARY] += lane_count(lanes);
     trace_whitted(scene, &rays, lanes, &stack, radiance, counts);
     store_sample(launch, item, lanes, radiance, film, weights, counts);

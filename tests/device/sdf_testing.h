@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "catch.h"
-#include "compile/sdf.h"
+#include "compile/fields/sdf.h"
 #include "devices.h"
 #include "scene/formula/list.h"
 

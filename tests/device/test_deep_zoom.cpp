@@ -6,7 +6,7 @@
 
 #include "catch.h"
 #include "compile/compiled_scene.h"
-#include "compile/sdf_deep.h"
+#include "compile/fields/sdf_deep.h"
 #include "devices.h"
 #include "scene/formula/evaluate.h"
 #include "scene/json/parse.h"

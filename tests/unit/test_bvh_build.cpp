@@ -14,8 +14,8 @@
 #include "base/error.h"
 #include "bench/rays/exact_tracer.h"
 #include "catch.h"
+#include "compile/bvh/wide_bvh.h"
 #include "compile/compiled_scene.h"
-#include "compile/wide_bvh.h"
 #include "test_meshes.h"
 
 using namespace sundog;

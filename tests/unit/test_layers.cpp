@@ -1,4 +1,5 @@
-// The layers of host/README.md: no include runs backwards.
+// The layers of host/README.md and kernels/README.md: no include runs backwards.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -25,18 +26,28 @@ const std::map<std::string, Names> allowed = {
     {"app", {"base", "scene", "compile", "device", "render", "bench", "shared"}},
 };
 
+/// The folders of a layer in their order: each includes only itself and those before it. Files of the layer's
+/// own folder come after all of them.
+const std::map<std::string, std::vector<std::string>> folders = {
+    {"host/render", {"values", "film", "plan", "frame", "device", "remote"}},
+    {"host/bench", {"plain", "report", "rays", "frames", "tune"}},
+    {"host/app", {"process", "options", "job", "render", "bench", "commands"}},
+    {"kernels/lib", {"core", "sdf", "trace", "path", "shade", "light", "whitted"}},
+};
+
 struct Include {
   std::string file, layer, path;
 };
 
-std::vector<Include> host_includes() {
-  const fs::path host = fs::path(SUNDOG_SOURCE_DIR) / "host";
+/// The includes of all sources below a folder of the project; `layer` is the first folder of `file`.
+std::vector<Include> includes_below(const std::string& top) {
+  const fs::path host = fs::path(SUNDOG_SOURCE_DIR) / top;
   const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
   std::vector<Include> includes;
   for (const auto& entry : fs::recursive_directory_iterator(host)) {
     const fs::path relative = fs::relative(entry.path(), host);
     if (!entry.is_regular_file() ||
-        !std::regex_match(relative.extension().string(), std::regex(R"(\.(cpp|h|hpp))")))
+        !std::regex_match(relative.extension().string(), std::regex(R"(\.(cpp|h|hpp|cl))")))
       continue;
     std::ifstream file(entry.path());
     std::smatch match;
@@ -50,7 +61,7 @@ std::vector<Include> host_includes() {
 }  // namespace
 
 TEST_CASE("a layer includes only the layers to its left") {
-  const auto includes = host_includes();
+  const auto includes = includes_below("host");
   REQUIRE(includes.size() > 50);
   for (const auto& [file, layer, path] : includes) {
     INFO(file << " includes " << path);
@@ -62,9 +73,41 @@ TEST_CASE("a layer includes only the layers to its left") {
 }
 
 TEST_CASE("OpenCL is spoken in the device layer alone") {
-  for (const auto& [file, layer, path] : host_includes())
+  for (const auto& [file, layer, path] : includes_below("host"))
     if (path.starts_with("CL/")) {
       INFO(file << " includes " << path);
       CHECK(layer == "device");
     }
+}
+
+TEST_CASE("a folder of a layer includes only the folders before it") {
+  for (const auto& [layer, order] : folders) {
+    const std::string name = layer.substr(layer.find('/') + 1);
+    const auto place = [&](const std::string& folder) {
+      return std::find(order.begin(), order.end(), folder) - order.begin();
+    };
+    for (const auto& [file, folder, path] : includes_below(layer)) {
+      if (!path.starts_with(name + "/")) continue;
+      INFO(layer << "/" << file << " includes " << path);
+      const std::string target =
+          path.substr(name.size() + 1, path.find('/', name.size() + 1) - name.size() - 1);
+      if (file.find('/') != std::string::npos) REQUIRE(place(folder) < std::ssize(order));
+      CHECK(place(file.find('/') == std::string::npos ? "" : folder) >= place(target));
+    }
+  }
+}
+
+TEST_CASE("no folder has more sources than a reader takes in") {
+  std::map<std::string, int> count;
+  for (const char* top : {"host", "kernels"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(SUNDOG_SOURCE_DIR) / top)) {
+      const std::string kind = entry.path().extension().string();
+      if (kind == ".cpp" || kind == ".cl" ||
+          (kind == ".h" && !fs::exists(fs::path(entry.path()).replace_extension(".cpp"))))
+        ++count[fs::relative(entry.path().parent_path(), SUNDOG_SOURCE_DIR).string()];
+    }
+  for (const auto& [folder, files] : count) {
+    INFO(folder);
+    CHECK(files <= 24);
+  }
 }

@@ -3,7 +3,7 @@
 
 #include "catch.h"
 #include "compile/compiled_scene.h"
-#include "compile/touching_triangles.h"
+#include "compile/touching/touching_triangles.h"
 #include "scene/load.h"
 #include "scenes.h"
 #include "test_meshes.h"

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "base/image_compare.h"
+#include "bench/plain/random.h"
 #include "bench/plain/surface.h"
-#include "bench/rays/random.h"
 
 namespace sundog {
 namespace plain {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "bench/plain/random.h"
 #include "bench/plain/surface.h"
-#include "bench/rays/random.h"
 
 namespace sundog {
 namespace {

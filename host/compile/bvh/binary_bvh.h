@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compile/bounds.h"
-#include "compile/wide_bvh.h"
+#include "compile/bvh/wide_bvh.h"
 
 namespace sundog {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "compile/sdf_emit.h"
+#include "compile/fields/sdf_emit.h"
 #include "scene/formula/lower.h"
 #include "scene/formula/sdf.h"
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "compile/sdf.h"
+#include "compile/fields/sdf.h"
 #include "scene/description.h"
 
 namespace sundog {

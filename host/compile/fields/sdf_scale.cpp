@@ -1,4 +1,4 @@
-#include "compile/sdf_scale.h"
+#include "compile/fields/sdf_scale.h"
 
 #include <algorithm>
 

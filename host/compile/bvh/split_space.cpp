@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "compile/split.h"
+#include "compile/bvh/split.h"
 
 namespace sundog {
 namespace {

@@ -1,5 +1,5 @@
 // See touching_triangles.h. Candidates come from a grid whose cells are about as large as the triangles.
-#include "compile/touching_triangles.h"
+#include "compile/touching/touching_triangles.h"
 
 #include <tbb/parallel_sort.h>
 

@@ -1,12 +1,12 @@
 // The recursive build, a task a subtree, and the dynamic programme of the collapse on the way back up.
-#include "compile/binary_bvh.h"
+#include "compile/bvh/binary_bvh.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 
-#include "compile/split.h"
+#include "compile/bvh/split.h"
 
 namespace sundog {
 namespace {

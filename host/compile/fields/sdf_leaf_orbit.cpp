@@ -1,7 +1,7 @@
 // A leaf's orbit as code: before the first iteration, one iteration, the loop. See sdf_leaf_emitter.h.
 #include <fmt/format.h>
 
-#include "compile/sdf_leaf_emitter.h"
+#include "compile/fields/sdf_leaf_emitter.h"
 
 namespace sundog {
 

@@ -1,6 +1,6 @@
 // See touching.h. A flat face lies on a convex solid where its plane is one that the solid leans against;
 // triangles are compared with triangles; round surfaces are looked at in ever smaller cells.
-#include "compile/touching.h"
+#include "compile/touching/touching.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "compile/round_surfaces.h"
 #include "compile/shapes.h"
-#include "compile/touching_triangles.h"
+#include "compile/touching/round_surfaces.h"
+#include "compile/touching/touching_triangles.h"
 
 namespace sundog {
 namespace {

@@ -1,12 +1,12 @@
 // A leaf's functions: what its orbit's end, or its direct formula, says of the distance. See sdf_leaf.h.
-#include "compile/sdf_leaf.h"
+#include "compile/fields/sdf_leaf.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "compile/sdf_leaf_emitter.h"
+#include "compile/fields/sdf_leaf_emitter.h"
 
 namespace sundog {
 namespace {

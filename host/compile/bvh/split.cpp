@@ -1,5 +1,5 @@
 // Binning, the choice of a plane, and the partition; see split.h.
-#include "compile/split.h"
+#include "compile/bvh/split.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

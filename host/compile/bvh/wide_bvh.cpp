@@ -1,10 +1,10 @@
 // Lays the collapsed tree out as Bvh8Nodes and leaf blocks; see wide_bvh.h.
-#include "compile/wide_bvh.h"
+#include "compile/bvh/wide_bvh.h"
 
 #include <algorithm>
 #include <memory>
 
-#include "compile/binary_bvh.h"
+#include "compile/bvh/binary_bvh.h"
 
 namespace sundog {
 namespace {

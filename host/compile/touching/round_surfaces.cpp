@@ -1,5 +1,5 @@
 // See round_surfaces.h. Cells are halved while both surfaces may pass through them side by side.
-#include "compile/round_surfaces.h"
+#include "compile/touching/round_surfaces.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // The tree of each field becomes calls of the leaves' functions and of lib/sdf/compose.cl.
-#include "compile/sdf.h"
+#include "compile/fields/sdf.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <cstring>
 #include <map>
 
-#include "compile/sdf_deep.h"
-#include "compile/sdf_leaf.h"
-#include "compile/sdf_scale.h"
+#include "compile/fields/sdf_deep.h"
+#include "compile/fields/sdf_leaf.h"
+#include "compile/fields/sdf_scale.h"
 
 namespace sundog {
 namespace {

@@ -1,4 +1,4 @@
-#include "compile/sdf_emit.h"
+#include "compile/fields/sdf_emit.h"
 
 #include <fmt/format.h>
 

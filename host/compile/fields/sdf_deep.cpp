@@ -1,5 +1,5 @@
 // See sdf_deep.h. The code of deep fields is written in sdf.cpp.
-#include "compile/sdf_deep.h"
+#include "compile/fields/sdf_deep.h"
 
 #include <algorithm>
 #include <cmath>
