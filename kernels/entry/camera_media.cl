@@ -18,14 +18,14 @@ static inline float cross_faces(const Scene* scene, const SceneRays* rays, const
   Touching touching;
   find_touching(scene, get3(&rays->o, 0), get3(&rays->d, 0), REAL_LANE(rays->t_min, 0), &first, &touching);
   const Stretch* met = &touching.met;
-  Changes changes = faces_of(scene->instances, scene->triangles, scene->materials, met);
-  take_out_pairs(scene->instances, scene->materials, met, &changes);
+  Changes changes = faces_of(scene, met);
+  take_out_pairs(scene, met, &changes);
   for (u32 left = changes.left; left;) {
-    const u32 inner = pick_face(scene->instances, scene->materials, scene->media, met, &changes, left, false);
+    const u32 inner = pick_face(scene, met, &changes, left, false);
     left &= ~(1u << inner);
     leave_medium(scene->materials[changes.material[inner]].medium, entered, holding);
   }
-  enter_all(scene->instances, scene->materials, scene->media, met, &changes, entered);
+  enter_all(scene, met, &changes, entered);
   return touching.end;
 }
 #endif

@@ -22,18 +22,17 @@ static inline REAL straight_transmittance(__global const Medium* restrict media,
 }
 
 // Multiplies `through` by the transmission of the surfaces that the lanes of `lanes` pass.
-static inline void filter_light(__global const Material* restrict materials,
-                                __global const Medium* restrict media, const Faces* faces, MASK here,
-                                MASK there, REAL3 wi, MASK lanes, REAL3* through) {
+static inline void filter_light(const Scene* scene, const Faces* faces, MASK here, MASK there, REAL3 wi,
+                                MASK lanes, REAL3* through) {
   MASK dielectric = NO_LANES;
   u32 index;
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(faces->material, &left, &index);
-    *through = select3(*through, multiply3(*through, all3(materials[index].transmission.xyz)), mine);
-    if (materials[index].kind == MATERIAL_DIELECTRIC) dielectric |= mine;
+    *through = select3(*through, multiply3(*through, all3(scene->materials[index].transmission.xyz)), mine);
+    if (scene->materials[index].kind == MATERIAL_DIELECTRIC) dielectric |= mine;
   }
   if (!any_lane(dielectric)) return;
-  const REAL kept = straight_transmittance(media, here, there, faces->outward, wi, dielectric);
+  const REAL kept = straight_transmittance(scene->media, here, there, faces->outward, wi, dielectric);
   *through = select3(*through, scale3(*through, kept), dielectric);
 }
 
@@ -96,7 +95,7 @@ static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits,
   const MASK there = here;
 #endif
   if (!any_lane(passing)) return NO_LANES;
-  filter_light(scene->materials, scene->media, &faces, here, there, rays->d, through, light);
+  filter_light(scene, &faces, here, there, rays->d, through, light);
   continue_behind(scene->info, rays, hits, faces.entering, passing);
   return passing & MASK_OF(greatest3(*light) > 0.0f);
 }

@@ -83,10 +83,9 @@ static inline void find_touching(const Scene* scene, float3 o, float3 d, float t
   met->count = kept;
 }
 
-static inline u32 material_of(__global const Instance* restrict instances,
-                              __global const TriangleShading* restrict triangles, const Hit* hit) {
-  const u32 material = instances[hit->instance].material;
-  return material != NO_MATERIAL ? material : triangles[hit->prim].material;
+static inline u32 material_of(const Scene* scene, const Hit* hit) {
+  const u32 material = scene->instances[hit->instance].material;
+  return material != NO_MATERIAL ? material : scene->triangles[hit->prim].material;
 }
 
 // Whether two hits are one, on an edge that two triangles of a mesh share.
@@ -104,23 +103,21 @@ typedef struct Changes {
   u32 material[MOST_TOUCHING];
 } Changes;
 
-static inline Changes faces_of(__global const Instance* restrict instances,
-                               __global const TriangleShading* restrict triangles,
-                               __global const Material* restrict materials, const Stretch* met) {
+static inline Changes faces_of(const Scene* scene, const Stretch* met) {
   Changes changes;
   changes.entered = 0;
   changes.left = 0;
   changes.thin = 0;
   for (u32 i = 0; i < met->count; ++i) {
     const Hit* hit = &met->hits[i];
-    changes.material[i] = material_of(instances, triangles, hit);
+    changes.material[i] = material_of(scene, hit);
     bool again = false;
-    for (u32 k = 0; k < i; ++k) again |= on_shared_edge(instances, &met->hits[k], hit);
-    const u32 flags = materials[changes.material[i]].flags;
+    for (u32 k = 0; k < i; ++k) again |= on_shared_edge(scene->instances, &met->hits[k], hit);
+    const u32 flags = scene->materials[changes.material[i]].flags;
     if (again || !(flags & MATERIAL_TRANSMITS)) continue;
     if (flags & MATERIAL_THIN)
       changes.thin |= 1u << i;
-    else if (dot(outward_of(instances, hit), met->d) < 0.0f)
+    else if (dot(outward_of(scene->instances, hit), met->d) < 0.0f)
       changes.entered |= 1u << i;
     else
       changes.left |= 1u << i;
@@ -130,17 +127,15 @@ static inline Changes faces_of(__global const Instance* restrict instances,
 
 // Takes out faces that leave and enter the same medium, two by two; those that face each other first, so that
 // of a corner the right face is left.
-static inline void take_out_pairs(__global const Instance* restrict instances,
-                                  __global const Material* restrict materials, const Stretch* met,
-                                  Changes* changes) {
+static inline void take_out_pairs(const Scene* scene, const Stretch* met, Changes* changes) {
   for (u32 facing = 2; facing-- > 0;)
     for (u32 entered = changes->entered; entered; entered &= entered - 1u) {
-      const u32 i = lowest_bit(entered), medium = materials[changes->material[i]].medium;
-      const float3 normal = unit_normal(outward_of(instances, &met->hits[i]));
+      const u32 i = lowest_bit(entered), medium = scene->materials[changes->material[i]].medium;
+      const float3 normal = unit_normal(outward_of(scene->instances, &met->hits[i]));
       for (u32 left = changes->left; left; left &= left - 1u) {
         const u32 k = lowest_bit(left);
-        if (materials[changes->material[k]].medium != medium) continue;
-        if (facing && dot(normal, unit_normal(outward_of(instances, &met->hits[k]))) > -0.9f) continue;
+        if (scene->materials[changes->material[k]].medium != medium) continue;
+        if (facing && dot(normal, unit_normal(outward_of(scene->instances, &met->hits[k]))) > -0.9f) continue;
         changes->entered &= ~(1u << i);
         changes->left &= ~(1u << k);
         break;
@@ -150,24 +145,21 @@ static inline void take_out_pairs(__global const Instance* restrict instances,
 
 // Whether, of two solids that are entered in one place, the first counts as the outer one: the larger. Else
 // the media decide, so that the order in the file does not.
-static inline bool is_outer(__global const Instance* restrict instances,
-                            __global const Medium* restrict media, const Hit* a, u32 medium_a, const Hit* b,
-                            u32 medium_b) {
-  const float size_a = instances[a->instance].world_center.w, size_b = instances[b->instance].world_center.w;
+static inline bool is_outer(const Scene* scene, const Hit* a, u32 medium_a, const Hit* b, u32 medium_b) {
+  const float size_a = scene->instances[a->instance].world_center.w,
+              size_b = scene->instances[b->instance].world_center.w;
   if (size_a != size_b) return size_a == 0.0f || (size_b != 0.0f && size_a > size_b);
-  const float index_a = media[medium_a].absorption.w, index_b = media[medium_b].absorption.w;
+  const float index_a = scene->media[medium_a].absorption.w, index_b = scene->media[medium_b].absorption.w;
   return index_a != index_b ? index_a < index_b : medium_a < medium_b;
 }
 
 // Of the faces of `bits`, which is not 0, the one whose solid counts as the outermost, or else the innermost.
-static inline u32 pick_face(__global const Instance* restrict instances,
-                            __global const Material* restrict materials,
-                            __global const Medium* restrict media, const Stretch* met, const Changes* changes,
-                            u32 bits, bool outermost) {
-  u32 best = lowest_bit(bits), medium = materials[changes->material[best]].medium;
+static inline u32 pick_face(const Scene* scene, const Stretch* met, const Changes* changes, u32 bits,
+                            bool outermost) {
+  u32 best = lowest_bit(bits), medium = scene->materials[changes->material[best]].medium;
   for (bits &= bits - 1u; bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits), other = materials[changes->material[i]].medium;
-    if (is_outer(instances, media, &met->hits[i], other, &met->hits[best], medium) != outermost) continue;
+    const u32 i = lowest_bit(bits), other = scene->materials[changes->material[i]].medium;
+    if (is_outer(scene, &met->hits[i], other, &met->hits[best], medium) != outermost) continue;
     best = i;
     medium = other;
   }
@@ -175,15 +167,13 @@ static inline u32 pick_face(__global const Instance* restrict instances,
 }
 
 // Enters the media of `changes`, the outer ones first. Returns how many found no room.
-static inline u32 enter_all(__global const Instance* restrict instances,
-                            __global const Material* restrict materials,
-                            __global const Medium* restrict media, const Stretch* met, const Changes* changes,
+static inline u32 enter_all(const Scene* scene, const Stretch* met, const Changes* changes,
                             MediaStack* stack) {
   u32 lost = 0;
   for (u32 left = changes->entered; left;) {
-    const u32 outer = pick_face(instances, materials, media, met, changes, left, true);
+    const u32 outer = pick_face(scene, met, changes, left, true);
     left &= ~(1u << outer);
-    if (!cross_boundary(stack, materials[changes->material[outer]].medium, true)) ++lost;
+    if (!cross_boundary(stack, scene->materials[changes->material[outer]].medium, true)) ++lost;
   }
   return lost;
 }
@@ -236,7 +226,7 @@ static inline void join_faces(const Scene* scene, const Touching* touching, u32 
   seen->strays = 0;
   bool opaque = false;
   for (u32 i = 0; i < met->count; ++i) {
-    const u32 material = material_of(scene->instances, scene->triangles, &met->hits[i]);
+    const u32 material = material_of(scene, &met->hits[i]);
     if ((scene->materials[material].flags & mask) == MATERIAL_TRANSMITS) continue;
     if (opaque && comes_first(&seen->hit, &met->hits[i])) continue;
     opaque = true;
@@ -244,12 +234,12 @@ static inline void join_faces(const Scene* scene, const Touching* touching, u32 
     seen->material = material;
   }
   if (opaque) return;
-  Changes changes = faces_of(scene->instances, scene->triangles, scene->materials, met);
-  take_out_pairs(scene->instances, scene->materials, met, &changes);
+  Changes changes = faces_of(scene, met);
+  take_out_pairs(scene, met, &changes);
   for (u32 left = changes.left; left; left &= left - 1u)
     if (!cross_boundary(&seen->behind, scene->materials[changes.material[lowest_bit(left)]].medium, false))
       ++seen->strays;
-  seen->overflows = enter_all(scene->instances, scene->materials, scene->media, met, &changes, &seen->behind);
+  seen->overflows = enter_all(scene, met, &changes, &seen->behind);
   seen->after = current_medium(scene->media, seen->behind);
   const u32 some = changes.thin | changes.entered | changes.left;
   u32 best = some ? lowest_bit(some) : 0u;
