@@ -8,6 +8,8 @@
 #include "base/error.h"
 #include "render/device/device_server.h"
 #include "render/film/hash.h"
+#include "render/film/part.h"
+#include "render/film/rows.h"
 #include "render/frame/frame.h"
 
 namespace sundog {

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/standard_streams.h"
 #include "render/device/device_server.h"
+#include "render/device/tuning.h"
 #include "render/film/hash.h"
 #include "render/remote/remote_server.h"
 #include "render/remote/remote_values.h"

@@ -9,6 +9,7 @@
 
 #include "app/options/options.h"
 #include "compile/compiled_scene.h"
+#include "device/device_pool.h"
 #include "render/remote/tile_worker.h"
 #include "render/render.h"
 

@@ -27,6 +27,8 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/standard_streams.h"
+#include "device/device_pool.h"
+#include "render/device/tuning.h"
 #include "render/device/view_warnings.h"
 #include "render/film/hash.h"
 #include "scene/json/override.h"

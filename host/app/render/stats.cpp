@@ -8,6 +8,7 @@
 
 #include "app/process/scene_figures.h"
 #include "app/render/stray_exits.h"
+#include "render/device/tuning.h"
 
 namespace sundog {
 namespace {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "render/device/tuning.h"
 
 namespace sundog {
 namespace {

@@ -14,6 +14,7 @@
 #include "bench/report/samples.h"
 #include "bench/tune/tune_search.h"
 #include "render/device/kernel_config.h"
+#include "render/device/tuning.h"
 
 namespace sundog {
 namespace {

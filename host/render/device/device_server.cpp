@@ -1,4 +1,5 @@
 #include "render/device/device_server.h"
+#include "device/device_pool.h"
 
 #include <sys/resource.h>
 #include <sys/syscall.h>

@@ -2,7 +2,7 @@
 #pragma once
 #include "compile/compiled_scene.h"
 #include "device/device.h"
-#include "render/device/tuning.h"
+#include "render/values/tuning.h"
 
 namespace sundog {
 

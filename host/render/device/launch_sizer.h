@@ -5,7 +5,8 @@
 #include <string>
 
 #include "device/device.h"
-#include "render/device/tuning.h"
+#include "render/film/film.h"
+#include "render/values/tuning.h"
 #include "shared/launch.h"
 
 namespace sundog {
