@@ -104,7 +104,8 @@ TEST_CASE("samples of highlights return their integrals over the hemisphere") {
     for (const DeviceInfo& info : test_devices())
       DYNAMIC_SECTION(info.label() << (blinn ? ", Blinn" : ", Phong")) {
         Device device(info);
-        CHECK(mean_weight(draw(device, shiny, 1)).y == Approx(kd + lobe).epsilon(0.01));
+        CHECK(mean_weight(draw(device, shiny, 1)).y ==
+              Approx(kd + lobe).epsilon(0.02));  // four standard deviations
       }
   }
 }

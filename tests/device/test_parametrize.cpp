@@ -8,6 +8,7 @@
 #include "catch.h"
 #include "devices.h"
 #include "render/device/device_scene.h"
+#include "render/device/kernel_config.h"
 #include "scenes.h"
 
 using namespace sundog;

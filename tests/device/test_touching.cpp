@@ -12,7 +12,8 @@ using namespace sundog;
 using glm::dmat4;
 using glm::dvec3;
 
-namespace touching {
+using namespace touching;
+
 namespace {
 
 /// Halves a box at lattice planes, again and again.
@@ -329,5 +330,3 @@ TEST_CASE("a camera inside touching solids of one medium sees as inside one") {
                glass);
   check_alike(whole, parts, 2);
 }
-
-}  // namespace touching

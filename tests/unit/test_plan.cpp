@@ -7,6 +7,7 @@
 
 #include "catch.h"
 #include "render/plan/tiles.h"
+#include "render/film/rows.h"
 
 using namespace sundog;
 

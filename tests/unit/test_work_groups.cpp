@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "bench/frames/work_groups.h"
 #include "catch.h"
+#include "render/device/tuning.h"
 
 using namespace sundog;
 using enum WorkGroup::Kind;
