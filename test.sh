@@ -1,5 +1,5 @@
 #!/bin/bash
-# Installs what is missing, builds sundog and its tests, and runs them all. Arguments go to ctest.
+# Installs what is missing, checks the sources, builds sundog and its tests, and runs them all. Arguments go to ctest.
 set -eu
 root=$(readlink -f -- "${BASH_SOURCE[0]}")
 root=${root%/*}
@@ -7,6 +7,9 @@ stamp=$root/build/release/built-tests  # younger than every source: there is not
 sources=("$root"/{host,kernels,cmake,tests,bench,CMakeLists.txt,CMakePresets.json})
 
 if [[ ! -e $stamp || -n $(find "${sources[@]}" -newer "$stamp" -print -quit) ]]; then
+  "$root/cmake/prepare.sh" packages
+  "$root/tests/check_format.sh"
+  "$root/tests/tidy.sh"
   "$root/cmake/prepare.sh" tests
 fi
 cd "$root"

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Makes build/release ready: `prepare.sh program` for sundog alone, `prepare.sh tests` for the tests too. Packages come from
-# apt, and only those that are missing. Quiet unless there is something to do; else it says first how much that is.
+# Makes build/release ready: `prepare.sh program` for sundog alone, `prepare.sh tests` for the tests too; `prepare.sh packages`
+# only installs what the latter needs. Packages come from apt, and only those that are missing. Quiet unless there is something to do; else it says first how much that is.
 set -eu
 goal=$1
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
@@ -11,6 +11,8 @@ needed=(g++ cmake ninja-build ocl-icd-opencl-dev opencl-clhpp-headers pocl-openc
   libopenexr-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtbb-dev zlib1g-dev catch2)
 # The tests compare with these where they are; Open MPI is what `mpirun sundog` needs.
 peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin)
+# Of one version, so that every machine finds the same: tests/check_format.sh, tests/tidy.sh.
+checkers=(clang-format-19 clang-tidy-19)
 
 # Seconds of one core that a build takes with an empty compiler cache, in round figures.
 program_work=300
@@ -77,7 +79,8 @@ exec 9>"$build/lock"
 flock 9  # two calls at once take turns
 
 install_missing "${needed[@]}"
-if [[ $goal == tests ]]; then install_missing "${peers[@]}"; fi
+if [[ $goal != program ]]; then install_missing "${peers[@]}" "${checkers[@]}"; fi
+if [[ $goal == packages ]]; then exit 0; fi
 
 cd "$root"
 touch "$build/started"  # what changes during the build is built the next time

@@ -174,3 +174,57 @@ TEST_CASE("the build notes the git commit, whether files differ from it, and not
   run_command({"cmake", whole, "-DOUTPUT=" + output, "-P", SUNDOG_SOURCE_DIR "/cmake/GitRevision.cmake"});
   CHECK(contains(read_file(output), "unknown"));
 }
+
+TEST_CASE("the format check passes a formatted tree and fails one line that is not") {
+  const TemporaryFolder tree;
+  for (const char* file : {"tests/check_format.sh", ".clang-format"}) {
+    fs::create_directories((tree / file).parent_path());
+    fs::copy_file(fs::path(SUNDOG_SOURCE_DIR) / file, tree / file);
+  }
+  for (const char* folder : {"host", "kernels", "bench"}) fs::create_directories(tree / folder);
+  tree.write("host/a.cpp", "int a() { return 1; }\n");
+  tree.write("kernels/b.cl", "int b() { return 2; }\n");
+  const std::string check = (tree / "tests/check_format.sh").string();
+  CommandResult result = run_command({check});
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+  if (contains(result.err, "no clang-format 19")) return;
+  tree.write("kernels/b.cl", "int b( ) { return 2; }\n");
+  result = run_command({check});
+  CHECK(result.status == 1);
+  CHECK(contains(result.err, "b.cl:1"));
+  CHECK_FALSE(contains(result.err, "a.cpp"));
+}
+
+TEST_CASE("the check by clang-tidy reads the sources that changed, and fails for what it finds") {
+  const TemporaryFolder tree;
+  for (const char* file : {"tests/tidy.sh", ".clang-tidy"}) {
+    fs::create_directories((tree / file).parent_path());
+    fs::copy_file(fs::path(SUNDOG_SOURCE_DIR) / file, tree / file);
+  }
+  for (const char* folder : {"host", "bench", "build"}) fs::create_directories(tree / folder);
+  tree.write("CMakeLists.txt",
+             "cmake_minimum_required(VERSION 3.22)\nproject(tree CXX)\nfile(GLOB all host/*.cpp)\n"
+             "add_library(tree ${all})\n");
+  tree.write("CMakePresets.json",
+             R"({"version": 3, "configurePresets": [{"name": "release", "generator": "Ninja", "binaryDir":
+               "${sourceDir}/build/release", "cacheVariables": {"CMAKE_EXPORT_COMPILE_COMMANDS": "ON"}}]})");
+  tree.write(".gitignore", "build\n");
+  const std::string fault =
+      "bool is_empty(double x, double y) { if (x = y) return true; return x / 2 > (1 / 2); }\n";
+  tree.write("host/old.cpp", fault);
+  tree.write("host/a.cpp", "int a() { return 1; }\n");
+  CommandOptions options;
+  options.folder = tree.path();
+  const auto run = [&](const std::string& command) { return run_command({"bash", "-c", command}, options); };
+  REQUIRE(run("git init -q -b main && git add . && git -c user.name=a -c user.email=a commit -qm 1").status ==
+          0);
+  CHECK(run("tests/tidy.sh").status == 0);
+  tree.write("host/a.cpp", fault);
+  const CommandResult changed = run("tests/tidy.sh"), all = run("tests/tidy.sh --all");
+  if (contains(changed.err, "no clang-tidy 19")) return;
+  CHECK(changed.status == 1);
+  CHECK(contains(changed.out, "a.cpp:1"));
+  CHECK_FALSE(contains(changed.out, "old.cpp"));
+  CHECK(contains(all.out, "old.cpp:1"));
+}

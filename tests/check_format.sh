@@ -1,0 +1,17 @@
+#!/bin/bash
+# All C++ and OpenCL C of the project as .clang-format has it. clang-format 19 is the measure: other versions set some lines
+# otherwise, so without it nothing is compared and a message says so.
+set -eu
+cd "$(dirname "$0")/.."
+format=""
+for candidate in clang-format-19 clang-format; do
+  if [[ $("$candidate" --version 2>/dev/null) == *"version 19."* ]]; then format=$candidate; break; fi
+done
+if [[ -z $format ]]; then
+  echo "check_format: no clang-format 19 here, so the format is not checked. On Debian or Ubuntu: apt-get install clang-format-19" >&2
+  exit 0
+fi
+find host kernels tests bench -name '*.cpp' -o -name '*.h' -o -name '*.cl' | sort | xargs "$format" --dry-run -Werror || {
+  echo "check_format: mend it with: $format -i FILE..." >&2
+  exit 1
+}
