@@ -1,0 +1,170 @@
+// A frame's threads without a device: servers that are made up take tiles, fail, hang and are stopped.
+#include "render/frame/frame.h"
+
+#include <chrono>
+#include <thread>
+
+#include "base/error.h"
+#include "catch.h"
+#include "render/render.h"
+#include "temporary_folder.h"
+
+using namespace sundog;
+
+namespace {
+
+constexpr int width = 64, height = 48;
+
+float value_of(int x, int y) { return static_cast<float>(y * width + x); }
+
+/// Makes tiles whose pixels are value_of() and whose primary rays are their pixels.
+struct MadeUpServer : TileServer {
+  std::function<void(int tile)> before = [](int) {};  // throws what the driver would; tiles count from 1
+  std::atomic<bool> hangs{false};
+  int tiles = 0;
+  DeviceInfo device;
+
+  MadeUpServer() { device.estimate = 1; }
+  const DeviceInfo& info() const override { return device; }
+  RenderTimes open() override { return {}; }
+  ServerFigures figures() const override { return {}; }
+  void close() override {}
+  double overdue() const override { return hangs ? 1 : 0; }
+  int processor() const override { return -1; }
+
+  TileResult render(const Tile& tile, const StopFlags& flags) override {
+    before(++tiles);
+    TileResult made{tile, {}, {}, {}, {}};
+    if (flags.set()) made.tile.height = 0;
+    for (int y = 0; y < made.tile.height; ++y)
+      for (int x = 0; x < tile.width; ++x) {
+        made.sums.push_back({value_of(tile.x + x, tile.y + y), 0, 0, 1});
+        made.weights.push_back(1);
+      }
+    made.counts[COUNT_PRIMARY] = made.sums.size();
+    return made;
+  }
+};
+
+using Servers = std::vector<std::shared_ptr<MadeUpServer>>;
+
+Servers servers(int count) {
+  Servers all;
+  for (int i = 0; i < count; ++i) all.push_back(std::make_shared<MadeUpServer>());
+  return all;
+}
+
+/// A frame in tiles of 8x8 pixels, all for anybody.
+std::shared_ptr<Frame> frame_of(const Servers& servers, RenderOptions options = {}) {
+  TilePlan plan;
+  plan.whole = true;
+  plan.lists.emplace_back(cut_tiles(width, height, 8));
+  DeviceSpeed speed;
+  speed.estimate = 1;
+  auto frame = std::make_shared<Frame>(std::move(options), Film(width, height, false), std::move(plan),
+                                       std::vector(servers.size(), speed));
+  for (const auto& server : servers) frame->servers.push_back({server, {}});
+  return frame;
+}
+
+/// That the film is whole and every pixel was counted once.
+void check_whole(Frame& frame) {
+  const std::lock_guard lock(frame.mutex);
+  CHECK(frame.queue.complete());
+  CHECK(frame.counts[COUNT_PRIMARY] == width * height);
+  CHECK(frame.pixels_done == width * height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      REQUIRE(frame.film.sums[static_cast<std::size_t>(y * width + x)].x == value_of(x, y));
+}
+
+}  // namespace
+
+TEST_CASE("every pixel of a frame is counted once, whichever server makes it") {
+  const Servers all = servers(4);
+  all[3]->before = [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(5)); };
+  const auto frame = frame_of(all);
+  run_frame(frame, true);
+  check_whole(*frame);
+}
+
+TEST_CASE("tiles that a server failed at are made by it again or by others") {
+  const Servers all = servers(3);
+  int failures = 0;
+  all[0]->before = [&](int tile) {
+    if (tile % 4 == 1 && ++failures < 3) throw DeviceError("a launch failed", -14);
+  };
+  all[1]->before = [](int) { throw DeviceError("every launch fails", -14); };
+  all[2]->before = [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
+  const auto frame = frame_of(all);
+  run_frame(frame, true);
+  check_whole(*frame);
+  CHECK_FALSE(frame->servers[0].failed);
+  CHECK_FALSE(frame->servers[2].failed);
+  if (all[1]->tiles >= 3) CHECK(frame->servers[1].report.retired);
+  CHECK(frame->servers[1].report.pixels == 0);
+}
+
+TEST_CASE("a frame whose servers all fail ends and keeps the failure") {
+  const Servers all = servers(2);
+  for (const auto& server : all) server->before = [](int) { throw DeviceError("every launch fails", -14); };
+  const auto frame = frame_of(all);
+  run_frame(frame, true);
+  CHECK_FALSE(frame->queue.complete());
+  REQUIRE(frame->last_error);
+  CHECK_THROWS_AS(std::rethrow_exception(frame->last_error), DeviceError);
+}
+
+TEST_CASE("a server that hangs is retired, and the frame ends without it") {
+  const Servers all = servers(2);
+  std::atomic<bool> released{false};
+  all[0]->before = [&](int) {
+    all[0]->hangs = true;
+    while (!released) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  const auto frame = frame_of(all);
+  const auto is_retired = [&] {
+    const std::lock_guard lock(frame->mutex);
+    return frame->servers[0].failed;
+  };
+  all[1]->before = [&](int) {
+    while (!is_retired()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  run_frame(frame, false);
+  check_whole(*frame);
+  {
+    const std::lock_guard lock(frame->mutex);
+    CHECK(frame->servers[0].report.abandoned);
+    CHECK(frame->servers[0].report.retired);
+    CHECK(frame->servers[0].report.pixels == 0);
+    CHECK(frame->servers[1].report.pixels == width * height);
+  }
+  CHECK(threads_left_behind() == 1);
+  released = true;
+  while (threads_left_behind() > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+TEST_CASE("a frame that is stopped keeps what was made, and its checkpoints hold no half tile") {
+  const TemporaryFolder folder;
+  const Servers all = servers(3);
+  std::atomic<bool> stop{false};
+  RenderOptions options;
+  options.stop = &stop;
+  options.checkpoint = folder / "frame.checkpoint";
+  options.checkpoint_seconds = 0;
+  options.on_progress = [&](const RenderProgress& progress) {
+    if (progress.pixels_done >= progress.pixels_total / 2) stop = true;
+  };
+  for (const auto& server : all)
+    server->before = [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(2)); };
+  const auto frame = frame_of(all, options);
+  run_frame(frame, true);
+  CHECK(frame->pixels_done >= width * height / 2);
+  CHECK(frame->counts[COUNT_PRIMARY] == frame->pixels_done);
+  CHECK(std::ranges::count(frame->film.done, 1) == static_cast<std::ptrdiff_t>(frame->pixels_done));
+  if (std::filesystem::exists(options.checkpoint)) {
+    Film kept(width, height, false);
+    read_checkpoint(options.checkpoint, kept, frame->key);
+    CHECK(std::ranges::count(kept.done, 1) % 64 == 0);
+  }
+}
