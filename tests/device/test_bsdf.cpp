@@ -76,18 +76,18 @@ dvec3 mean_weight(const std::vector<Drawn>& drawn, int moment = 0) {
 TEST_CASE("a matte surface's samples return kd, two thirds of it by the cosine") {
   Material matte{};
   matte.diffuse = {0.8f, 0.5f, 0.2f, 0};
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      const std::vector<Drawn> drawn = draw(device, matte, 0.6);
-      for (const Drawn& one : drawn) {
-        REQUIRE(glm::length(one.wi) == Approx(1).epsilon(1e-5));
-        REQUIRE(one.density == Approx(one.wi.z / pi).epsilon(1e-4));
-        REQUIRE_FALSE(one.specular);
-      }
-      CHECK(mean_weight(drawn).x == Approx(0.8).epsilon(1e-4));  // every weight is kd
-      CHECK(mean_weight(drawn).z == Approx(0.2).epsilon(1e-4));
-      CHECK(mean_weight(drawn, 1).x == Approx(0.8 * 2 / 3).epsilon(0.01));
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    const std::vector<Drawn> drawn = draw(device, matte, 0.6);
+    for (const Drawn& one : drawn) {
+      REQUIRE(glm::length(one.wi) == Approx(1).epsilon(1e-5));
+      REQUIRE(one.density == Approx(one.wi.z / pi).epsilon(1e-4));
+      REQUIRE_FALSE(one.specular);
     }
+    CHECK(mean_weight(drawn).x == Approx(0.8).epsilon(1e-4));  // every weight is kd
+    CHECK(mean_weight(drawn).z == Approx(0.2).epsilon(1e-4));
+    CHECK(mean_weight(drawn, 1).x == Approx(0.8 * 2 / 3).epsilon(0.01));
+  });
 }
 
 TEST_CASE("samples of highlights return their integrals over the hemisphere") {
@@ -119,19 +119,19 @@ TEST_CASE("samples of a dielectric are reflected with Fresnel's probability, els
   glass.kind = MATERIAL_DIELECTRIC;
   glass.flags = MATERIAL_REFLECTS | MATERIAL_TRANSMITS;
   glass.reflection = glass.transmission = {1, 1, 1, 0};
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      const std::vector<Drawn> drawn = draw(device, glass, cos_i, float(n));
-      double reflected = 0;
-      for (const Drawn& one : drawn) {
-        REQUIRE(one.specular);
-        REQUIRE(one.weight.x == Approx(1).epsilon(1e-4));
-        const bool mirrored = one.wi.z > 0;
-        reflected += mirrored;
-        const dvec3 expected = mirrored ? dvec3(sin_i, 0, cos_i) : dvec3(sin_i / n, 0, -cos_t);
-        REQUIRE(glm::distance(one.wi, expected) < 1e-5);
-        REQUIRE(one.density == Approx(mirrored ? fresnel : 1 - fresnel).epsilon(1e-3));
-      }
-      CHECK(reflected / count == Approx(fresnel).epsilon(0.1));
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    const std::vector<Drawn> drawn = draw(device, glass, cos_i, float(n));
+    double reflected = 0;
+    for (const Drawn& one : drawn) {
+      REQUIRE(one.specular);
+      REQUIRE(one.weight.x == Approx(1).epsilon(1e-4));
+      const bool mirrored = one.wi.z > 0;
+      reflected += mirrored;
+      const dvec3 expected = mirrored ? dvec3(sin_i, 0, cos_i) : dvec3(sin_i / n, 0, -cos_t);
+      REQUIRE(glm::distance(one.wi, expected) < 1e-5);
+      REQUIRE(one.density == Approx(mirrored ? fresnel : 1 - fresnel).epsilon(1e-3));
     }
+    CHECK(reflected / count == Approx(fresnel).epsilon(0.1));
+  });
 }

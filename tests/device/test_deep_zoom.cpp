@@ -161,15 +161,15 @@ TEST_CASE("a view a millionth wide has the depths that doubles give") {
     farthest = std::max(farthest, wanted.back());
   }
   CHECK(farthest - nearest > width);  // there is something to be seen
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      if (!has_doubles(info) || !is_quick(info)) continue;
-      Device device(info);
-      const std::vector<float> found = depths(device, fields_of(flat), directions, spread);
-      int close = 0;
-      for (std::size_t i = 0; i < found.size(); ++i)
-        close += std::abs(found[i] - wanted[i]) < 3 * spread * width;
-      CHECK(close > 0.97 * size * size);  // outlines of what is in front differ by a step
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    if (!has_doubles(info) || !is_quick(info)) return;
+    Device device(info);
+    const std::vector<float> found = depths(device, fields_of(flat), directions, spread);
+    int close = 0;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      close += std::abs(found[i] - wanted[i]) < 3 * spread * width;
+    CHECK(close > 0.97 * size * size);  // outlines of what is in front differ by a step
+  });
 }
 
 TEST_CASE("fields are marched in doubles only where floats are too coarse, each placed field as its own") {
@@ -194,18 +194,18 @@ TEST_CASE("fields are marched in doubles only where floats are too coarse, each 
 
 TEST_CASE("a deep view is rendered sharp, with its shadows") {
   const NearView view = near_view(1e-9);
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      if (!has_doubles(info) || !is_quick(info)) continue;
-      const RenderResult result = scenes::render_on(info, view.scene);
-      double sum = 0, squares = 0;
-      for (std::size_t i = 0; i < result.image.data.size(); i += 3) {
-        sum += result.image.data[i];
-        squares += double(result.image.data[i]) * result.image.data[i];
-      }
-      const double mean = sum / (size * size);
-      CHECK(std::sqrt(squares / (size * size) - mean * mean) > 0.05);
-      CHECK(result.counts[COUNT_MARCH_LIMIT] < 100);
+  on_every_device([&](const DeviceInfo& info) {
+    if (!has_doubles(info) || !is_quick(info)) return;
+    const RenderResult result = scenes::render_on(info, view.scene);
+    double sum = 0, squares = 0;
+    for (std::size_t i = 0; i < result.image.data.size(); i += 3) {
+      sum += result.image.data[i];
+      squares += double(result.image.data[i]) * result.image.data[i];
     }
+    const double mean = sum / (size * size);
+    CHECK(std::sqrt(squares / (size * size) - mean * mean) > 0.05);
+    CHECK(result.counts[COUNT_MARCH_LIMIT] < 100);
+  });
 }
 
 TEST_CASE("every surface of the list is evaluated in doubles where a view asks for it") {
@@ -215,31 +215,31 @@ TEST_CASE("every surface of the list is evaluated in doubles where a view asks f
   const CompiledFields compiled = compile_deep_fields(fields);
   std::vector<float4> points;  // steps that floats about the origin would lose
   for (int i = 0; i < 64; ++i) points.push_back({1e-9f * float(i % 8), 2e-9f * float(i / 8), 1e-9f, 0});
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      if (!has_doubles(info) || !is_quick(info)) continue;
-      Device device(info);
-      auto kernel = build_fields(device, distance_kernel, compiled, 4)
-                        .kernel<Buffer<float>, Buffer<float4>, Buffer<float>, u32, u32>("distances");
-      const auto q = device.upload<float>(compiled.parameters);
-      const auto in = device.upload<float4>(points);
-      auto out = device.make<float>(points.size() * fields.size());
-      device.run(kernel, {.x = points.size() / 4, .local_x = 4}, q, in, out, static_cast<u32>(fields.size()),
-                 static_cast<u32>(points.size()));
-      std::vector<float> found(points.size() * fields.size());
-      device.read(out, std::span<float>(found));
-      device.finish();
-      for (std::size_t f = 0; f < fields.size(); ++f) {
-        FormulaEvaluator wanted(fields[f].field.root.formula);
-        int compared = 0;
-        double worst = 0;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-          const FieldValue value = wanted.at(origin + dvec3(points[i].x, points[i].y, points[i].z));
-          if (value.inside) continue;
-          ++compared;
-          worst = std::max(worst, std::abs(found[f * points.size() + i] - value.distance) / value.distance);
-        }
-        INFO(fields[f].field.root.formula.steps[0].definition.name << ", outside " << compared);
-        CHECK(worst < 1e-6);
+  on_every_device([&](const DeviceInfo& info) {
+    if (!has_doubles(info) || !is_quick(info)) return;
+    Device device(info);
+    auto kernel = build_fields(device, distance_kernel, compiled, 4)
+                      .kernel<Buffer<float>, Buffer<float4>, Buffer<float>, u32, u32>("distances");
+    const auto q = device.upload<float>(compiled.parameters);
+    const auto in = device.upload<float4>(points);
+    auto out = device.make<float>(points.size() * fields.size());
+    device.run(kernel, {.x = points.size() / 4, .local_x = 4}, q, in, out, static_cast<u32>(fields.size()),
+               static_cast<u32>(points.size()));
+    std::vector<float> found(points.size() * fields.size());
+    device.read(out, std::span<float>(found));
+    device.finish();
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      FormulaEvaluator wanted(fields[f].field.root.formula);
+      int compared = 0;
+      double worst = 0;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const FieldValue value = wanted.at(origin + dvec3(points[i].x, points[i].y, points[i].z));
+        if (value.inside) continue;
+        ++compared;
+        worst = std::max(worst, std::abs(found[f * points.size() + i] - value.distance) / value.distance);
       }
+      INFO(fields[f].field.root.formula.steps[0].definition.name << ", outside " << compared);
+      CHECK(worst < 1e-6);
     }
+  });
 }

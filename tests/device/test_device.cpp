@@ -22,26 +22,26 @@ TEST_CASE("a launch covers exactly the items it was asked for, whatever the loca
       const u32 i = get_global_id(0);
       if (i < count) out[i] = in[i] * in[i];
     })";
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      auto square = build_text(device, text).kernel<Buffer<float>, Buffer<float>, u32>("square");
-      std::vector<float> values(1009);
-      for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i);
-      const auto in = device.upload<float>(values);
-      for (const std::size_t local : {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{64}}) {
-        auto out = device.upload<float>(std::vector<float>(values.size() + 64, -1.0f));
-        device.run(square, {.x = 1000, .local_x = local}, in, out, 1000u);
-        std::vector<float> result(out.count);
-        device.read(out, std::span<float>(result));
-        std::size_t wrong = 0;
-        for (std::size_t i = 0; i < result.size(); ++i)
-          wrong += result[i] != (i < 1000 ? values[i] * values[i] : -1.0f);
-        CHECK(wrong == 0);
-      }
-      device.finish();
-      CHECK(device.times().at("square").launches == 4);
-      CHECK(device.times().at("square").host_ms > 0);
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    auto square = build_text(device, text).kernel<Buffer<float>, Buffer<float>, u32>("square");
+    std::vector<float> values(1009);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i);
+    const auto in = device.upload<float>(values);
+    for (const std::size_t local : {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{64}}) {
+      auto out = device.upload<float>(std::vector<float>(values.size() + 64, -1.0f));
+      device.run(square, {.x = 1000, .local_x = local}, in, out, 1000u);
+      std::vector<float> result(out.count);
+      device.read(out, std::span<float>(result));
+      std::size_t wrong = 0;
+      for (std::size_t i = 0; i < result.size(); ++i)
+        wrong += result[i] != (i < 1000 ? values[i] * values[i] : -1.0f);
+      CHECK(wrong == 0);
     }
+    device.finish();
+    CHECK(device.times().at("square").launches == 4);
+    CHECK(device.times().at("square").host_ms > 0);
+  });
 }
 
 TEST_CASE("a launch's time by the driver's events is none or one that it may have taken") {
@@ -51,18 +51,18 @@ TEST_CASE("a launch's time by the driver's events is none or one that it may hav
       for (uint i = 0; i < rounds; ++i) x = x * 747796405u + 2891336453u;
       values[get_global_id(0)] = x;
     })";
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      auto spin = build_text(device, text).kernel<Buffer<u32>, u32>("spin");
-      const auto values = device.upload<u32>(std::vector<u32>(256, 1));
-      for (int i = 0; i < 20; ++i) {
-        device.run(spin, {.x = 256}, values, u32{20'000});  // 5 million steps
-        device.finish();
-      }
-      const double ms = device.times().at("spin").device_ms;
-      CAPTURE(ms);
-      CHECK((ms == 0 || ms > 20 * 1e-3));
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    auto spin = build_text(device, text).kernel<Buffer<u32>, u32>("spin");
+    const auto values = device.upload<u32>(std::vector<u32>(256, 1));
+    for (int i = 0; i < 20; ++i) {
+      device.run(spin, {.x = 256}, values, u32{20'000});  // 5 million steps
+      device.finish();
     }
+    const double ms = device.times().at("spin").device_ms;
+    CAPTURE(ms);
+    CHECK((ms == 0 || ms > 20 * 1e-3));
+  });
 }
 
 TEST_CASE("a two-dimensional launch is padded in both directions") {
@@ -71,51 +71,50 @@ TEST_CASE("a two-dimensional launch is padded in both directions") {
       const uint x = get_global_id(0), y = get_global_id(1);
       if (x < width && y < height) seen[y * width + x] += 1u + get_local_size(0) * 1000u + get_local_size(1) * 100000u;
     })";
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      auto place = build_text(device, text).kernel<Buffer<u32>, u32, u32>("place");
-      const auto seen = device.upload<u32>(std::vector<u32>(13 * 7));
-      device.run(place, {.x = 13, .y = 7, .local_x = 8, .local_y = 4}, seen, 13u, 7u);
-      std::vector<u32> result(seen.count);
-      device.read(seen, std::span<u32>(result));
-      CHECK(result == std::vector<u32>(13 * 7, 408001u));
-      CHECK_NOTHROW(device.run(place, {.x = 0, .y = 7}, seen, 13u, 7u));  // nothing to do
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    auto place = build_text(device, text).kernel<Buffer<u32>, u32, u32>("place");
+    const auto seen = device.upload<u32>(std::vector<u32>(13 * 7));
+    device.run(place, {.x = 13, .y = 7, .local_x = 8, .local_y = 4}, seen, 13u, 7u);
+    std::vector<u32> result(seen.count);
+    device.read(seen, std::span<u32>(result));
+    CHECK(result == std::vector<u32>(13 * 7, 408001u));
+    CHECK_NOTHROW(device.run(place, {.x = 0, .y = 7}, seen, 13u, 7u));  // nothing to do
+  });
 }
 
 TEST_CASE("reads and writes of a part of a buffer touch that part alone") {
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      auto buffer = device.upload<u32>(std::vector<u32>{0, 1, 2, 3, 4, 5});
-      device.write<u32>(buffer, std::vector<u32>{20, 30}, 2);
-      std::vector<u32> part(3);
-      device.read(buffer, std::span<u32>(part), 1);
-      CHECK(part == std::vector<u32>{1, 20, 30});
-      CHECK(device.upload<u32>({}).count == 0);
-      CHECK(device.upload<u32>(part).memory.getInfo<CL_MEM_SIZE>() ==
-            12);  // no byte beyond the host's is read
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    auto buffer = device.upload<u32>(std::vector<u32>{0, 1, 2, 3, 4, 5});
+    device.write<u32>(buffer, std::vector<u32>{20, 30}, 2);
+    std::vector<u32> part(3);
+    device.read(buffer, std::span<u32>(part), 1);
+    CHECK(part == std::vector<u32>{1, 20, 30});
+    CHECK(device.upload<u32>({}).count == 0);
+    CHECK(device.upload<u32>(part).memory.getInfo<CL_MEM_SIZE>() == 12);  // no byte beyond the host's is read
+  });
 }
 
 TEST_CASE("a failed call is a DeviceError that names the device and OpenCL's status") {
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      auto kernel = build_text(device, "__kernel void f(__global uint* a) { a[get_global_id(0)] = 1u; }")
-                        .kernel<Buffer<u32>>("f");
-      const auto buffer = device.make<u32>(64);
-      const std::size_t local = info.max_work_group * 2;
-      try {
-        device.run(kernel, {.x = local, .local_x = local}, buffer);
-        FAIL("the launch was taken");
-      } catch (const DeviceError& error) {
-        CHECK_THAT(error.what(), ContainsSubstring(info.label()));
-        CHECK_THAT(error.what(), ContainsSubstring("launch of f"));
-        CHECK_THAT(error.what(), ContainsSubstring(cl_status_name(error.status)));
-        CHECK((error.status == CL_INVALID_WORK_GROUP_SIZE || error.status == CL_INVALID_WORK_ITEM_SIZE));
-      }
-      CHECK_THROWS_WITH(device.make<u32>(info.max_allocation / 2),
-                        ContainsSubstring("CL_MEM_OBJECT_ALLOCATION_FAILURE"));
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    auto kernel = build_text(device, "__kernel void f(__global uint* a) { a[get_global_id(0)] = 1u; }")
+                      .kernel<Buffer<u32>>("f");
+    const auto buffer = device.make<u32>(64);
+    const std::size_t local = info.max_work_group * 2;
+    try {
+      device.run(kernel, {.x = local, .local_x = local}, buffer);
+      FAIL("the launch was taken");
+    } catch (const DeviceError& error) {
+      CHECK_THAT(error.what(), ContainsSubstring(info.label()));
+      CHECK_THAT(error.what(), ContainsSubstring("launch of f"));
+      CHECK_THAT(error.what(), ContainsSubstring(cl_status_name(error.status)));
+      CHECK((error.status == CL_INVALID_WORK_GROUP_SIZE || error.status == CL_INVALID_WORK_ITEM_SIZE));
     }
+    CHECK_THROWS_WITH(device.make<u32>(info.max_allocation / 2),
+                      ContainsSubstring("CL_MEM_OBJECT_ALLOCATION_FAILURE"));
+  });
 }
 
 TEST_CASE("a device with a problem is not opened") {

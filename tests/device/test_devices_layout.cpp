@@ -46,16 +46,16 @@ TEST_CASE("every member of every shared struct has the same offset on the host a
   REQUIRE(std::size(places) > 80);  // the list was read from the headers, and they have not shrunk to nothing
   const GeneratedFiles files = {{"probe.cl", probe},
                                 {"generated/shared_layout.h", read_file(SUNDOG_SHARED_LAYOUT)}};
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      auto kernel = device.build("probe.cl", {}, nullptr, files).kernel<Buffer<u32>>("probe_layout");
-      const auto memory = device.make<u32>(std::size(places));
-      device.run(kernel, {.x = 1, .local_x = 1}, memory);
-      std::vector<u32> found(std::size(places));
-      device.read(memory, std::span<u32>(found));
-      for (std::size_t i = 0; i < found.size(); ++i) {
-        INFO(places[i].what);
-        CHECK(found[i] == places[i].host);
-      }
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    auto kernel = device.build("probe.cl", {}, nullptr, files).kernel<Buffer<u32>>("probe_layout");
+    const auto memory = device.make<u32>(std::size(places));
+    device.run(kernel, {.x = 1, .local_x = 1}, memory);
+    std::vector<u32> found(std::size(places));
+    device.read(memory, std::span<u32>(found));
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      INFO(places[i].what);
+      CHECK(found[i] == places[i].host);
     }
+  });
 }

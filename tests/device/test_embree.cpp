@@ -110,27 +110,27 @@ void compare(const Mesh& mesh, std::size_t allowed) {
   const SceneDescription scene = scene_of(mesh);
   const CompiledScene flat = compile(scene);
   const EmbreePeer embree(scene, {.robust = true});
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      RayTracer tracer(device, flat);
-      for (const Kind kind : {Kind::random, Kind::grazing, Kind::axis_parallel, Kind::edge}) {
-        std::vector<Ray> rays = make_rays(kind, mesh);
-        if (info.native_vector_width <= 1) rays.resize(ray_count / 20);  // llvmpipe: 50 times slower
-        std::vector<EmbreeHit> theirs(rays.size());
-        embree.intersect(rays, theirs, 1);
-        const std::vector<Hit> ours = tracer.trace(rays);
-        const std::vector<u32> occluded = tracer.occlusion(rays);
-        CAPTURE(static_cast<int>(kind), disagreements(ours, theirs));
-        CHECK(disagreements(ours, theirs) <= allowed);
-        std::size_t hits = 0, any_differs = 0;
-        for (std::size_t i = 0; i < ours.size(); ++i) {
-          hits += ours[i].instance != NO_INSTANCE;
-          any_differs += (ours[i].instance != NO_INSTANCE) != (occluded[i] != 0);
-        }
-        CHECK(hits > rays.size() / 10);
-        CHECK(any_differs == 0);
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    RayTracer tracer(device, flat);
+    for (const Kind kind : {Kind::random, Kind::grazing, Kind::axis_parallel, Kind::edge}) {
+      std::vector<Ray> rays = make_rays(kind, mesh);
+      if (info.native_vector_width <= 1) rays.resize(ray_count / 20);  // llvmpipe: 50 times slower
+      std::vector<EmbreeHit> theirs(rays.size());
+      embree.intersect(rays, theirs, 1);
+      const std::vector<Hit> ours = tracer.trace(rays);
+      const std::vector<u32> occluded = tracer.occlusion(rays);
+      CAPTURE(static_cast<int>(kind), disagreements(ours, theirs));
+      CHECK(disagreements(ours, theirs) <= allowed);
+      std::size_t hits = 0, any_differs = 0;
+      for (std::size_t i = 0; i < ours.size(); ++i) {
+        hits += ours[i].instance != NO_INSTANCE;
+        any_differs += (ours[i].instance != NO_INSTANCE) != (occluded[i] != 0);
       }
+      CHECK(hits > rays.size() / 10);
+      CHECK(any_differs == 0);
     }
+  });
 }
 
 }  // namespace
@@ -154,24 +154,24 @@ TEST_CASE("nearest hits of meshes in several places among balls are Embree's") {
   }
   const CompiledScene flat = compile(scene);
   const EmbreePeer embree(scene, {.robust = true});
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      RayTracer tracer(device, flat);
-      std::vector<Ray> rays = make_rays(Kind::random, scene.meshes[0]);
-      if (info.native_vector_width <= 1) rays.resize(ray_count / 20);
-      std::vector<EmbreeHit> theirs(rays.size());
-      embree.intersect(rays, theirs, 1);
-      const std::vector<Hit> ours = tracer.trace(rays);
-      std::size_t hits = 0, differ = 0, other = 0;
-      for (std::size_t i = 0; i < ours.size(); ++i) {
-        const bool hit = ours[i].instance != NO_INSTANCE, expected = theirs[i].prim != NO_PRIM;
-        hits += hit;
-        differ +=
-            hit != expected || (hit && std::abs(ours[i].t - theirs[i].t) > 1e-5f * std::max(1.0f, ours[i].t));
-        other += hit && expected && flat.instances[ours[i].instance].object != theirs[i].object;
-      }
-      CHECK(hits > rays.size() / 4);
-      CHECK(differ <= rays.size() / 5000);
-      CHECK(other <= rays.size() / 5000);
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    RayTracer tracer(device, flat);
+    std::vector<Ray> rays = make_rays(Kind::random, scene.meshes[0]);
+    if (info.native_vector_width <= 1) rays.resize(ray_count / 20);
+    std::vector<EmbreeHit> theirs(rays.size());
+    embree.intersect(rays, theirs, 1);
+    const std::vector<Hit> ours = tracer.trace(rays);
+    std::size_t hits = 0, differ = 0, other = 0;
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+      const bool hit = ours[i].instance != NO_INSTANCE, expected = theirs[i].prim != NO_PRIM;
+      hits += hit;
+      differ +=
+          hit != expected || (hit && std::abs(ours[i].t - theirs[i].t) > 1e-5f * std::max(1.0f, ours[i].t));
+      other += hit && expected && flat.instances[ours[i].instance].object != theirs[i].object;
     }
+    CHECK(hits > rays.size() / 4);
+    CHECK(differ <= rays.size() / 5000);
+    CHECK(other <= rays.size() / 5000);
+  });
 }

@@ -81,15 +81,15 @@ SceneDescription floor_from(double x, double z) {
 
 TEST_CASE("a scene looks the same far from the origin as near it") {
   const SceneDescription near = still_life();
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      const Image expected = scenes::render_on(device, near).image;
-      for (const dvec3& shift : shifts) {
-        CAPTURE(shift.x, shift.y, shift.z);
-        const Image image = scenes::render_on(device, moved(near, shift)).image;
-        const ImageDifference d = compare_images(image, expected, visible);
-        CHECK(d.over_tolerance <= few(d));
-      }
+  on_every_device([&](const DeviceInfo& device) {
+    const Image expected = scenes::render_on(device, near).image;
+    for (const dvec3& shift : shifts) {
+      CAPTURE(shift.x, shift.y, shift.z);
+      const Image image = scenes::render_on(device, moved(near, shift)).image;
+      const ImageDifference d = compare_images(image, expected, visible);
+      CHECK(d.over_tolerance <= few(d));
     }
+  });
 }
 
 TEST_CASE("the plain program draws a scene far from the origin as near it") {
@@ -104,15 +104,15 @@ TEST_CASE("the plain program draws a scene far from the origin as near it") {
 }
 
 TEST_CASE("an infinite pattern stays sharp far from its origin") {
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      const Image expected = scenes::render_on(device, floor_from(0.2, 0.3)).image;
-      for (const double periods : {1e3, 1e5}) {
-        const double far = periods * 2 * 0.7;
-        const ImageDifference d = compare_images(
-            scenes::render_on(device, floor_from(0.2 - far, 0.3 + far)).image, expected, visible);
-        CHECK(d.over_tolerance <= few(d));
-      }
+  on_every_device([&](const DeviceInfo& device) {
+    const Image expected = scenes::render_on(device, floor_from(0.2, 0.3)).image;
+    for (const double periods : {1e3, 1e5}) {
+      const double far = periods * 2 * 0.7;
+      const ImageDifference d = compare_images(
+          scenes::render_on(device, floor_from(0.2 - far, 0.3 + far)).image, expected, visible);
+      CHECK(d.over_tolerance <= few(d));
     }
+  });
 }
 
 TEST_CASE("positions in extra images are the world's") {
@@ -120,20 +120,20 @@ TEST_CASE("positions in extra images are the world's") {
   RenderOptions options;
   options.aovs = {"position"};
   const SceneDescription near = still_life();
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      const RenderResult here = scenes::render_on(device, near, options),
-                         there = scenes::render_on(device, moved(near, shift), options);
-      const std::vector<float>&a = here.aovs.at("position").data, &b = there.aovs.at("position").data;
-      REQUIRE((a.size() == b.size() && a.size() % 3 == 0));
-      std::size_t far = 0;
-      for (std::size_t i = 0; i < a.size(); i += 3) {
-        if (a[i] == 0 && a[i + 1] == 0 && a[i + 2] == 0) continue;  // the background
-        for (std::size_t k = 0; k < 3; ++k) {
-          const double expected = double(a[i + k]) + shift[static_cast<int>(k)];
-          far += std::abs(double(b[i + k]) - expected) >
-                 std::abs(expected) * 0x1p-23 + 1e-4 * std::abs(double(a[i + k])) + 1e-4;
-        }
+  on_every_device([&](const DeviceInfo& device) {
+    const RenderResult here = scenes::render_on(device, near, options),
+                       there = scenes::render_on(device, moved(near, shift), options);
+    const std::vector<float>&a = here.aovs.at("position").data, &b = there.aovs.at("position").data;
+    REQUIRE((a.size() == b.size() && a.size() % 3 == 0));
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < a.size(); i += 3) {
+      if (a[i] == 0 && a[i + 1] == 0 && a[i + 2] == 0) continue;  // the background
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double expected = double(a[i + k]) + shift[static_cast<int>(k)];
+        far += std::abs(double(b[i + k]) - expected) >
+               std::abs(expected) * 0x1p-23 + 1e-4 * std::abs(double(a[i + k])) + 1e-4;
       }
-      CHECK(far <= 3 * a.size() / 2000);
     }
+    CHECK(far <= 3 * a.size() / 2000);
+  });
 }

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "base/image_compare.h"
 #include "catch.h"
 #include "devices.h"
+#include "same_bits.h"
 #include "scene/json/parse.h"
 #include "scene/read/scene_reader.h"
 #include "scenes.h"
@@ -47,11 +47,6 @@ SceneDescription absorbing_ball(const std::string& interval) {
     "materials": {{"ink": {{"type": "dielectric", "medium": "ink"}}}},
     "objects": [{{"type": "formula", "distance": "length(p) - 1", "interval": {}, "material": "ink"}}]}})",
                                    interval));
-}
-
-bool same_bits(const Image& a, const Image& b) {
-  return a.data.size() == b.data.size() &&
-         std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
 }
 
 }  // namespace
@@ -117,32 +112,32 @@ TEST_CASE("a glass fractal refracts as its exact solid does, and one of the air'
   const std::string ball =
       julia + R"(24, "parameters": {"seed": [0, 0, 0, 0]}})";  // the unit ball's boundary
   const std::string folds = julia + R"(6, "parameters": {"seed": [-0.2, 0.6, 0.2, 0.2]}})";
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      if (!is_quick(device)) continue;
-      const RenderResult exact =
-          scenes::render_on(device, with(R"({"type": "sphere", "material": "glass"})", 1.5));
-      const RenderResult marched = scenes::render_on(device, with(ball, 1.5));
-      const ImageDifference difference = compare_images(exact.image, marched.image, 0.1);
-      CHECK(difference.mean < 3e-3);
-      CHECK(difference.over_tolerance < 60);  // of 9216: the outline, where all light comes from a thin rim
-      CHECK(marched.counts[COUNT_MARCH_LIMIT] == 0);
-      // Hardly refracting, what enters comes out again, but for cracks that are narrower than a pixel.
-      const RenderResult empty = scenes::render_on(device, with(R"({"type": "sphere", "radius": 1e-3,
+  on_every_device([&](const DeviceInfo& device) {
+    if (!is_quick(device)) return;
+    const RenderResult exact =
+        scenes::render_on(device, with(R"({"type": "sphere", "material": "glass"})", 1.5));
+    const RenderResult marched = scenes::render_on(device, with(ball, 1.5));
+    const ImageDifference difference = compare_images(exact.image, marched.image, 0.1);
+    CHECK(difference.mean < 3e-3);
+    CHECK(difference.over_tolerance < 60);  // of 9216: the outline, where all light comes from a thin rim
+    CHECK(marched.counts[COUNT_MARCH_LIMIT] == 0);
+    // Hardly refracting, what enters comes out again, but for cracks that are narrower than a pixel.
+    const RenderResult empty = scenes::render_on(device, with(R"({"type": "sphere", "radius": 1e-3,
           "center": [9, 9, 9], "material": "glass"})",
-                                                                1));
-      const RenderResult hardly = scenes::render_on(device, with(folds, 1.0001));
-      CHECK(hardly.counts[COUNT_PRIMARY_HIT] > 3000);
-      CHECK(compare_images(empty.image, hardly.image, 0.02).over_tolerance < 100);
-      CHECK(same_bits(empty.image, scenes::render_on(device, with(folds, 1)).image));
-    }
+                                                              1));
+    const RenderResult hardly = scenes::render_on(device, with(folds, 1.0001));
+    CHECK(hardly.counts[COUNT_PRIMARY_HIT] > 3000);
+    CHECK(compare_images(empty.image, hardly.image, 0.02).over_tolerance < 100);
+    CHECK(same_bits(empty.image, scenes::render_on(device, with(folds, 1)).image));
+  });
 }
 
 TEST_CASE("a camera inside a field sees out through what is left of its medium") {
   SceneDescription scene = absorbing_ball(R"({"min": [-2, -2, -2], "max": [2, 2, 2]})");
   scene.camera.position = {0, 0, 0.5};
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      CHECK(scenes::pixel_on(device, scene).x == Approx(std::exp(-0.7 * 1.5)).epsilon(2e-4));
-    }
+  on_every_device([&](const DeviceInfo& device) {
+    CHECK(scenes::pixel_on(device, scene).x == Approx(std::exp(-0.7 * 1.5)).epsilon(2e-4));
+  });
 }
 
 TEST_CASE("fields and solids shadow each other") {
@@ -160,14 +155,14 @@ TEST_CASE("fields and solids shadow each other") {
   const auto field = [&](double y) { return placed(R"("type": "formula", "distance": "length(p) - 1")", y); };
   const auto ball = [&](double y) { return placed(R"("type": "sphere", "radius": 1)", y); };
   const std::string floor = R"({"type": "plane", "point": [0, -1, 0], "material": "m"})";
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      CHECK(scenes::pixel_on(device, scene(field(3), floor)).x == 0);
-      CHECK(scenes::pixel_on(device, scene(ball(3), field(-2))).x == 0);
-      CHECK(scenes::pixel_on(device, scene(field(3), field(-2))).x == 0);
-      CHECK(scenes::pixel_on(device, scene(field(-5), floor)).x == Approx(1).epsilon(1e-5));
-      // The top of the ball, seen slantwise: lit by the cosine of its slope there.
-      CHECK(scenes::pixel_on(device, scene(ball(-9), field(-2))).x > 0.99);
-    }
+  on_every_device([&](const DeviceInfo& device) {
+    CHECK(scenes::pixel_on(device, scene(field(3), floor)).x == 0);
+    CHECK(scenes::pixel_on(device, scene(ball(3), field(-2))).x == 0);
+    CHECK(scenes::pixel_on(device, scene(field(3), field(-2))).x == 0);
+    CHECK(scenes::pixel_on(device, scene(field(-5), floor)).x == Approx(1).epsilon(1e-5));
+    // The top of the ball, seen slantwise: lit by the cosine of its slope there.
+    CHECK(scenes::pixel_on(device, scene(ball(-9), field(-2))).x > 0.99);
+  });
 }
 
 TEST_CASE("a named field placed twice is two of them") {
@@ -185,11 +180,11 @@ TEST_CASE("a named field placed twice is two of them") {
   };
   const std::string field = R"("type": "field", "field": "ball")",
                     solid = R"("type": "sphere", "radius": 0.5)";
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      const Image fields = scenes::render_on(device, scene(head, field, field)).image;
-      const Image solids = scenes::render_on(device, scene("{", solid, solid)).image;
-      CHECK(compare_images(solids, fields, 0.02).over_tolerance < 20);
-    }
+  on_every_device([&](const DeviceInfo& device) {
+    const Image fields = scenes::render_on(device, scene(head, field, field)).image;
+    const Image solids = scenes::render_on(device, scene("{", solid, solid)).image;
+    CHECK(compare_images(solids, fields, 0.02).over_tolerance < 20);
+  });
 }
 
 TEST_CASE("a scene with fields has the same bits for every work-group and tile size") {
@@ -198,17 +193,17 @@ TEST_CASE("a scene with fields has the same bits for every work-group and tile s
           "glow": {"color": [0.1, 0.2, 0.3]}},
          {"type": "fractal", "formula": "menger", "material": "mirror", "transform": [{"scale": 0.3},
           {"translate": [0.9, -0.8, 0.9]}]})");
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      if (!is_quick(device)) continue;  // two minutes of Mesa's compiler
-      const RenderResult reference = scenes::render_on(device, scene);
-      REQUIRE(reference.counts[COUNT_REFRACTION] > 0);
-      for (const std::size_t group : {std::size_t{1}, std::size_t{5}, std::size_t{16}}) {
-        RenderOptions options;
-        options.work_group = {WorkGroup::Kind::fixed, group, 1};
-        options.tile = group == 5 ? 12 : 40;
-        CHECK(same_bits(scenes::render_on(device, scene, options).image, reference.image));
-      }
+  on_every_device([&](const DeviceInfo& device) {
+    if (!is_quick(device)) return;  // two minutes of Mesa's compiler
+    const RenderResult reference = scenes::render_on(device, scene);
+    REQUIRE(reference.counts[COUNT_REFRACTION] > 0);
+    for (const std::size_t group : {std::size_t{1}, std::size_t{5}, std::size_t{16}}) {
+      RenderOptions options;
+      options.work_group = {WorkGroup::Kind::fixed, group, 1};
+      options.tile = group == 5 ? 12 : 40;
+      CHECK(same_bits(scenes::render_on(device, scene, options).image, reference.image));
     }
+  });
 }
 
 TEST_CASE("every kind of solid stands beside a field") {
@@ -224,8 +219,8 @@ TEST_CASE("every kind of solid stands beside a field") {
       {"type": "disk", "material": "white", "transform": [{"translate": [3, 3, 0]}]},
       {"type": "torus", "material": "white", "transform": [{"translate": [-3, 3, 0]}]},
       {"type": "round_box", "material": "white", "transform": [{"translate": [3, -3, 0]}]}]})");
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      const Image image = scenes::render_on(device, scene).image;
-      CHECK(*std::max_element(image.data.begin(), image.data.end()) > 0.3f);
-    }
+  on_every_device([&](const DeviceInfo& device) {
+    const Image image = scenes::render_on(device, scene).image;
+    CHECK(*std::max_element(image.data.begin(), image.data.end()) > 0.3f);
+  });
 }

@@ -1,12 +1,12 @@
 // The image is a pure function of scene and settings: the same bits for every work-group size, tile, run,
 // interruption and sub-device.
 #include <atomic>
-#include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "base/error.h"
 #include "catch.h"
 #include "devices.h"
+#include "same_bits.h"
 #include "scenes.h"
 #include "temporary_folder.h"
 #include "test_meshes.h"
@@ -56,11 +56,6 @@ SceneDescription busy_mesh_scene() {
 }
 
 // Equal to the bit, NaNs included.
-bool same_bits(const Image& a, const Image& b) {
-  return a.data.size() == b.data.size() &&
-         std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
-}
-
 RenderOptions with_group(WorkGroup::Kind kind, std::size_t size) {
   RenderOptions options;
   options.work_group = {kind, size, 1};
@@ -93,9 +88,7 @@ void check_work_groups(const DeviceInfo& device, const SceneDescription& scene) 
 }  // namespace
 
 TEST_CASE("the image has the same bits for every work-group size, tile size and run") {
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      check_work_groups(device, busy_scene());
-    }
+  on_every_device([&](const DeviceInfo& device) { check_work_groups(device, busy_scene()); });
 }
 
 TEST_CASE(
@@ -164,13 +157,13 @@ TEST_CASE("an interrupted frame is resumed to the same bits") {
 TEST_CASE("devices agree within a tolerance, and the pixels that differ are few") {
   const SceneDescription scene = busy_scene();
   const RenderResult reference = scenes::render_on(test_devices().front(), scene);
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      const RenderResult other = scenes::render_on(device, scene);
-      std::size_t differ = 0;
-      for (std::size_t i = 0; i < reference.image.data.size(); ++i)
-        differ += std::abs(reference.image.data[i] - other.image.data[i]) > 1e-3f;
-      CHECK(differ <= reference.image.data.size() / 100);  // rays that graze an edge may fall to either side
-    }
+  on_every_device([&](const DeviceInfo& device) {
+    const RenderResult other = scenes::render_on(device, scene);
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < reference.image.data.size(); ++i)
+      differ += std::abs(reference.image.data[i] - other.image.data[i]) > 1e-3f;
+    CHECK(differ <= reference.image.data.size() / 100);  // rays that graze an edge may fall to either side
+  });
 }
 
 TEST_CASE("two devices share a frame without changing it") {

@@ -25,13 +25,6 @@ double passed(std::initializer_list<double> indices) {
   return light;
 }
 
-template <class Body>
-void on_every_device(Body body) {
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      body(device);
-    }
-}
-
 // A small picture of a checkered floor with solids over it.
 SceneDescription over_a_checkered_floor() {
   SceneDescription scene = scenes::line_of_sight({0.4, 2.2, 6}, {0, 0, 0});

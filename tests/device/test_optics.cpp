@@ -25,14 +25,6 @@ double fresnel(double angle, double n) {
   return 0.5 * (parallel * parallel + perpendicular * perpendicular);
 }
 
-// Runs `body` on each device found.
-template <class Body>
-void on_every_device(Body body) {
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      body(device);
-    }
-}
-
 }  // namespace
 
 TEST_CASE("Snell: a ray into a half-space of glass meets the small disk where the law says") {

@@ -177,49 +177,49 @@ void check_same(const std::vector<Hit>& expected, const std::vector<Hit>& found,
 void compare_together_and_alone(const SceneDescription& scene,
                                 std::vector<Ray> (*make_rays)(std::size_t) = bundles) {
   const CompiledScene flat = compile(scene);
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      RayTracer tracer(device, flat);
-      const std::vector<Ray> rays = make_rays(info.native_vector_width > 1 ? 200'009 : 2'009);
-      const std::vector<Hit> together = tracer.trace(rays, true), alone = tracer.trace(rays, false);
-      const std::vector<u32> occluded = tracer.occlusion(rays, true);
-      check_same(alone, together, occluded);
-      const auto hits = static_cast<std::size_t>(std::count_if(
-          alone.begin(), alone.end(), [](const Hit& hit) { return hit.instance != NO_INSTANCE; }));
-      CHECK(hits > rays.size() / 10);
-      CHECK(hits < rays.size());
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    RayTracer tracer(device, flat);
+    const std::vector<Ray> rays = make_rays(info.native_vector_width > 1 ? 200'009 : 2'009);
+    const std::vector<Hit> together = tracer.trace(rays, true), alone = tracer.trace(rays, false);
+    const std::vector<u32> occluded = tracer.occlusion(rays, true);
+    check_same(alone, together, occluded);
+    const auto hits = static_cast<std::size_t>(std::count_if(
+        alone.begin(), alone.end(), [](const Hit& hit) { return hit.instance != NO_INSTANCE; }));
+    CHECK(hits > rays.size() / 10);
+    CHECK(hits < rays.size());
+  });
 }
 
 /// Without the processor's own instructions, as other compilers have it.
 void compare_with_portable(const SceneDescription& scene) {
   const CompiledScene flat = compile(scene);
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      RayTracer own(device, flat), portable(device, flat, {{"SUNDOG_PORTABLE", "1"}});
-      const std::vector<Ray> rays = bundles(info.native_vector_width > 1 ? 50'003 : 2'009);
-      for (const bool coherent : {false, true}) {
-        CAPTURE(coherent);
-        const std::vector<Hit> expected = own.trace(rays, coherent), found = portable.trace(rays, coherent);
-        const std::vector<u32> occluded = portable.occlusion(rays, coherent);
-        check_same(expected, found, occluded);
-      }
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    RayTracer own(device, flat), portable(device, flat, {{"SUNDOG_PORTABLE", "1"}});
+    const std::vector<Ray> rays = bundles(info.native_vector_width > 1 ? 50'003 : 2'009);
+    for (const bool coherent : {false, true}) {
+      CAPTURE(coherent);
+      const std::vector<Hit> expected = own.trace(rays, coherent), found = portable.trace(rays, coherent);
+      const std::vector<u32> occluded = portable.occlusion(rays, coherent);
+      check_same(expected, found, occluded);
     }
+  });
 }
 
 void compare_wide_and_compact(SceneDescription scene, std::vector<Ray> (*make_rays)(std::size_t) = bundles) {
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      if (info.native_vector_width <= 1) continue;  // runs the compact tracer anyway
-      Device device(info);
-      const std::vector<Ray> rays = make_rays(50'003);
-      scene.render.tracer = Tracer::wide;
-      RayTracer wide(device, compile(scene));
-      scene.render.tracer = Tracer::compact;
-      RayTracer compact(device, compile(scene));
-      const std::vector<Hit> expected = wide.trace(rays), found = compact.trace(rays);
-      const std::vector<u32> occluded = compact.occlusion(rays);
-      check_same(expected, found, occluded);
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    if (info.native_vector_width <= 1) return;  // runs the compact tracer anyway
+    Device device(info);
+    const std::vector<Ray> rays = make_rays(50'003);
+    scene.render.tracer = Tracer::wide;
+    RayTracer wide(device, compile(scene));
+    scene.render.tracer = Tracer::compact;
+    RayTracer compact(device, compile(scene));
+    const std::vector<Hit> expected = wide.trace(rays), found = compact.trace(rays);
+    const std::vector<u32> occluded = compact.occlusion(rays);
+    check_same(expected, found, occluded);
+  });
 }
 
 }  // namespace
@@ -252,14 +252,14 @@ TEST_CASE("the compact tracer finds what the wide one finds: along the faces of 
   compare_wide_and_compact(lattice_steps(), lattice_rays);
 }
 TEST_CASE("both tracers draw the same picture") {
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      if (info.native_vector_width <= 1) continue;
-      SceneDescription scene =
-          load_scene(SUNDOG_SOURCE_DIR "/scenes/nested_glass.json",
-                     {"/image/width=64", "/image/height=48", "/render/samples=1", "/render/tracer=\"wide\""});
-      const Image wide = scenes::render_on(info, scene).image;
-      scene.render.tracer = Tracer::compact;
-      const ImageDifference difference = compare_images(wide, scenes::render_on(info, scene).image, 1e-3);
-      CHECK(difference.mean < 1e-5);
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    if (info.native_vector_width <= 1) return;
+    SceneDescription scene =
+        load_scene(SUNDOG_SOURCE_DIR "/scenes/nested_glass.json",
+                   {"/image/width=64", "/image/height=48", "/render/samples=1", "/render/tracer=\"wide\""});
+    const Image wide = scenes::render_on(info, scene).image;
+    scene.render.tracer = Tracer::compact;
+    const ImageDifference difference = compare_images(wide, scenes::render_on(info, scene).image, 1e-3);
+    CHECK(difference.mean < 1e-5);
+  });
 }

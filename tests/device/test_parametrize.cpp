@@ -138,36 +138,36 @@ std::vector<Ray> rays_down() {
 }  // namespace
 
 TEST_CASE("points on solids have the coordinates that they were made from, and dpdu is their derivative") {
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      auto kernel = build_text(device, chart_kernel, one_lane)
-                        .kernel<Buffer<float4>, Buffer<float>, u32, u32, float4, u32>("locate");
-      for (const Chart& chart : charts()) {
-        INFO(chart.name);
-        std::vector<float4> points;
-        std::vector<dvec2> made;
-        for (int i = 0; i < 64; ++i) {
-          made.push_back({(i % 8 + 0.5) / 8, (i / 8 + 0.5) / 8});
-          const dvec3 p = chart.point(made.back().x, made.back().y);
-          points.push_back({float(p.x), float(p.y), float(p.z), 0});
-        }
-        const auto in = device.upload<float4>(points);
-        const auto out = device.make<float>(5 * points.size());
-        const glm::vec4& q = chart.parameters;
-        device.run(kernel, {.x = points.size()}, in, out, chart.shape, chart.part, float4{q.x, q.y, q.z, q.w},
-                   static_cast<u32>(points.size()));
-        std::vector<float> v(5 * points.size());
-        device.read(out, std::span<float>(v));
-        for (std::size_t i = 0; i < made.size(); ++i) {
-          const double h = 1e-4, a = made[i].x, b = made[i].y;
-          const dvec3 slope = (chart.point(a + h, b) - chart.point(a - h, b)) / (2 * h);
-          const dvec3 dpdu(v[5 * i + 2], v[5 * i + 3], v[5 * i + 4]);
-          REQUIRE(double(v[5 * i]) == Approx(a).margin(1e-5));
-          REQUIRE(double(v[5 * i + 1]) == Approx(b).margin(1e-5));
-          REQUIRE(glm::distance(dpdu, slope) < 1e-4 * (1 + glm::length(slope)));
-        }
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    auto kernel = build_text(device, chart_kernel, one_lane)
+                      .kernel<Buffer<float4>, Buffer<float>, u32, u32, float4, u32>("locate");
+    for (const Chart& chart : charts()) {
+      INFO(chart.name);
+      std::vector<float4> points;
+      std::vector<dvec2> made;
+      for (int i = 0; i < 64; ++i) {
+        made.push_back({(i % 8 + 0.5) / 8, (i / 8 + 0.5) / 8});
+        const dvec3 p = chart.point(made.back().x, made.back().y);
+        points.push_back({float(p.x), float(p.y), float(p.z), 0});
+      }
+      const auto in = device.upload<float4>(points);
+      const auto out = device.make<float>(5 * points.size());
+      const glm::vec4& q = chart.parameters;
+      device.run(kernel, {.x = points.size()}, in, out, chart.shape, chart.part, float4{q.x, q.y, q.z, q.w},
+                 static_cast<u32>(points.size()));
+      std::vector<float> v(5 * points.size());
+      device.read(out, std::span<float>(v));
+      for (std::size_t i = 0; i < made.size(); ++i) {
+        const double h = 1e-4, a = made[i].x, b = made[i].y;
+        const dvec3 slope = (chart.point(a + h, b) - chart.point(a - h, b)) / (2 * h);
+        const dvec3 dpdu(v[5 * i + 2], v[5 * i + 3], v[5 * i + 4]);
+        REQUIRE(double(v[5 * i]) == Approx(a).margin(1e-5));
+        REQUIRE(double(v[5 * i + 1]) == Approx(b).margin(1e-5));
+        REQUIRE(glm::distance(dpdu, slope) < 1e-4 * (1 + glm::length(slope)));
       }
     }
+  });
 }
 
 TEST_CASE("hits on a placed sphere have coordinates of its own space and dpdu in the world") {
@@ -176,18 +176,18 @@ TEST_CASE("hits on a placed sphere have coordinates of its own space and dpdu in
                   glm::normalize(dvec3(1, 2, 3)));
   SceneDescription scene = scenes::line_of_sight({0, 5, 0}, {0, 0, 0}, {0, 0, 1});
   scenes::place(scene, SphereShape{1}, scenes::add_white(scene), place);
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      for (const Found& found : look(device, scene, rays_down())) {
-        const dvec3 p = dvec3(glm::inverse(place) * glm::dvec4(found.p, 1));
-        REQUIRE(glm::length(p) == Approx(1).epsilon(1e-4));
-        const double turn = std::atan2(p.z, p.x) / (2 * pi);
-        CHECK(found.uv.x == Approx(turn - std::floor(turn)).margin(1e-4));
-        CHECK(found.uv.y == Approx(0.5 + std::asin(p.y) / pi).margin(1e-4));
-        const dvec3 expected = glm::dmat3(place) * (2 * pi * dvec3(-p.z, 0, p.x));
-        CHECK(glm::distance(found.dpdu, expected) < 1e-3);
-      }
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    for (const Found& found : look(device, scene, rays_down())) {
+      const dvec3 p = dvec3(glm::inverse(place) * glm::dvec4(found.p, 1));
+      REQUIRE(glm::length(p) == Approx(1).epsilon(1e-4));
+      const double turn = std::atan2(p.z, p.x) / (2 * pi);
+      CHECK(found.uv.x == Approx(turn - std::floor(turn)).margin(1e-4));
+      CHECK(found.uv.y == Approx(0.5 + std::asin(p.y) / pi).margin(1e-4));
+      const dvec3 expected = glm::dmat3(place) * (2 * pi * dvec3(-p.z, 0, p.x));
+      CHECK(glm::distance(found.dpdu, expected) < 1e-3);
     }
+  });
 }
 
 TEST_CASE("on a mesh u and v are the vertices', and dpdu is the direction in which u grows alone") {
@@ -209,16 +209,16 @@ TEST_CASE("on a mesh u and v are the vertices', and dpdu is the direction in whi
   SceneDescription scene = scenes::line_of_sight({0, 5, 0}, {0, 0, 0}, {0, 0, 1});
   scene.meshes.push_back(mesh);
   scenes::place(scene, MeshShape{0}, scenes::add_white(scene));
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      const std::vector<Ray> rays = rays_down();
-      const std::vector<Found> found = look(device, scene, rays);
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        CHECK(found[i].uv.x == Approx(rays[i].ox / 2).margin(1e-5));
-        CHECK(found[i].uv.y == Approx(rays[i].oz / 3).margin(1e-5));
-        CHECK(found[i].dpdu.x == Approx(2).epsilon(1e-4));
-        CHECK(found[i].dpdu.z == Approx(0).margin(1e-3));
-        CHECK(std::abs(found[i].dpdu.y) < 1.3);  // 2 times the greatest slope
-      }
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    const std::vector<Ray> rays = rays_down();
+    const std::vector<Found> found = look(device, scene, rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      CHECK(found[i].uv.x == Approx(rays[i].ox / 2).margin(1e-5));
+      CHECK(found[i].uv.y == Approx(rays[i].oz / 3).margin(1e-5));
+      CHECK(found[i].dpdu.x == Approx(2).epsilon(1e-4));
+      CHECK(found[i].dpdu.z == Approx(0).margin(1e-3));
+      CHECK(std::abs(found[i].dpdu.y) < 1.3);  // 2 times the greatest slope
     }
+  });
 }

@@ -54,35 +54,35 @@ struct OwnCache {
 }  // namespace
 
 TEST_CASE("a program is compiled once and comes from the cache after that") {
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      const OwnCache cache;
-      CHECK(!add_on(info).cached);
-      CHECK(files_of(cache.kernels()).size() == 1);
-      const BuildReport second = add_on(info);
-      CHECK(second.cached);
-      CHECK(second.note.empty());
-      CHECK(add_on(info, add_kernel, 8).cached);  // another local size
-      CHECK(!add_on(info, add_kernel + " ").cached);
-      CHECK(files_of(cache.kernels()).size() == 2);
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    const OwnCache cache;
+    CHECK(!add_on(info).cached);
+    CHECK(files_of(cache.kernels()).size() == 1);
+    const BuildReport second = add_on(info);
+    CHECK(second.cached);
+    CHECK(second.note.empty());
+    CHECK(add_on(info, add_kernel, 8).cached);  // another local size
+    CHECK(!add_on(info, add_kernel + " ").cached);
+    CHECK(files_of(cache.kernels()).size() == 2);
+  });
 }
 
 TEST_CASE("a damaged cache file is compiled anew and replaced") {
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      const OwnCache cache;
-      add_on(info);
-      const auto files = files_of(cache.kernels());
-      REQUIRE(files.size() == 1);
-      const std::string good = read_file(files[0]);
-      std::string flipped = good;
-      flipped[flipped.size() / 2] ^= 1;
-      for (const std::string& bad :
-           {flipped, good.substr(0, good.size() - 1), good + "x", std::string(), std::string("\0\0", 2)}) {
-        write_file(files[0], bad);
-        CHECK(!add_on(info).cached);
-        CHECK(add_on(info).cached);
-      }
+  on_every_device([&](const DeviceInfo& info) {
+    const OwnCache cache;
+    add_on(info);
+    const auto files = files_of(cache.kernels());
+    REQUIRE(files.size() == 1);
+    const std::string good = read_file(files[0]);
+    std::string flipped = good;
+    flipped[flipped.size() / 2] ^= 1;
+    for (const std::string& bad :
+         {flipped, good.substr(0, good.size() - 1), good + "x", std::string(), std::string("\0\0", 2)}) {
+      write_file(files[0], bad);
+      CHECK(!add_on(info).cached);
+      CHECK(add_on(info).cached);
     }
+  });
 }
 
 TEST_CASE("a binary that the driver refuses is compiled anew, and the report says so") {
@@ -133,17 +133,17 @@ TEST_CASE("a build error names the kernel file and the line, and carries the com
   const GeneratedFiles files = {
       {"main.cl", "#include \"shared/types.h\"\n#include \"lib/wrong.cl\"\n"},
       {"lib/wrong.cl", "// One line.\n__kernel void f(__global u32* a) {\n  a[0] = undeclared;\n}\n"}};
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      try {
-        device.build("main.cl", {}, nullptr, files);
-        FAIL("it built");
-      } catch (const BuildError& error) {
-        CHECK_THAT(error.what(), ContainsSubstring("main.cl did not build on"));
-        CHECK_THAT(error.what(), ContainsSubstring("lib/wrong.cl:3"));
-        CHECK_THAT(error.log, ContainsSubstring("undeclared"));
-      }
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    try {
+      device.build("main.cl", {}, nullptr, files);
+      FAIL("it built");
+    } catch (const BuildError& error) {
+      CHECK_THAT(error.what(), ContainsSubstring("main.cl did not build on"));
+      CHECK_THAT(error.what(), ContainsSubstring("lib/wrong.cl:3"));
+      CHECK_THAT(error.log, ContainsSubstring("undeclared"));
     }
+  });
 }
 
 TEST_CASE("a kernel that is not in the program is a build error") {
@@ -168,38 +168,38 @@ TEST_CASE("SUNDOG_BUILD_OPTIONS reach the compiler and are part of what the cach
   const std::string text = add_kernel +
                            "#ifndef FROM_OUTSIDE\n#error not defined\n#endif\n"
                            "__kernel void tell(__global uint* value) { value[0] = FROM_OUTSIDE; }\n";
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      const OwnCache cache;
-      const auto told = [&](const char* options, bool* cached) {
-        const ScopedVariable variable("SUNDOG_BUILD_OPTIONS", options);
-        Device device(info);
-        BuildReport report;
-        auto tell = device.build("add.cl", {}, &report, {{"add.cl", text}}).kernel<Buffer<u32>>("tell");
-        *cached = report.cached;
-        const auto value = device.make<u32>(1);
-        device.run(tell, {1, 1, 1, 1}, value);
-        std::vector<u32> result(1);
-        device.read(value, std::span<u32>(result));
-        return result[0];
-      };
-      bool cached = true;
-      CHECK(told("-DFROM_OUTSIDE=7", &cached) == 7);
-      CHECK(!cached);
-      CHECK(told("-DFROM_OUTSIDE=8", &cached) == 8);
-      CHECK(!cached);
-      CHECK(told("-DFROM_OUTSIDE=7", &cached) == 7);
-      CHECK(cached);
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    const OwnCache cache;
+    const auto told = [&](const char* options, bool* cached) {
+      const ScopedVariable variable("SUNDOG_BUILD_OPTIONS", options);
+      Device device(info);
+      BuildReport report;
+      auto tell = device.build("add.cl", {}, &report, {{"add.cl", text}}).kernel<Buffer<u32>>("tell");
+      *cached = report.cached;
+      const auto value = device.make<u32>(1);
+      device.run(tell, {1, 1, 1, 1}, value);
+      std::vector<u32> result(1);
+      device.read(value, std::span<u32>(result));
+      return result[0];
+    };
+    bool cached = true;
+    CHECK(told("-DFROM_OUTSIDE=7", &cached) == 7);
+    CHECK(!cached);
+    CHECK(told("-DFROM_OUTSIDE=8", &cached) == 8);
+    CHECK(!cached);
+    CHECK(told("-DFROM_OUTSIDE=7", &cached) == 7);
+    CHECK(cached);
+  });
 }
 
 TEST_CASE("options that the compiler refuses are an error that names the variable") {
   const ScopedVariable variable("SUNDOG_BUILD_OPTIONS", "--no-such-option");
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      const OwnCache cache;
-      Device device(info);
-      CHECK_THROWS_WITH(build_text(device, add_kernel),
-                        ContainsSubstring("SUNDOG_BUILD_OPTIONS '--no-such-option': " + info.label()));
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    const OwnCache cache;
+    Device device(info);
+    CHECK_THROWS_WITH(build_text(device, add_kernel),
+                      ContainsSubstring("SUNDOG_BUILD_OPTIONS '--no-such-option': " + info.label()));
+  });
 }
 
 TEST_CASE("an error of a kernel is its own, whatever options were given") {
@@ -211,62 +211,62 @@ TEST_CASE("an error of a kernel is its own, whatever options were given") {
 
 TEST_CASE("SUNDOG_BUILD_LOG keeps log, options and source of each program, cached or not") {
   const GeneratedFiles bad = {{"bad.cl", "__kernel void f(__global float* a) { a[0] = undeclared; }"}};
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      const OwnCache cache;
-      add_on(info);
-      const TemporaryFolder folder;
-      const ScopedVariable log("SUNDOG_BUILD_LOG", folder.path().c_str());
-      CHECK(!add_on(info).cached);
-      auto files = files_of(folder.path());
-      REQUIRE(files.size() == 1);
-      CHECK_THAT(read_file(files[0]),
-                 ContainsSubstring("program  add.cl") && ContainsSubstring(info.label()) &&
-                     ContainsSubstring(info.driver) && ContainsSubstring("options  -cl-std=CL1.2") &&
-                     ContainsSubstring("status   CL_SUCCESS") && ContainsSubstring("values[i] += what;"));
-      fs::remove(files[0]);
-      Device device(info);
-      CHECK_THROWS_AS(device.build("bad.cl", {}, nullptr, bad), BuildError);
-      files = files_of(folder.path());
-      REQUIRE(files.size() == 1);
-      CHECK_THAT(read_file(files[0]), ContainsSubstring("undeclared identifier"));
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    const OwnCache cache;
+    add_on(info);
+    const TemporaryFolder folder;
+    const ScopedVariable log("SUNDOG_BUILD_LOG", folder.path().c_str());
+    CHECK(!add_on(info).cached);
+    auto files = files_of(folder.path());
+    REQUIRE(files.size() == 1);
+    CHECK_THAT(read_file(files[0]),
+               ContainsSubstring("program  add.cl") && ContainsSubstring(info.label()) &&
+                   ContainsSubstring(info.driver) && ContainsSubstring("options  -cl-std=CL1.2") &&
+                   ContainsSubstring("status   CL_SUCCESS") && ContainsSubstring("values[i] += what;"));
+    fs::remove(files[0]);
+    Device device(info);
+    CHECK_THROWS_AS(device.build("bad.cl", {}, nullptr, bad), BuildError);
+    files = files_of(folder.path());
+    REQUIRE(files.size() == 1);
+    CHECK_THAT(read_file(files[0]), ContainsSubstring("undeclared identifier"));
+  });
 }
 
 TEST_CASE("a kernel tells how large its groups may be") {
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      const Program program = build_text(device, add_kernel);
-      CHECK(program.kernel_names() == std::vector<std::string>{"add"});
-      const KernelLimits limits = device.limits(program.kernel<>("add"));
-      CHECK(limits.work_group > 0);
-      CHECK(limits.work_group <= info.max_work_group);
-      CHECK(limits.preferred_multiple > 0);
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    const Program program = build_text(device, add_kernel);
+    CHECK(program.kernel_names() == std::vector<std::string>{"add"});
+    const KernelLimits limits = device.limits(program.kernel<>("add"));
+    CHECK(limits.work_group > 0);
+    CHECK(limits.work_group <= info.max_work_group);
+    CHECK(limits.preferred_multiple > 0);
+  });
 }
 
 TEST_CASE("a kernel's parameter types are known by their names") {
   const std::string text =
       "#include \"shared/bvh.h\"\n"
       "__kernel void f(__global const Ray* rays, __global Hit* hits, u32 count, float4 v) {}\n";
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      const auto types = argument_types(build_text(device, text).kernel<>("f").kernel);
-      CHECK(types == std::vector<std::string>{"Ray*", "Hit*", "u32", "float4"});
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    const auto types = argument_types(build_text(device, text).kernel<>("f").kernel);
+    CHECK(types == std::vector<std::string>{"Ray*", "Hit*", "u32", "float4"});
+  });
 }
 
 TEST_CASE("a kernel whose parameters are not those that the host passes is refused") {
   const std::string text =
       "#include \"shared/bvh.h\"\n"
       "__kernel void f(__global const Ray* rays, __global Hit* hits, uint count, int offset) {}\n";
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      const Program program = build_text(device, text);
-      CHECK_NOTHROW(program.kernel<Buffer<Ray>, Buffer<Hit>, u32, i32>("f"));
-      CHECK_THROWS_WITH(
-          (program.kernel<Buffer<Hit>, Buffer<Ray>, u32, i32>("f")),
-          "test.cl: kernel f takes (Ray*, Hit*, u32, i32), the host passes (Hit*, Ray*, u32, i32)");
-      CHECK_THROWS_AS((program.kernel<Buffer<Ray>, Buffer<Hit>, i32, u32>("f")), BuildError);
-      CHECK_THROWS_AS((program.kernel<Buffer<Ray>, Buffer<Hit>, u32>("f")), BuildError);
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    const Program program = build_text(device, text);
+    CHECK_NOTHROW(program.kernel<Buffer<Ray>, Buffer<Hit>, u32, i32>("f"));
+    CHECK_THROWS_WITH(
+        (program.kernel<Buffer<Hit>, Buffer<Ray>, u32, i32>("f")),
+        "test.cl: kernel f takes (Ray*, Hit*, u32, i32), the host passes (Hit*, Ray*, u32, i32)");
+    CHECK_THROWS_AS((program.kernel<Buffer<Ray>, Buffer<Hit>, i32, u32>("f")), BuildError);
+    CHECK_THROWS_AS((program.kernel<Buffer<Ray>, Buffer<Hit>, u32>("f")), BuildError);
+  });
 }

@@ -55,25 +55,25 @@ TEST_CASE(
     "a ray a lane gives the same bits for every work-group, in one dimension and in two, and every tile") {
   SceneDescription scene = balls_under_lights(3, true);
   scene.render.tracer = Tracer::compact;
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      const Image reference = scenes::render_on(device, scene).image;
-      const auto check = [&](const RenderOptions& options) {
-        const Image image = scenes::render_on(device, scene, options).image;
-        REQUIRE(image.data.size() == reference.data.size());
-        CHECK(std::memcmp(image.data.data(), reference.data.data(), image.data.size() * sizeof(float)) == 0);
-      };
-      RenderOptions options;
-      for (const WorkGroup& group : {WorkGroup{WorkGroup::Kind::fixed, 1, 1},
-                                     {WorkGroup::Kind::fixed, 7, 1},
-                                     {WorkGroup::Kind::fixed, 64, 1},
-                                     {WorkGroup::Kind::fixed, 4, 2},
-                                     {WorkGroup::Kind::fixed, 8, 8},
-                                     {WorkGroup::Kind::driver, 0, 0}}) {
-        options.work_group = group;
-        check(options);
-      }
-      options.work_group = {};
-      options.tile = 12;
+  on_every_device([&](const DeviceInfo& device) {
+    const Image reference = scenes::render_on(device, scene).image;
+    const auto check = [&](const RenderOptions& options) {
+      const Image image = scenes::render_on(device, scene, options).image;
+      REQUIRE(image.data.size() == reference.data.size());
+      CHECK(std::memcmp(image.data.data(), reference.data.data(), image.data.size() * sizeof(float)) == 0);
+    };
+    RenderOptions options;
+    for (const WorkGroup& group : {WorkGroup{WorkGroup::Kind::fixed, 1, 1},
+                                   {WorkGroup::Kind::fixed, 7, 1},
+                                   {WorkGroup::Kind::fixed, 64, 1},
+                                   {WorkGroup::Kind::fixed, 4, 2},
+                                   {WorkGroup::Kind::fixed, 8, 8},
+                                   {WorkGroup::Kind::driver, 0, 0}}) {
+      options.work_group = group;
       check(options);
     }
+    options.work_group = {};
+    options.tile = 12;
+    check(options);
+  });
 }

@@ -63,32 +63,32 @@ SceneDescription ball_on_floor(float size, double slant, Tracer tracer) {
 }  // namespace
 
 TEST_CASE("a floor of two huge triangles throws no shadow on itself") {
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      for (const double slant : {0.0, 0.3})
-        for (const Tracer tracer : {Tracer::wide, Tracer::compact}) {
-          if (tracer == Tracer::wide && device.native_vector_width <= 1) continue;
-          const Image expected = scenes::render_on(device, ball_on_floor(0, slant, tracer)).image;
-          for (const float size : {100.0f, 1e3f, 1e4f}) {
-            CAPTURE(slant, size, tracer == Tracer::compact);
-            const ImageDifference d = compare_images(
-                scenes::render_on(device, ball_on_floor(size, slant, tracer)).image, expected, 0.03);
-            CHECK(d.over_tolerance <= d.pixels / 25);  // the horizon, and shadows that begin a little farther
-          }
+  on_every_device([&](const DeviceInfo& device) {
+    for (const double slant : {0.0, 0.3})
+      for (const Tracer tracer : {Tracer::wide, Tracer::compact}) {
+        if (tracer == Tracer::wide && device.native_vector_width <= 1) continue;
+        const Image expected = scenes::render_on(device, ball_on_floor(0, slant, tracer)).image;
+        for (const float size : {100.0f, 1e3f, 1e4f}) {
+          CAPTURE(slant, size, tracer == Tracer::compact);
+          const ImageDifference d = compare_images(
+              scenes::render_on(device, ball_on_floor(size, slant, tracer)).image, expected, 0.03);
+          CHECK(d.over_tolerance <= d.pixels / 25);  // the horizon, and shadows that begin a little farther
         }
-    }
+      }
+  });
 }
 
 TEST_CASE("a mesh of extreme coordinates that its transform brings to size looks as any other") {
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      for (const bool smooth : {true, false}) {
-        const Image expected = scenes::render_on(device, scene_in(1, smooth)).image;
-        for (const double unit : {1e-30, 1e-16, 1e-12, 1e-10, 1e10, 1e12, 1e14, 1e30}) {
-          CAPTURE(smooth, unit);
-          const ImageDifference d =
-              compare_images(scenes::render_on(device, scene_in(unit, smooth)).image, expected, 0.01);
-          CHECK(d.over_tolerance <= d.pixels / 50);  // rounding at silhouettes and borders of checkers
-          CHECK(d.non_finite == 0);
-        }
+  on_every_device([&](const DeviceInfo& device) {
+    for (const bool smooth : {true, false}) {
+      const Image expected = scenes::render_on(device, scene_in(1, smooth)).image;
+      for (const double unit : {1e-30, 1e-16, 1e-12, 1e-10, 1e10, 1e12, 1e14, 1e30}) {
+        CAPTURE(smooth, unit);
+        const ImageDifference d =
+            compare_images(scenes::render_on(device, scene_in(unit, smooth)).image, expected, 0.01);
+        CHECK(d.over_tolerance <= d.pixels / 50);  // rounding at silhouettes and borders of checkers
+        CHECK(d.non_finite == 0);
       }
     }
+  });
 }

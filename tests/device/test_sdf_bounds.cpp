@@ -39,15 +39,15 @@ void check_bounds(const std::vector<Case>& cases) {
   const auto descriptions = read_fields(cases);
   REQUIRE(descriptions.size() == cases.size());
   const CompiledFields fields = compile_fields(descriptions);
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      if (!is_quick(info)) continue;
-      Device device(info);
-      BoundTester tester(device, fields);
-      for (u32 f = 0; f < cases.size(); ++f) {
-        INFO(cases[f].json);
-        check_bound(tester.ratios(f, 20480), cases[f].exceptions, cases[f].any_length);
-      }
+  on_every_device([&](const DeviceInfo& info) {
+    if (!is_quick(info)) return;
+    Device device(info);
+    BoundTester tester(device, fields);
+    for (u32 f = 0; f < cases.size(); ++f) {
+      INFO(cases[f].json);
+      check_bound(tester.ratios(f, 20480), cases[f].exceptions, cases[f].any_length);
     }
+  });
 }
 
 // The greatest difference of the gradient and central differences among random points, but for a hundredth of
@@ -97,15 +97,15 @@ TEST_CASE("closed forms, a user's among them, and their smooth joints have the g
   };
   const auto descriptions = read_fields(cases);
   const CompiledFields fields = compile_fields(descriptions);
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      if (!is_quick(info)) continue;
-      Device device(info);
-      for (u32 f = 0; f < cases.size(); ++f) {
-        INFO(cases[f].json);
-        CHECK((fields.fields[f].flags & SDF_SMOOTH) != 0);
-        CHECK(gradient_error(device, fields, f) < 4e-3f);
-      }
+  on_every_device([&](const DeviceInfo& info) {
+    if (!is_quick(info)) return;
+    Device device(info);
+    for (u32 f = 0; f < cases.size(); ++f) {
+      INFO(cases[f].json);
+      CHECK((fields.fields[f].flags & SDF_SMOOTH) != 0);
+      CHECK(gradient_error(device, fields, f) < 4e-3f);
     }
+  });
 }
 
 TEST_CASE("estimates keep their bound with parameters at the ends of their ranges") {

@@ -100,17 +100,17 @@ TEST_CASE(
     "states") {
   const auto descriptions = listed_fields();
   const CompiledFields fields = compile_fields(descriptions);
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      if (!is_quick(info)) continue;
-      Device device(info);
-      BoundTester tester(device, fields);
-      for (u32 f = 0; f < descriptions.size(); ++f) {
-        const double exceptions = descriptions[f].root.formula.steps[0].definition.exceptions;
-        INFO(descriptions[f].name);
-        check_bound(tester.ratios(f, 102400), exceptions);
-      }
-      device.finish();
+  on_every_device([&](const DeviceInfo& info) {
+    if (!is_quick(info)) return;
+    Device device(info);
+    BoundTester tester(device, fields);
+    for (u32 f = 0; f < descriptions.size(); ++f) {
+      const double exceptions = descriptions[f].root.formula.steps[0].definition.exceptions;
+      INFO(descriptions[f].name);
+      check_bound(tester.ratios(f, 102400), exceptions);
     }
+    device.finish();
+  });
 }
 
 TEST_CASE("an estimate has the same bits for 1, 4, 8 and 16 lanes where it uses no transcendental function") {
@@ -118,27 +118,27 @@ TEST_CASE("an estimate has the same bits for 1, 4, 8 and 16 lanes where it uses 
   for (const FormulaDefinition& d : formula_list())
     (uses_transcendentals(d) ? rounded : exact).push_back(default_field(d));
   CHECK(exact.size() >= 20);
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      auto chosen = exact;
-      if (!is_quick(info)) chosen = {listed_field("torus")};
-      const CompiledFields fields = compile_fields(chosen);
-      const u32 count = is_quick(info) ? 4096 : 64;
-      const auto wanted = values_of(device, fields, chosen, 1, count);
-      for (const int lanes : {4, 8, 16}) {
-        if (!is_quick(info) && lanes != 4) continue;
-        const auto found = values_of(device, fields, chosen, lanes, count);
-        REQUIRE(found.size() == wanted.size());
-        for (std::size_t f = 0; f < chosen.size(); ++f) {
-          const std::size_t first = f * 9 * count;
-          std::size_t different = 0;
-          for (std::size_t i = first; i < first + 9 * count; ++i)
-            different += std::memcmp(&wanted[i], &found[i], sizeof(float)) != 0;
-          INFO(chosen[f].name << ", " << lanes << " lanes");
-          CHECK(different == 0);
-        }
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    auto chosen = exact;
+    if (!is_quick(info)) chosen = {listed_field("torus")};
+    const CompiledFields fields = compile_fields(chosen);
+    const u32 count = is_quick(info) ? 4096 : 64;
+    const auto wanted = values_of(device, fields, chosen, 1, count);
+    for (const int lanes : {4, 8, 16}) {
+      if (!is_quick(info) && lanes != 4) continue;
+      const auto found = values_of(device, fields, chosen, lanes, count);
+      REQUIRE(found.size() == wanted.size());
+      for (std::size_t f = 0; f < chosen.size(); ++f) {
+        const std::size_t first = f * 9 * count;
+        std::size_t different = 0;
+        for (std::size_t i = first; i < first + 9 * count; ++i)
+          different += std::memcmp(&wanted[i], &found[i], sizeof(float)) != 0;
+        INFO(chosen[f].name << ", " << lanes << " lanes");
+        CHECK(different == 0);
       }
     }
+  });
 }
 
 TEST_CASE("the logarithm of the lanes is within two units in the last place") {
@@ -155,19 +155,18 @@ TEST_CASE("the logarithm of the lanes is within two units in the last place") {
   for (int e = -126; e <= 126; ++e)
     for (int k = 0; k < 64; ++k) inputs.push_back(std::ldexp(1.0f + static_cast<float>(k) / 64, e));
   for (int k = -2000; k <= 2000; ++k) inputs.push_back(1.0f + static_cast<float>(k) * 1e-4f);
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      Device device(info);
-      for (const char* lanes : {"1", is_quick(info) ? "16" : "4"}) {
-        const auto found = run_text<float>(device, text, inputs, {{"LANES", lanes}});
-        double worst = 0;
-        for (std::size_t i = 0; i < inputs.size(); ++i) {
-          const double wanted = std::log(static_cast<double>(inputs[i]));
-          const double unit = std::max(
-              std::abs(std::nextafter(static_cast<float>(wanted), 1e30f) - static_cast<float>(wanted)),
-              5e-8f);
-          worst = std::max(worst, std::abs(static_cast<double>(found[i]) - wanted) / unit);
-        }
-        CHECK(worst <= 2);
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    for (const char* lanes : {"1", is_quick(info) ? "16" : "4"}) {
+      const auto found = run_text<float>(device, text, inputs, {{"LANES", lanes}});
+      double worst = 0;
+      for (std::size_t i = 0; i < inputs.size(); ++i) {
+        const double wanted = std::log(static_cast<double>(inputs[i]));
+        const double unit = std::max(
+            std::abs(std::nextafter(static_cast<float>(wanted), 1e30f) - static_cast<float>(wanted)), 5e-8f);
+        worst = std::max(worst, std::abs(static_cast<double>(found[i]) - wanted) / unit);
       }
+      CHECK(worst <= 2);
     }
+  });
 }

@@ -52,10 +52,10 @@ TEST_CASE("an absorbing world dims what lies between a light and an opaque scene
   scenes::place(shaded, SphereShape{0.1}, scenes::add_white(shaded),
                 glm::translate(glm::dmat4(1), {0.375, 0.5, 0}));
   check_dimmed(plain_pixel(scene));
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      check_dimmed(scenes::pixel_on(device, scene));
-      CHECK(scenes::pixel_on(device, shaded) == glm::dvec3(0));
-    }
+  on_every_device([&](const DeviceInfo& device) {
+    check_dimmed(scenes::pixel_on(device, scene));
+    CHECK(scenes::pixel_on(device, shaded) == glm::dvec3(0));
+  });
 }
 
 TEST_CASE("a medium whose surface stops shadow rays dims the lights inside of it") {
@@ -64,9 +64,7 @@ TEST_CASE("a medium whose surface stops shadow rays dims the lights inside of it
   scene.materials[static_cast<std::size_t>(glass)].shadow_opaque = true;
   scenes::place(scene, BoxShape{{4, 4, 4}}, glass);
   check_dimmed(plain_pixel(scene));
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      check_dimmed(scenes::pixel_on(device, scene));
-    }
+  on_every_device([&](const DeviceInfo& device) { check_dimmed(scenes::pixel_on(device, scene)); });
 }
 
 TEST_CASE("a pane of glass at any slant dims a light by what its two faces reflect") {
@@ -96,7 +94,5 @@ TEST_CASE("a directional light along an axis is stopped by what stands in its wa
   sun.type = LightType::directional;
   sun.direction = {0, -1, 0};  // towards it: (-0, 1, -0)
   scene.lights.push_back(sun);
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      CHECK(scenes::pixel_on(device, scene).x == 0);
-    }
+  on_every_device([&](const DeviceInfo& device) { CHECK(scenes::pixel_on(device, scene).x == 0); });
 }

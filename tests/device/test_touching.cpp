@@ -218,9 +218,9 @@ TEST_CASE("every device crosses faces that lie in one place once") {
                glass);
   scenes::place(scene, PlaneShape{}, scenes::add_glow(scene, {1, 1, 1}),
                 glm::rotate(at({0, 0, -5}), glm::radians(90.0), dvec3(1, 0, 0)));
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      CHECK(scenes::pixel_on(device, scene).x == Approx(0.96 * 0.96).epsilon(1e-5));
-    }
+  on_every_device([&](const DeviceInfo& device) {
+    CHECK(scenes::pixel_on(device, scene).x == Approx(0.96 * 0.96).epsilon(1e-5));
+  });
 }
 
 TEST_CASE("light that comes slantwise through touching media bends as their indices say") {

@@ -61,17 +61,17 @@ std::vector<Ray> rays_from_inside(const Mesh& mesh, std::size_t count) {
 }  // namespace
 
 TEST_CASE("rays from inside a closed mesh towards its edges and vertices never slip through") {
-  for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) {
-      const std::size_t count = info.device_class == DeviceClass::cpu ? 2000000 : 40000;
-      Mesh mesh = closed_mesh(100);
-      const std::vector<Ray> rays = rays_from_inside(mesh, count);
-      Device device(info);
-      RayTracer tracer(device, compile(scene_of(std::move(mesh))));
-      std::size_t leaks = 0;
-      for (const Hit& hit : tracer.trace(rays)) leaks += hit.instance == NO_INSTANCE;
-      CHECK(leaks == 0);
-      leaks = 0;
-      for (const u32 occluded : tracer.occlusion(rays)) leaks += !occluded;
-      CHECK(leaks == 0);
-    }
+  on_every_device([&](const DeviceInfo& info) {
+    const std::size_t count = info.device_class == DeviceClass::cpu ? 2000000 : 40000;
+    Mesh mesh = closed_mesh(100);
+    const std::vector<Ray> rays = rays_from_inside(mesh, count);
+    Device device(info);
+    RayTracer tracer(device, compile(scene_of(std::move(mesh))));
+    std::size_t leaks = 0;
+    for (const Hit& hit : tracer.trace(rays)) leaks += hit.instance == NO_INSTANCE;
+    CHECK(leaks == 0);
+    leaks = 0;
+    for (const u32 occluded : tracer.occlusion(rays)) leaks += !occluded;
+    CHECK(leaks == 0);
+  });
 }

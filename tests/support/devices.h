@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "catch.h"
 #include "device/device.h"
 #include "shared/types.h"
 
@@ -12,10 +13,15 @@
 void prepare_opencl_environment();
 
 /// Every usable device, or those of SUNDOG_TEST_DEVICES (a comma-separated list of --device SPECs). Fails the
-/// test when there is none. For use as
-///     for (const DeviceInfo& info : test_devices()) DYNAMIC_SECTION(info.label()) { Device device(info); ...
-///     }
+/// test when there is none.
 const std::vector<sundog::DeviceInfo>& test_devices();
+
+/// Calls body(device's DeviceInfo) for each of them, in a section of its own.
+void on_every_device(const auto& body) {
+  for (const sundog::DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      body(device);
+    }
+}
 
 /// Definitions of every shape and feature, for kernels that are tested by themselves.
 sundog::KernelDefines all_features();
