@@ -21,7 +21,7 @@ std::optional<float> png_decoding_exponent(std::string_view bytes);
 
 /// Radiance RGBE: no alpha, nothing negative, about 1 % precision.
 std::string encode_hdr(const Image& image);
-Image decode_hdr(std::string_view bytes);
+Image decode_hdr(std::string_view file);
 
 /// Three floats a pixel, little-endian, rows bottom-up.
 std::string encode_pfm(const Image& image);

@@ -142,7 +142,7 @@ std::size_t greatest_size(const Imf::Header& header) {
   std::size_t pixel = 0;
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
     pixel += channel.channel().type == Imf::HALF ? 2 : 4;
-  const Imath::Box2i window = header.dataWindow();
+  const Imath::Box2i& window = header.dataWindow();
   const auto width = static_cast<std::size_t>(window.max.x) + 1,
              height = static_cast<std::size_t>(window.max.y) + 1;
   return width * height * pixel + 16 * height + (std::size_t{1} << 16);

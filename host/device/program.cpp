@@ -89,7 +89,7 @@ bool kernels_work(const cl::Program& program) {
   std::istringstream names(program.getInfo<CL_PROGRAM_KERNEL_NAMES>());
   cl_int status = CL_INVALID_PROGRAM_EXECUTABLE;
   for (std::string name; std::getline(names, name, ';');) {
-    cl::Kernel(program, name.c_str(), &status);
+    const cl::Kernel kernel(program, name.c_str(), &status);
     if (status != CL_SUCCESS) break;
   }
   return status == CL_SUCCESS;

@@ -43,7 +43,8 @@ struct BinaryTree::Builder {
   void make_leaf(BinaryNode& node, std::span<Ref> refs) const;
   void collapse(BinaryNode& node) const;
   float blocks(u32 count) const {
-    return static_cast<float>((count + settings.block_width - 1) / settings.block_width);
+    const u32 filled = (count + settings.block_width - 1) / settings.block_width;
+    return static_cast<float>(filled);
   }
 };
 

@@ -49,7 +49,8 @@ std::optional<RefSplit> split_in_space(const RefSet& set, const SplitSettings& s
 
 /// Relative price of `members` in a box: the blocks that they fill.
 inline float blocks(std::size_t members, const SplitSettings& settings) {
-  return static_cast<float>((members + settings.block_width - 1) / settings.block_width);
+  const std::size_t filled = (members + settings.block_width - 1) / settings.block_width;
+  return static_cast<float>(filled);
 }
 
 /// Whether several threads should work on one set: it is large, and there are too few others for them.

@@ -101,7 +101,6 @@ LeafEmitter::MapCode LeafEmitter::map(std::size_t step) {
       for (std::size_t axis = 0; axis < 3; ++axis)
         code.inside += fmt::format("    const REAL n{}_{} = {};\n", step, i * 3 + axis,
                                    print.text(s.z_tangents[i][axis]));
-  std::string copies;
   for (std::size_t i = 0; i < s.z.size(); ++i)
     code.inside += fmt::format("    const REAL new{}_{} = {};\n", step, z_names[i], print.text(s.z[i]));
   if (running()) code.inside += assign("dr", print.text(s.derivative));

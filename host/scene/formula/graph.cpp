@@ -174,7 +174,7 @@ NodeId Graph::simplified(Op op, NodeId a, NodeId b, NodeId c) {
   }
 }
 
-GraphProgram::GraphProgram(const Graph& graph, std::vector<NodeId> outputs) {
+GraphProgram::GraphProgram(const Graph& graph, const std::vector<NodeId>& outputs) {
   NodeId last = 0;
   for (const NodeId id : outputs) last = std::max(last, id);
   std::vector<bool> needed(last + 1, false);

@@ -110,7 +110,7 @@ double evaluate(Op op, double a, double b, double c);
 class GraphProgram {
  public:
   GraphProgram() = default;
-  GraphProgram(const Graph& graph, std::vector<NodeId> outputs);
+  GraphProgram(const Graph& graph, const std::vector<NodeId>& outputs);
   /// The outputs' values, in their order; valid until the next run.
   const std::vector<double>& run(const std::function<double(int)>& input);
   std::size_t size() const { return nodes_.size(); }

@@ -165,7 +165,7 @@ FormulaDefinition read_listed(JsonObject& object) {
 }
 
 /// The keys that say how far orbits are followed; checks the formula by lowering it.
-FormulaLeaf read_leaf(JsonObject& object, FormulaDefinition d) {
+FormulaLeaf read_leaf(JsonObject& object, const FormulaDefinition& d) {
   FormulaLeaf leaf{{}, d.bounds};
   leaf.field.iterations = object.integer("iterations", d.iterations, 1, FormulaDefinition::max_iterations);
   leaf.field.bailout =

@@ -88,7 +88,7 @@ class JsonValue {
 
  private:
   friend class JsonObject;
-  JsonValue child(std::string_view key, const nlohmann::json& json) const;
+  JsonValue child(std::string_view key, const nlohmann::json& value) const;
 
   const nlohmann::json* json_;
   const JsonContext* context_;

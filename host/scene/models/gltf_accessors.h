@@ -52,9 +52,9 @@ class GltfAccessors {
     return accessor.has_view ? &views_[accessor.dense.view] : nullptr;
   }
   /// `components` floats an element, integers scaled where normalised; decoded once. All are finite.
-  const std::vector<float>& floats(std::size_t accessor);
+  const std::vector<float>& floats(std::size_t index);
   /// A SCALAR accessor of an unsigned type.
-  const std::vector<std::uint32_t>& indices(std::size_t accessor);
+  const std::vector<std::uint32_t>& indices(std::size_t index);
   /// Counts `amount` things made from the file (values, triangles, objects). Fails at `pointer` when the sum
   /// is out of all proportion to the file and its buffers, as when a small file refers to the same data
   /// without end.

@@ -18,7 +18,7 @@ class GltfMeshes {
   std::size_t count() const { return meshes_.size(); }
   const std::string& name(std::size_t mesh) const { return meshes_[mesh].name; }
   /// The index in `model` of a mesh, added at its first use; -1 for one without triangles (points, lines).
-  int use(std::size_t mesh, Model& model);
+  int use(std::size_t index, Model& model);
 
  private:
   struct Primitive {
