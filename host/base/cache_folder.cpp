@@ -14,7 +14,7 @@ namespace {
 
 /// Why a folder is not the user's own; empty where it is, and where there is none.
 std::string refusal(const fs::path& folder) {
-  struct stat found {};
+  struct stat found{};
   if (::stat(folder.c_str(), &found) != 0) return "";
   if (!S_ISDIR(found.st_mode)) return fmt::format("{} is not a folder", folder.string());
   if (found.st_uid != ::geteuid())

@@ -16,13 +16,16 @@ struct UsageError : std::runtime_error {
 struct SceneError : std::runtime_error {
   SceneError(std::string file_, std::string place_, std::string what_)
       : std::runtime_error(file_ + (place_.empty() ? "" : ": " + place_) + ": " + what_),
-        file(std::move(file_)), place(std::move(place_)), reason(std::move(what_)) {}
+        file(std::move(file_)),
+        place(std::move(place_)),
+        reason(std::move(what_)) {}
   std::string file, place, reason;
 };
 
 /// No such device, or the device failed (exit 4). `status` is the OpenCL error code, 0 when there is none.
 struct DeviceError : std::runtime_error {
-  explicit DeviceError(const std::string& what, int status_ = 0) : std::runtime_error(what), status(status_) {}
+  explicit DeviceError(const std::string& what, int status_ = 0)
+      : std::runtime_error(what), status(status_) {}
   int status;
 };
 

@@ -77,7 +77,7 @@ class Temporary {
  private:
   /// Another process may have removed it before it was locked.
   bool taken_away() const {
-    struct stat now {};
+    struct stat now{};
     const bool locked = ::flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
     return !locked || (::fstat(file_, &now) == 0 && now.st_nlink == 0);
   }

@@ -60,7 +60,7 @@ std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t 
   };
   const auto unreadable = [&] { fail(fmt::format("cannot be read: {}", std::strerror(errno))); };
   const File file(path.c_str());
-  struct stat found {};
+  struct stat found{};
   if (file.descriptor < 0 || ::fstat(file.descriptor, &found) != 0) unreadable();
   if (S_ISDIR(found.st_mode)) fail("is a directory");
   const bool stream = S_ISFIFO(found.st_mode) && is_own_stream(path.string());

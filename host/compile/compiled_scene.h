@@ -44,7 +44,7 @@ struct SceneTables {
 template <class Visit>
 void for_each_table(const SceneTables& tables, const Visit& visit) {
 #define SUNDOG_VISIT_TABLE(type, host_type, name, label) visit(label, tables.name);
-  SCENE_TABLES(SUNDOG_VISIT_TABLE)
+  SCENE_TABLES(SUNDOG_VISIT_TABLE);
 #undef SUNDOG_VISIT_TABLE
 }
 

@@ -55,8 +55,7 @@ bool has_include_guard(const std::string& text) {
 
 std::string guard_name(const std::string& path) {
   std::string name = "SUNDOG_INCLUDED_" + path;
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+  std::replace_if(name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
   return name;
 }
 

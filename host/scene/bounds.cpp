@@ -38,7 +38,7 @@ std::array<dvec3, 8> corners_of(const dvec3& half) {
 }  // namespace
 
 SceneBounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes,
-                 std::span<const SdfDescription> fields) {
+                      std::span<const SdfDescription> fields) {
   SceneBounds bounds;
   for (const Object& object : objects) {
     const auto add = [&](const dvec3& point) {

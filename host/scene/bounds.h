@@ -18,7 +18,7 @@ struct SceneBounds {
 /// Around all objects with an end: planes do not count. Exact for meshes, the box of a box for the turned
 /// solids and of the fields' intervals.
 SceneBounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes,
-                 std::span<const SdfDescription> fields = {});
+                      std::span<const SdfDescription> fields = {});
 
 /// `camera` moved so that the box all but fills an image of width / height `aspect`, seen from the front,
 /// right and above (y is up). An empty box leaves it where it is.

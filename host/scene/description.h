@@ -1,5 +1,5 @@
-// SceneDescription: the scene as plain values, exactly what the file says after names are resolved to indices.
-// The loaders of this folder make it; compile() reads it.
+// SceneDescription: the scene as plain values, exactly what the file says after names are resolved to
+// indices. The loaders of this folder make it; compile() reads it.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -17,7 +17,8 @@ using glm::dmat4;
 using glm::dvec2;
 using glm::dvec3;
 
-/// A pinhole camera. `fov` is the vertical angle of view in degrees, (0, 180). near/far clip by depth along the view.
+/// A pinhole camera. `fov` is the vertical angle of view in degrees, (0, 180). near/far clip by depth along
+/// the view.
 struct Camera {
   dvec3 position{0, 0, 5}, target{0, 0, 0}, up{0, 1, 0};
   double fov = 45;
@@ -32,12 +33,12 @@ struct ImageSettings {
 enum class Tracer { automatic, wide, compact };
 
 struct RenderSettings {
-  int max_depth = 8;       // 1..64; 1 = the camera's rays alone
-  int samples = 1;         // per pixel, 1..65536; 1 = the pixel's centre
-  double cutoff = 1e-3;    // throughput below which a ray ends, [0, 1]
+  int max_depth = 8;     // 1..64; 1 = the camera's rays alone
+  int samples = 1;       // per pixel, 1..65536; 1 = the pixel's centre
+  double cutoff = 1e-3;  // throughput below which a ray ends, [0, 1]
   std::string integrator = "whitted";
   Tracer tracer = Tracer::automatic;
-  bool spatial_splits = false;  // build the BVH with cut triangles: slower to build, better for long thin ones
+  bool spatial_splits = false;  // build the BVH with cut triangles: slower, better for long thin ones
 };
 
 enum class LightType { ambient, directional, point, spot };
@@ -47,12 +48,13 @@ struct LightDescription {
   dvec3 color{1, 1, 1};
   double intensity = 1;
   dvec3 position{0, 0, 0};
-  dvec3 direction{0, -1, 0};               // the way the light travels; normalised by compile()
+  dvec3 direction{0, -1, 0};                  // the way the light travels; normalised by compile()
   double inner_angle = 20, outer_angle = 30;  // spot: half angles in degrees, 0 <= inner <= outer < 90
-  dvec3 falloff{1, 0, 0};                  // constant, linear, quadratic
+  dvec3 falloff{1, 0, 0};                     // constant, linear, quadratic
 };
 
-/// The world's medium gives way to every other where solids overlap; a scene file's priorities are -1000..1000.
+/// The world's medium gives way to every other where solids overlap; a scene file's priorities are
+/// -1000..1000.
 inline constexpr int world_priority = -1'000'000;
 
 struct MediumDescription {
@@ -72,16 +74,16 @@ struct MaterialDescription {
   double exponent = 32;
   bool blinn = false;
   dvec3 reflection{0}, transmission{0};  // a dielectric's tints default to 1 (set by the loader)
-  int medium = -1;                       // index into media of what is inside; -1: transmits straight through (thin)
+  int medium = -1;  // index into media of the inside; -1: thin, transmits straight through
   bool shadow_opaque = false;
   bool checker = false;
-  dvec3 checker_ambient{0}, checker_diffuse{0};  // ka and kd in odd cells, absolute (colour times coefficient)
+  dvec3 checker_ambient{0}, checker_diffuse{0};  // ka and kd in odd cells: colour times coefficient
   double checker_size = 1;                       // edge of a cell, object space
   bool vertex_color = false;
 };
 
-/// Triangles with shared vertices. `normals` (empty: flat shading), `uvs` and `colors` are empty or as long as
-/// `positions`; all colours linear.
+/// Triangles with shared vertices. `normals` (empty: flat shading), `uvs` and `colors` are empty or as long
+/// as `positions`; all colours linear.
 struct Mesh {
   std::string name;
   std::vector<glm::vec3> positions;
@@ -93,6 +95,7 @@ struct Mesh {
   std::size_t source_vertex_count = 0;  // as the file stores them: before vertices are split or dropped
 };
 
+// clang-format off: a line a shape
 struct MeshShape { int mesh = 0; };           // index into meshes
 struct SphereShape { double radius = 1; };
 struct PlaneShape {};                          // y = 0, normal +y, inside below
@@ -103,10 +106,12 @@ struct DiskShape { double radius = 1, inner_radius = 0; };  // in y = 0
 struct TorusShape { double major_radius = 1, minor_radius = 0.25; };  // about y
 struct RoundBoxShape { dvec3 half{1, 1, 1}; double radius = 0.1; };  // outer half sizes, edge radius
 struct FieldShape { int field = 0; };  // index into fields
+// clang-format on
 using Shape = std::variant<MeshShape, SphereShape, PlaneShape, BoxShape, CylinderShape, ConeShape, DiskShape,
                            TorusShape, RoundBoxShape, FieldShape>;
 
-/// One placed thing. Groups are already flattened: the transform is the product of the group's and the object's.
+/// One placed thing. Groups are already flattened: the transform is the product of the group's and the
+/// object's.
 struct Object {
   std::string name;
   Shape shape = SphereShape{};

@@ -21,21 +21,21 @@ typedef struct Bvh8Node {
   float lower_x[8], lower_y[8], lower_z[8];
   float upper_x[8], upper_y[8], upper_z[8];
   u32 child[8];
-  u32 valid;    // bit i is set when slot i holds a child; filled slots come first
+  u32 valid;  // bit i is set when slot i holds a child; filled slots come first
   u32 pad[7];
 } Bvh8Node;
 SUNDOG_SHARED_SIZE(Bvh8Node, 256)
 
 // 96 bytes: the same node for devices that run a lane a ray, after Ylitie, Karras and Laine 2017 ("Efficient
-// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"): boxes on a grid of 256 steps an axis, never
-// smaller than those of the Bvh8Node. Nodes keep their indices.
+// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"): boxes on a grid of 256 steps an axis,
+// never smaller than those of the Bvh8Node. Nodes keep their indices.
 typedef struct CompactNode {
-  float origin[3];      // of the grid
-  u32 scale;            // byte i: the biased exponent of the grid's step on axis i; byte 3: the number of children
-  u32 first_inner;      // least node among the children
-  u32 first_leaf;       // least block (or instance) of the leaves
-  u32 child[4];         // 16 bits a slot: COMPACT_LEAF | (count - 1) << COMPACT_COUNT_SHIFT | distance from the first
-  u32 quantized[12];    // a byte a slot: lower x, y, z, upper x, y, z
+  float origin[3];    // of the grid
+  u32 scale;          // bytes 0..2: biased exponents of the grid's steps by axis; byte 3: how many children
+  u32 first_inner;    // least node among the children, from which their distances count
+  u32 first_leaf;     // least block (or instance) of the leaves, for their distances
+  u32 child[4];       // 16 bits a slot: COMPACT_LEAF | (count - 1) << COMPACT_COUNT_SHIFT | distance
+  u32 quantized[12];  // a byte a slot: lower x, y, z, upper x, y, z
   u32 pad[2];
 } CompactNode;
 SUNDOG_SHARED_SIZE(CompactNode, 96)
@@ -45,9 +45,9 @@ SUNDOG_SHARED_SIZE(CompactNode, 96)
 #define COMPACT_LEAF_DISTANCE 0x7FFu
 #define COMPACT_INNER_DISTANCE 0x7FFFu
 
-// 320 bytes: eight triangles by their corners, object space. Neighbours hold the same bits of a shared corner, which
-// is what makes the hit test watertight. `prim` indexes TriangleShading; an unused lane holds zeros and NO_PRIM
-// (a point: never hit), and a triangle without area is held as a point too.
+// 320 bytes: eight triangles by their corners, object space. Neighbours hold the same bits of a shared
+// corner, which is what makes the hit test watertight. `prim` indexes TriangleShading; an unused lane holds
+// zeros and NO_PRIM (a point: never hit), and a triangle without area is held as a point too.
 typedef struct TriangleBlock {
   float v0_x[8], v0_y[8], v0_z[8];
   float v1_x[8], v1_y[8], v1_z[8];
@@ -59,9 +59,9 @@ SUNDOG_SHARED_SIZE(TriangleBlock, 320)
 #define NO_PRIM 0xFFFFFFFFu
 #define NO_INSTANCE 0xFFFFFFFFu
 
-// 24 bytes: what shading needs of a triangle: three indices into the Vertex array, its material, the greatest distance of
-// its corners along an axis, which rounding of positions on it is relative to, and where its corners are:
-// lane place & 7 of the block place >> 3.
+// 24 bytes: what shading needs of a triangle: three indices into the Vertex array, its material, the greatest
+// distance of its corners along an axis, which rounding of positions on it is relative to, and where its
+// corners are: lane place & 7 of the block place >> 3.
 typedef struct TriangleShading {
   u32 vertex[3];
   u32 material;
@@ -74,10 +74,11 @@ SUNDOG_SHARED_SIZE(TriangleShading, 24)
 typedef struct Vertex {
   float nx, ny, nz;
   float u, v;
-  float r, g, b;   // vertex colour, linear; 1 where the file has none
+  float r, g, b;  // vertex colour, linear; 1 where the file has none
 } Vertex;
 SUNDOG_SHARED_SIZE(Vertex, 32)
 
+// clang-format off: a table
 // What an instance places. Exact solids are unit shapes; their transform scales them, `parameters` holds what
 // a transform cannot (all in object space, y is the axis):
 //   SPHERE    radius 1 at the origin                 PLANE     y = 0, inside is y < 0; unbounded
@@ -86,6 +87,7 @@ SUNDOG_SHARED_SIZE(Vertex, 32)
 //   DISK      radius 1 in y = 0, normal +y; parameters.x: inner radius (0 <= x < 1)
 //   TORUS     major radius 1 about y, minor radius parameters.x (0 < x < 1)
 //   ROUNDBOX  half sizes parameters.xyz, edges rounded with radius parameters.w (<= the smallest half size)
+// clang-format on
 #define SHAPE_MESH 0u
 #define SHAPE_SPHERE 1u
 #define SHAPE_PLANE 2u
@@ -98,9 +100,9 @@ SUNDOG_SHARED_SIZE(Vertex, 32)
 #define SHAPE_SDF 9u
 #define SHAPE_COUNT 10u
 
-// 128 bytes. Instances [0, bounded_count) are leaves of the scene BVH in leaf order; the rest, planes and a few
-// solids beside meshes, are tried one by one. A ray is taken into object space without renormalising, so t is the same in both;
-// a normal goes to world space by the transpose of object_from_world's linear part.
+// 128 bytes. Instances [0, bounded_count) are leaves of the scene BVH in leaf order; the rest, planes and a
+// few solids beside meshes, are tried one by one. A ray is taken into object space without renormalising, so
+// t is the same in both; a normal goes to world space by the transpose of object_from_world's linear part.
 typedef struct Instance {
   float4 object_from_world[3];  // rows of the affine matrix
   float4 parameters;
@@ -112,20 +114,20 @@ typedef struct Instance {
   float touch;   // above 0 where surfaces of it may lie on others' or its own: how far rounding may part them
   u32 pad0, pad1;
   float4 world_center;   // of the bounds; w = half the diagonal (0 when unbounded)
-  float4 pattern_scale;  // xyz: object space times this is the scene file's object space, where patterns are measured
+  float4 pattern_scale;  // xyz: from object space to that of the scene file, where patterns are measured
 } Instance;
 SUNDOG_SHARED_SIZE(Instance, 128)
 
 #define NO_MATERIAL 0xFFFFFFFFu
-#define INSTANCE_IDENTITY 1u     // object_from_world is the identity
-#define INSTANCE_FILTERS 2u      // a shadow ray may pass (some material of it transmits and lets light through)
-#define INSTANCE_TRANSMITS 4u    // some material of it has an interior medium
+#define INSTANCE_IDENTITY 1u   // object_from_world is the identity
+#define INSTANCE_FILTERS 2u    // a shadow ray may pass (some material of it transmits and lets light through)
+#define INSTANCE_TRANSMITS 4u  // some material of it has an interior medium
 
 // 32 bytes: the raw intersection. ng is the geometric normal in object space, outward, not normalised.
 typedef struct Hit {
-  float t, u, v;     // t along the ray; u, v barycentric (triangles) or surface parameters
-  u32 prim;          // TriangleShading index; for a solid the face or part
-  u32 instance;      // NO_INSTANCE: nothing was hit
+  float t, u, v;  // t along the ray; u, v barycentric (triangles) or surface parameters
+  u32 prim;       // TriangleShading index; for a solid the face or part
+  u32 instance;   // NO_INSTANCE: nothing was hit
   float ng_x, ng_y, ng_z;
 } Hit;
 SUNDOG_SHARED_SIZE(Hit, 32)

@@ -1,10 +1,11 @@
-// What a scene may use. Each scene's kernels are built with these definitions, so that only what it needs is compiled.
-// From this list come SceneFeatures and the -D options. A new feature is a line
-// here, the line that sets it in host/compile, and the kernel code that asks for it.
+// What a scene may use. Each scene's kernels are built with these definitions, so that only what it needs is
+// compiled. From this list come SceneFeatures and the -D options. A new feature is a line here, the line that
+// sets it in host/compile, and the kernel code that asks for it.
 //   FEATURE(type on the host, definition, member of SceneFeatures)
 #ifndef SUNDOG_SHARED_FEATURES_H
 #define SUNDOG_SHARED_FEATURES_H
 
+// clang-format off: a table
 #define SCENE_FEATURES(FEATURE)                                                                         \
   FEATURE(bool, HAS_SECONDARY, secondary_rays)      /* some material reflects or transmits */           \
   FEATURE(bool, HAS_MEDIA, media)                   /* some material has a medium, or the world absorbs */ \
@@ -19,5 +20,6 @@
   FEATURE(bool, SDF_TWO_SIDED, two_sided_fields)    /* some field transmits: rays may be inside it */   \
   FEATURE(bool, HAS_UV, surface_coordinates)        /* some material asks for surface coordinates */    \
   FEATURE(u32, SDF_FLAGS, field_flags)              /* SdfField.flags that some field has */
+// clang-format on
 
 #endif

@@ -14,23 +14,23 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_REFLECTS 16u
 #define MATERIAL_THIN 32u          // no interior: transmits straight through and changes no medium
 #define MATERIAL_VERTEX_COLOR 64u  // ambient and diffuse are multiplied by the vertex colour
-#define MATERIAL_CLEAR 128u        // no local terms, no tint in transmission: cannot be seen between equal indices
+#define MATERIAL_CLEAR 128u        // no local terms or tint: cannot be seen between equal indices
 
 // Highlights up to this exponent, where it is whole, are products alone.
 #define GREATEST_WHOLE_EXPONENT 65535.0f
 
 // 128 bytes. Each colour is already multiplied by its coefficient.
 typedef struct Material {
-  float4 ambient;       // ka
-  float4 diffuse;       // kd
-  float4 specular;      // ks; w = exponent
-  float4 reflection;    // kr (a dielectric's tint, normally 1)
-  float4 transmission;  // kt (a dielectric's tint, normally 1)
+  float4 ambient;          // ka
+  float4 diffuse;          // kd
+  float4 specular;         // ks; w = exponent
+  float4 reflection;       // kr (a dielectric's tint, normally 1)
+  float4 transmission;     // kt (a dielectric's tint, normally 1)
   float4 checker_ambient;  // ka in odd cells
   float4 checker_diffuse;  // kd in odd cells; w = 1 / cell size (object space)
-  u32 kind;             // MATERIAL_PHONG, MATERIAL_DIELECTRIC
+  u32 kind;                // MATERIAL_PHONG, MATERIAL_DIELECTRIC
   u32 flags;
-  u32 medium;           // index of the medium inside the surface
+  u32 medium;  // index of the medium inside the surface
   u32 pad;
 } Material;
 SUNDOG_SHARED_SIZE(Material, 128)
@@ -40,7 +40,7 @@ SUNDOG_SHARED_SIZE(Material, 128)
 // 32 bytes. Medium 0 is the world's.
 typedef struct Medium {
   float4 absorption;  // Beer-Lambert, per unit of world length; w = index of refraction
-  i32 priority;       // the highest wins where solids overlap; equal: the one entered last (Schmidt and Budge 2002)
+  i32 priority;       // the highest wins in an overlap; if equal, the last entered (Schmidt, Budge 2002)
   u32 pad0, pad1, pad2;
 } Medium;
 SUNDOG_SHARED_SIZE(Medium, 32)
@@ -54,14 +54,16 @@ typedef struct Light {
   float4 position;   // world
   float4 direction;  // unit, the way the light travels; w = cosine of the cone's outer half angle
   float4 color;      // times intensity; w = cosine of the cone's inner half angle
-  float falloff_constant, falloff_linear, falloff_quadratic;  // intensity / (c + l d + q d^2), d in world units
+  // Intensity / (constant + linear d + quadratic d^2), d in world units.
+  float falloff_constant, falloff_linear, falloff_quadratic;
   u32 kind;
 } Light;
 SUNDOG_SHARED_SIZE(Light, 64)
 
-// 272 bytes: the scene's constants. Positions in all tables count from a point of the world, `origin` plus `origin_rest`,
-// near what the camera looks at (host/compile/local_origin.h). The pixel (x, y), y down, sample offset (a, b) in [0, 1)^2, looks along
-// camera_corner + (x + a) camera_dx + (y + b) camera_dy, which has length 1 along camera_forward.
+// 272 bytes: the scene's constants. Positions in all tables count from a point of the world, `origin` plus
+// `origin_rest`, near what the camera looks at (host/compile/local_origin.h). The pixel (x, y), y down,
+// sample offset (a, b) in [0, 1)^2, looks along camera_corner + (x + a) camera_dx + (y + b) camera_dy, which
+// has length 1 along camera_forward.
 typedef struct SceneInfo {
   float4 camera_position;
   float4 camera_corner;
@@ -69,25 +71,25 @@ typedef struct SceneInfo {
   float4 camera_dy;
   float4 camera_forward;     // unit; w = near clipping depth
   float4 background_bottom;  // w = far clipping depth (may be infinite)
-  float4 background_top;     // a ray that meets nothing sees bottom..top, linear in the sine of its elevation towards `up`
+  float4 background_top;     // seen by rays that meet nothing: bottom..top, linear in the elevation's sine
   float4 ambient;            // sum of the ambient lights
   u32 width, height;
-  u32 tlas_root;             // first node of the scene BVH
-  u32 bounded_count;         // instances in the scene BVH (0: the BVH is empty)
+  u32 tlas_root;      // first node of the scene BVH
+  u32 bounded_count;  // instances in the scene BVH (0: the BVH is empty)
   u32 instance_count;
   u32 light_count;
   u32 material_count, medium_count;
-  u32 max_depth;             // 1 = no secondary rays; the camera's ray has depth 1
-  u32 samples;               // per pixel
-  float cutoff;              // a ray whose greatest throughput component is below it ends
-  u32 camera_inside;         // 1: the camera may be inside a solid with a medium; its media stack must be found
-  float4 scene_center;       // bounding sphere of all instances but planes and fields; w = radius
-  float4 up;                 // unit: the scene's up
-  float4 fog;                // colour of the world's fog; w = its density per unit of length (0: none)
-  u32 field_end;             // instances [instance_count, field_end) place distance fields
+  u32 max_depth;        // 1 = no secondary rays; the camera's ray has depth 1
+  u32 samples;          // per pixel
+  float cutoff;         // a ray whose greatest throughput component is below it ends
+  u32 camera_inside;    // 1: the camera may be inside a solid with a medium; its media stack must be found
+  float4 scene_center;  // bounding sphere of all instances but planes and fields; w = radius
+  float4 up;            // unit: the scene's up
+  float4 fog;           // colour of the world's fog; w = its density per unit of length (0: none)
+  u32 field_end;        // instances [instance_count, field_end) place distance fields
   u32 pad0, pad1, pad2;
-  float4 origin;             // of the tables' coordinates, in the world
-  float4 origin_rest;        // what its floats leave out
+  float4 origin;       // of the tables' coordinates, in the world
+  float4 origin_rest;  // what its floats leave out
 } SceneInfo;
 SUNDOG_SHARED_SIZE(SceneInfo, 272)
 
@@ -98,18 +100,18 @@ SUNDOG_SHARED_SIZE(SceneInfo, 272)
 #define COUNT_SHADOW 3
 #define COUNT_MARCH_STEPS 4
 #define COUNT_PRIMARY_HIT 5
-#define COUNT_CUT_OFF 6             // rays not spawned because of their throughput
-#define COUNT_DEPTH_LIMIT 7         // rays not spawned because of max_depth
+#define COUNT_CUT_OFF 6      // rays not spawned because of their throughput
+#define COUNT_DEPTH_LIMIT 7  // rays not spawned because of max_depth
 #define COUNT_RAY_STACK_OVERFLOW 8
 #define COUNT_MEDIA_STACK_OVERFLOW 9
-#define COUNT_NON_FINITE 10         // samples dropped
-#define COUNT_STRAY_EXIT 11         // a medium was left that had not been entered (an open mesh)
-#define COUNT_SHADOW_LIMIT 12       // shadow rays given up after too many filters
-#define COUNT_MARCH_LIMIT 13        // marches that their step limit ended
-#define COUNT_MARCH_BACK 14         // relaxed steps that were taken back
-#define COUNT_MARCH_BUDGET 15       // marches not made because the sample's budget was used up
-#define COUNT_MARCH_LEFT 16         // no count: what the marches of a sample may still cost (lib/path/fields.cl)
-#define COUNT_FINISHED 17           // twice the camera rays of work-items whose loops ran to their end (lib/core/counters.cl)
+#define COUNT_NON_FINITE 10    // samples dropped
+#define COUNT_STRAY_EXIT 11    // a medium was left that had not been entered (an open mesh)
+#define COUNT_SHADOW_LIMIT 12  // shadow rays given up after too many filters
+#define COUNT_MARCH_LIMIT 13   // marches that their step limit ended
+#define COUNT_MARCH_BACK 14    // relaxed steps that were taken back
+#define COUNT_MARCH_BUDGET 15  // marches not made because the sample's budget was used up
+#define COUNT_MARCH_LEFT 16    // no count: what the marches of a sample may still cost (lib/path/fields.cl)
+#define COUNT_FINISHED 17      // twice the camera rays of work-items that ended (lib/core/counters.cl)
 #define COUNTERS 18
 
 SUNDOG_SHARED_END

@@ -1,23 +1,25 @@
-// The tables of a compiled scene, each once: from this list come the compiled scene's members, their upload, bytes and
-// hash, the kernels' parameters and the struct Scene that kernels hand on. A new table is one line here.
+// The tables of a compiled scene, each once: from this list come the compiled scene's members, their upload,
+// bytes and hash, the kernels' parameters and the struct Scene that kernels hand on. A new table is one line
+// here.
 //   TABLE(element on the device, element on the host, name, name in messages)
-// Only `nodes` differ: Bvh8Nodes are uploaded as they are, or as CompactNodes for devices that run a lane a ray.
+// Only `nodes` differ: Bvh8Nodes are uploaded as they are, or as CompactNodes for devices that run a lane a
+// ray.
 #ifndef SUNDOG_SHARED_SCENE_TABLES_H
 #define SUNDOG_SHARED_SCENE_TABLES_H
 #include "shared/bvh.h"
 #include "shared/scene.h"
 #include "shared/sdf.h"
 
-#define SCENE_TABLES(TABLE)                                              \
-  TABLE(u32, Bvh8Node, nodes, "BVH nodes")                               \
-  TABLE(TriangleBlock, TriangleBlock, blocks, "triangle blocks")         \
-  TABLE(Instance, Instance, instances, "instances")                      \
-  TABLE(TriangleShading, TriangleShading, triangles, "triangles")        \
-  TABLE(Vertex, Vertex, vertices, "vertices")                            \
-  TABLE(Material, Material, materials, "materials")                      \
-  TABLE(Medium, Medium, media, "media")                                  \
-  TABLE(Light, Light, lights, "lights")                                  \
-  TABLE(SdfField, SdfField, sdf_fields, "fields")                        \
+#define SCENE_TABLES(TABLE)                                       \
+  TABLE(u32, Bvh8Node, nodes, "BVH nodes")                        \
+  TABLE(TriangleBlock, TriangleBlock, blocks, "triangle blocks")  \
+  TABLE(Instance, Instance, instances, "instances")               \
+  TABLE(TriangleShading, TriangleShading, triangles, "triangles") \
+  TABLE(Vertex, Vertex, vertices, "vertices")                     \
+  TABLE(Material, Material, materials, "materials")               \
+  TABLE(Medium, Medium, media, "media")                           \
+  TABLE(Light, Light, lights, "lights")                           \
+  TABLE(SdfField, SdfField, sdf_fields, "fields")                 \
   TABLE(float, float, sdf_parameters, "field parameters")
 
 #endif

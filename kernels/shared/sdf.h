@@ -31,12 +31,12 @@ typedef struct SdfField {
   u32 palette_count;
   float palette_scale;
   float palette_offset;
-  float normal_width;  // of the differences that give a fractal's normal, in thresholds
+  float normal_width;     // of the differences that give a fractal's normal, in thresholds
   float occlusion_reach;  // how far off the surface its own crevices take ambient light; 0: they do not
   float shadow_hardness;  // a soft shadow ends 1 / hardness of its length beside the field; 0: sharp
   u32 iterations;         // that one estimate may take at most
   u32 pad0, pad1, pad2;
-  float4 glow;            // light that a passing ray gathers; w = distance at which it has fallen to 1 / e
+  float4 glow;  // light that a passing ray gathers; w = distance at which it has fallen to 1 / e
 } SdfField;
 SUNDOG_SHARED_SIZE(SdfField, 128)
 

@@ -13,7 +13,8 @@ typedef int i32;
 #include <cstdint>
 #define SUNDOG_SHARED_BEGIN namespace sundog {
 #define SUNDOG_SHARED_END }
-#define SUNDOG_SHARED_SIZE(type, bytes) static_assert(sizeof(type) == (bytes), #type " must be " #bytes " bytes");
+#define SUNDOG_SHARED_SIZE(type, bytes) \
+  static_assert(sizeof(type) == (bytes), #type " must be " #bytes " bytes");
 namespace sundog {
 using u32 = std::uint32_t;
 using i32 = std::int32_t;

@@ -170,12 +170,12 @@ TEST_CASE("an interval that ends at a hit holds it, one that begins there does n
       for (std::size_t i = 0; i < rays.size(); ++i) set_interval(changed[i], hits[i].t);
       return tracer.trace(changed, coherent);
     };
-    const std::vector<Hit> ends = trace_within([](Ray&r, float t) { r.t_max = t; }),
+    const std::vector<Hit> ends = trace_within([](Ray& r, float t) { r.t_max = t; }),
                            ends_before =
-                               trace_within([](Ray&r, float t) { r.t_max = std::nextafter(t, 0.0f); }),
-                           begins = trace_within([](Ray&r, float t) { r.t_min = t; }),
+                               trace_within([](Ray& r, float t) { r.t_max = std::nextafter(t, 0.0f); }),
+                           begins = trace_within([](Ray& r, float t) { r.t_min = t; }),
                            begins_before =
-                               trace_within([](Ray&r, float t) { r.t_min = std::nextafter(t, 0.0f); });
+                               trace_within([](Ray& r, float t) { r.t_min = std::nextafter(t, 0.0f); });
     for (std::size_t i = 0; i < rays.size(); ++i) {
       CAPTURE(i, hits[i].t);
       REQUIRE(ends[i].t == hits[i].t);

@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "catch.h"
-#include "render/plan/tiles.h"
 #include "render/film/rows.h"
+#include "render/plan/tiles.h"
 
 using namespace sundog;
 

@@ -17,8 +17,7 @@ namespace {
 /// Prints the error in one line without control characters, whatever a file or a library put into it.
 void write_message(std::string message) {
   std::ranges::replace(message, '\n', ' ');
-  std::ranges::replace_if(
-      message, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
+  std::ranges::replace_if(message, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
   tell(fmt::format("sundog: {}\n", message));
 }
 

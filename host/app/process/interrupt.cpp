@@ -37,7 +37,7 @@ sigset_t set_of(std::initializer_list<int> signals) {
 
 /// As nohup leaves SIGHUP.
 bool is_ignored(int signal) {
-  struct sigaction action {};
+  struct sigaction action{};
   return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 

@@ -137,9 +137,8 @@ void add_sample_tables(Report& report, const SampleScaling& plan, const std::vec
   }
   report.parts.emplace_back(std::move(table));
   report.parts.emplace_back(
-      curves(plan, times, "error", "rms error (linear color)", [](const SampleTime& time) {
-        return Spread{time.error.rms, time.error.rms, time.error.rms};
-      }));
+      curves(plan, times, "error", "rms error (linear color)",
+             [](const SampleTime& time) { return Spread{time.error.rms, time.error.rms, time.error.rms}; }));
   report.parts.emplace_back(curves(plan, times, "time of a frame", "ms",
                                    [](const SampleTime& time) { return milliseconds(time.seconds); }));
 }

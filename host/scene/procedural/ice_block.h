@@ -41,9 +41,9 @@ struct GenerateError : std::invalid_argument {
 /// distance from the origin to the outside, or the origin is not well inside a surface.
 Mesh make_ice(const IceBlock& block);
 
-/// A body that fills the cavity up to the plane y = level and elsewhere reaches into the ice by `wall` (0..1) of its thickness:
-/// the ice, having the higher priority, cuts it off at the wall, and no two surfaces coincide. Throws GenerateError like
-/// make_ice, and for a solid block or a level outside the cavity.
+/// A body that fills the cavity up to the plane y = level and elsewhere reaches into the ice by `wall` (0..1)
+/// of its thickness: the ice, having the higher priority, cuts it off at the wall, and no two surfaces
+/// coincide. Throws GenerateError like make_ice, and for a solid block or a level outside the cavity.
 Mesh make_ice_liquid(const IceBlock& block, double level, double wall = 0.5);
 
 /// The cavity's lowest and highest point on the vertical axis through the origin: the range of levels.

@@ -16,7 +16,6 @@ typedef struct Scene {
 #define SCENE_PARAMETERS __global const SceneInfo* restrict info SCENE_TABLES(SCENE_PARAMETER)
 
 #define SCENE_VALUE(type, host_type, name, label) , name
-#define SCENE_OF_PARAMETERS \
-  { info SCENE_TABLES(SCENE_VALUE) }
+#define SCENE_OF_PARAMETERS {info SCENE_TABLES(SCENE_VALUE)}
 
 #endif

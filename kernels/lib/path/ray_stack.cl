@@ -33,14 +33,14 @@ typedef struct PathStates {
 #else
 #define STACKED_FIELDS(REALS, MASKS)
 #endif
+// clang-format off: a list
 #define STACKED(REALS, MASKS)                                                                               \
-  REALS(rays->o.x)                                                                                          \
-  REALS(rays->o.y)                                                                                          \
-  REALS(rays->o.z)                                                                                          \
-  REALS(rays->d.x)                                                                                          \
-  REALS(rays->d.y) REALS(rays->d.z) REALS(rays->t_min) REALS(rays->t_max) REALS(paths->throughput.x)        \
-      REALS(paths->throughput.y) REALS(paths->throughput.z) MASKS(paths->depth) STACKED_PIXEL(REALS, MASKS) \
-          STACKED_CROSSINGS(REALS, MASKS) STACKED_MEDIA(REALS, MASKS) STACKED_FIELDS(REALS, MASKS)
+  REALS(rays->o.x) REALS(rays->o.y) REALS(rays->o.z) REALS(rays->d.x) REALS(rays->d.y) REALS(rays->d.z)     \
+  REALS(rays->t_min) REALS(rays->t_max)                                                                     \
+  REALS(paths->throughput.x) REALS(paths->throughput.y) REALS(paths->throughput.z) MASKS(paths->depth)      \
+  STACKED_PIXEL(REALS, MASKS) STACKED_CROSSINGS(REALS, MASKS) STACKED_MEDIA(REALS, MASKS)                   \
+  STACKED_FIELDS(REALS, MASKS)
+// clang-format on
 #define COUNT_MEMBER(member) +1u
 #define STACK_MEMBERS (0u STACKED(COUNT_MEMBER, COUNT_MEMBER))
 
@@ -68,7 +68,7 @@ NEVER_INLINE void write_rays(float* to, u32 stride, const SceneRays* rays, const
                              MASK lanes) {
 #define WRITE_REALS(member) write_packed(to, member, lanes), to += stride;
 #define WRITE_MASKS(member) WRITE_REALS(AS_REAL(member))
-  STACKED(WRITE_REALS, WRITE_MASKS)
+  STACKED(WRITE_REALS, WRITE_MASKS);
 }
 
 // Reads a ray for every lane.

@@ -42,14 +42,14 @@ static inline float3 safe_reciprocal(float3 d) {
 
 // Distances that matter only to rays along an axis: they may run in a face, or in the plane through 0, where
 // widening by parts of a coordinate is nothing.
-#define along_face(rcp) ((rcp) * (rcp)*1e-25f)
+#define along_face(rcp) ((rcp) * (rcp) * 1e-25f)
 
 // Factors of a reciprocal by which a slab is entered earlier and left later, and the shifts of its near and
 // of its far planes for an origin that lies `at` (origin times reciprocal) along the ray; V is their type.
 #define NEARER 0.9999997f
 #define FARTHER 1.0000003f
 #define shift_to_near(V, at, slack) (-((at) + fma(fabs(at), (V)(2.4e-7f), slack)))
-#define shift_to_far(V, at, slack) (-((at)-fma(fabs(at), (V)(2.4e-7f), slack)))
+#define shift_to_far(V, at, slack) (-((at) - fma(fabs(at), (V)(2.4e-7f), slack)))
 
 static inline SlabRay make_slab_ray(float3 o, float3 d) {
   SlabRay ray;
