@@ -7,7 +7,8 @@ clang=$(command -v clang || ls /usr/bin/clang-[0-9]* 2>/dev/null | sort -V | tai
 [ -n "$clang" ] || { echo "lint_kernels: no clang. On Debian or Ubuntu: apt-get install clang" >&2; exit 1; }
 features=$(grep -o 'FEATURE([a-z0-9]*, [A-Z_]*' kernels/shared/features.h | sed 's/.*, //')
 shapes=""; all="-DHAS_SDF=1"; few="-DHAS_SDF=0"
-for shape in MESH SPHERE PLANE BOX CYLINDER CONE DISK TORUS ROUNDBOX BVH; do shapes+=" -DHAS_$shape=1"; done
+solids=$(grep -o '^ *SOLID([A-Z]*' kernels/shared/shapes.h | sed 's/.*(//')
+for shape in MESH $solids BVH; do shapes+=" -DHAS_$shape=1"; done
 for feature in $features; do all+=" -D$feature=1"; few+=" -D$feature=0"; done
 all+=$shapes; few+=$shapes
 failed=0

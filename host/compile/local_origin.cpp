@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "scene/kinds.h"
+
 namespace sundog {
 namespace {
 
@@ -27,15 +29,11 @@ double view_step(double length) {
   return length > 0 && std::isfinite(length) ? std::ldexp(1.0, std::ilogb(length)) : 0;
 }
 
-bool has_place(const LightDescription& light) {
-  return light.type == LightType::point || light.type == LightType::spot;
-}
-
 /// Where the first things of the scene lie along an axis: the camera, lights, objects.
 std::vector<double> places_along(const SceneDescription& scene, int axis) {
   std::vector<double> places{scene.camera.target[axis], scene.camera.position[axis]};
   for (const LightDescription& light : scene.lights)
-    if (places.size() < most_places && has_place(light)) places.push_back(light.position[axis]);
+    if (places.size() < most_places && facts_of(light.type).placed) places.push_back(light.position[axis]);
   for (const Object& object : scene.objects)
     if (places.size() < most_places) places.push_back(object.world_from_object[3][axis]);
   return places;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "base/error.h"
 #include "compile/pack.h"
@@ -95,6 +96,33 @@ dvec3 unit_direction(const SceneDescription& scene, const LightDescription& ligh
 
 double cosine(double degrees) { return std::cos(degrees * std::numbers::pi / 180); }
 
+Light pack_light(const SceneDescription& scene, std::size_t index, const dvec3& origin) {
+  const LightDescription& light = scene.lights[index];
+  Light packed{};
+  packed.position = pack(light.position - origin);
+  packed.color = pack(light.color * light.intensity);
+  packed.falloff_constant = static_cast<float>(light.falloff.x);
+  packed.falloff_linear = static_cast<float>(light.falloff.y);
+  packed.falloff_quadratic = static_cast<float>(light.falloff.z);
+  switch (light.type) {
+    case LightType::ambient:
+      throw std::logic_error("an ambient light is no entry of the table of lights");
+    case LightType::point:
+      packed.kind = LIGHT_POINT;
+      break;
+    case LightType::directional:
+      packed.kind = LIGHT_DIRECTIONAL;
+      packed.direction = pack(unit_direction(scene, light, index));
+      break;
+    case LightType::spot:
+      packed.kind = LIGHT_SPOT;
+      packed.direction = pack(unit_direction(scene, light, index), cosine(light.outer_angle));
+      packed.color.w = static_cast<float>(cosine(light.inner_angle));
+      break;
+  }
+  return packed;
+}
+
 }  // namespace
 
 u32 add_materials(const SceneDescription& scene, CompiledScene& out) {
@@ -112,27 +140,10 @@ void add_lights(const SceneDescription& scene, CompiledScene& out) {
   dvec3 ambient(0);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const LightDescription& light = scene.lights[i];
-    const dvec3 color = light.color * light.intensity;
-    if (light.type == LightType::ambient) {
-      ambient += color;
-      continue;
-    }
-    Light packed{};
-    packed.kind = LIGHT_POINT;
-    packed.position = pack(light.position - out.origin);
-    packed.color = pack(color);
-    packed.falloff_constant = static_cast<float>(light.falloff.x);
-    packed.falloff_linear = static_cast<float>(light.falloff.y);
-    packed.falloff_quadratic = static_cast<float>(light.falloff.z);
-    if (light.type == LightType::directional) {
-      packed.kind = LIGHT_DIRECTIONAL;
-      packed.direction = pack(unit_direction(scene, light, i));
-    } else if (light.type == LightType::spot) {
-      packed.kind = LIGHT_SPOT;
-      packed.direction = pack(unit_direction(scene, light, i), cosine(light.outer_angle));
-      packed.color.w = static_cast<float>(cosine(light.inner_angle));
-    }
-    out.lights.push_back(packed);
+    if (light.type == LightType::ambient)
+      ambient += light.color * light.intensity;
+    else
+      out.lights.push_back(pack_light(scene, i, out.origin));
   }
   out.info.ambient = pack(ambient);
 }

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "base/error.h"
+#include "scene/kinds.h"
 
 namespace sundog {
 namespace {
@@ -74,6 +76,37 @@ struct ShapeReader {
   }
 };
 
+std::logic_error no_such(const UnitShape& unit, const char* what) {
+  return std::logic_error(fmt::format("a {} has not {}", shape_names.at(unit.shape), what));
+}
+
+std::vector<FlatFace> caps(double bottom_radius, double top_radius) {
+  const dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  std::vector<FlatFace> faces;
+  if (bottom_radius > 0) faces.push_back({y, -y, bottom_radius * x, bottom_radius * z});
+  if (top_radius > 0) faces.push_back({y, y, top_radius * x, top_radius * z});
+  return faces;
+}
+
+std::vector<FlatFace> box_faces(const dvec3& half, double round) {
+  std::vector<FlatFace> faces;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      dvec3 n(0), u(0), v(0);
+      const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+      n[axis] = 1;
+      u[next] = half[next] - round;
+      v[last] = half[last] - round;
+      faces.push_back({n, side * half[axis] * n, u, v});
+    }
+  return faces;
+}
+
+double box_distance(const dvec3& p, const dvec3& half, double round) {
+  const dvec3 out = glm::abs(p) - (half - round);
+  return glm::length(glm::max(out, dvec3(0))) + std::min(std::max({out.x, out.y, out.z}), 0.0) - round;
+}
+
 }  // namespace
 
 UnitShape unit_shape(const SceneDescription& scene, const Object& object) {
@@ -99,9 +132,87 @@ double reach(const UnitShape& unit, const dvec3& d) {
       return across + double(p.x) * length;
     case SHAPE_ROUNDBOX:
       return glm::dot(dvec3(p.x, p.y, p.z) - double(p.w), size) + double(p.w) * length;
-    default:
-      return 0;
+    case SHAPE_PLANE:
+    case SHAPE_MESH:
+    case SHAPE_SDF:
+      break;
   }
+  throw no_such(unit, "a reach");
+}
+
+std::vector<FlatFace> flat_faces(const UnitShape& unit) {
+  const float4& p = unit.parameters;
+  switch (unit.shape) {
+    case SHAPE_PLANE:
+      return {{{0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, true}};
+    case SHAPE_BOX:
+      return box_faces(dvec3(1), 0);
+    case SHAPE_ROUNDBOX:
+      return box_faces({p.x, p.y, p.z}, double(p.w));
+    case SHAPE_CYLINDER:
+      return caps(p.x != 0 ? 1 : 0, p.x != 0 ? 1 : 0);
+    case SHAPE_CONE:
+      return caps(p.z != 0 ? double(p.x) : 0, p.z != 0 ? double(p.y) : 0);
+    case SHAPE_DISK:
+      return {{{0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}}};
+    case SHAPE_SPHERE:
+    case SHAPE_TORUS:
+    case SHAPE_MESH:
+    case SHAPE_SDF:
+      return {};
+  }
+  throw no_such(unit, "faces");
+}
+
+std::optional<Curvature> curvature(const UnitShape& unit) {
+  const double x = double(unit.parameters.x), y = double(unit.parameters.y), w = double(unit.parameters.w);
+  switch (unit.shape) {
+    case SHAPE_SPHERE:
+      return Curvature{1};
+    case SHAPE_CYLINDER:
+      return Curvature{1, true};
+    case SHAPE_CONE:
+      return Curvature{std::min(x, y) > 0 ? 1 / std::min(x, y) : INFINITY};
+    case SHAPE_TORUS:
+      return Curvature{1 / std::min(x, 1 - x)};
+    case SHAPE_ROUNDBOX:
+      return w > 0 ? std::optional(Curvature{1 / w}) : std::nullopt;
+    case SHAPE_PLANE:
+    case SHAPE_BOX:
+    case SHAPE_DISK:
+    case SHAPE_MESH:
+    case SHAPE_SDF:
+      return std::nullopt;
+  }
+  throw no_such(unit, "a curvature");
+}
+
+double unit_distance(const UnitShape& unit, const dvec3& q) {
+  const float4& p = unit.parameters;
+  const double across = std::hypot(q.x, q.z);
+  switch (unit.shape) {
+    case SHAPE_SPHERE:
+      return glm::length(q) - 1;
+    case SHAPE_PLANE:
+      return q.y;
+    case SHAPE_BOX:
+      return box_distance(q, dvec3(1), 0);
+    case SHAPE_CYLINDER:
+      return std::max(across - 1, std::abs(q.y) - 1);
+    case SHAPE_CONE: {
+      const double middle = 0.5 * (double(p.x) + double(p.y)), slope = 0.5 * (double(p.y) - double(p.x));
+      return std::max((across - middle - slope * q.y) / std::hypot(1.0, slope), std::abs(q.y) - 1);
+    }
+    case SHAPE_TORUS:
+      return std::hypot(across - 1, q.y) - double(p.x);
+    case SHAPE_ROUNDBOX:
+      return box_distance(q, dvec3(p.x, p.y, p.z), double(p.w));
+    case SHAPE_DISK:
+    case SHAPE_MESH:
+    case SHAPE_SDF:
+      break;
+  }
+  throw no_such(unit, "a distance");
 }
 
 }  // namespace sundog

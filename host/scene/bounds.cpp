@@ -13,18 +13,9 @@ struct HalfSize {
   dvec3 operator()(const MeshShape&) const { return dvec3(-1); }
   dvec3 operator()(const FieldShape&) const { return dvec3(-1); }
   dvec3 operator()(const PlaneShape&) const { return dvec3(-1); }
-  dvec3 operator()(const SphereShape& s) const { return dvec3(s.radius); }
-  dvec3 operator()(const BoxShape& s) const { return s.half; }
-  dvec3 operator()(const RoundBoxShape& s) const { return s.half; }
-  dvec3 operator()(const CylinderShape& s) const { return {s.radius, s.half_height, s.radius}; }
-  dvec3 operator()(const DiskShape& s) const { return {s.radius, 0, s.radius}; }
-  dvec3 operator()(const ConeShape& s) const {
-    const double radius = std::max(s.bottom_radius, s.top_radius);
-    return {radius, s.half_height, radius};
-  }
-  dvec3 operator()(const TorusShape& s) const {
-    const double radius = s.major_radius + s.minor_radius;
-    return {radius, s.minor_radius, radius};
+  template <class Solid>
+  dvec3 operator()(const Solid& solid) const {
+    return solid.half_size();
   }
 };
 

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "scene/formula/sdf.h"
+#include "shared/lights.h"
+#include "shared/shapes.h"
 
 namespace sundog {
 
@@ -41,7 +43,9 @@ struct RenderSettings {
   bool spatial_splits = false;  // build the BVH with cut triangles: slower, better for long thin ones
 };
 
-enum class LightType { ambient, directional, point, spot };
+#define SUNDOG_LIGHT_TYPE(constant, name, placed, aimed) name,
+enum class LightType { ambient, LIGHTS(SUNDOG_LIGHT_TYPE) };
+#undef SUNDOG_LIGHT_TYPE
 
 struct LightDescription {
   LightType type = LightType::point;
@@ -95,20 +99,64 @@ struct Mesh {
   std::size_t source_vertex_count = 0;  // as the file stores them: before vertices are split or dropped
 };
 
-// clang-format off: a line a shape
-struct MeshShape { int mesh = 0; };           // index into meshes
-struct SphereShape { double radius = 1; };
-struct PlaneShape {};                          // y = 0, normal +y, inside below
-struct BoxShape { dvec3 half{1, 1, 1}; };
-struct CylinderShape { double radius = 1, half_height = 1; bool capped = true; };  // about y, centred
-struct ConeShape { double bottom_radius = 1, top_radius = 0, half_height = 1; bool capped = true; };
-struct DiskShape { double radius = 1, inner_radius = 0; };  // in y = 0
-struct TorusShape { double major_radius = 1, minor_radius = 0.25; };  // about y
-struct RoundBoxShape { dvec3 half{1, 1, 1}; double radius = 0.1; };  // outer half sizes, edge radius
-struct FieldShape { int field = 0; };  // index into fields
-// clang-format on
-using Shape = std::variant<MeshShape, SphereShape, PlaneShape, BoxShape, CylinderShape, ConeShape, DiskShape,
-                           TorusShape, RoundBoxShape, FieldShape>;
+struct MeshShape {
+  int mesh = 0;
+};  // index into meshes
+struct FieldShape {
+  int field = 0;
+};  // index into fields
+
+// The exact solids of shared/shapes.h. half_size(): of the box about the origin; open(): without an inside.
+struct PlaneShape {  // y = 0, normal +y, inside below
+  bool open() const { return false; }
+};
+struct SphereShape {
+  double radius = 1;
+  dvec3 half_size() const { return dvec3(radius); }
+  bool open() const { return false; }
+};
+struct BoxShape {
+  dvec3 half{1, 1, 1};
+  dvec3 half_size() const { return half; }
+  bool open() const { return false; }
+};
+struct CylinderShape {  // about y, centred
+  double radius = 1, half_height = 1;
+  bool capped = true;
+  dvec3 half_size() const { return {radius, half_height, radius}; }
+  bool open() const { return !capped; }
+};
+struct ConeShape {
+  double bottom_radius = 1, top_radius = 0, half_height = 1;
+  bool capped = true;
+  dvec3 half_size() const {
+    const double radius = bottom_radius > top_radius ? bottom_radius : top_radius;
+    return {radius, half_height, radius};
+  }
+  bool open() const { return !capped; }
+};
+struct DiskShape {  // in y = 0
+  double radius = 1, inner_radius = 0;
+  dvec3 half_size() const { return {radius, 0, radius}; }
+  bool open() const { return true; }
+};
+struct TorusShape {  // about y
+  double major_radius = 1, minor_radius = 0.25;
+  dvec3 half_size() const { return {major_radius + minor_radius, minor_radius, major_radius + minor_radius}; }
+  bool open() const { return false; }
+};
+struct RoundBoxShape {  // outer half sizes, edge radius
+  dvec3 half{1, 1, 1};
+  double radius = 0.1;
+  dvec3 half_size() const { return half; }
+  bool open() const { return false; }
+};
+
+#define SUNDOG_SHAPE_TYPE(constant, type, name) type##Shape,
+/// Its index is the SHAPE_* constant.
+using Shape = std::variant<MeshShape, SOLIDS(SUNDOG_SHAPE_TYPE) FieldShape>;
+#undef SUNDOG_SHAPE_TYPE
+static_assert(std::variant_size_v<Shape> == SHAPE_COUNT);
 
 /// One placed thing. Groups are already flattened: the transform is the product of the group's and the
 /// object's.

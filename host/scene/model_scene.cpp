@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/bounds.h"
+#include "scene/kinds.h"
 
 namespace sundog {
 using nlohmann::json;
@@ -24,18 +25,16 @@ json to_json(const Camera& camera) {
 }
 
 json to_json(const LightDescription& light) {
-  static constexpr const char* names[] = {"ambient", "directional", "point", "spot"};
-  json result = {{"type", names[static_cast<int>(light.type)]},
-                 {"color", to_json(light.color)},
-                 {"intensity", light.intensity}};
-  const bool spot = light.type == LightType::spot;
-  if (light.type == LightType::directional || spot) result["direction"] = to_json(light.direction);
-  if (light.type == LightType::point || spot) {
+  const LightTypeFacts& facts = facts_of(light.type);
+  json result = {
+      {"type", std::string(facts.name)}, {"color", to_json(light.color)}, {"intensity", light.intensity}};
+  if (facts.aimed) result["direction"] = to_json(light.direction);
+  if (facts.placed) {
     result["position"] = to_json(light.position);
     result["falloff"] = {
         {"constant", light.falloff.x}, {"linear", light.falloff.y}, {"quadratic", light.falloff.z}};
   }
-  if (spot) {
+  if (light.type == LightType::spot) {
     // glTF lets a cone open to a full half space.
     result["outer_angle"] = std::min(light.outer_angle, 89.99);
     result["inner_angle"] = std::min(light.inner_angle, 89.99);

@@ -2,6 +2,7 @@
 // (`blas`, over triangle blocks); child indices are absolute in it.
 #ifndef SUNDOG_SHARED_BVH_H
 #define SUNDOG_SHARED_BVH_H
+#include "shared/shapes.h"
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -77,28 +78,6 @@ typedef struct Vertex {
   float r, g, b;  // vertex colour, linear; 1 where the file has none
 } Vertex;
 SUNDOG_SHARED_SIZE(Vertex, 32)
-
-// clang-format off: a table
-// What an instance places. Exact solids are unit shapes; their transform scales them, `parameters` holds what
-// a transform cannot (all in object space, y is the axis):
-//   SPHERE    radius 1 at the origin                 PLANE     y = 0, inside is y < 0; unbounded
-//   BOX       [-1, 1]^3                              CYLINDER  radius 1, y in [-1, 1]; parameters.x: 1 = capped
-//   CONE      radius parameters.x at y = -1, parameters.y at y = 1 (>= 0, not both 0); parameters.z: 1 = capped
-//   DISK      radius 1 in y = 0, normal +y; parameters.x: inner radius (0 <= x < 1)
-//   TORUS     major radius 1 about y, minor radius parameters.x (0 < x < 1)
-//   ROUNDBOX  half sizes parameters.xyz, edges rounded with radius parameters.w (<= the smallest half size)
-// clang-format on
-#define SHAPE_MESH 0u
-#define SHAPE_SPHERE 1u
-#define SHAPE_PLANE 2u
-#define SHAPE_BOX 3u
-#define SHAPE_CYLINDER 4u
-#define SHAPE_CONE 5u
-#define SHAPE_DISK 6u
-#define SHAPE_TORUS 7u
-#define SHAPE_ROUNDBOX 8u
-#define SHAPE_SDF 9u
-#define SHAPE_COUNT 10u
 
 // 128 bytes. Instances [0, bounded_count) are leaves of the scene BVH in leaf order; the rest, planes and a
 // few solids beside meshes, are tried one by one. A ray is taken into object space without renormalising, so

@@ -1,6 +1,7 @@
-// Materials, media, lights, the camera and the frame: the tables that shading reads. Colours are linear RGB.
+// Materials, media, the camera and the frame: the tables that shading reads. Colours are linear RGB.
 #ifndef SUNDOG_SHARED_SCENE_H
 #define SUNDOG_SHARED_SCENE_H
+#include "shared/lights.h"
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -44,21 +45,6 @@ typedef struct Medium {
   u32 pad0, pad1, pad2;
 } Medium;
 SUNDOG_SHARED_SIZE(Medium, 32)
-
-#define LIGHT_DIRECTIONAL 0u
-#define LIGHT_POINT 1u
-#define LIGHT_SPOT 2u
-
-// 64 bytes. Ambient lights are summed into SceneInfo.ambient.
-typedef struct Light {
-  float4 position;   // world
-  float4 direction;  // unit, the way the light travels; w = cosine of the cone's outer half angle
-  float4 color;      // times intensity; w = cosine of the cone's inner half angle
-  // Intensity / (constant + linear d + quadratic d^2), d in world units.
-  float falloff_constant, falloff_linear, falloff_quadratic;
-  u32 kind;
-} Light;
-SUNDOG_SHARED_SIZE(Light, 64)
 
 // 272 bytes: the scene's constants. Positions in all tables count from a point of the world, `origin` plus
 // `origin_rest`, near what the camera looks at (host/compile/local_origin.h). The pixel (x, y), y down,

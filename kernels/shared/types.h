@@ -9,10 +9,12 @@ typedef int i32;
 #define SUNDOG_SHARED_BEGIN
 #define SUNDOG_SHARED_END
 #define SUNDOG_SHARED_SIZE(type, bytes)
+#define SUNDOG_ENUM_OF_U32
 #else
 #include <cstdint>
 #define SUNDOG_SHARED_BEGIN namespace sundog {
 #define SUNDOG_SHARED_END }
+#define SUNDOG_ENUM_OF_U32 : u32
 #define SUNDOG_SHARED_SIZE(type, bytes) \
   static_assert(sizeof(type) == (bytes), #type " must be " #bytes " bytes");
 namespace sundog {

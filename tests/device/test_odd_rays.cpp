@@ -8,6 +8,7 @@
 #include "bench/rays/ray_tracer.h"
 #include "catch.h"
 #include "each_tracer.h"
+#include "every_kind.h"
 #include "scenes.h"
 #include "test_meshes.h"
 
@@ -28,13 +29,7 @@ SceneDescription all_shapes() {
   const glm::dmat4 one(1);
   scenes::place(scene, MeshShape{0}, white);
   scenes::place(scene, MeshShape{0}, white, glm::scale(glm::rotate(one, 0.7, {1, 2, 3}), glm::dvec3(1.2)));
-  const std::vector<Shape> solids = {SphereShape{},
-                                     BoxShape{},
-                                     CylinderShape{},
-                                     ConeShape{},
-                                     DiskShape{},
-                                     TorusShape{},
-                                     RoundBoxShape{{1, 1, 1}, 0.2}};
+  const std::vector<Shape> solids = every_bounded_solid();
   for (std::size_t i = 0; i < solids.size(); ++i)
     scenes::place(
         scene, solids[i], white,

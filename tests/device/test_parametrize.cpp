@@ -7,6 +7,7 @@
 
 #include "catch.h"
 #include "devices.h"
+#include "every_kind.h"
 #include "render/device/device_scene.h"
 #include "render/device/kernel_config.h"
 #include "scenes.h"
@@ -57,6 +58,11 @@ std::vector<Chart> charts() {
        1,
        {1, 0, 0, 0},
        [](double u, double v) { return dvec3(2 * u - 1, 1, 2 * v - 1); }},
+      {"cone",
+       SHAPE_CONE,
+       0,
+       {1, 0.25f, 1, 0},
+       [](double u, double v) { return about(u, 1 - 0.75 * v, 2 * v - 1); }},
       {"disk", SHAPE_DISK, 0, none, [](double u, double v) { return dvec3(2 * u - 1, 0, 2 * v - 1); }},
       {"torus", SHAPE_TORUS, 0, {0.25f, 0, 0, 0}, [](double u, double v) {
          return about(u, 1 + 0.25 * std::cos(2 * pi * v), 0.25 * std::sin(2 * pi * v));
@@ -136,6 +142,15 @@ std::vector<Ray> rays_down() {
 }
 
 }  // namespace
+
+TEST_CASE("each kind of solid has points whose coordinates are known") {
+  for (const Shape& solid : every_solid()) {
+    INFO(name_of(solid));
+    const std::vector<Chart> all = charts();
+    CHECK(std::any_of(all.begin(), all.end(),
+                      [&](const Chart& chart) { return chart.shape == solid.index(); }));
+  }
+}
 
 TEST_CASE("points on solids have the coordinates that they were made from, and dpdu is their derivative") {
   on_every_device([&](const DeviceInfo& info) {

@@ -4,6 +4,7 @@
 #include "bench/plain/whitted.h"
 #include "catch.h"
 #include "devices.h"
+#include "every_kind.h"
 #include "scene/load.h"
 #include "scenes.h"
 
@@ -18,7 +19,7 @@ CompiledScene shipped(const std::string& name) {
 }
 
 /// Every solid, turned, glassy and shiny, seen from inside of a ball of water.
-SceneDescription every_solid() {
+SceneDescription glass_and_shiny_solids() {
   SceneDescription scene = scenes::line_of_sight({0, 1.5, 7}, {0, 0, 0});
   scene.camera.fov = 50;
   scene.image.width = 64;
@@ -37,14 +38,10 @@ SceneDescription every_solid() {
   scene.materials[static_cast<std::size_t>(shiny)].blinn = true;
   scenes::place(scene, PlaneShape{}, floor, glm::translate(glm::dmat4(1), dvec3(0, -1.2, 0)));
   scenes::place(scene, SphereShape{9}, water);
-  const Shape shapes[] = {SphereShape{0.6},
-                          BoxShape{{0.5, 0.4, 0.6}},
-                          CylinderShape{0.4, 0.6, true},
-                          ConeShape{0.6, 0.2, 0.6, true},
-                          DiskShape{0.7, 0.3},
-                          TorusShape{0.5, 0.2},
-                          RoundBoxShape{{0.5, 0.4, 0.6}, 0.2},
-                          CylinderShape{0.4, 0.6, false}};
+  const auto shapes =
+      with_every_solid({SphereShape{0.6}, BoxShape{{0.5, 0.4, 0.6}}, CylinderShape{0.4, 0.6, true},
+                        ConeShape{0.6, 0.2, 0.6, true}, DiskShape{0.7, 0.3}, TorusShape{0.5, 0.2},
+                        RoundBoxShape{{0.5, 0.4, 0.6}, 0.2}, CylinderShape{0.4, 0.6, false}});
   double x = -3;
   for (const Shape& shape : shapes) {
     const auto placed = glm::rotate(glm::translate(glm::dmat4(1), dvec3(x, 0.3 * x * x / 3 - 0.8, 0)), 0.6,
@@ -60,7 +57,8 @@ SceneDescription every_solid() {
 TEST_CASE("the plain program's picture is the device's but for rounding") {
   for (const char* name :
        {"spheres", "hollow_ice", "hollow_ice_exact", "nested_glass", "cornell", "lights", "solids"}) {
-    const CompiledScene scene = std::string(name) == "solids" ? compile(every_solid()) : shipped(name);
+    const CompiledScene scene =
+        std::string(name) == "solids" ? compile(glass_and_shiny_solids()) : shipped(name);
     REQUIRE(plain_refusal(scene).empty());
     const Image plain = render_plain(scene);
     CAPTURE(name);

@@ -82,19 +82,11 @@ struct OpenShape {
 struct HalfSize {
   dvec3 operator()(const MeshShape&) const { return dvec3(0); }   // has bounds of its own
   dvec3 operator()(const FieldShape&) const { return dvec3(2); }  // where a Julia set lies
-  dvec3 operator()(const SphereShape& s) const { return dvec3(s.radius); }
   dvec3 operator()(const PlaneShape&) const { return dvec3(std::numeric_limits<double>::infinity()); }
-  dvec3 operator()(const BoxShape& s) const { return s.half; }
-  dvec3 operator()(const CylinderShape& s) const { return {s.radius, s.half_height, s.radius}; }
-  dvec3 operator()(const ConeShape& s) const {
-    const double radius = std::max(s.bottom_radius, s.top_radius);
-    return {radius, s.half_height, radius};
+  template <class Solid>
+  dvec3 operator()(const Solid& solid) const {
+    return solid.half_size();
   }
-  dvec3 operator()(const DiskShape& s) const { return {s.radius, 0, s.radius}; }
-  dvec3 operator()(const TorusShape& s) const {
-    return {s.major_radius + s.minor_radius, s.minor_radius, s.major_radius + s.minor_radius};
-  }
-  dvec3 operator()(const RoundBoxShape& s) const { return s.half; }
 };
 
 void extend(Bounds& bounds, const dvec3& p) {

@@ -6,6 +6,7 @@
 
 #include "catch.h"
 #include "shared/features.h"
+#include "shared/shapes.h"
 
 void prepare_opencl_environment() {
   setenv("RUSTICL_ENABLE", "llvmpipe", 0);
@@ -31,9 +32,10 @@ const std::vector<sundog::DeviceInfo>& test_devices() {
 sundog::KernelDefines all_features() {
   using sundog::u32;
   sundog::KernelDefines defines;
-  for (const char* shape :
-       {"MESH", "SPHERE", "PLANE", "BOX", "CYLINDER", "CONE", "DISK", "TORUS", "ROUNDBOX", "BVH", "SDF"})
-    defines[std::string("HAS_") + shape] = "1";
+  for (const char* shape : {"HAS_MESH", "HAS_BVH", "HAS_SDF"}) defines[shape] = "1";
+#define SUNDOG_DEFINE_SOLID(constant, type, name) defines["HAS_" #constant] = "1";
+  SOLIDS(SUNDOG_DEFINE_SOLID)
+#undef SUNDOG_DEFINE_SOLID
 #define SUNDOG_DEFINE_FEATURE(type, definition, name) \
   defines[#definition] = std::is_same_v<type, bool> ? "1" : "3";
   SCENE_FEATURES(SUNDOG_DEFINE_FEATURE)

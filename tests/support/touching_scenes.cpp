@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "catch.h"
+#include "every_kind.h"
 
 namespace touching {
 
@@ -49,9 +50,7 @@ void add_bystanders(SceneDescription& scene) {
   scene.meshes = {cube_of_squares(1, false), cube_of_squares(3, true)};
   const int material = scenes::add_glow(scene, {0, 0, 0});
   double x = 300;
-  for (const Shape& shape : {Shape(MeshShape{0}), Shape(MeshShape{1}), Shape(BoxShape{}),
-                             Shape(SphereShape{}), Shape(CylinderShape{}), Shape(RoundBoxShape{}),
-                             Shape(ConeShape{}), Shape(DiskShape{}), Shape(TorusShape{})})
+  for (const Shape& shape : with_every_solid({MeshShape{0}, MeshShape{1}}))
     scenes::place(scene, shape, material, at({x += 5, 0, 300}));
   scenes::place(scene, PlaneShape{}, material, at({0, -500, 0}));
   const int glass = add_glass(scene);

@@ -5,6 +5,7 @@
 #include "bench/rays/exact_tracer.h"
 #include "catch.h"
 #include "compile/bvh/wide_bvh.h"
+#include "every_kind.h"
 #include "test_meshes.h"
 
 using namespace sundog;
@@ -45,21 +46,19 @@ Bounds instance_box(const CompiledScene& scene) {
   return child_bounds(scene.nodes.at(scene.info.tlas_root), 0);
 }
 
-const std::vector<Shape> bounded_shapes = {SphereShape{2},
-                                           BoxShape{{1, 2, 3}},
-                                           CylinderShape{0.5, 2, true},
-                                           CylinderShape{0.5, 2, false},
-                                           ConeShape{1, 0.25, 2, true},
-                                           ConeShape{0, 3, 1, true},
-                                           DiskShape{2, 0.5},
-                                           TorusShape{2, 0.5},
-                                           RoundBoxShape{{1, 2, 3}, 0.5},
-                                           MeshShape{0}};
+const std::vector<Shape> bounded_shapes =
+    with_every_solid({SphereShape{2}, BoxShape{{1, 2, 3}}, CylinderShape{0.5, 2, true},
+                      CylinderShape{0.5, 2, false}, ConeShape{1, 0.25, 2, true}, ConeShape{0, 3, 1, true},
+                      DiskShape{2, 0.5}, TorusShape{2, 0.5}, RoundBoxShape{{1, 2, 3}, 0.5}, MeshShape{0}});
 
 /// Without an inside.
 bool is_open(const Shape& shape) {
-  const auto* cylinder = std::get_if<CylinderShape>(&shape);
-  return std::holds_alternative<DiskShape>(shape) || (cylinder && !cylinder->capped);
+  return std::visit(
+      [](const auto& s) {
+        if constexpr (requires { s.open(); }) return s.open();
+        return false;
+      },
+      shape);
 }
 
 dmat4 some_transform() {

@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "catch.h"
+#include "every_kind.h"
 #include "json_schema.h"
 #include "scene/json/parse.h"
+#include "scene/kinds.h"
 #include "scene/load.h"
 #include "scene/read/scene_reader.h"
 #include "scene_text.h"
@@ -133,6 +135,12 @@ TEST_CASE("the reader and the schema know the same keys") {
 }
 
 TEST_CASE("the schema takes what the reader takes") {
+  const auto holds = [](const json& list, std::string_view type) {
+    return std::any_of(list.begin(), list.end(), [&](const json& item) { return item["type"] == type; });
+  };
+  const json document = everything_document();
+  for (const Shape& solid : every_solid()) CHECK(holds(document["objects"], name_of(solid)));
+  for (const LightTypeFacts& facts : light_types) CHECK(holds(document["lights"], facts.name));
   const auto errors = schema_errors(scene_schema(), everything_document());
   INFO(fmt::format("{}", fmt::join(errors, "\n")));
   CHECK(errors.empty());

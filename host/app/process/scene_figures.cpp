@@ -1,25 +1,21 @@
 #include "app/process/scene_figures.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <type_traits>
+#include <string>
+
+#include "scene/kinds.h"
 
 namespace sundog {
 namespace {
 
 using nlohmann::json;
 
-constexpr std::array shape_names = {"mesh", "sphere", "plane", "box",      "cylinder",
-                                    "cone", "disk",   "torus", "roundbox", "field"};
-static_assert(shape_names.size() == std::variant_size_v<Shape>);
-constexpr std::array light_names = {"ambient", "directional", "point", "spot"};
-
 json count_shapes(const SceneDescription& scene) {
   json counts = json::object();
   for (const Object& object : scene.objects) {
-    json& count = counts[shape_names[object.shape.index()]];
+    json& count = counts[std::string(shape_names[object.shape.index()])];
     count = count.is_null() ? 1 : count.get<int>() + 1;
   }
   return counts;
@@ -28,7 +24,7 @@ json count_shapes(const SceneDescription& scene) {
 json count_lights(const SceneDescription& scene) {
   json counts = json::object();
   for (const LightDescription& light : scene.lights) {
-    json& count = counts[light_names[static_cast<std::size_t>(light.type)]];
+    json& count = counts[std::string(facts_of(light.type).name)];
     count = count.is_null() ? 1 : count.get<int>() + 1;
   }
   return counts;

@@ -32,9 +32,14 @@ bool has_interior(const SceneDescription& scene, const Object& object) {
 
 /// An open tube or a disk.
 bool is_flat(const Shape& shape) {
-  if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) return !cylinder->capped;
-  if (const auto* cone = std::get_if<ConeShape>(&shape)) return !cone->capped;
-  return std::holds_alternative<DiskShape>(shape);
+  return std::visit(
+      [](const auto& s) {
+        if constexpr (requires { s.open(); })
+          return s.open();
+        else
+          return false;  // meshes and fields
+      },
+      shape);
 }
 
 std::string name_of(const SceneDescription& scene, const Object& object) {

@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "bench/plain/any_solid.h"
+
 namespace sundog::plain {
 namespace {
 
@@ -211,6 +213,12 @@ void round_box(Search& search, const float4& parameters) {
   }
 }
 
+/// Slow: for solids that have no function here.
+void by_distance(Search& search, const UnitShape& unit) {
+  for (const SolidCrossing& crossing : crossings_by_distance(unit, search.ray.o, search.ray.d))
+    search.offer(static_cast<float>(crossing.t), crossing.ng);
+}
+
 }  // namespace
 
 bool closest_in_solid(u32 shape, const float4& parameters, const Ray& ray, SolidHit& hit) {
@@ -241,7 +249,7 @@ bool closest_in_solid(u32 shape, const float4& parameters, const Ray& ray, Solid
       round_box(search, parameters);
       break;
     default:
-      break;
+      by_distance(search, {static_cast<ShapeKind>(shape), glm::dvec3(1), parameters});
   }
   hit = search.hit;
   return search.found;

@@ -1,4 +1,4 @@
-// The exact solids of kernels/shared/bvh.h as a plain C++ program would have them: scalar floats, one ray.
+// The exact solids of kernels/shared/shapes.h as a plain C++ program would have them: scalar floats, one ray.
 #pragma once
 #include <glm/glm.hpp>
 

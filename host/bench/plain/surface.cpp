@@ -88,6 +88,8 @@ Surface make_surface(const CompiledScene& scene, const Ray& ray, const Hit& hit)
   return s;
 }
 
+bool knows_light(u32 kind) { return kind == LIGHT_DIRECTIONAL || kind == LIGHT_POINT || kind == LIGHT_SPOT; }
+
 LightSample sample_light(const Light& light, const vec3& p) {
   LightSample sample;
   sample.radiance = rgb(light.color);

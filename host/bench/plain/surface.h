@@ -32,6 +32,9 @@ struct LightSample {
   glm::vec3 radiance{0};  // before shadowing
 };
 
+/// Whether sample_light() has that kind of light.
+bool knows_light(u32 kind);
+
 LightSample sample_light(const Light& light, const glm::vec3& p);
 
 /// kd (n.l) + ks (r.v)^beta, or (n.h)^beta.

@@ -118,18 +118,39 @@ struct Findings {
   }
 };
 
-bool agrees(const CompiledScene& scene, const Ray& ray, const Hit& hit) {
-  plain::Hit expected;
-  const bool found = plain::closest_hit(
-      scene, {{ray.ox, ray.oy, ray.oz}, {ray.dx, ray.dy, ray.dz}, ray.t_min, ray.t_max}, expected);
-  if (found != (hit.instance != NO_INSTANCE)) return false;
-  return !found || (hit.instance == expected.instance &&
-                    std::abs(hit.t - expected.t) <= static_cast<float>(relative) * std::abs(expected.t));
+plain::Ray plain_ray(const Ray& ray) {
+  return {{ray.ox, ray.oy, ray.oz}, {ray.dx, ray.dy, ray.dz}, ray.t_min, ray.t_max};
 }
 
-bool agrees(const CompiledScene& scene, const Ray& ray, bool occluded) {
-  return occluded ==
-         plain::any_hit(scene, {{ray.ox, ray.oy, ray.oz}, {ray.dx, ray.dy, ray.dz}, ray.t_min, ray.t_max});
+/// The plain tracer's answer: the nearest hit, or whether there is any.
+Hit plain_answer(const plain::HitFinder& plain, const Ray& ray, const Hit&) {
+  plain::Hit found;
+  Hit hit{0, 0, 0, NO_PRIM, NO_INSTANCE, 0, 0, 0};
+  if (plain.closest(plain_ray(ray), found))
+    hit.t = found.t, hit.prim = found.prim, hit.instance = found.instance;
+  return hit;
+}
+
+bool plain_answer(const plain::HitFinder& plain, const Ray& ray, bool) { return plain.any(plain_ray(ray)); }
+
+bool agree(const Hit& a, const Hit& b) {
+  return a.instance == b.instance &&
+         (a.instance == NO_INSTANCE || std::abs(a.t - b.t) <= static_cast<float>(relative) * std::abs(b.t));
+}
+
+bool agree(bool a, bool b) { return a == b; }
+
+/// Counts one answer; `judge` it in double precision where it is not the plain tracer's.
+template <class Answer>
+void count(const CompiledScene& scene, const plain::HitFinder& plain, const Ray& ray, const Answer& answer,
+           bool judge, HitCheck& sum) {
+  ++sum.checked;
+  const Answer expected = plain_answer(plain, ray, answer);
+  if (agree(answer, expected)) return;
+  if (!judge || !is_right(scene, ray, answer))
+    ++sum.differ;
+  else
+    ++(is_right(scene, ray, expected) ? sum.rounded : sum.plain_wrong);
 }
 
 }  // namespace
@@ -147,30 +168,33 @@ bool is_right(const CompiledScene& scene, const Ray& ray, bool occluded) {
   return occluded ? std::isfinite(findings.nearest) : !std::isfinite(findings.farthest);
 }
 
-HitCheck check_hits(const CompiledScene& scene, const RaySet& set, const Answers& answers) {
-  const auto judge = [&](std::size_t i, const auto& question) {
-    return set.any ? question(scene, set.rays[i], answers.occluded[i] != 0)
-                   : question(scene, set.rays[i], answers.hits[i]);
-  };
+HitCheck check_hits(const CompiledScene& scene, const RaySet& set, const Answers& answers,
+                    const plain::HitFinder& plain) {
   tbb::enumerable_thread_specific<HitCheck> parts;
   std::atomic<std::size_t> wrong{0};
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, set.rays.size(), 1024), [&](const auto& range) {
     HitCheck& part = parts.local();
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      ++part.checked;
-      part.hits += set.any ? answers.occluded[i] != 0 : answers.hits[i].instance != NO_INSTANCE;
-      if (judge(i, [](const auto&... values) { return agrees(values...); })) continue;
-      if (wrong < enough && judge(i, [](const auto&... values) { return is_right(values...); }))
-        ++part.rounded;
-      else
-        ++wrong, ++part.differ;
+      const std::size_t before = part.differ;
+      if (set.any) {
+        part.hits += answers.occluded[i] != 0;
+        count(scene, plain, set.rays[i], answers.occluded[i] != 0, wrong < enough, part);
+      } else {
+        part.hits += answers.hits[i].instance != NO_INSTANCE;
+        count(scene, plain, set.rays[i], answers.hits[i], wrong < enough, part);
+      }
+      wrong += part.differ - before;
     }
   });
   HitCheck sum;
   for (const HitCheck& part : parts)
     sum.hits += part.hits, sum.checked += part.checked, sum.rounded += part.rounded,
-        sum.differ += part.differ;
+        sum.plain_wrong += part.plain_wrong, sum.differ += part.differ;
   return sum;
+}
+
+HitCheck check_hits(const CompiledScene& scene, const RaySet& set, const Answers& answers) {
+  return check_hits(scene, set, answers, plain::PlainFinder(scene));
 }
 
 }  // namespace sundog

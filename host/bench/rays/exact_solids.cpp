@@ -178,7 +178,7 @@ std::vector<SolidCrossing> solid_crossings(u32 shape, const float4& parameters, 
       line.round_box(dvec3(x, y, z), w);
       break;
     default:
-      break;
+      return crossings_by_distance({static_cast<ShapeKind>(shape), dvec3(1), parameters}, o, d);
   }
   std::sort(line.found.begin(), line.found.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
   return line.found;

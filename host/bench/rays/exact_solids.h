@@ -1,17 +1,12 @@
-// The exact solids of kernels/shared/bvh.h in double precision: closed forms, or root finding that needs
+// The exact solids of kernels/shared/shapes.h in double precision: closed forms, or root finding that needs
 // none.
 #pragma once
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "shared/bvh.h"
+#include "bench/plain/any_solid.h"
 
 namespace sundog {
-
-struct SolidCrossing {
-  double t = 0;
-  glm::dvec3 ng{0};  // outward
-};
 
 /// Every crossing of the line o + t d with the unit solid's surface, in order of t.
 std::vector<SolidCrossing> solid_crossings(u32 shape, const float4& parameters, const glm::dvec3& o,

@@ -10,6 +10,7 @@
 
 #include "bench/plain/random.h"
 #include "bench/plain/surface.h"
+#include "scene/kinds.h"
 
 namespace sundog {
 namespace {
@@ -136,7 +137,7 @@ Viewpoint scene_viewpoint(const CompiledScene& scene) {
   const float radius = info.scene_center.w;
   view.light = view.eye + radius * (view.right + view.up);
   for (const Light& light : scene.lights)
-    if (light.kind != LIGHT_DIRECTIONAL) {
+    if (facts_of_kind(light.kind).placed) {
       view.light = xyz(light.position);
       break;
     }

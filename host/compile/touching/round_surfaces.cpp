@@ -9,32 +9,13 @@ namespace {
 
 /// A surface as its distance in unit space.
 struct Surface {
-  u32 shape;
-  float4 p;
+  UnitShape unit;
   dmat4 unit_from_world;
   double slope;      // greatest change of the unit distance a unit of world length
   double curvature;  // greatest, in the world
-  double middle_of_cone = 0, slope_of_cone = 0;
 
   double distance(const dvec3& world) const {
-    const dvec3 q(unit_from_world * glm::dvec4(world, 1));
-    const double across = std::hypot(q.x, q.z);
-    switch (shape) {
-      case SHAPE_SPHERE:
-        return glm::length(q) - 1;
-      case SHAPE_CYLINDER:
-        return std::max(across - 1, std::abs(q.y) - 1);
-      case SHAPE_CONE:
-        return std::max((across - middle_of_cone - slope_of_cone * q.y) / std::hypot(1.0, slope_of_cone),
-                        std::abs(q.y) - 1);
-      case SHAPE_TORUS:
-        return std::hypot(across - 1, q.y) - double(p.x);
-      default: {
-        const dvec3 out = glm::abs(q) - (dvec3(p.x, p.y, p.z) - double(p.w));
-        return glm::length(glm::max(out, dvec3(0))) + std::min(std::max({out.x, out.y, out.z}), 0.0) -
-               double(p.w);
-      }
-    }
+    return unit_distance(unit, dvec3(unit_from_world * glm::dvec4(world, 1)));
   }
 
   dvec3 gradient(const dvec3& world, double step) const {
@@ -47,20 +28,6 @@ struct Surface {
     return g;
   }
 };
-
-bool is_round(const UnitShape& unit) {
-  switch (unit.shape) {
-    case SHAPE_SPHERE:
-    case SHAPE_CYLINDER:
-    case SHAPE_CONE:
-    case SHAPE_TORUS:
-      return true;
-    case SHAPE_ROUNDBOX:
-      return unit.parameters.w > 0;
-    default:
-      return false;
-  }
-}
 
 /// Greatest factor by which the matrix stretches a vector, a little rounded up: powers of m^T m grow like it.
 double norm(const glm::dmat3& m) {
@@ -78,36 +45,15 @@ double norm(const glm::dmat3& m) {
   return 1.02 * std::exp(0.5 * scale + 0.5 * weight * std::log(power[0][0] + power[1][1] + power[2][2]));
 }
 
-/// Greatest curvature in unit space; a cone's has no bound at a tip.
-double unit_curvature(const UnitShape& unit) {
-  switch (unit.shape) {
-    case SHAPE_TORUS:
-      return 1 / std::min(double(unit.parameters.x), 1 - double(unit.parameters.x));
-    case SHAPE_ROUNDBOX:
-      return 1 / double(unit.parameters.w);
-    case SHAPE_CONE: {
-      const double least = std::min(double(unit.parameters.x), double(unit.parameters.y));
-      return least > 0 ? 1 / least : INFINITY;
-    }
-    default:
-      return 1;
-  }
-}
-
-Surface make_surface(const RoundSolid& solid) {
+Surface make_surface(const RoundSolid& solid, const Curvature& bends) {
   const dmat4 inverse = glm::inverse(solid.world_from_unit);
   const double shrinks = norm(glm::dmat3(inverse));
-  // A cylinder's length bends nothing.
   glm::dmat3 across(solid.world_from_unit), back(inverse);
-  if (solid.unit.shape == SHAPE_CYLINDER) {
+  if (bends.straight_y) {
     across[1] = dvec3(0);
     for (int column = 0; column < 3; ++column) back[column].y = 0;
   }
-  Surface surface{solid.unit.shape, solid.unit.parameters, inverse, shrinks,
-                  unit_curvature(solid.unit) * norm(back) * norm(back) * norm(across)};
-  surface.middle_of_cone = 0.5 * (double(surface.p.x) + double(surface.p.y));
-  surface.slope_of_cone = 0.5 * (double(surface.p.y) - double(surface.p.x));
-  return surface;
+  return {solid.unit, inverse, shrinks, bends.greatest * norm(back) * norm(back) * norm(across)};
 }
 
 struct CellSearch {
@@ -147,11 +93,12 @@ struct CellSearch {
 }  // namespace
 
 bool round_surfaces_touch(const RoundSolid& a, const RoundSolid& b, const Bounds& box, double tolerance) {
-  if (!is_round(a.unit) || !is_round(b.unit)) return false;
+  const auto bends_a = curvature(a.unit), bends_b = curvature(b.unit);
+  if (!bends_a || !bends_b) return false;
   const dvec3 lower(box.lower[0], box.lower[1], box.lower[2]),
       upper(box.upper[0], box.upper[1], box.upper[2]);
   const dvec3 half = 0.5 * glm::max(upper - lower, dvec3(0)) + tolerance;
-  const Surface of_a = make_surface(a), of_b = make_surface(b);
+  const Surface of_a = make_surface(a, *bends_a), of_b = make_surface(b, *bends_b);
   CellSearch search{of_a, of_b, tolerance, 4 * tolerance + 1e-3 * glm::length(half)};
   return search.run(0.5 * (lower + upper), half);
 }

@@ -54,62 +54,23 @@ double farthest(const Body& body, const dvec3& n) {
   return glm::dot(n, dvec3(body.world_from_unit[3])) + reach(body.unit, glm::transpose(linear) * n);
 }
 
-/// The flat face with the normal `n` in unit space through `p`, spanned by `u` and `v` (a parallelogram that
-/// holds it).
-void add_face(Body& body, const dvec3& n, const dvec3& p, const dvec3& u, const dvec3& v) {
-  const glm::dmat3 linear(body.world_from_unit);
+Face place(const FlatFace& flat, const dmat4& world_from_unit) {
+  const glm::dmat3 linear(world_from_unit);
   Face face;
-  face.normal = glm::normalize(glm::transpose(glm::inverse(linear)) * n);
-  face.at = glm::dot(face.normal, dvec3(body.world_from_unit * glm::dvec4(p, 1)));
+  face.normal = glm::normalize(glm::transpose(glm::inverse(linear)) * flat.normal);
+  face.at = glm::dot(face.normal, dvec3(world_from_unit * glm::dvec4(flat.center, 1)));
+  if (flat.unbounded) {
+    const float inf = std::numeric_limits<float>::infinity();
+    face.box = {lanes(-inf), lanes(inf)};
+    return face;
+  }
   face.box = Bounds::none();
   for (const double a : {-1.0, 1.0})
     for (const double b : {-1.0, 1.0}) {
-      const dvec3 corner(body.world_from_unit * glm::dvec4(p + a * u + b * v, 1));
+      const dvec3 corner(world_from_unit * glm::dvec4(flat.center + a * flat.u + b * flat.v, 1));
       face.box.extend(Lanes{float(corner.x), float(corner.y), float(corner.z), 0});
     }
-  body.faces.push_back(face);
-}
-
-void add_faces_along_y(Body& body, double bottom_radius, double top_radius) {
-  const dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  if (bottom_radius > 0) add_face(body, y, -y, bottom_radius * x, bottom_radius * z);
-  if (top_radius > 0) add_face(body, y, y, top_radius * x, top_radius * z);
-}
-
-void add_box_faces(Body& body, const dvec3& half, double round) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double side : {-1.0, 1.0}) {
-      dvec3 n(0), u(0), v(0);
-      const int next = (axis + 1) % 3, last = (axis + 2) % 3;
-      n[axis] = 1;
-      u[next] = half[next] - round;
-      v[last] = half[last] - round;
-      add_face(body, n, side * half[axis] * n, u, v);
-    }
-}
-
-void add_faces(Body& body) {
-  const float4& p = body.unit.parameters;
-  switch (body.unit.shape) {
-    case SHAPE_PLANE: {
-      add_face(body, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1});
-      const float inf = std::numeric_limits<float>::infinity();
-      body.faces.back().box = {lanes(-inf), lanes(inf)};
-      break;
-    }
-    case SHAPE_BOX:
-      return add_box_faces(body, dvec3(1), 0);
-    case SHAPE_ROUNDBOX:
-      return add_box_faces(body, {p.x, p.y, p.z}, p.w);
-    case SHAPE_CYLINDER:
-      return add_faces_along_y(body, p.x != 0 ? 1 : 0, p.x != 0 ? 1 : 0);
-    case SHAPE_CONE:
-      return add_faces_along_y(body, p.z != 0 ? double(p.x) : 0, p.z != 0 ? double(p.y) : 0);
-    case SHAPE_DISK:
-      return add_face(body, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1});
-    default:
-      break;
-  }
+  return face;
 }
 
 Body make_body(const SceneDescription& scene, const PlacedBody& placed, const dvec3& origin) {
@@ -133,7 +94,7 @@ Body make_body(const SceneDescription& scene, const PlacedBody& placed, const dv
                 lanes(std::numeric_limits<float>::infinity())};
   else
     body.size = greatest(body.box);
-  add_faces(body);
+  for (const FlatFace& face : flat_faces(body.unit)) body.faces.push_back(place(face, body.world_from_unit));
   return body;
 }
 

@@ -29,11 +29,11 @@ unsigned marched_lanes(unsigned batch) {
 /// What the scene uses; `define` takes a name and a number.
 template <class Define>
 void define_features(const SceneFeatures& features, const Define& define) {
-  static constexpr const char* shape_names[SHAPE_SDF] = {"HAS_MESH", "HAS_SPHERE",   "HAS_PLANE",
-                                                         "HAS_BOX",  "HAS_CYLINDER", "HAS_CONE",
-                                                         "HAS_DISK", "HAS_TORUS",    "HAS_ROUNDBOX"};
-  for (unsigned shape = 0; shape < SHAPE_SDF; ++shape) define(shape_names[shape], features.shapes[shape]);
+  define("HAS_MESH", features.shapes[SHAPE_MESH]);
   define("HAS_SDF", features.shapes[SHAPE_SDF]);
+#define SUNDOG_DEFINE_SOLID(constant, type, name) define("HAS_" #constant, features.shapes[SHAPE_##constant]);
+  SOLIDS(SUNDOG_DEFINE_SOLID)
+#undef SUNDOG_DEFINE_SOLID
 #define SUNDOG_DEFINE_FEATURE(type, definition, name) define(#definition, features.name);
   SCENE_FEATURES(SUNDOG_DEFINE_FEATURE)
 #undef SUNDOG_DEFINE_FEATURE

@@ -1,6 +1,7 @@
 // The parts of a scene file, each read from its JSON value. All throw SceneError with file and pointer.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct PlacedShape {
 Names solid_types();
 /// Reads the keys of a solid of the given type.
 PlacedShape read_solid(JsonObject& object, std::string_view type);
+/// The solid's distance field; nothing for what has no inside.
+std::optional<FormulaField> field_of_solid(const Shape& shape);
 
 /// The product of a "transform" list: its first entry is applied to the object first.
 dmat4 read_transform(const JsonValue& list);

@@ -1,11 +1,14 @@
 // The camera, the image, the render settings and the lights.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/limits.h"
 #include "scene/integrators.h"
+#include "scene/kinds.h"
 #include "scene/read/parts.h"
 
 namespace sundog {
@@ -125,22 +128,30 @@ FogDescription read_fog(const JsonValue& value) {
 }
 
 LightDescription read_light(const JsonValue& value) {
-  static constexpr std::string_view types[] = {"ambient", "directional", "point", "spot"};
+  static constexpr auto types = [] {
+    std::array<std::string_view, light_types.size()> names{};
+    for (std::size_t i = 0; i < names.size(); ++i) names[i] = light_types[i].name;
+    return names;
+  }();
   const std::string type = value.member("type", list_names(types)).choice(types);
   return value.object(type + "_light", [&](JsonObject& object) {
     LightDescription light;
     object.at("type", "");
     light.color = object.color("color", light.color);
     light.intensity = object.number("intensity", light.intensity, at_least_0);
-    if (type == "ambient") {
-      light.type = LightType::ambient;
-    } else if (type == "directional") {
-      light.type = LightType::directional;
-      light.direction = object.at("direction", "the way the light travels [x, y, z]").direction();
-    } else {
-      light.type = type == "point" ? LightType::point : LightType::spot;
-      read_placed_light(object, light);
-      if (light.type == LightType::spot) read_spot(object, light);
+    const auto facts = std::find(types.begin(), types.end(), type) - types.begin();
+    light.type = light_types[static_cast<std::size_t>(facts)].type;
+    if (facts_of(light.type).placed) read_placed_light(object, light);
+    switch (light.type) {
+      case LightType::ambient:
+      case LightType::point:
+        break;
+      case LightType::directional:
+        light.direction = object.at("direction", "the way the light travels [x, y, z]").direction();
+        break;
+      case LightType::spot:
+        read_spot(object, light);
+        break;
     }
     return light;
   });

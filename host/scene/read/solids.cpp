@@ -1,4 +1,5 @@
-// The exact solids: each in its own units about the origin, y its axis, and the shorthands that place it.
+// The exact solids: each in its own units about the origin, y its axis, the shorthands that place it, and its
+// distance field for operations on fields.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "scene/formula/list.h"
+#include "scene/formula/lower.h"
 #include "scene/read/parts.h"
 
 namespace sundog {
@@ -21,13 +24,14 @@ dmat4 read_axis(JsonObject& object, std::string_view key) {
   return axis ? rotation_from_y(axis->direction()) : dmat4(1);
 }
 
-PlacedShape read_sphere(JsonObject& object) {
-  return {SphereShape{object.number("radius", 1, above_0)}, read_center(object)};
+PlacedShape read_shape(SphereShape sphere, JsonObject& object) {
+  sphere.radius = object.number("radius", sphere.radius, above_0);
+  return {sphere, read_center(object)};
 }
 
-PlacedShape read_plane(JsonObject& object) {
+PlacedShape read_shape(PlaneShape plane, JsonObject& object) {
   const dmat4 moved = glm::translate(dmat4(1), object.vec3("point", dvec3(0)));
-  return {PlaneShape{}, moved * read_axis(object, "normal")};
+  return {plane, moved * read_axis(object, "normal")};
 }
 
 dvec3 read_half(const JsonValue& value) {
@@ -55,18 +59,20 @@ dvec3 read_extent(JsonObject& object, dmat4& placed) {
   return (high - low) * 0.5;
 }
 
-PlacedShape read_box(JsonObject& object) {
+PlacedShape read_shape(BoxShape box, JsonObject& object) {
   PlacedShape result;
-  result.shape = BoxShape{read_extent(object, result.placed)};
+  box.half = read_extent(object, result.placed);
+  result.shape = box;
   return result;
 }
 
-PlacedShape read_round_box(JsonObject& object) {
+PlacedShape read_shape(RoundBoxShape box, JsonObject& object) {
   PlacedShape result;
-  const dvec3 half = read_extent(object, result.placed);
-  const double smallest = std::min({half.x, half.y, half.z});
+  box.half = read_extent(object, result.placed);
+  const double smallest = std::min({box.half.x, box.half.y, box.half.z});
   const Range range{.low = 0, .high = smallest, .low_open = true};
-  result.shape = RoundBoxShape{half, object.number("radius", std::min(0.1, smallest), range)};
+  box.radius = object.number("radius", std::min(box.radius, smallest), range);
+  result.shape = box;
   return result;
 }
 
@@ -87,9 +93,8 @@ double read_span(JsonObject& object, dmat4& placed) {
   return glm::length(axis) / 2;
 }
 
-PlacedShape read_cylinder(JsonObject& object) {
+PlacedShape read_shape(CylinderShape cylinder, JsonObject& object) {
   PlacedShape result;
-  CylinderShape cylinder;
   cylinder.radius = object.number("radius", cylinder.radius, above_0);
   cylinder.half_height = read_span(object, result.placed);
   cylinder.capped = object.boolean("capped", cylinder.capped);
@@ -97,9 +102,8 @@ PlacedShape read_cylinder(JsonObject& object) {
   return result;
 }
 
-PlacedShape read_cone(JsonObject& object) {
+PlacedShape read_shape(ConeShape cone, JsonObject& object) {
   PlacedShape result;
-  ConeShape cone;
   cone.bottom_radius = object.number("bottom_radius", cone.bottom_radius, at_least_0);
   cone.top_radius = object.number("top_radius", cone.top_radius, at_least_0);
   if (cone.bottom_radius == 0 && cone.top_radius == 0)
@@ -110,19 +114,65 @@ PlacedShape read_cone(JsonObject& object) {
   return result;
 }
 
-PlacedShape read_disk(JsonObject& object) {
-  DiskShape disk;
+PlacedShape read_shape(DiskShape disk, JsonObject& object) {
   disk.radius = object.number("radius", disk.radius, above_0);
   disk.inner_radius = object.number("inner_radius", 0, {.low = 0, .high = disk.radius, .high_open = true});
   return {disk, read_center(object) * read_axis(object, "normal")};
 }
 
-PlacedShape read_torus(JsonObject& object) {
-  TorusShape torus;
+PlacedShape read_shape(TorusShape torus, JsonObject& object) {
   torus.major_radius = object.number("major_radius", torus.major_radius, above_0);
   const Range range{.low = 0, .high = torus.major_radius, .low_open = true, .high_open = true};
   torus.minor_radius = object.number("minor_radius", torus.major_radius / 4, range);
   return {torus, read_center(object) * read_axis(object, "axis")};
+}
+
+// The distance field of each solid that may have an inside.
+FormulaField make_field(const FormulaDefinition& definition, std::vector<double> values) {
+  FormulaField field;
+  field.steps.push_back({definition, std::move(values), 1});
+  field.iterations = 1;
+  field.bailout = definition.bailout;
+  field.safety = definition.safety;
+  return field;
+}
+
+FormulaField listed(const char* name, std::vector<double> values) {
+  return make_field(*find_formula(name), std::move(values));
+}
+
+FormulaField closed_form(const char* name, const char* distance, std::vector<FormulaParameter> parameters) {
+  FormulaDefinition d;
+  d.name = name;
+  d.kind = FormulaKind::direct;
+  d.distance = distance;
+  d.parameters = std::move(parameters);
+  d.smooth = true;
+  return make_field(d, default_values(d));
+}
+
+FormulaField field_of(const SphereShape& s) { return listed("sphere", {s.radius}); }
+FormulaField field_of(const PlaneShape&) { return closed_form("plane", "p.y", {}); }
+FormulaField field_of(const BoxShape& s) { return listed("box", {s.half.x, s.half.y, s.half.z}); }
+FormulaField field_of(const CylinderShape& s) { return listed("cylinder", {s.radius, s.half_height}); }
+std::optional<FormulaField> field_of(const DiskShape&) { return std::nullopt; }  // it has no inside
+FormulaField field_of(const TorusShape& s) { return listed("torus", {s.major_radius, s.minor_radius}); }
+FormulaField field_of(const RoundBoxShape& s) {
+  return listed("rounded_box", {s.half.x, s.half.y, s.half.z, s.radius});
+}
+
+/// I. Quilez, Distance functions: a capped cone about y.
+FormulaField field_of(const ConeShape& cone) {
+  return closed_form(
+      "cone",
+      "r = length(p.x, p.z)\n"
+      "ax = r - min(r, p.y < 0 ? bottom : top); ay = abs(p.y) - half\n"
+      "kx = top - bottom; ky = 2 * half\n"
+      "s = clamp(((top - r) * kx + (half - p.y) * ky) / (kx * kx + ky * ky), 0, 1)\n"
+      "bx = r - top + kx * s; by = p.y - half + ky * s\n"
+      "d = min(sqrt(ax * ax + ay * ay), sqrt(bx * bx + by * by))\n"
+      "bx < 0 && ay < 0 ? -d : d",
+      {{"bottom", {cone.bottom_radius}}, {"top", {cone.top_radius}}, {"half", {cone.half_height}}});
 }
 
 struct Solid {
@@ -130,10 +180,12 @@ struct Solid {
   PlacedShape (*read)(JsonObject&);
 };
 
-constexpr std::array solids{Solid{"sphere", read_sphere}, Solid{"plane", read_plane},
-                            Solid{"box", read_box},       Solid{"cylinder", read_cylinder},
-                            Solid{"cone", read_cone},     Solid{"disk", read_disk},
-                            Solid{"torus", read_torus},   Solid{"round_box", read_round_box}};
+constexpr std::array solids{
+#define SUNDOG_SOLID(constant, type, name) \
+  Solid{#name, [](JsonObject& object) { return read_shape(type##Shape{}, object); }},
+    SOLIDS(SUNDOG_SOLID)
+#undef SUNDOG_SOLID
+};
 
 }  // namespace
 
@@ -151,6 +203,15 @@ PlacedShape read_solid(JsonObject& object, std::string_view type) {
   const auto solid =
       std::find_if(solids.begin(), solids.end(), [&](const Solid& s) { return s.type == type; });
   return solid->read(object);
+}
+
+std::optional<FormulaField> field_of_solid(const Shape& shape) {
+  const auto make = [](const auto& solid) -> std::optional<FormulaField> {
+    if constexpr (requires { solid.open(); })
+      if (!solid.open()) return field_of(solid);
+    return std::nullopt;
+  };
+  return std::visit(make, shape);
 }
 
 }  // namespace sundog

@@ -1,8 +1,9 @@
 // Every constant that a device specialises a kernel by, with its default, and what follows from the features
-// of a scene (shared/features.h; HAS_MESH, HAS_SPHERE, ...: it has that shape; HAS_BVH: rays go through a
+// of a scene (shared/features.h, shared/shapes.h; HAS_MESH, HAS_SPHERE, ...: it has that shape; HAS_BVH: rays go through a
 // BVH). The host's KernelConfig writes the -D options. Thresholds of a method stand where the method does.
 #ifndef SUNDOG_LIB_CONFIG_H
 #define SUNDOG_LIB_CONFIG_H
+#include "shared/shapes.h"
 
 #pragma OPENCL FP_CONTRACT OFF
 
@@ -41,8 +42,6 @@
 #ifndef WIDE_VECTORS
 #define WIDE_VECTORS 1
 #endif
-#define HAS_SOLID \
-  (HAS_SPHERE || HAS_PLANE || HAS_BOX || HAS_CYLINDER || HAS_CONE || HAS_DISK || HAS_TORUS || HAS_ROUNDBOX)
 // Whether there is anything that rays are traced to, and not only fields that they march to.
 #define HAS_TRACED (HAS_MESH || HAS_SOLID)
 

@@ -1,6 +1,5 @@
 // The exact solids in object space, a ray a lane: nearest t in (t_min, t_max] and the outward normal. One
-// function a shape; add a new shape here, in SHAPE_* and in the host's compile step. Directions need not be
-// unit length.
+// function a solid of shared/shapes.h. Directions need not be unit length.
 #ifndef SUNDOG_LIB_SOLIDS_CL
 #define SUNDOG_LIB_SOLIDS_CL
 #include "lib/core/config.h"

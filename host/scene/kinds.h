@@ -1,0 +1,40 @@
+// The kinds of shapes and lights by name, from the lists of kernels/shared.
+#pragma once
+#include <array>
+#include <string_view>
+
+#include "scene/description.h"
+
+namespace sundog {
+
+/// By the index of Shape: the names in scene files and figures.
+inline constexpr std::array<std::string_view, SHAPE_COUNT> shape_names = {"mesh",
+#define SUNDOG_SHAPE_NAME(constant, type, name) #name,
+                                                                          SOLIDS(SUNDOG_SHAPE_NAME)
+#undef SUNDOG_SHAPE_NAME
+                                                                              "field"};
+static_assert(shape_names[SHAPE_SDF] == "field");
+
+struct LightTypeFacts {
+  std::string_view name;  // in scene files and figures
+  LightType type;
+  bool placed;  // it has a position and a falloff
+  bool aimed;   // it has a direction
+};
+
+/// By LightType.
+inline constexpr std::array light_types = {LightTypeFacts{"ambient", LightType::ambient, false, false},
+#define SUNDOG_LIGHT_FACTS(constant, name, placed, aimed) \
+  LightTypeFacts{#name, LightType::name, placed, aimed},
+                                           LIGHTS(SUNDOG_LIGHT_FACTS)
+#undef SUNDOG_LIGHT_FACTS
+};
+
+constexpr const LightTypeFacts& facts_of(LightType type) {
+  return light_types.at(static_cast<std::size_t>(type));
+}
+
+/// Of a LIGHT_* constant.
+constexpr const LightTypeFacts& facts_of_kind(u32 kind) { return light_types.at(kind + 1); }
+
+}  // namespace sundog

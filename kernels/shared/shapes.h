@@ -1,0 +1,35 @@
+// What an instance places: a mesh, one of the exact solids, or a distance field. The solids in one list: from
+// it come SHAPE_*, HAS_*, HAS_SOLID, the description's Shape, and the names in scene files and figures.
+//   SOLID(constant after SHAPE_ and HAS_, description's struct before Shape, name)
+// Exact solids are unit shapes; their transform scales them, `parameters` holds what a transform cannot (all
+// in object space, y is the axis).
+#ifndef SUNDOG_SHARED_SHAPES_H
+#define SUNDOG_SHARED_SHAPES_H
+#include "shared/types.h"
+SUNDOG_SHARED_BEGIN
+
+#define SOLIDS(SOLID)                                                                                       \
+  SOLID(SPHERE, Sphere, sphere)        /* radius 1 at the origin */                                         \
+  SOLID(PLANE, Plane, plane)           /* y = 0, inside is y < 0; unbounded */                              \
+  SOLID(BOX, Box, box)                 /* [-1, 1]^3 */                                                      \
+  SOLID(CYLINDER, Cylinder, cylinder)  /* radius 1, y in [-1, 1]; parameters.x: 1 = capped */               \
+  SOLID(CONE, Cone, cone)              /* radius parameters.x at y = -1, parameters.y at y = 1 (>= 0, not   \
+                                          both 0); parameters.z: 1 = capped */                              \
+  SOLID(DISK, Disk, disk)              /* radius 1 in y = 0, normal +y; parameters.x: inner radius          \
+                                          (0 <= x < 1) */                                                   \
+  SOLID(TORUS, Torus, torus)           /* major radius 1 about y, minor radius parameters.x (0 < x < 1) */  \
+  SOLID(ROUNDBOX, RoundBox, round_box) /* half sizes parameters.xyz, edges rounded with radius parameters.w \
+                                          (<= the smallest half size) */
+
+// Instance.shape, and the index of the description's Shape.
+#define SHAPE_CONSTANT(constant, type, name) SHAPE_##constant,
+typedef enum ShapeKind SUNDOG_ENUM_OF_U32 { SHAPE_MESH, SOLIDS(SHAPE_CONSTANT) SHAPE_SDF } ShapeKind;
+#undef SHAPE_CONSTANT
+#define SHAPE_COUNT (SHAPE_SDF + 1u)
+
+// Whether the scene has any exact solid.
+#define HAS_SOLID_OR(constant, type, name) HAS_##constant ||
+#define HAS_SOLID (SOLIDS(HAS_SOLID_OR) 0)
+
+SUNDOG_SHARED_END
+#endif

@@ -1,0 +1,42 @@
+#include "every_kind.h"
+
+#include <algorithm>
+
+#include "scene/kinds.h"
+
+using namespace sundog;
+
+std::vector<Shape> every_solid() {
+  return {
+#define SUNDOG_SOLID(constant, type, name) type##Shape{},
+      SOLIDS(SUNDOG_SOLID)
+#undef SUNDOG_SOLID
+  };
+}
+
+std::vector<Shape> every_bounded_solid() {
+  std::vector<Shape> shapes = every_solid();
+  std::erase_if(shapes, [](const Shape& shape) { return std::holds_alternative<PlaneShape>(shape); });
+  return shapes;
+}
+
+std::vector<Shape> with_every_solid(std::vector<Shape> shapes) {
+  for (const Shape& solid : every_bounded_solid())
+    if (std::ranges::none_of(shapes, [&](const Shape& shape) { return shape.index() == solid.index(); }))
+      shapes.push_back(solid);
+  return shapes;
+}
+
+std::string name_of(const Shape& shape) { return std::string(shape_names.at(shape.index())); }
+
+std::vector<LightDescription> every_light() {
+  std::vector<LightDescription> lights;
+  for (const LightTypeFacts& facts : light_types) {
+    LightDescription light;
+    light.type = facts.type;
+    light.position = {1, 3, 2};
+    light.direction = {0, -1, 0};
+    lights.push_back(light);
+  }
+  return lights;
+}

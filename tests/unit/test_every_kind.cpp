@@ -1,0 +1,97 @@
+// The kinds of solids and lights: each one of the lists has its name in scene files, its place in the schema,
+// its geometry.
+#include <random>
+
+#include "bench/plain/any_solid.h"
+#include "bench/rays/exact_solids.h"
+#include "catch.h"
+#include "every_kind.h"
+#include "json_schema.h"
+#include "scene/kinds.h"
+#include "scene/read/parts.h"
+#include "scene_text.h"
+
+using namespace sundog;
+using glm::dvec3;
+using nlohmann::json;
+
+namespace {
+
+bool is_listed(const json& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+UnitShape unit_of(const Shape& shape) {
+  SceneDescription scene;
+  Object object;
+  object.shape = shape;
+  return unit_shape(scene, object);
+}
+
+bool is_open(const Shape& shape) {
+  return std::visit(
+      [](const auto& s) {
+        if constexpr (requires { s.open(); }) return s.open();
+        return true;
+      },
+      shape);
+}
+
+}  // namespace
+
+TEST_CASE("the tests run over every solid and every light that a scene can hold") {
+  const std::vector<Shape> solids = every_solid();
+  REQUIRE(solids.size() + 2 == std::variant_size_v<Shape>);  // a mesh before, a field behind
+  REQUIRE(solid_types().size() == solids.size());
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    CHECK(solids[i].index() == i + 1);
+    CHECK(unit_of(solids[i]).shape == static_cast<ShapeKind>(i + 1));
+    CHECK(solid_types()[i] == name_of(solids[i]));
+  }
+  const std::vector<LightDescription> lights = every_light();
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    CHECK(lights[i].type == static_cast<LightType>(i));
+    CHECK(facts_of(lights[i].type).type == lights[i].type);
+    if (i > 0) CHECK(&facts_of_kind(static_cast<u32>(i - 1)) == &facts_of(lights[i].type));
+  }
+}
+
+TEST_CASE("the schema has each solid and each light, and scene files have it by that name") {
+  const json& definitions = scene_schema().at("$defs");
+  for (const Shape& solid : every_solid()) {
+    const std::string name = name_of(solid);
+    INFO(name);
+    CHECK(is_listed(definitions.at("object").at("properties").at("type").at("enum"), name));
+    CHECK(definitions.contains(name));
+  }
+  for (const LightTypeFacts& facts : light_types) {
+    const std::string name(facts.name);
+    INFO(name);
+    CHECK(is_listed(definitions.at("light").at("properties").at("type").at("enum"), name));
+    CHECK(definitions.contains(name + "_light"));
+  }
+}
+
+TEST_CASE("by its distance a solid is crossed where its equations have it") {
+  std::mt19937 random(11);
+  const auto uniform = [&] { return static_cast<double>(random()) * 0x1p-31 - 1; };
+  for (const Shape& shape : every_bounded_solid()) {
+    if (is_open(shape)) continue;
+    const UnitShape unit = unit_of(shape);
+    INFO(name_of(shape));
+    std::size_t found = 0, others = 0;
+    for (int i = 0; i < 1500; ++i) {
+      const dvec3 o = 3.0 * dvec3(uniform(), uniform(), uniform()),
+                  d = dvec3(uniform(), uniform(), uniform()) - 0.5 * o;
+      const auto expected = solid_crossings(unit.shape, unit.parameters, o, d);
+      const auto crossings = crossings_by_distance(unit, o, d);
+      others += crossings.size() != expected.size();  // by rounding, along a surface
+      for (std::size_t k = 0; k < std::min(crossings.size(), expected.size()); ++k, ++found) {
+        CHECK(crossings[k].t == Approx(expected[k].t).epsilon(1e-6).margin(1e-6));
+        CHECK(glm::dot(glm::normalize(crossings[k].ng), glm::normalize(expected[k].ng)) > 0.999);
+      }
+    }
+    CHECK(found > 500);
+    CHECK(others <= 1);
+  }
+}
