@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
 
 #include "scene/formula/list.h"
 #include "scene/formula/lower.h"
@@ -206,8 +207,8 @@ PlacedShape read_solid(JsonObject& object, std::string_view type) {
 }
 
 std::optional<FormulaField> field_of_solid(const Shape& shape) {
-  const auto make = [](const auto& solid) -> std::optional<FormulaField> {
-    if constexpr (requires { solid.open(); })
+  const auto make = []<class S>(const S& solid) -> std::optional<FormulaField> {
+    if constexpr (!std::is_same_v<S, MeshShape> && !std::is_same_v<S, FieldShape>)
       if (!solid.open()) return field_of(solid);
     return std::nullopt;
   };
