@@ -1,6 +1,7 @@
 // Every constant that a device specialises a kernel by, with its default, and what follows from the features
-// of a scene (shared/features.h, shared/shapes.h; HAS_MESH, HAS_SPHERE, ...: it has that shape; HAS_BVH: rays go through a
-// BVH). The host's KernelConfig writes the -D options. Thresholds of a method stand where the method does.
+// of a scene (shared/features.h, shared/shapes.h; HAS_MESH, HAS_SPHERE, ...: it has that shape; HAS_BVH: rays
+// go through a BVH). The host's KernelConfig writes the -D options. Thresholds of a method stand where the
+// method does.
 #ifndef SUNDOG_LIB_CONFIG_H
 #define SUNDOG_LIB_CONFIG_H
 #include "shared/shapes.h"
