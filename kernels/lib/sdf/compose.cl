@@ -43,7 +43,7 @@ static inline REAL3 repeat_cell(REAL3 p, SDF_TABLE q, u32 neighbours) {
 // The smooth minimum of a and b, and in `share` the part that b has in it: quadratic, equal to the plain one
 // where they differ by k.
 static inline REAL smooth_minimum(REAL a, REAL b, SCALAR k, REAL* share) {
-  const REAL h = fmax(1.0f - fabs(a - b) / k, 0.0f);
+  const REAL h = fmax(1.0f - fabs(a - b) / k, (REAL)(0.0f));
   const REAL less = 0.5f * h;
   const MASK second = MASK_OF(b < a);
   *share = select(less, 1.0f - less, second);

@@ -33,12 +33,12 @@ static inline REAL logarithmic_distance(REAL square, REAL derivative, REAL level
   const REAL r2 = real_max(real_min(square, (REAL)(1e36f)), (REAL)(1e-30f));
   const REAL d = 0.25f * (real_log(r2) - level) * (r2 * rough_rsqrt(r2)) *
                  rough_inverse(real_max(derivative, (REAL)(1e-30f)));
-  return fmax(d, -1e-3f);
+  return fmax(d, (REAL)(-1e-3f));
 }
 static inline REAL linear_distance(REAL square, REAL derivative, REAL level) {
   const REAL d = (real_sqrt(real_min(square, (REAL)(1e36f))) - level) *
                  rough_inverse(real_max(derivative, (REAL)(1e-30f)));
-  return fmax(d, -1e-3f);
+  return fmax(d, (REAL)(-1e-3f));
 }
 
 static inline SdfSample no_sample(void) {

@@ -11,7 +11,8 @@ static inline REAL3 palette_color(const Scene* scene, __global const SdfField* r
   REAL3 color = real3((REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f));
   for (u32 i = 0; i < field->palette_count; ++i) {
     const REAL apart = fabs(place - (float)i);
-    const REAL weight = fmax(1.0f - fmin(apart, count - apart), 0.0f);  // round the circle of stops
+    // Round the circle of stops, from both sides: a stop alone is its own neighbour.
+    const REAL weight = fmax(1.0f - apart, 0.0f) + fmax(1.0f - (count - apart), 0.0f);
     __global const float* stop = scene->sdf_parameters + field->palette_first + 3u * i;
     color = along3(color, weight, real3((REAL)(stop[0]), (REAL)(stop[1]), (REAL)(stop[2])));
   }

@@ -1,0 +1,141 @@
+// What fields do to light, in closed form beside a wall x = 0 and a floor: occlusion, soft shadows, glow and
+// the colours of the orbit. The scenes share their kernels: each field has all of it, some without effect.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "catch.h"
+#include "devices.h"
+#include "scene/json/parse.h"
+#include "scene/read/scene_reader.h"
+#include "scenes.h"
+
+using namespace sundog;
+
+namespace {
+
+struct Wanted {
+  std::string distance = "p.x";
+  double occlusion = 1e-3;  // reach
+  double soft_shadow = 1;   // hardness
+  std::string glow = "[0, 0, 0]";
+  std::string coloring = R"("palette": [[1, 1, 1]])";
+  std::string transform;  // of the field
+  std::string camera = R"("position": [0.25, 1.2, 0], "target": [0.25, 0, 0])";
+  std::string lights = R"({"type": "ambient"})";
+  std::string floor;  // a further object
+};
+
+SceneDescription scene_of(const Wanted& wanted) {
+  const std::string text = fmt::format(
+      R"({{"image": {{"width": 1, "height": 1}}, "camera": {{{}, "up": [0, 0, 1], "fov": 1}},
+    "lights": [{}], "materials": {{"white": {{"color": [1, 1, 1], "ambient": 1, "diffuse": 1}}}},
+    "objects": [{{"type": "formula", "distance": "{}", "material": "white", "occlusion": {}, "soft_shadow": {},
+      "interval": {{"min": [-1.4, -1.4, -1.4], "max": [1.4, 1.4, 1.4]}},
+      "glow": {{"color": {}, "width": 0.2}}, "coloring": {{"by": "radius", {}}}, "transform": [{}]}}{}]}})",
+      wanted.camera, wanted.lights, wanted.distance, wanted.occlusion, wanted.soft_shadow, wanted.glow,
+      wanted.coloring, wanted.transform, wanted.floor);
+  const nlohmann::json document = parse_json(text, "test.json");
+  const JsonContext context{"test.json"};
+  return read_scene(JsonValue(document, context));
+}
+
+// A plane at y = 0, an exact solid; where a field is the floor it lies far below, so that the kernels are the
+// same.
+const std::string floor_below = R"(, {"type": "plane", "material": "white"})";
+
+template <class Body>
+void on_every_device(Body body) {
+  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+      body(device);
+    }
+}
+
+/// Openness on the floor at the distance `a` from a wall: five points up to `reach` over the floor, whose
+/// nearest surface is the floor or the wall.
+double openness(double a, double reach) {
+  double weight = 1, total = 0, missing = 0;
+  for (int i = 1; i <= 5; ++i, weight *= 0.6) {
+    const double h = reach * i / 5;
+    missing += weight * std::max(1 - a / h, 0.0);
+    total += weight;
+  }
+  return 1 - missing / total;
+}
+
+}  // namespace
+
+TEST_CASE("ambient light in a corner is less by what the wall takes of five points up to the reach") {
+  Wanted corner;
+  corner.distance = "min(p.x, p.y)";
+  corner.floor = R"(, {"type": "plane", "material": "white", "point": [0, -9, 0]})";
+  on_every_device([&](const DeviceInfo& device) {
+    for (const double reach : {0.2, 0.5, 0.7}) {
+      corner.occlusion = reach;
+      CHECK(scenes::pixel_on(device, scene_of(corner)).x == Approx(openness(0.25, reach)).epsilon(2e-3));
+    }
+  });
+}
+
+TEST_CASE("a wall's soft shadow is its distance over that of the farthest point of the way to the light") {
+  // The march on from the floor takes steps of 0.25, the wall's distance, and the last one within the
+  // interval is at 1.25.
+  Wanted wall;
+  wall.lights = R"({"type": "directional", "direction": [0, -1, 0]})";
+  wall.floor = floor_below;
+  on_every_device([&](const DeviceInfo& device) {
+    for (const double hardness : {1.0, 2.0, 9.0}) {
+      wall.soft_shadow = hardness;
+      CHECK(scenes::pixel_on(device, scene_of(wall)).x ==
+            Approx(std::min(hardness * 0.25 / 1.25, 1.0)).epsilon(2e-3));
+    }
+    // A light within the interval ends the way; what is twice as large has the same shadow.
+    Wanted near = wall;
+    near.soft_shadow = 1;
+    near.lights = R"({"type": "point", "position": [0.25, 0.6, 0]})";
+    CHECK(scenes::pixel_on(device, scene_of(near)).x == Approx(0.25 / 0.5).epsilon(2e-3));
+    Wanted large = wall;
+    large.soft_shadow = 2;
+    large.transform = R"({"scale": 2})";
+    large.camera = R"("position": [0.5, 2.4, 0], "target": [0.5, 0, 0])";
+    CHECK(scenes::pixel_on(device, scene_of(large)).x == Approx(2 * 0.25 / 1.25).epsilon(2e-3));
+  });
+}
+
+TEST_CASE("a ray that passes a glowing field gathers exp(-d / width) of its colour, d its least distance") {
+  Wanted wall;
+  wall.glow = "[0.5, 0.25, 1]";
+  wall.lights = R"({"type": "ambient", "intensity": 0})";
+  wall.floor = floor_below;
+  on_every_device([&](const DeviceInfo& device) {
+    for (const double a : {0.1, 0.25}) {
+      wall.camera = fmt::format(R"("position": [{0}, 1.2, 0], "target": [{0}, 0, 0])", a);
+      const glm::dvec3 seen = scenes::pixel_on(device, scene_of(wall));
+      CHECK(seen.x == Approx(0.5 * std::exp(-a / 0.2)).epsilon(2e-3));
+      CHECK(seen.z == Approx(std::exp(-a / 0.2)).epsilon(2e-3));
+    }
+  });
+}
+
+TEST_CASE("a field's colour is the palette at its trap, blended between the stops and round to the first") {
+  Wanted floor;
+  floor.distance = "p.y";
+  floor.floor = R"(, {"type": "plane", "material": "white", "point": [0, -9, 0]})";
+  on_every_device([&](const DeviceInfo& device) {
+    for (const double a : {0.25, 0.45}) {
+      floor.camera = fmt::format(R"("position": [{0}, 1.2, 0], "target": [{0}, 0, 0])", a);
+      floor.coloring = R"("palette": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "scale": 2, "offset": 0.05)";
+      const double place = 3 * (2 * a + 0.05 - std::floor(2 * a + 0.05));  // 1.65, 2.85
+      const double second = std::max(1 - std::abs(place - 1), 0.0), third = 1 - std::abs(place - 2);
+      const glm::dvec3 seen = scenes::pixel_on(device, scene_of(floor));
+      CHECK(seen.x == Approx(1 - second - third).margin(2e-3));
+      CHECK(seen.y == Approx(second).margin(2e-3));
+      CHECK(seen.z == Approx(third).margin(2e-3));
+      floor.coloring = R"("palette": [[0.5, 0.25, 1]])";
+      const glm::dvec3 alone = scenes::pixel_on(device, scene_of(floor));
+      for (int c = 0; c < 3; ++c) CHECK(alone[c] == Approx(c == 2 ? 1 : 0.5 / (1 + c)).epsilon(1e-5));
+    }
+  });
+}
