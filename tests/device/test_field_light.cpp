@@ -6,11 +6,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/image_compare.h"
 #include "catch.h"
 #include "devices.h"
 #include "scene/json/parse.h"
 #include "scene/read/scene_reader.h"
 #include "scenes.h"
+#include "sdf_testing.h"
 
 using namespace sundog;
 
@@ -51,6 +53,23 @@ void on_every_device(Body body) {
   for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
       body(device);
     }
+}
+
+/// A picture of a field that is put together, and of the solid that it is.
+void check_same(const DeviceInfo& device, const std::string& field, const std::string& solids) {
+  const auto picture = [&](const std::string& objects) {
+    const std::string text = fmt::format(
+        R"({{"image": {{"width": 24, "height": 24, "background": [0, 0, 1]}},
+      "camera": {{"position": [1, 2, 5], "target": [0, 0, 0], "fov": 50}},
+      "lights": [{{"type": "directional", "direction": [-1, -2, -3]}}],
+      "materials": {{"white": {{"color": [1, 1, 1], "diffuse": 1}}}}, "objects": [{}]}})",
+        objects);
+    const nlohmann::json document = parse_json(text, "test.json");
+    const JsonContext context{"test.json"};
+    return scenes::render_on(device, read_scene(JsonValue(document, context))).image;
+  };
+  const ImageDifference difference = compare_images(picture(field), picture(solids), 0.02);
+  CHECK(difference.over_tolerance < 12);  // of 576: outlines
 }
 
 /// Openness on the floor at the distance `a` from a wall: five points up to `reach` over the floor, whose
@@ -137,5 +156,26 @@ TEST_CASE("a field's colour is the palette at its trap, blended between the stop
       const glm::dvec3 alone = scenes::pixel_on(device, scene_of(floor));
       for (int c = 0; c < 3; ++c) CHECK(alone[c] == Approx(c == 2 ? 1 : 0.5 / (1 + c)).epsilon(1e-5));
     }
+  });
+}
+
+TEST_CASE("repeated, thickened and hollow fields have the sizes that they are given") {
+  const std::string ball = R"({"type": "formula", "distance": "length(p) - 0.4"})";
+  const std::string box = R"("interval": {"min": [-3, -3, -3], "max": [3, 3, 3]}, "material": "white")";
+  const auto sphere = [](double x, double radius) {
+    return fmt::format(R"({{"type": "sphere", "center": [{}, 0, 0], "radius": {}, "material": "white"}})", x,
+                       radius);
+  };
+  on_every_device([&](const DeviceInfo& device) {
+    if (!is_quick(device)) return;  // a program each
+    check_same(
+        device,
+        fmt::format(R"({{"type": "repeat", "field": {}, "period": [1, 0, 0], "count": [1, 0, 0], {}}})", ball,
+                    box),
+        sphere(-1, 0.4) + ", " + sphere(0, 0.4) + ", " + sphere(1, 0.4));
+    check_same(device, fmt::format(R"({{"type": "thicken", "field": {}, "amount": 0.3, {}}})", ball, box),
+               sphere(0, 0.7));
+    check_same(device, fmt::format(R"({{"type": "shell", "field": {}, "amount": 0.3, {}}})", ball, box),
+               sphere(0, 0.55));
   });
 }
