@@ -48,13 +48,6 @@ SceneDescription scene_of(const Wanted& wanted) {
 // same.
 const std::string floor_below = R"(, {"type": "plane", "material": "white"})";
 
-template <class Body>
-void on_every_device(Body body) {
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      body(device);
-    }
-}
-
 /// A picture of a field that is put together, and of the solid that it is.
 void check_same(const DeviceInfo& device, const std::string& field, const std::string& solids) {
   const auto picture = [&](const std::string& objects) {

@@ -21,13 +21,6 @@ SceneDescription floor_under(LightDescription light) {
   return scene;
 }
 
-template <class Body>
-void on_every_device(Body body) {
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
-      body(device);
-    }
-}
-
 }  // namespace
 
 TEST_CASE("a light falls off by 1 / (c + l d + q d^2), d from the surface") {
