@@ -85,7 +85,7 @@ if [[ $goal == packages ]]; then exit 0; fi
 cd "$root"
 touch "$build/started"  # what changes during the build is built the next time
 first=()
-if [[ ! -e $build/CMakeCache.txt ]]; then first=(-DSUNDOG_UNITY=ON); fi  # a folder of a developer keeps its way
+if [[ ! -e $build/CMakeCache.txt ]]; then first=(-DSUNDOG_UNITY=ON -DSUNDOG_UNITY_TESTS=ON); fi  # a folder of a developer keeps its way
 cmake --preset release "${first[@]}" >"$build/configure.log" 2>&1 || { cat "$build/configure.log" >&2; exit 1; }
 if [[ $goal == tests ]]; then target=all; else target=sundog; fi
 if [[ ! -e $build/built-$goal ]]; then

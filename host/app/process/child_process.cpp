@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <utility>
@@ -51,7 +52,10 @@ ChildResult run_self(const std::vector<std::string>& arguments, const std::vecto
   ChildResult result;
   pid_t child = 0;
   try {
-    descriptors.insert(descriptors.begin(), {{ends[1], STDOUT_FILENO}, {nowhere, STDERR_FILENO}});
+    const bool speaks =
+        std::ranges::any_of(descriptors, [](const HandedDown& d) { return d.there == STDERR_FILENO; });
+    if (!speaks) descriptors.push_back({nowhere, STDERR_FILENO});
+    descriptors.insert(descriptors.begin(), {ends[1], STDOUT_FILENO});
     child = spawn_self(arguments, std::move(descriptors), variables);
   } catch (...) {
     ::close(ends[0]);
