@@ -83,7 +83,7 @@ class Page {
     for (const auto& [name, kind] : kinds_.items())
       if (has_keys(kind) && !placed.contains(name) && !is_inner(name))
         throw std::runtime_error("$defs/" + name +
-                                 " of the schema needs a section in tests/unit/scene_reference.cpp");
+                                 " of the schema needs a section in tests/unit/docs/scene_reference.cpp");
   }
 
   /// A field inside another one, described with the object of the same name, of which it must be a part.
