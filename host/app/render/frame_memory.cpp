@@ -25,10 +25,10 @@ std::uint64_t aov_floats(const std::string& name) {
 /// where the picture is noise that no compression makes smaller.
 std::uint64_t encoder_bytes(const std::string& file, std::uint64_t aovs) {
   const fs::path extension = fs::path(file).extension();
-  if (!drops_alpha(file)) return 2 * 2 * 4 + aovs;  // half floats; AOVs stay floats
-  if (extension == ".png" || extension == ".PNG") return 4 * 3;
+  if (!drops_alpha(file)) return 16 + aovs;  // half floats, two copies; AOVs stay floats
+  if (extension == ".png" || extension == ".PNG") return 12;
   if (extension == ".hdr" || extension == ".HDR") return 14;
-  return extension == ".pfm" || extension == ".PFM" ? 12 : 2 * 3;
+  return extension == ".pfm" || extension == ".PFM" ? 12 : 6;
 }
 
 // Tiles that are on their way, on the device and off it, and what the allocator keeps of them: measured where

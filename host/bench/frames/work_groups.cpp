@@ -68,7 +68,7 @@ BarPlot bars(const TimedKernel& kernel, const WorkGroupTimes& times) {
     if (!time.problem.empty() || (time.group.kind == fixed && !prime && &time != least)) continue;
     std::string label = work_group_text(time.group);
     if (prime) label += ", padded";
-    if (is_best && &time == least) label = "best: " + label;
+    if (is_best && &time == least) label.insert(0, "best: ");
     const bool compared = usual && usual->seconds.median > 0 && &time != usual;
     plot.bars.push_back(
         {label, scaled(time.seconds, 1e3),

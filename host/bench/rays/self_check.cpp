@@ -134,9 +134,9 @@ SelfCheck check_device(const DeviceInfo& info, const std::function<void(const st
 
 std::string advice(const std::string& problem, bool others) {
   const auto says = [&](const char* part) { return problem.find(part) != std::string::npos; };
-  const std::string leave =
-      others ? "leave it out: --device '!P:D'"
-             : "no other device here is sound: install another driver (Debian: pocl-opencl-icd)";
+  std::string leave = others
+                          ? "leave it out: --device '!P:D'"
+                          : "no other device here is sound: install another driver (Debian: pocl-opencl-icd)";
   if (says("no device"))
     return "its driver finds no hardware that it serves: remove its package, or leave it (rusticl wants "
            "RUSTICL_ENABLE, as in "

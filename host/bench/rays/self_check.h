@@ -24,7 +24,7 @@ struct SelfCheck {
 };
 
 /// Never throws; a driver that crashes takes the process along, so `on_stage` hears what is tried next.
-SelfCheck check_device(const DeviceInfo& device, const std::function<void(const std::string&)>& on_stage);
+SelfCheck check_device(const DeviceInfo& info, const std::function<void(const std::string&)>& on_stage);
 
 /// What a person can do about a problem of a driver, by what it says.
 /// `others`: another device is sound, so this one can be left out.

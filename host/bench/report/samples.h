@@ -11,7 +11,7 @@ struct Spread {
       {};  // all of them, in the order they were taken; empty for a figure made of others
 };
 
-Spread spread(const std::vector<double>& values);
+Spread spread(const std::vector<double>& runs);
 
 /// All of it times `factor`: seconds as milliseconds.
 Spread scaled(const Spread& spread, double factor);
