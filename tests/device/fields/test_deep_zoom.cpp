@@ -192,8 +192,9 @@ TEST_CASE("fields are marched in doubles only where floats are too coarse, each 
   CHECK(std::abs(both.sdf_fields[0].lower.y - both.sdf_fields[1].lower.y) == Approx(2.5));
 }
 
-TEST_CASE("a deep view is rendered sharp, with its shadows") {
-  const NearView view = near_view(1e-9);
+TEST_CASE("a deep view is rendered sharp, with its shadows, a batch of rays or a ray at a time") {
+  NearView view = near_view(1e-9);
+  view.scene.render.tracer = GENERATE(Tracer::automatic, Tracer::compact);
   on_every_device([&](const DeviceInfo& info) {
     if (!has_doubles(info) || !is_quick(info)) return;
     const RenderResult result = scenes::render_on(info, view.scene);
