@@ -45,7 +45,7 @@ struct Contestant {
   std::vector<double> mrays;
 };
 
-/// Those of its kernels that the checkout has and the driver builds; the others are told of on stderr. They
+/// Those of its kernels that the checkout has and the driver builds; the others are reported on stderr. They
 /// trace what `rays` holds when they are run, the first `count` of which count.
 std::vector<Contestant> tinybvh_kernels_of(const TinyBvhOptions& options, Device& device,
                                            const TinyBvhTables& tables, Buffer<TinyBvhRay>& rays,

@@ -38,7 +38,7 @@ int run_command_line(int argc, char** argv) {
   if (name == "compile") return compile_command(argc, argv);
   allow_compile_process();
   if (name == "worker") return worker_command(argc, argv);
-  // All processes of a job have the same command line: what is wrong with it is told once.
+  // All processes of a job have the same command line: its errors are reported once.
   Command command = ShowText{};
   const auto parse = [&] {
     command = parse_command_line(argc, argv);

@@ -1,6 +1,6 @@
-// The exact solids as unit shapes (kernels/shared/shapes.h): what of a shape's size a transform can carry,
-// what stays in parameters, and the geometry of the unit shape: how far it reaches, its flat faces, its
-// distance.
+// The exact solids as unit shapes (kernels/shared/shapes.h): the part of a shape's size that a transform can
+// carry, what stays in parameters, and the geometry of the unit shape: how far it reaches, its flat faces,
+// its distance.
 #pragma once
 #include <optional>
 #include <vector>
@@ -41,6 +41,6 @@ std::optional<Curvature> curvature(const UnitShape& unit);
 
 /// Zero on the surface, below zero inside, and nowhere steeper than the distance to it; a cylinder or cone
 /// counts as capped. Not for solids that are always open.
-double unit_distance(const UnitShape& unit, const dvec3& p);
+double unit_distance(const UnitShape& unit, const dvec3& q);
 
 }  // namespace sundog

@@ -19,7 +19,7 @@ void allow_compile_process() noexcept;
 class CompileProcess {
  public:
   /// None where nothing would be gained: another driver, one processor, or no main that allows it. Never
-  /// throws: without it programs are built as ever.
+  /// throws: without it programs are built in this process.
   static std::optional<CompileProcess> start(const DeviceInfo& device, const std::string& source,
                                              const std::string& options) noexcept;
   CompileProcess(CompileProcess&& other) noexcept;

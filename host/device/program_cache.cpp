@@ -1,5 +1,5 @@
 // The file: magic and format version, the checksum of all that follows, three sizes, then key, variants and
-// binary. The key stands in it whole, so that two keys with one hash are told apart.
+// binary. The key stands in it whole, so that two keys with one hash stay apart.
 #include "device/program_cache.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Devices in other processes, for `render`: what they are told, and how they find what they are told of.
+// Devices in other processes, for `render`: what is sent to them, and how they find the files that it names.
 #pragma once
 #include <map>
 #include <memory>

@@ -1,4 +1,4 @@
-// The end of a frame: its picture or part is saved, what became of it is told, and it has an exit status.
+// The end of a frame: its picture or part is saved, the outcome is reported, and it has an exit status.
 #pragma once
 #include <string>
 

@@ -59,7 +59,7 @@ void keep_checkpoint(Frame& frame) {
   try {
     write_checkpoint(checkpoint_path(options), film, frame.key);
   } catch (const IoError&) {
-    // What keeps it from being written is told at the end, if the frame does not come to its end.
+    // What keeps it from being written is reported at the end, if the frame does not come to its end.
   }
 }
 

@@ -155,7 +155,7 @@ static inline void shade_lanes(const Scene* scene, u32 index, const RayLanes* la
   hits->prim = select(hits->prim, NO_LANES, mine);
 }
 
-// What of a hit is wanted: all; all, on the way to a light, so that fields with soft shadows are left to
+// The wanted parts of a hit: all; all, on the way to a light, so that fields with soft shadows are left to
 // soft_shadows(); only its instance, on such a way.
 #define MARCH_TO_SEE 0u
 #define MARCH_TO_LIGHT 1u

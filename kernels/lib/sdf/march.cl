@@ -144,7 +144,8 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
   const bool smooth = field->flags & SDF_FLAGS & SDF_SMOOTH;
   const REAL wrong = select((REAL)(smooth ? -1.0f : 0.25f), (REAL)(-2.0f), rays->inside);
   const REAL pull = select(smooth ? (REAL)(0.0f) : -inverse_speed, (REAL)(0.0f), rays->inside);
-  // A ray inside an estimated surface goes on to where it comes out: depths are too rough to stop before it.
+  // A ray inside an estimated surface continues to where it comes out: depths are too rough to stop before
+  // it.
   const MASK to_crossing = smooth ? NO_LANES : rays->inside;
 #if SDF_CROSSES
   MASK overshot = NO_LANES;

@@ -91,7 +91,7 @@ ALWAYS_INLINE u32 rays_in_child(__global const Bvh8Node* node, u32 slot, const P
   return lane_bits(near <= far);
 }
 
-// Goes on to the next place where something is to be done: a leaf, or a node that few rays cross. Writes its
+// Finds the next place where something is to be done: a leaf, or a node that few rays cross. Writes its
 // word and the rays that cross it; returns false at the end.
 NEVER_INLINE bool next_place(__global const u32* restrict nodes, const PacketRays* rays,
                              const PacketHits* hits, PacketWalk* walk, bool any, u32* word, u32* active) {

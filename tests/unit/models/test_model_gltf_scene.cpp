@@ -1,4 +1,4 @@
-// What of a glTF is no mesh: materials, lights, cameras.
+// The parts of a glTF that are no mesh: materials, lights, cameras.
 #include <numbers>
 
 #include "catch.h"

@@ -22,7 +22,7 @@ DeviceSpeed measured(double speed, int processor = -1) {
   return device;
 }
 
-/// A device of the simulation: what it really does, and what the planner is told beforehand.
+/// A device of the simulation: its real speed, and what the planner knows beforehand.
 struct Simulated {
   double speed = 0;        // pixels a second; 0: it never comes back from a tile
   double estimate = 0;     // what it seems to be
