@@ -173,16 +173,24 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
 std::string place_of(const DeviceInfo& info) { return fmt::format("{}:{}", info.platform, info.device); }
 
 /// Oclgrind's optimiser leaves calls in the program that its interpreter does not know (llvm.bitreverse,
-/// noalias scopes): such a program builds, but gives no kernels. Without optimisation it runs.
+/// noalias scopes): such a program builds, but gives no kernels. Without optimisation it runs. That program
+/// is not cached: the failure may pass, and the slow kernels would stay.
 void compile_to_kernels(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
                         const std::string& source, BuildReport& report) {
-  for (const char* more : {"", " -cl-opt-disable"}) {
-    compile(record, context, device, source, record.options + more, report);
-    if (!fault("kernels", place_of(record.device)) && kernels_work(record.program)) return;
-  }
-  throw BuildError(fmt::format("{} on {}: the driver built it but makes no kernels of it", record.entry,
-                               record.device.label()),
-                   report.log);
+  const auto makes_kernels = [&](const std::string& options) {
+    compile(record, context, device, source, options, report);
+    return !fault("kernels", place_of(record.device)) && kernels_work(record.program);
+  };
+  if (makes_kernels(record.options)) return;
+  if (!makes_kernels(record.options + " -cl-opt-disable"))
+    throw BuildError(fmt::format("{} on {}: the driver built it but makes no kernels of it", record.entry,
+                                 record.device.label()),
+                     report.log);
+  record.cache_file.clear();
+  report.note = fmt::format(
+      "{}: the driver makes no kernels of the optimised program; built without optimisation, slow, and not "
+      "cached",
+      record.entry);
 }
 
 }  // namespace

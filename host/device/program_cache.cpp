@@ -22,7 +22,7 @@ namespace sundog {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::string_view magic = "sundog kernel 1\n";
+constexpr std::string_view magic = "sundog kernel 2\n";
 constexpr std::uintmax_t most_bytes = std::uintmax_t{256} << 20;
 constexpr std::size_t checksum_size = 32, size_size = 20;
 

@@ -123,6 +123,19 @@ TEST_CASE(
   CHECK(contains(result.err, "the driver built it but makes no kernels of it"));
 }
 
+TEST_CASE("a program that was built without optimisation is not kept for the next run") {
+  FaultyFolder folder;
+  folder.size = "32x24";
+  folder.options.environment["XDG_CACHE_HOME"] = folder.file("cache");
+  const std::vector<std::string> one = {"--device", "!0:0"};
+  REQUIRE(folder.render("compile@0:1,kernels@0:1#1", one).status == 0);
+  CHECK(contains(folder.stats()["devices"][0]["notes"].at(0), "without optimisation"));
+  for (const bool cached : {false, true}) {
+    REQUIRE(folder.render("", one).status == 0);
+    CHECK(folder.stats()["kernels_cached"] == cached);
+  }
+}
+
 TEST_CASE(
     "a process that compiles beside the renderer, and one that fails at it, make no difference to the "
     "picture") {
