@@ -156,6 +156,7 @@ CompiledScene compile(const SceneDescription& scene) {
   set_camera(scene, out.origin, out.info);
   add_lights(scene, out);
   const u32 default_material = add_materials(scene, out);
+  out.features.sampler = scene.render.sampler;
   out.features.media = absorbs(out.media[0]);
   out.features.absorption = std::ranges::any_of(out.media, absorbs);
   out.features.fractional_exponents = std::ranges::any_of(out.materials, has_fractional_exponent);

@@ -11,6 +11,7 @@
 
 #include "scene/formula/sdf.h"
 #include "shared/lights.h"
+#include "shared/sampler.h"
 #include "shared/shapes.h"
 
 namespace sundog {
@@ -39,6 +40,7 @@ struct RenderSettings {
   int samples = 1;       // per pixel, 1..65536; 1 = the pixel's centre
   double cutoff = 1e-3;  // throughput below which a ray ends, [0, 1]
   std::string integrator = "whitted";
+  u32 sampler = SAMPLER_AUTO;  // a SAMPLER_* constant
   Tracer tracer = Tracer::automatic;
   bool spatial_splits = false;  // build the BVH with cut triangles: slower, better for long thin ones
 };

@@ -1,4 +1,4 @@
-// The kinds of shapes and lights by name, from the lists of kernels/shared.
+// The kinds of shapes, lights and samplers by name, from the lists of kernels/shared.
 #pragma once
 #include <array>
 #include <string_view>
@@ -14,6 +14,9 @@ inline constexpr std::array<std::string_view, SHAPE_COUNT> shape_names = {"mesh"
 #undef SUNDOG_SHAPE_NAME
                                                                               "field"};
 static_assert(shape_names[SHAPE_SDF] == "field");
+
+/// By SAMPLER_* constant.
+inline constexpr std::array<std::string_view, SAMPLER_INDEPENDENT + 1> sampler_names = {SAMPLERS};
 
 struct LightTypeFacts {
   std::string_view name;  // in scene files and figures

@@ -6,6 +6,7 @@
 
 #include "catch.h"
 #include "shared/features.h"
+#include "shared/sampler.h"
 #include "shared/shapes.h"
 
 void prepare_opencl_environment() {
@@ -40,6 +41,7 @@ sundog::KernelDefines all_features() {
   defines[#definition] = std::is_same_v<type, bool> ? "1" : "3";
   SCENE_FEATURES(SUNDOG_DEFINE_FEATURE)
 #undef SUNDOG_DEFINE_FEATURE
+  defines["SAMPLER"] = std::to_string(SAMPLER_AUTO);
   return defines;
 }
 

@@ -29,6 +29,7 @@ std::uint64_t hash_scene(const CompiledScene& scene) {
   };
   state = hash_bytes(&scene.origin, sizeof scene.origin, state);
   state = hash_bytes(&scene.tracer, sizeof scene.tracer, state);
+  state = hash_bytes(&scene.features.sampler, sizeof scene.features.sampler, state);
   mix(scene.integrator);
   mix(scene.field_source);
   for_each_table(scene, [&](const char*, const auto& table) { mix(table); });

@@ -109,6 +109,9 @@ RenderSettings read_render(const JsonValue& value) {
     render.samples = object.integer("samples", render.samples, 1, 65536);
     render.cutoff = object.number("cutoff", render.cutoff, zero_to_one);
     render.integrator = object.choice("integrator", render.integrator, integrator_names);
+    const std::string sampler =
+        object.choice("sampler", std::string(sampler_names[SAMPLER_AUTO]), sampler_names);
+    render.sampler = static_cast<u32>(std::ranges::find(sampler_names, sampler) - sampler_names.begin());
     const std::string tracer = object.choice("tracer", "auto", tracers);
     render.tracer = tracer == "wide"      ? Tracer::wide
                     : tracer == "compact" ? Tracer::compact

@@ -1,9 +1,11 @@
 // Sample values: where camera samples lie in their pixels.
-#include <array>
+#include <cmath>
 #include <set>
+#include <string>
 
 #include "catch.h"
 #include "devices.h"
+#include "shared/sampler.h"
 
 using namespace sundog;
 
@@ -16,6 +18,8 @@ struct Pixel {
 struct Place {
   float a, b, first, second;
 };
+
+constexpr u32 dimension = 4;
 
 const char* const text = R"(
 #include "lib/core/sampler.cl"
@@ -58,4 +62,45 @@ TEST_CASE("camera samples: one is the pixel's centre, 64 fill each 64th of both 
       CHECK(second == Approx(0.5).margin(0.15));
       CHECK(product == Approx(0).margin(0.045));
     }
+}
+
+TEST_CASE("a device's samples are the host's to the bit") {
+  std::vector<Pixel> in;
+  for (u32 i = 0; i < 4096; ++i) in.push_back({i * 7, i / 5, i * i, 4});
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    const auto out = run_text<Place>(device, text, in, {{"SAMPLER", std::to_string(SAMPLER_SOBOL)}});
+    const auto unit = [](u32 bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; };
+    const auto of = [&](const Pixel& at, u32 d) { return unit(sobol_bits(at.x, at.y, at.sample, d)); };
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      REQUIRE(out[i].a == of(in[i], DIMENSION_PIXEL));
+      REQUIRE(out[i].b == of(in[i], DIMENSION_PIXEL + 1));
+      REQUIRE(out[i].first == of(in[i], dimension));
+      REQUIRE(out[i].second == of(in[i], dimension + 1));
+    }
+  });
+}
+
+TEST_CASE("stratified and regular samples have a cell of a grid each") {
+  for (const u32 count : {1u, 4u, 6u, 7u, 64u}) {
+    std::vector<Pixel> in;
+    for (u32 sample = 0; sample < count; ++sample) in.push_back({17, 9, sample, count});
+    u32 columns = static_cast<u32>(std::sqrt(count));
+    while (count % columns) --columns;
+    const u32 rows = count / columns;
+    on_every_device([&](const DeviceInfo& info) {
+      Device device(info);
+      for (const u32 sampler : {SAMPLER_STRATIFIED, SAMPLER_REGULAR}) {
+        const auto out = run_text<Place>(device, text, in, {{"SAMPLER", std::to_string(sampler)}});
+        std::set<u32> cells;
+        for (const Place& at : out) {
+          REQUIRE((at.a >= 0 && at.a < 1 && at.b >= 0 && at.b < 1));
+          cells.insert(static_cast<u32>(at.a * float(columns)) * rows + static_cast<u32>(at.b * float(rows)));
+          if (sampler == SAMPLER_REGULAR)
+            CHECK(at.a * float(columns) - std::floor(at.a * float(columns)) == Approx(0.5).epsilon(1e-5));
+        }
+        CHECK(cells.size() == count);
+      }
+    });
+  }
 }

@@ -40,8 +40,8 @@ std::string settings(const SceneDescription& scene) {
                      c.near, c.far) +
          fmt::format("image {} {} {} {}\n", i.width, i.height, text(i.background_bottom),
                      text(i.background_top)) +
-         fmt::format("render {} {} {} {} {}\n", r.max_depth, r.samples, r.cutoff, r.integrator,
-                     static_cast<int>(r.tracer));
+         fmt::format("render {} {} {} {} {} {}\n", r.max_depth, r.samples, r.cutoff, r.integrator,
+                     static_cast<int>(r.tracer), r.sampler);
 }
 
 std::string line(const LightDescription& l) {

@@ -58,7 +58,7 @@ TEST_CASE("camera, image and render settings are read") {
   const SceneDescription scene = load_scene_text(scene_with(R"(
     "camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 2], "fov": 30.5, "near": 0.5, "far": 1e30},
     "image": {"width": 320, "height": 2e2, "background": {"bottom": [0.1, 0.2, 0.3], "top": [4, 5, 6]}},
-    "render": {"max_depth": 3, "samples": 16, "cutoff": 0.25, "integrator": "whitted", "tracer": "compact"})"));
+    "render": {"max_depth": 3, "samples": 16, "cutoff": 0.25, "integrator": "whitted", "tracer": "compact", "sampler": "sobol"})"));
   CHECK(scene.camera.position == dvec3(1, 2, 3));
   CHECK(scene.camera.target == dvec3(4, 5, 6));
   CHECK(scene.camera.up == dvec3(0, 0, 1));
@@ -73,6 +73,7 @@ TEST_CASE("camera, image and render settings are read") {
   CHECK(scene.render.samples == 16);
   CHECK(scene.render.cutoff == 0.25);
   CHECK(scene.render.tracer == Tracer::compact);
+  CHECK(scene.render.sampler == SAMPLER_SOBOL);
 }
 
 TEST_CASE("a scene without a camera is framed: all is seen, and it fills the image") {

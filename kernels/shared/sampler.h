@@ -1,0 +1,116 @@
+// Sample values as integers, computed by host and kernels alike: an Owen-scrambled Sobol sequence of four
+// dimensions, shuffled for every four dimensions more (Burley, Practical Hash-based Owen Scrambling, JCGT
+// 9(4), 2020). A value depends on pixel, sample and dimension alone.
+#ifndef SUNDOG_SHARED_SAMPLER_H
+#define SUNDOG_SHARED_SAMPLER_H
+#include "shared/types.h"
+SUNDOG_SHARED_BEGIN
+
+// How samples lie in their pixels: the names in scene files, in the order of the constants. AUTO is a set of
+// Hammersley's for a fixed number of samples, which STRATIFIED and REGULAR need to know too; to the samples
+// of the others more can be added. In dimensions other than the pixel's all but INDEPENDENT use Sobol's
+// sequence.
+#define SAMPLERS "auto", "sobol", "stratified", "regular", "independent"
+#define SAMPLER_AUTO 0
+#define SAMPLER_SOBOL 1
+#define SAMPLER_STRATIFIED 2
+#define SAMPLER_REGULAR 3
+#define SAMPLER_INDEPENDENT 4
+
+// The dimensions of a pixel's sample. Four from a multiple of four on belong together: their points are
+// spread evenly in all four, best in the first two, so a pair of values has an even number. What a path needs
+// at a surface begins at dimension_of_bounce(); `lights` that are sampled one by one take a copy each.
+#define DIMENSION_PIXEL 0u  // two: the place in the pixel
+#define DIMENSION_LENS 2u   // two: the place on the lens
+#define DIMENSION_TIME 4u   // one; 5, 6 and 7 are free
+#define DIMENSION_BOUNCE 8u
+#define DIMENSIONS_A_BOUNCE 8u
+#define BOUNCE_LIGHT_POINT 0u   // two: the place on a light
+#define BOUNCE_LIGHT_CHOICE 2u  // one: which light
+#define BOUNCE_DIRECTION 4u     // two: the direction that the surface scatters to
+#define BOUNCE_LOBE 6u          // one: reflection or transmission
+#define BOUNCE_ROULETTE 7u      // one: whether the path ends
+
+// The first dimension of what is sampled at the surface that a ray of `depth` (1: from the camera) meets, for
+// the light of index `light` (0 where it is no light's).
+static inline u32 dimension_of_bounce(u32 depth, u32 light) {
+  return DIMENSION_BOUNCE + DIMENSIONS_A_BOUNCE * (depth - 1u) + (light << 12);
+}
+
+// PCG's output permutation on a counter (O'Neill 2014; Jarzynski and Olano 2020).
+static inline u32 hash_u32(u32 x) {
+  const u32 state = x * 747796405u + 2891336453u;
+  const u32 word = ((state >> ((state >> 28) + 4u)) ^ state) * 277803737u;
+  return (word >> 22) ^ word;
+}
+
+static inline u32 hash_pixel(u32 x, u32 y, u32 dimension) {
+  return hash_u32(x + hash_u32(y + hash_u32(dimension)));
+}
+
+static inline u32 reversed_bits(u32 r) {
+  r = (r << 16) | (r >> 16);
+  r = ((r & 0x00ff00ffu) << 8) | ((r & 0xff00ff00u) >> 8);
+  r = ((r & 0x0f0f0f0fu) << 4) | ((r & 0xf0f0f0f0u) >> 4);
+  r = ((r & 0x33333333u) << 2) | ((r & 0xccccccccu) >> 2);
+  return ((r & 0x55555555u) << 1) | ((r & 0xaaaaaaaau) >> 1);
+}
+
+// A permutation in which each bit depends on those below it alone (Laine and Karras 2011), so that on
+// reversed bits it is an Owen scrambling. Vegdahl's constants: half of the bits above change with any bit.
+static inline u32 owen_hash(u32 x, u32 seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  return x ^ x * 0x53a22864u;
+}
+
+// Samples that a sequence has before it begins again.
+#define SOBOL_SAMPLES 65536u
+
+// One step of sobol_pair: adds (mod 2) the columns that bit `bit` of the reversed index stands for.
+#define SOBOL_COLUMN(bit, columns) ((columns) & (0u - (order >> (bit) & 1u)))
+
+// The dimensions 0 and 1 (in the low and the high 16 bits), reversed, of the sample whose reversed index is
+// `order`. Direction numbers: van der Corput, and x + 1.
+static inline u32 sobol_pair_01(u32 order) {
+  return SOBOL_COLUMN(0, 0xffff8000u) ^ SOBOL_COLUMN(1, 0x55554000u) ^ SOBOL_COLUMN(2, 0x33332000u) ^
+         SOBOL_COLUMN(3, 0x11111000u) ^ SOBOL_COLUMN(4, 0x0f0f0800u) ^ SOBOL_COLUMN(5, 0x05050400u) ^
+         SOBOL_COLUMN(6, 0x03030200u) ^ SOBOL_COLUMN(7, 0x01010100u) ^ SOBOL_COLUMN(8, 0x00ff0080u) ^
+         SOBOL_COLUMN(9, 0x00550040u) ^ SOBOL_COLUMN(10, 0x00330020u) ^ SOBOL_COLUMN(11, 0x00110010u) ^
+         SOBOL_COLUMN(12, 0x000f0008u) ^ SOBOL_COLUMN(13, 0x00050004u) ^ SOBOL_COLUMN(14, 0x00030002u) ^
+         SOBOL_COLUMN(15, 0x00010001u);
+}
+
+// The same of the dimensions 2 and 3: x^2 + x + 1 with 1, 3, and x^3 + x + 1 with 1, 1, 3, which fill each
+// eighth of a square in its first eight samples.
+static inline u32 sobol_pair_23(u32 order) {
+  return SOBOL_COLUMN(0, 0xb082aa09u) ^ SOBOL_COLUMN(1, 0x60417706u) ^ SOBOL_COLUMN(2, 0x203f3903u) ^
+         SOBOL_COLUMN(3, 0x10151601u) ^ SOBOL_COLUMN(4, 0x0ff409aau) ^ SOBOL_COLUMN(5, 0x05530677u) ^
+         SOBOL_COLUMN(6, 0x02f60339u) ^ SOBOL_COLUMN(7, 0x01920116u) ^ SOBOL_COLUMN(8, 0x008900a3u) ^
+         SOBOL_COLUMN(9, 0x00470071u) ^ SOBOL_COLUMN(10, 0x003d003au) ^ SOBOL_COLUMN(11, 0x00140017u) ^
+         SOBOL_COLUMN(12, 0x000b0009u) ^ SOBOL_COLUMN(13, 0x00060006u) ^ SOBOL_COLUMN(14, 0x00020003u) ^
+         SOBOL_COLUMN(15, 0x00010001u);
+}
+
+// The reversed index, 16 bits, of the sample in a sequence that is shuffled by `seed`: aligned runs of 2^k
+// samples stay such runs.
+static inline u32 sobol_order(u32 sample, u32 seed) {
+  return owen_hash(reversed_bits(sample) >> 16, seed) & 0xffffu;
+}
+
+// Owen's scrambling of the reversed 16 bits of dimension `component`; the 32 bits of a number in [0, 1).
+static inline u32 sobol_scrambled(u32 reversed, u32 seed, u32 component) {
+  return reversed_bits(owen_hash(reversed & 0xffffu, hash_u32(seed + 0x9e3779b9u * (component + 1u))));
+}
+
+// The bits of a pixel's sample in one dimension; [0, 1) are 2^32 of them.
+static inline u32 sobol_bits(u32 x, u32 y, u32 sample, u32 dimension) {
+  const u32 seed = hash_pixel(x, y, dimension >> 2), order = sobol_order(sample, seed);
+  const u32 pair = dimension & 2u ? sobol_pair_23(order) : sobol_pair_01(order);
+  return sobol_scrambled(dimension & 1u ? pair >> 16 : pair, seed, dimension & 3u);
+}
+
+SUNDOG_SHARED_END
+#endif
