@@ -150,6 +150,21 @@ TEST_CASE("the schema takes what the reader takes") {
     CHECK(schema_errors(scene_schema(), json::parse(scene)).empty());
 }
 
+/// The document with one object alone, that in which `place` lies, or the first; `place` then leads to it
+/// there.
+json with_one_object(json document, std::string& place) {
+  const std::string all = "/objects/";
+  if (place == "/objects") return document;
+  std::size_t kept = 0;
+  if (place.starts_with(all)) {
+    const std::size_t end = std::min(place.find('/', all.size()), place.size());
+    kept = std::stoul(place.substr(all.size(), end - all.size()));
+    place = all + "0" + place.substr(end);
+  }
+  document["objects"] = json::array({document["objects"][kept]});
+  return document;
+}
+
 TEST_CASE("what the schema refuses, the reader refuses") {
   const TemporaryFolder folder;
   folder.write("tetra.ply", tetrahedron_ply);
@@ -159,10 +174,11 @@ TEST_CASE("what the schema refuses, the reader refuses") {
   std::vector<std::string> places;
   list_places(document, "", places);
   std::size_t refused = 0;
-  for (const std::string& place : places) {
+  for (std::string place : places) {
     if (place.empty()) continue;
+    const json part = with_one_object(document, place);  // thousands of readings: each is to be short
     for (const json& value : strange) {
-      json changed = document;
+      json changed = part;
       changed[json::json_pointer(place)] = value;
       const bool valid = schema_errors(scene_schema(), changed).empty();
       const bool taken = takes(changed, folder.path());
