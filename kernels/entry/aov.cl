@@ -20,7 +20,7 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
     REAL_LANE(x, i) = (float)(x0 + (first + i) % width) + 0.5f;
     REAL_LANE(y, i) = (float)(y0 + (first + i) / width) + 0.5f;
   }
-  const CameraRays camera = camera_rays(scene->info, x, y);
+  const Rays camera = camera_rays(scene->info, x, y);
   SceneRays rays = scene_rays(&camera, stack);
   Encounters met;
   SurfaceInteractions s;

@@ -36,7 +36,7 @@ static inline MASK start_rays(__global const SceneInfo* restrict info, const Lau
     REAL_LANE(y, lane) = (float)pixel.y + in_pixel.y;
     MASK_LANE(lanes, lane) = -1;
   }
-  const CameraRays camera = camera_rays(info, x, y);
+  const Rays camera = camera_rays(info, x, y);
   *rays = scene_rays(&camera, around);
   return lanes;
 }

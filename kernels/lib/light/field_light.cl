@@ -34,11 +34,11 @@ static inline REAL field_openness(const Scene* scene, const SceneRays* rays, con
 #if HAS_SOFT_SHADOWS
 NEVER_INLINE REAL soft_shadows(const Scene* scene, const SceneRays* rays, MASK active, u32* counts) {
   REAL through = (REAL)(1.0f);
-  RayLanes lanes = load_lanes(rays, rays->t_max, active);
+  FieldSearch search = start_search(rays, rays->t_max, active);
   for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index) {
     __global const SdfField* field = scene->sdf_fields + scene->instances[index].root;
     if (!(field->shadow_hardness > 0.0f)) continue;
-    const MarchRays ray = march_from(scene, index, false, &lanes);
+    const MarchRays ray = march_from(scene, index, false, &search);
     const REAL speed = length3(ray.direction);
     const REAL threshold =
         clamp(ray.footprint * speed * field->detail, (REAL)(field->lower.w), (REAL)(field->upper.w));

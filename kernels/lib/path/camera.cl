@@ -4,13 +4,14 @@
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 
-typedef struct CameraRays {
+// Rays and their intervals, in world space unless it is said otherwise.
+typedef struct Rays {
   REAL3 o, d;  // d unit
   REAL t_min, t_max;
-} CameraRays;
+} Rays;
 
-static inline CameraRays camera_rays(__global const SceneInfo* restrict info, REAL x, REAL y) {
-  CameraRays rays;
+static inline Rays camera_rays(__global const SceneInfo* restrict info, REAL x, REAL y) {
+  Rays rays;
   const REAL3 along = along3(along3(all3(info->camera_corner.xyz), x, all3(info->camera_dx.xyz)), y,
                              all3(info->camera_dy.xyz));
   const REAL depth_to_t = length3(along);  // `along` has length 1 along the view

@@ -17,8 +17,8 @@ static inline REAL3 field_points(__global const Instance* instance, REAL3 p) {
 #endif
 }
 
-// The rays of a batch as marching sees them.
-typedef struct RayLanes {
+// The search for the nearest hit among the fields: the batch's rays, and the hit so far.
+typedef struct FieldSearch {
   REAL3 o, d;  // world
   REAL t_min, t_best, footprint;
   MASK from;  // SceneRays.from
@@ -30,25 +30,25 @@ typedef struct RayLanes {
 #if HAS_GLOW
   REAL3 glow;
 #endif
-} RayLanes;
+} FieldSearch;
 
-static inline RayLanes load_lanes(const SceneRays* rays, REAL t_best, MASK active) {
-  RayLanes lanes;
-  lanes.o = rays->o;
-  lanes.d = rays->d;
-  lanes.t_min = rays->t_min;
-  lanes.t_best = t_best;
-  lanes.footprint = rays->footprint;
-  lanes.from = rays->from;
-  lanes.active = active;
-  lanes.winner = ALL_LANES;
-  lanes.inside = NO_LANES;
-  lanes.cut = NO_LANES;
-  lanes.threshold = (REAL)(0.0f);
+static inline FieldSearch start_search(const SceneRays* rays, REAL t_best, MASK active) {
+  FieldSearch search;
+  search.o = rays->o;
+  search.d = rays->d;
+  search.t_min = rays->t_min;
+  search.t_best = t_best;
+  search.footprint = rays->footprint;
+  search.from = rays->from;
+  search.active = active;
+  search.winner = ALL_LANES;
+  search.inside = NO_LANES;
+  search.cut = NO_LANES;
+  search.threshold = (REAL)(0.0f);
 #if HAS_GLOW
-  lanes.glow = all3((float3)(0.0f));
+  search.glow = all3((float3)(0.0f));
 #endif
-  return lanes;
+  return search;
 }
 
 // Lanes that start in the interval.
@@ -59,21 +59,21 @@ static inline MASK starts_within(__global const SdfField* restrict field, const 
 }
 
 // The rays in the field's own space, and on which side of its surface they start.
-static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided, const RayLanes* lanes) {
+static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided, const FieldSearch* search) {
   __global const Instance* instance = scene->instances + index;
   MarchRays rays;
-  rays.origin = field_points(instance, lanes->o);
-  rays.direction = object_vectors(instance, lanes->d);
-  rays.t_min = lanes->t_min;
-  rays.t_max = lanes->t_best;
-  rays.footprint = lanes->footprint;
+  rays.origin = field_points(instance, search->o);
+  rays.direction = object_vectors(instance, search->d);
+  rays.t_min = search->t_min;
+  rays.t_max = search->t_best;
+  rays.footprint = search->footprint;
   rays.spread = (REAL)(pixel_spread(scene->info));
-  rays.active = lanes->active;
-  rays.leaving = MASK_OF((lanes->from | 1) == (int)(index * 2u + 1u));
+  rays.active = search->active;
+  rays.leaving = MASK_OF((search->from | 1) == (int)(index * 2u + 1u));
   rays.inside = NO_LANES;
 #if SDF_TWO_SIDED
   if (two_sided) {
-    rays.inside = rays.leaving & MASK_OF((lanes->from & 1) != 0);
+    rays.inside = rays.leaving & MASK_OF((search->from & 1) != 0);
     // A ray that starts elsewhere asks the field itself.
     const MASK ask = rays.active & ~rays.leaving & starts_within(scene->sdf_fields + instance->root, &rays);
     if (any_lane(ask)) {
@@ -99,28 +99,28 @@ static inline void pay_for_steps(__global const SdfField* restrict field, u32 st
 }
 
 // Marches through one field and keeps what is nearer.
-static inline void march_field(const Scene* scene, u32 index, RayLanes* lanes, u32* counts) {
+static inline void march_field(const Scene* scene, u32 index, FieldSearch* search, u32* counts) {
   __global const SdfField* restrict field = scene->sdf_fields + scene->instances[index].root;
   const u32 flags = scene->materials[scene->instances[index].material].flags;
   const bool two_sided = (flags & MATERIAL_TRANSMITS) && !(flags & MATERIAL_THIN);
-  MarchRays rays = march_from(scene, index, two_sided, lanes);
+  MarchRays rays = march_from(scene, index, two_sided, search);
   rays.step_limit = min(field->step_limit, steps_left(field, counts));
   if (rays.step_limit == 0u) {
     counts[COUNT_MARCH_BUDGET] += 1u;
     return;
   }
   const MarchHits hits = march_rays(scene, scene->instances[index].root, &rays);
-  const MASK nearer = hits.hit & MASK_OF(hits.t < lanes->t_best);
-  lanes->t_best = select(lanes->t_best, hits.t, nearer);
-  lanes->threshold = select(lanes->threshold, hits.threshold, nearer);
-  lanes->winner = select(lanes->winner, (MASK)((int)index), nearer);
-  lanes->inside = select(lanes->inside, rays.inside, nearer);
-  lanes->cut = select(lanes->cut, hits.cut, nearer);
+  const MASK nearer = hits.hit & MASK_OF(hits.t < search->t_best);
+  search->t_best = select(search->t_best, hits.t, nearer);
+  search->threshold = select(search->threshold, hits.threshold, nearer);
+  search->winner = select(search->winner, (MASK)((int)index), nearer);
+  search->inside = select(search->inside, rays.inside, nearer);
+  search->cut = select(search->cut, hits.cut, nearer);
 #if HAS_GLOW
   if (field->glow.w > 0.0f) {
     const REAL passed = select(exp(hits.nearest * (-1.0f / field->glow.w)), (REAL)(0.0f), hits.hit);
-    lanes->glow = along3(lanes->glow, passed,
-                         real3((REAL)(field->glow.x), (REAL)(field->glow.y), (REAL)(field->glow.z)));
+    search->glow = along3(search->glow, passed,
+                          real3((REAL)(field->glow.x), (REAL)(field->glow.y), (REAL)(field->glow.z)));
   }
 #endif
   u32 most = 0;
@@ -134,20 +134,20 @@ static inline void march_field(const Scene* scene, u32 index, RayLanes* lanes, u
 }
 
 // Normals of the lanes that met instance `index`.
-static inline void shade_lanes(const Scene* scene, u32 index, const RayLanes* lanes, Hits* hits) {
-  const MASK mine = MASK_OF(lanes->winner == (int)index);
+static inline void shade_lanes(const Scene* scene, u32 index, const FieldSearch* search, Hits* hits) {
+  const MASK mine = MASK_OF(search->winner == (int)index);
   if (!any_lane(mine)) return;
-  const REAL3 o = field_points(scene->instances + index, lanes->o),
-              d = object_vectors(scene->instances + index, lanes->d);
-  const REAL3 normal = sdf_normal(scene, scene->instances[index].root, along3(o, lanes->t_best, d),
-                                  lanes->threshold, mine, lanes->cut);
+  const REAL3 o = field_points(scene->instances + index, search->o),
+              d = object_vectors(scene->instances + index, search->d);
+  const REAL3 normal = sdf_normal(scene, scene->instances[index].root, along3(o, search->t_best, d),
+                                  search->threshold, mine, search->cut);
   // A normal must not contradict the side that the ray comes from: it is bent as far as the silhouette.
   const REAL speed = length3(d), towards = dot3(normal, d) / speed;
-  const MASK inside = lanes->inside;
+  const MASK inside = search->inside;
   const REAL limit = select((REAL)(-1e-3f), (REAL)(1e-3f), inside);
   const MASK wrong = select(MASK_OF(towards > limit), MASK_OF(towards < limit), inside);
   const REAL3 bent = along3(normal, select((REAL)(0.0f), (limit - towards) / speed, wrong), d);
-  hits->t = select(hits->t, lanes->t_best, mine);
+  hits->t = select(hits->t, search->t_best, mine);
   hits->instance = select(hits->instance, (MASK)((int)index), mine);
   hits->ng = select3(hits->ng, bent, mine);
   hits->u = select(hits->u, (REAL)(0.0f), mine);
@@ -166,18 +166,18 @@ static inline void shade_lanes(const Scene* scene, u32 index, const RayLanes* la
 NEVER_INLINE void march_fields(const Scene* scene, SceneRays* rays, MASK active, u32 purpose, Hits* hits,
                                u32* counts) {
   const bool to_light = purpose != MARCH_TO_SEE;
-  RayLanes lanes = load_lanes(rays, hits->t, active);
+  FieldSearch search = start_search(rays, hits->t, active);
   for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index)
     if (!(to_light && scene->sdf_fields[scene->instances[index].root].shadow_hardness > 0.0f))
-      march_field(scene, index, &lanes, counts);
+      march_field(scene, index, &search, counts);
   if (purpose == MARCH_TO_BLOCK) {
-    hits->instance = select(hits->instance, lanes.winner, MASK_OF(lanes.winner >= 0));
+    hits->instance = select(hits->instance, search.winner, MASK_OF(search.winner >= 0));
     return;
   }
   for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index)
-    shade_lanes(scene, index, &lanes, hits);
+    shade_lanes(scene, index, &search, hits);
 #if HAS_GLOW
-  if (!to_light) rays->glow = select3(rays->glow, add3(rays->glow, lanes.glow), active);
+  if (!to_light) rays->glow = select3(rays->glow, add3(rays->glow, search.glow), active);
 #endif
 }
 

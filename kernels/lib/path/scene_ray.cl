@@ -35,7 +35,7 @@ static inline void forget_glow(SceneRays* rays) {
 #endif
 }
 
-static inline SceneRays scene_rays(const CameraRays* camera, MediaStack media) {
+static inline SceneRays scene_rays(const Rays* camera, MediaStack media) {
   SceneRays rays;
   rays.o = camera->o;
   rays.d = camera->d;

@@ -9,12 +9,12 @@
 #include "lib/trace/nodes.cl"
 #include "lib/trace/triangles.cl"
 
-typedef struct AimedRays {
+typedef struct PreparedRays {
   REAL3 rcp_near, rcp_far, shift_near, shift_far;
   MASK near_x, near_y, near_z, far_x, far_y, far_z;
   REAL ox, oy, oz, sx, sy, sz;
   MASK x, y, z;
-} AimedRays;
+} PreparedRays;
 
 // Where the near and the far planes of an axis lie in Bvh8Node, `offset` its lower ones.
 static inline void aim_planes(REAL rcp, int offset, MASK* near, MASK* far) {
@@ -23,7 +23,7 @@ static inline void aim_planes(REAL rcp, int offset, MASK* near, MASK* far) {
 }
 
 // Ray i; the others stay as they are.
-static inline void aim_ray(AimedRays* rays, u32 i, float3 o, float3 d) {
+static inline void aim_ray(PreparedRays* rays, u32 i, float3 o, float3 d) {
   const SlabRay slabs = make_slab_ray(o, d);
   set3(&rays->rcp_near, i, slabs.rcp_near);
   set3(&rays->rcp_far, i, slabs.rcp_far);
@@ -48,8 +48,8 @@ static inline void aim_ray(AimedRays* rays, u32 i, float3 o, float3 d) {
 }
 
 // All lanes.
-static inline AimedRays aimed(const REAL3* o, const REAL3* d) {
-  AimedRays rays;
+static inline PreparedRays aimed(const REAL3* o, const REAL3* d) {
+  PreparedRays rays;
   aim_planes(aim_slabs(o->x, d->x, &rays.rcp_near.x, &rays.rcp_far.x, &rays.shift_near.x, &rays.shift_far.x),
              0, &rays.near_x, &rays.far_x);
   aim_planes(aim_slabs(o->y, d->y, &rays.rcp_near.y, &rays.rcp_far.y, &rays.shift_near.y, &rays.shift_far.y),
@@ -77,12 +77,12 @@ static inline AimedRays aimed(const REAL3* o, const REAL3* d) {
 static inline void blend3(REAL3* a, const REAL3* b, MASK lanes) { *a = select3(*a, *b, lanes); }
 
 // Sets the lanes of `bits`, as make_slab_ray and make_shear_ray would; the others stay as they are.
-NEVER_INLINE void aim_rays(AimedRays* rays, const REAL3* o, const REAL3* d, u32 bits) {
+NEVER_INLINE void aim_rays(PreparedRays* rays, const REAL3* o, const REAL3* d, u32 bits) {
   if (!(bits & (bits - 1u))) {
     aim_ray(rays, lowest_bit(bits), get3(o, lowest_bit(bits)), get3(d, lowest_bit(bits)));
     return;
   }
-  const AimedRays all = aimed(o, d);
+  const PreparedRays all = aimed(o, d);
   const MASK lanes = lanes_of(bits);
   blend3(&rays->rcp_near, &all.rcp_near, lanes);
   blend3(&rays->rcp_far, &all.rcp_far, lanes);
@@ -105,7 +105,7 @@ NEVER_INLINE void aim_rays(AimedRays* rays, const REAL3* o, const REAL3* d, u32 
   rays->z = select(rays->z, all.z, lanes);
 }
 
-ALWAYS_INLINE SlabRay get_slabs(const AimedRays* rays, u32 i) {
+ALWAYS_INLINE SlabRay get_slabs(const PreparedRays* rays, u32 i) {
   SlabRay ray;
   ray.rcp_near = get3(&rays->rcp_near, i);
   ray.rcp_far = get3(&rays->rcp_far, i);
@@ -120,7 +120,7 @@ ALWAYS_INLINE SlabRay get_slabs(const AimedRays* rays, u32 i) {
   return ray;
 }
 
-ALWAYS_INLINE ShearRay get_shear(const AimedRays* rays, u32 i) {
+ALWAYS_INLINE ShearRay get_shear(const PreparedRays* rays, u32 i) {
   ShearRay ray;
   ray.x = (u32)MASK_LANE(rays->x, i);
   ray.y = (u32)MASK_LANE(rays->y, i);

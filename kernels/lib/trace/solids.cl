@@ -64,13 +64,13 @@ static inline void closest_in_plane(REAL3 o, REAL3 d, REAL t_min, MASK active, S
 #if HAS_BOX || HAS_ROUNDBOX
 // A ray for boxes around the origin. A direction without a component along an axis is inside it always or
 // never.
-typedef struct BoxRay {
+typedef struct BoxSlabs {
   REAL3 o, size, inverse;  // size: of o
   MASK flat_x, flat_y, flat_z;
-} BoxRay;
+} BoxSlabs;
 
-static inline BoxRay make_box_ray(REAL3 o, REAL3 d) {
-  BoxRay ray;
+static inline BoxSlabs make_box_ray(REAL3 o, REAL3 d) {
+  BoxSlabs ray;
   ray.o = o;
   ray.size = real3(fabs(o.x), fabs(o.y), fabs(o.z));
   ray.inverse = real3(1.0f / d.x, 1.0f / d.y, 1.0f / d.z);
@@ -93,7 +93,7 @@ static inline void cut_slab(REAL o, REAL size, REAL inverse, MASK flat, float h,
   span->crosses &= ~(flat & MASK_OF(size > h));
 }
 
-static inline Span box_span(const BoxRay* ray, float3 h, MASK* axis_in, MASK* axis_out) {
+static inline Span box_span(const BoxSlabs* ray, float3 h, MASK* axis_in, MASK* axis_out) {
   Span span = {(REAL)(-INFINITY), (REAL)(INFINITY), ALL_LANES};
   *axis_in = NO_LANES;
   *axis_out = NO_LANES;
@@ -115,7 +115,7 @@ static inline REAL3 axis_normals(MASK axis, REAL3 d, float along) {
 }
 
 static inline void closest_in_box(REAL3 o, REAL3 d, REAL t_min, MASK active, SolidHits* hits) {
-  const BoxRay ray = make_box_ray(o, d);
+  const BoxSlabs ray = make_box_ray(o, d);
   MASK axis_in, axis_out;
   const Span span = box_span(&ray, (float3)(1.0f), &axis_in, &axis_out);
   const MASK enters = MASK_OF(span.enter > t_min);
@@ -215,7 +215,7 @@ static inline void closest_in_roundbox(float4 parameters, REAL3 o, REAL3 d, REAL
                                        SolidHits* hits) {
   const float3 half_size = parameters.xyz;
   const float r = parameters.w;
-  const BoxRay ray = make_box_ray(o, d);
+  const BoxSlabs ray = make_box_ray(o, d);
   MASK axis_in, axis_out;
   const Span bounds = box_span(&ray, half_size, &axis_in, &axis_out);
   active &= bounds.crosses & MASK_OF(bounds.leave > t_min) & MASK_OF(bounds.enter <= hits->t);

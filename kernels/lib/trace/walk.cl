@@ -24,7 +24,7 @@
 #define WALK_STACK (BVH_STACK + 3 + (LANES > 8 ? LANES : 8))
 
 typedef struct Walk {
-  const AimedRays* rays;  // in the space of the BVH
+  const PreparedRays* rays;  // in the space of the BVH
   u32 ray;
   u32 instance;   // in whose mesh the walk is; NO_INSTANCE: in the scene BVH
   u32 top, base;  // below base waits the scene BVH while the walk is in a mesh
@@ -44,7 +44,7 @@ static inline void push_word(Walk* walk, u32 word) {
   walk->stack_t[walk->top++] = -INFINITY;
 }
 
-static inline void start_walk(Walk* walk, const AimedRays* rays, u32 ray, u32 word, u32 instance) {
+static inline void start_walk(Walk* walk, const PreparedRays* rays, u32 ray, u32 word, u32 instance) {
   walk->rays = rays;
   walk->ray = ray;
   walk->instance = instance;
@@ -79,7 +79,7 @@ static inline bool enter_mesh(__global const Instance* restrict instances, Walk*
 
 // Aims the rays of `entering` in the spaces of the meshes that they have entered, those of one mesh at once.
 NEVER_INLINE void aim_in_meshes(__global const Instance* restrict instances, const WalkRays* rays,
-                                AimedRays* turned, Walk* walks, u32 entering) {
+                                PreparedRays* turned, Walk* walks, u32 entering) {
   while (entering) {
     const u32 index = walks[lowest_bit(entering)].instance;
     u32 alike = 0;
@@ -96,7 +96,7 @@ NEVER_INLINE void aim_in_meshes(__global const Instance* restrict instances, con
 }
 
 // From a mesh back to the scene BVH.
-static inline void leave_mesh(Walk* walk, const AimedRays* world) {
+static inline void leave_mesh(Walk* walk, const PreparedRays* world) {
   walk->rays = world;
   walk->instance = NO_INSTANCE;
   walk->base = 0;
@@ -122,7 +122,7 @@ ALWAYS_INLINE void walk_block(__global const TriangleBlock* blocks, const REAL* 
 #define LEAF_SOLID 2u  // it has come to a solid
 
 // The next word of a walk, a leaf.
-ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const AimedRays* world, Walk* walk,
+ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const PreparedRays* world, Walk* walk,
                             u32 word, bool any) {
 #if HAS_MESH
   if (word == WALK_BACK) {
@@ -187,7 +187,7 @@ NEVER_INLINE void walk_rays(const Scene* scene, const WalkRays* rays, u32 bits, 
                             bool any) {
   const REAL* t_min = rays->t_min;
   Hits* hits = rays->hits;
-  AimedRays world, turned;
+  PreparedRays world, turned;
   aim_rays(&world, rays->o, rays->d, bits);
   Walk walks[LANES];
   Walk *at_node[LANES + 1], *at_leaf[LANES + 1];
