@@ -21,6 +21,7 @@
 #include "base/names.h"
 #include "base/standard_streams.h"
 #include "scene/integrators.h"
+#include "scene/kinds.h"
 
 namespace sundog {
 namespace {
@@ -41,8 +42,8 @@ All commands: {}.
 /// The options of `render` as typed, before they are checked.
 struct TypedRender {
   RenderCommand command;
-  std::string size, samples, max_depth, integrator, work_group = "auto", split = "dynamic", part, tile,
-                                                    frames;
+  std::string size, samples, max_depth, integrator, filter, filter_radius,
+      work_group = "auto", split = "dynamic", part, tile, frames;
 };
 
 /// The options that only shorten a --set come first, so that a --set of the same value wins.
@@ -54,6 +55,8 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
   if (!typed.max_depth.empty())
     all.push_back(fmt::format("/render/max_depth={}", parse_number("--max-depth", typed.max_depth, 1, 64)));
   if (!typed.integrator.empty()) all.push_back(fmt::format("/render/integrator=\"{}\"", typed.integrator));
+  if (!typed.filter.empty()) all.push_back(fmt::format("/render/filter=\"{}\"", typed.filter));
+  if (!typed.filter_radius.empty()) all.push_back("/render/filter_radius=" + typed.filter_radius);
   for (const std::string& setting : typed.command.overrides) {
     check_override(setting);
     all.push_back(setting);
@@ -118,6 +121,9 @@ void add_render(Arguments& root, Command& chosen) {
         "greatest depth of the ray tree; 1: the camera's rays alone");
   value(app, "--integrator", "NAME", typed->integrator,
         fmt::format("how light is followed: {}", fmt::join(integrator_names, ", ")));
+  value(app, "--filter", "NAME", typed->filter,
+        fmt::format("how a pixel's samples add up: {}", fmt::join(filter_names, ", ")));
+  value(app, "--filter-radius", "R", typed->filter_radius, "the filter's reach in pixels");
   values(app, "--set", "POINTER=VALUE", command.overrides, "change the scene, as in /camera/fov=30");
   value(app, "--work-group", "SIZE", typed->work_group, "local size: N, WxH, auto or driver");
   value(app, "--split", "HOW", typed->split,

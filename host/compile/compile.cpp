@@ -12,6 +12,7 @@
 #include "compile/camera.h"
 #include "compile/compiled_scene.h"
 #include "compile/fields/sdf_deep.h"
+#include "compile/filter.h"
 #include "compile/instances.h"
 #include "compile/local_origin.h"
 #include "compile/materials.h"
@@ -157,6 +158,8 @@ CompiledScene compile(const SceneDescription& scene) {
   add_lights(scene, out);
   const u32 default_material = add_materials(scene, out);
   out.features.sampler = scene.render.sampler;
+  out.filter = filter_table(scene.render);
+  out.features.filter = !out.filter.empty();
   out.features.media = absorbs(out.media[0]);
   out.features.absorption = std::ranges::any_of(out.media, absorbs);
   out.features.fractional_exponents = std::ranges::any_of(out.materials, has_fractional_exponent);

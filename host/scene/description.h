@@ -35,12 +35,16 @@ struct ImageSettings {
 
 enum class Tracer { automatic, wide, compact };
 
+enum class Filter { box, tent, gaussian, blackman_harris, mitchell };
+
 struct RenderSettings {
   int max_depth = 8;     // 1..64; 1 = the camera's rays alone
   int samples = 1;       // per pixel, 1..65536; 1 = the pixel's centre
   double cutoff = 1e-3;  // throughput below which a ray ends, [0, 1]
   std::string integrator = "whitted";
   u32 sampler = SAMPLER_AUTO;  // a SAMPLER_* constant
+  Filter filter = Filter::box;
+  double filter_radius = 0;  // in pixels; 0: the filter's own
   Tracer tracer = Tracer::automatic;
   bool spatial_splits = false;  // build the BVH with cut triangles: slower, better for long thin ones
 };

@@ -1,4 +1,4 @@
-// The kinds of shapes, lights and samplers by name, from the lists of kernels/shared.
+// The kinds of shapes, lights, samplers and filters by name, from the lists of kernels/shared.
 #pragma once
 #include <array>
 #include <string_view>
@@ -17,6 +17,23 @@ static_assert(shape_names[SHAPE_SDF] == "field");
 
 /// By SAMPLER_* constant.
 inline constexpr std::array<std::string_view, SAMPLER_INDEPENDENT + 1> sampler_names = {SAMPLERS};
+
+struct FilterFacts {
+  std::string_view name;
+  double radius;  // in pixels, unless the scene says another
+};
+
+/// By Filter.
+inline constexpr std::array filters = {FilterFacts{"box", 0.5}, FilterFacts{"tent", 1},
+                                       FilterFacts{"gaussian", 1.5}, FilterFacts{"blackman_harris", 1.5},
+                                       FilterFacts{"mitchell", 2}};
+
+/// The names, in the table's order.
+inline constexpr auto filter_names = [] {
+  std::array<std::string_view, filters.size()> names{};
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = filters[i].name;
+  return names;
+}();
 
 struct LightTypeFacts {
   std::string_view name;  // in scene files and figures

@@ -2,6 +2,7 @@
 // place in the image is a multiple of the tile, so that the pixels it works on together are the same however
 // the frame is cut.
 #include "lib/core/counters.cl"
+#include "lib/core/filter.cl"
 #include "lib/core/sampler.cl"
 #include "lib/whitted/whitted.cl"
 #include "shared/launch.h"
@@ -22,16 +23,18 @@ static inline uint2 lane_pixel(const Launch* launch, u32 item, u32 lane) {
   return (uint2)(item % columns * TILE_W + lane % TILE_W, item / columns * TILE_H + lane / TILE_W);
 }
 
-// The camera's rays of one sample. Returns the lanes that have a pixel.
-static inline MASK start_rays(__global const SceneInfo* restrict info, const Launch* launch, u32 item,
-                              u32 sample, MediaStack around, SceneRays* rays) {
+// The camera's rays of one sample. Returns the lanes that have a pixel; signs[lane] is what a sample counts.
+static inline MASK start_rays(const Scene* scene, const Launch* launch, u32 item, u32 sample,
+                              MediaStack around, SceneRays* rays, float* signs) {
+  __global const SceneInfo* restrict info = scene->info;
   MASK lanes = NO_LANES;
   REAL x = (REAL)(0.0f), y = (REAL)(0.0f);
   for (u32 lane = 0; lane < BATCH; ++lane) {
     const uint2 at = lane_pixel(launch, item, lane);
     if (at.x >= launch->width || at.y >= launch->height) continue;
     const uint2 pixel = (uint2)(launch->x0, launch->y0) + at;
-    const float2 in_pixel = pixel_sample(pixel, sample, info->samples);
+    float2 in_pixel = pixel_sample(pixel, sample, info->samples);
+    signs[lane] = filter_place(scene->filter, info->samples, &in_pixel);
     REAL_LANE(x, lane) = (float)pixel.x + in_pixel.x;
     REAL_LANE(y, lane) = (float)pixel.y + in_pixel.y;
     MASK_LANE(lanes, lane) = -1;
@@ -43,8 +46,8 @@ static inline MASK start_rays(__global const SceneInfo* restrict info, const Lau
 
 // Adds the light of one sample to film and weights.
 static inline void store_sample(const Launch* launch, u32 item, MASK lanes, const float4* radiance,
-                                __global float4* restrict film, __global float* restrict weights,
-                                u32* counts) {
+                                const float* signs, __global float4* restrict film,
+                                __global float* restrict weights, u32* counts) {
   for (u32 lane = 0; lane < BATCH; ++lane) {
     if (!MASK_LANE(lanes, lane)) continue;
     const float3 zero = radiance[lane].xyz * 0.0f;  // NaN where one is not finite
@@ -54,8 +57,8 @@ static inline void store_sample(const Launch* launch, u32 item, MASK lanes, cons
     }
     const uint2 at = lane_pixel(launch, item, lane);
     const u32 pixel = at.y * launch->width + at.x;
-    film[pixel] += radiance[lane];
-    weights[pixel] += 1.0f;
+    film[pixel] += HAS_FILTER ? signs[lane] * radiance[lane] : radiance[lane];
+    weights[pixel] += HAS_FILTER ? signs[lane] : 1.0f;
   }
 }
 
@@ -73,10 +76,11 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     counts[COUNT_MARCH_LEFT] = MARCH_WORK;
 #endif
     SceneRays rays;
-    const MASK lanes = start_rays(scene->info, launch, item, sample, around, &rays);
+    float signs[BATCH];
+    const MASK lanes = start_rays(scene, launch, item, sample, around, &rays, signs);
     counts[COUNT_PRIMARY] += lane_count(lanes);
     trace_whitted(scene, &rays, lanes, &stack, radiance, counts);
-    store_sample(launch, item, lanes, radiance, film, weights, counts);
+    store_sample(launch, item, lanes, radiance, signs, film, weights, counts);
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);
@@ -85,7 +89,8 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
 
 // Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of work-items
 // [first_item, last_item) of the rectangle (x0, y0, width, height) to film (rgb and coverage) and their
-// number to weights (a sample that is not finite counts for nothing); adds to counters.
+// number to weights (a sample that is not finite counts for nothing, one in a filter's lobe below zero -1);
+// adds to counters.
 __kernel void render_whitted(SCENE_PARAMETERS, __global const u32* restrict camera_media,
                              __global float4* restrict film, __global float* restrict weights,
                              __global u32* restrict counters, const Launch launch) {

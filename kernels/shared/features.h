@@ -19,6 +19,7 @@
   FEATURE(bool, HAS_SOFT_SHADOWS, soft_shadows)     /* some field's shadow has a penumbra */            \
   FEATURE(bool, SDF_TWO_SIDED, two_sided_fields)    /* some field transmits: rays may be inside it */   \
   FEATURE(bool, HAS_UV, surface_coordinates)        /* some material asks for surface coordinates */    \
+  FEATURE(bool, HAS_FILTER, filter)                 /* samples lie elsewhere than evenly in their pixels */ \
   FEATURE(u32, SAMPLER, sampler)                    /* a SAMPLER_* constant */                          \
   FEATURE(u32, SDF_FLAGS, field_flags)              /* SdfField.flags that some field has */
 // clang-format on

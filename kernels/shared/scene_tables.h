@@ -20,6 +20,7 @@
   TABLE(Medium, Medium, media, "media")                           \
   TABLE(Light, Light, lights, "lights")                           \
   TABLE(SdfField, SdfField, sdf_fields, "fields")                 \
-  TABLE(float, float, sdf_parameters, "field parameters")
+  TABLE(float, float, sdf_parameters, "field parameters")         \
+  TABLE(float, float, filter, "filter")
 
 #endif

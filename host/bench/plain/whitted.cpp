@@ -254,7 +254,8 @@ Path camera_path(const SceneInfo& info, float x, float y, const MediaStack& medi
 std::string plain_refusal(const CompiledScene& scene) {
   if (scene.features.shapes[SHAPE_SDF]) return "the plain C++ program knows no distance fields";
   if (scene.features.fog || scene.features.glow) return "the plain C++ program knows no fog and no glow";
-  if (scene.features.sampler != SAMPLER_AUTO) return "the plain C++ program knows the default sampler alone";
+  if (scene.features.sampler != SAMPLER_AUTO || scene.features.filter)
+    return "the plain C++ program knows the default sampler and filter alone";
   if (!std::ranges::all_of(scene.lights, [](const Light& light) { return plain::knows_light(light.kind); }))
     return "the plain C++ program knows no such light";
   return {};

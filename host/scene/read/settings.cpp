@@ -56,6 +56,16 @@ void read_spot(JsonObject& object, LightDescription& light) {
                                     light.outer_angle, light.inner_angle));
 }
 
+void read_filter(JsonObject& object, RenderSettings& render) {
+  const std::string name = object.choice("filter", std::string(filters[0].name), filter_names);
+  render.filter = static_cast<Filter>(std::ranges::find(filter_names, name) - filter_names.begin());
+  render.filter_radius = object.number("filter_radius", 0, {.low = 0, .high = 16});
+  constexpr int least = 8;  // fewer may all lie in the lobes below zero
+  if (render.filter == Filter::mitchell && render.samples < least)
+    object.value().fail(fmt::format("wanted at least {} \"samples\" with the filter mitchell, found {}",
+                                    least, render.samples));
+}
+
 }  // namespace
 
 Camera read_camera(const JsonValue& value, bool& placed) {
@@ -112,6 +122,7 @@ RenderSettings read_render(const JsonValue& value) {
     const std::string sampler =
         object.choice("sampler", std::string(sampler_names[SAMPLER_AUTO]), sampler_names);
     render.sampler = static_cast<u32>(std::ranges::find(sampler_names, sampler) - sampler_names.begin());
+    read_filter(object, render);
     const std::string tracer = object.choice("tracer", "auto", tracers);
     render.tracer = tracer == "wide"      ? Tracer::wide
                     : tracer == "compact" ? Tracer::compact

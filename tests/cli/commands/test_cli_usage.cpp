@@ -148,9 +148,9 @@ TEST_CASE("help and version go to stdout with status 0") {
 
 TEST_CASE("the help of a command tells its options, and only of commands that exist") {
   const std::string render = run_sundog({"render", "--help"}).out;
-  for (const char* option :
-       {"--out", "--device", "--size", "--samples", "--max-depth", "--integrator", "--set", "--work-group",
-        "--tile", "--stats", "--aov", "--resume", "--quiet", "--verbose"})
+  for (const char* option : {"--out", "--device", "--size", "--samples", "--max-depth", "--integrator",
+                             "--filter", "--filter-radius", "--set", "--work-group", "--tile", "--stats",
+                             "--aov", "--resume", "--quiet", "--verbose"})
     CHECK(render.find(option) != std::string::npos);
   const std::string all = run_sundog({"--help"}).out;
   for (const char* command : {"render", "devices", "info", "compare"})
