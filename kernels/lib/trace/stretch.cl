@@ -38,17 +38,39 @@ static inline bool comes_near(__global const Instance* restrict instance, const 
   return ball.w == 0.0f || !(distance(p, ball.xyz) > reach + 1e-5f * (reach + length(p)));
 }
 
-static inline void note_solid(__global const Instance* restrict instances, u32 index, Stretch* stretch) {
+// The first hit of the solid in (from, to]; of NO_INSTANCE where there is none.
+static inline Hit next_hit(__global const Instance* restrict instances, u32 index, const Stretch* stretch,
+                           float from, float to) {
   const REAL3 o = all3(stretch->o), d = all3(stretch->d);
-  REAL from = (REAL)(stretch->from);
-  for (u32 i = 0; i < 4u; ++i) {
-    Hits hits = no_hits((REAL)(stretch->to));
-    hit_solids(instances, index, index + 1u, &o, &d, &from, lanes_of(1u), false, &hits);
-    const Hit hit = get_hit(&hits, 0);
-    if (hit.instance == NO_INSTANCE) return;
+  const REAL t_min = (REAL)(from);
+  Hits hits = no_hits((REAL)(to));
+  hit_solids(instances, index, index + 1u, &o, &d, &t_min, lanes_of(1u), false, &hits);
+  return get_hit(&hits, 0);
+}
+
+// A solid that is entered and has no further hit ends where it begins: it is thinner there than rounding, or
+// grazed. Its exit is the same hit, seen from behind. Planes have no end.
+static inline void note_exit(__global const Instance* restrict instances, u32 index, Stretch* stretch,
+                             Hit hit) {
+  if (instances[index].shape == SHAPE_PLANE || stretch->count >= MOST_TOUCHING) return;
+  const float3 outward = world_normal(instances + index, (float3)(hit.ng_x, hit.ng_y, hit.ng_z));
+  if (dot(outward, stretch->d) >= 0.0f) return;
+  if (next_hit(instances, index, stretch, hit.t, INFINITY).instance != NO_INSTANCE) return;
+  hit.ng_x = -hit.ng_x;
+  hit.ng_y = -hit.ng_y;
+  hit.ng_z = -hit.ng_z;
+  stretch->hits[stretch->count++] = hit;
+}
+
+static inline void note_solid(__global const Instance* restrict instances, u32 index, Stretch* stretch) {
+  Hit last, hit = next_hit(instances, index, stretch, stretch->from, stretch->to);
+  if (hit.instance == NO_INSTANCE) return;
+  for (u32 i = 0; i < 4u && hit.instance != NO_INSTANCE; ++i) {
     note_hit(stretch, &hit);
-    from = (REAL)(hit.t);
+    last = hit;
+    hit = next_hit(instances, index, stretch, last.t, stretch->to);
   }
+  note_exit(instances, index, stretch, last);
 }
 #endif
 

@@ -165,6 +165,27 @@ TEST_CASE("fields and solids shadow each other") {
   });
 }
 
+TEST_CASE("a mirror shows a fractal as coarse as it is at the length of the whole way") {
+  // The unit ball as a Julia set, in a pixel so wide that rays stop far before it: its colour tells where.
+  const auto scene = [](const std::string& camera, const std::string& mirror) {
+    return scene_of_text(R"({"image": {"width": 1, "height": 1}, "camera": {)" + camera +
+                         R"(, "fov": 3}, "lights": [{"type": "ambient"}],
+      "materials": {"m": {"color": [1, 1, 1], "ambient": 1}, "mirror": {"color": [0, 0, 0], "reflection": 1}},
+      "objects": [{"type": "fractal", "formula": "julia", "parameters": {"seed": [0, 0, 0, 0]}, "material": "m",
+        "coloring": {"by": "radius", "palette": [[0, 0, 0], [1, 1, 1]], "scale": 2, "offset": -2}},
+        {"type": "plane", "material": "mirror", "normal": [0, 0, -1], "point": [0, 0, )" +
+                         mirror + R"(]}]})");
+  };
+  on_every_device([&](const DeviceInfo& device) {
+    const double direct =
+        scenes::pixel_on(device, scene(R"("position": [0, 0, 9], "target": [0, 0, 0])", "20")).x;
+    const double mirrored =
+        scenes::pixel_on(device, scene(R"("position": [0, 0, 3], "target": [0, 0, 4])", "6")).x;
+    CHECK(direct > 0.1);
+    CHECK(mirrored == Approx(direct).epsilon(0.1));
+  });
+}
+
 TEST_CASE("a named field placed twice is two of them") {
   const std::string head =
       R"({"fields": {"ball": {"field": {"type": "formula", "distance": "length(p) - 0.5"},

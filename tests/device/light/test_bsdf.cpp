@@ -106,6 +106,9 @@ TEST_CASE("samples of highlights return their integrals over the hemisphere") {
         Device device(info);
         CHECK(mean_weight(draw(device, shiny, 1)).y ==
               Approx(kd + lobe).epsilon(0.02));  // four standard deviations
+        Material black = shiny;
+        black.diffuse = {0, 0, 0, 0};
+        CHECK(mean_weight(draw(device, black, 1)).y == Approx(lobe).epsilon(0.01));
       }
   }
 }

@@ -23,7 +23,7 @@ struct Wanted {
   double occlusion = 1e-3;  // reach
   double soft_shadow = 1;   // hardness
   std::string glow = "[0, 0, 0]";
-  std::string coloring = R"("palette": [[1, 1, 1]])";
+  std::string color_by = "radius", coloring = R"("palette": [[1, 1, 1]])";
   std::string transform;  // of the field
   std::string camera = R"("position": [0.25, 1.2, 0], "target": [0.25, 0, 0])";
   std::string lights = R"({"type": "ambient"})";
@@ -36,9 +36,9 @@ SceneDescription scene_of(const Wanted& wanted) {
     "lights": [{}], "materials": {{"white": {{"color": [1, 1, 1], "ambient": 1, "diffuse": 1}}}},
     "objects": [{{"type": "formula", "distance": "{}", "material": "white", "occlusion": {}, "soft_shadow": {},
       "interval": {{"min": [-1.4, -1.4, -1.4], "max": [1.4, 1.4, 1.4]}},
-      "glow": {{"color": {}, "width": 0.2}}, "coloring": {{"by": "radius", {}}}, "transform": [{}]}}{}]}})",
+      "glow": {{"color": {}, "width": 0.2}}, "coloring": {{"by": "{}", {}}}, "transform": [{}]}}{}]}})",
       wanted.camera, wanted.lights, wanted.distance, wanted.occlusion, wanted.soft_shadow, wanted.glow,
-      wanted.coloring, wanted.transform, wanted.floor);
+      wanted.color_by, wanted.coloring, wanted.transform, wanted.floor);
   const nlohmann::json document = parse_json(text, "test.json");
   const JsonContext context{"test.json"};
   return read_scene(JsonValue(document, context));
@@ -53,7 +53,7 @@ void check_same(const DeviceInfo& device, const std::string& field, const std::s
   const auto picture = [&](const std::string& objects) {
     const std::string text = fmt::format(
         R"({{"image": {{"width": 24, "height": 24, "background": [0, 0, 1]}},
-      "camera": {{"position": [1, 2, 5], "target": [0, 0, 0], "fov": 50}},
+      "camera": {{"position": [1, 2, 5], "target": [0, 0, 0], "fov": 30}},
       "lights": [{{"type": "directional", "direction": [-1, -2, -3]}}],
       "materials": {{"white": {{"color": [1, 1, 1], "diffuse": 1}}}}, "objects": [{}]}})",
         objects);
@@ -113,6 +113,9 @@ TEST_CASE("a wall's soft shadow is its distance over that of the farthest point 
     large.transform = R"({"scale": 2})";
     large.camera = R"("position": [0.5, 2.4, 0], "target": [0.5, 0, 0])";
     CHECK(scenes::pixel_on(device, scene_of(large)).x == Approx(2 * 0.25 / 1.25).epsilon(2e-3));
+    large.soft_shadow = 1;
+    large.lights = R"({"type": "point", "position": [0.5, 1.2, 0]})";
+    CHECK(scenes::pixel_on(device, scene_of(large)).x == Approx(0.25 / 0.5).epsilon(2e-3));
   });
 }
 
@@ -148,6 +151,24 @@ TEST_CASE("a field's colour is the palette at its trap, blended between the stop
       floor.coloring = R"("palette": [[0.5, 0.25, 1]])";
       const glm::dvec3 alone = scenes::pixel_on(device, scene_of(floor));
       for (int c = 0; c < 3; ++c) CHECK(alone[c] == Approx(c == 2 ? 1 : 0.5 / (1 + c)).epsilon(1e-5));
+    }
+  });
+}
+
+TEST_CASE(
+    "the trap of a closed form is its distance from the origin, the nearest plane or the nearest axis") {
+  Wanted floor;
+  floor.distance = "p.y - 0.3";
+  floor.floor = R"(, {"type": "plane", "material": "white", "point": [0, -9, 0]})";
+  floor.camera = R"("position": [0.45, 1.2, 0.2], "target": [0.45, 0.3, 0.2])";
+  floor.coloring = R"("palette": [[0, 0, 0], [1, 1, 1]])";  // below a half, twice the trap
+  const std::pair<const char*, double> traps[] = {
+      {"point", std::hypot(0.45, 0.3, 0.2)}, {"plane", 0.2}, {"axis", std::hypot(0.3, 0.2)}};
+  on_every_device([&](const DeviceInfo& device) {
+    for (const auto& [by, trap] : traps) {
+      floor.color_by = by;
+      INFO(by);
+      CHECK(scenes::pixel_on(device, scene_of(floor)).x == Approx(1 - std::abs(1 - 2 * trap)).margin(2e-3));
     }
   });
 }
