@@ -165,24 +165,29 @@ TEST_CASE("fields and solids shadow each other") {
   });
 }
 
-TEST_CASE("a mirror shows a fractal as coarse as it is at the length of the whole way") {
+TEST_CASE("a ray in a mirror or behind a pane is as wide as its way is long") {
   // The unit ball as a Julia set, in a pixel so wide that rays stop far before it: its colour tells where.
-  const auto scene = [](const std::string& camera, const std::string& mirror) {
-    return scene_of_text(R"({"image": {"width": 1, "height": 1}, "camera": {)" + camera +
-                         R"(, "fov": 3}, "lights": [{"type": "ambient"}],
-      "materials": {"m": {"color": [1, 1, 1], "ambient": 1}, "mirror": {"color": [0, 0, 0], "reflection": 1}},
-      "objects": [{"type": "fractal", "formula": "julia", "parameters": {"seed": [0, 0, 0, 0]}, "material": "m",
-        "coloring": {"by": "radius", "palette": [[0, 0, 0], [1, 1, 1]], "scale": 2, "offset": -2}},
-        {"type": "plane", "material": "mirror", "normal": [0, 0, -1], "point": [0, 0, )" +
-                         mirror + R"(]}]})");
+  // The pane's other ray goes a longer way, to a slanting mirror and up.
+  const auto scene = [](const std::string& camera, const std::string& pane, int far) {
+    return scene_of_text(fmt::format(
+        R"({{"image": {{"width": 1, "height": 1}}, "camera": {{{}, "fov": 3}}, "lights": [{{"type": "ambient"}}],
+      "materials": {{"m": {{"color": [1, 1, 1], "ambient": 1}}, "mirror": {{"color": [0, 0, 0], "reflection": 1}},
+        "pane": {{"color": [0, 0, 0], {}}}}},
+      "objects": [{{"type": "fractal", "formula": "julia", "parameters": {{"seed": [0, 0, 0, 0]}}, "material": "m",
+        "coloring": {{"by": "radius", "palette": [[0, 0, 0], [1, 1, 1]], "scale": 2, "offset": -2}}}},
+        {{"type": "disk", "radius": 3, "material": "pane", "transform": [{{"rotate": {{"axis": [1, 0, 0], "degrees": 90}}}},
+          {{"translate": [0, 0, 6]}}]}},
+        {{"type": "plane", "material": "mirror", "normal": [0, 1, -1], "point": [0, 0, {}]}}]}})",
+        camera, pane, far));
   };
+  const std::string to_pane = R"("position": [0, 0, 3], "target": [0, 0, 4])",
+                    to_ball = R"("position": [0, 0, 9], "target": [0, 0, 0])",
+                    half = R"("reflection": 0.5, "transmission": 0.5)";
   on_every_device([&](const DeviceInfo& device) {
-    const double direct =
-        scenes::pixel_on(device, scene(R"("position": [0, 0, 9], "target": [0, 0, 0])", "20")).x;
-    const double mirrored =
-        scenes::pixel_on(device, scene(R"("position": [0, 0, 3], "target": [0, 0, 4])", "6")).x;
+    const double direct = scenes::pixel_on(device, scene(to_ball, R"("transmission": 1)", 50)).x;
     CHECK(direct > 0.1);
-    CHECK(mirrored == Approx(direct).epsilon(0.1));
+    CHECK(scenes::pixel_on(device, scene(to_ball, half, 50)).x == Approx(direct / 2).epsilon(0.05));
+    CHECK(scenes::pixel_on(device, scene(to_pane, half, 50)).x == Approx(direct / 2).epsilon(0.05));
   });
 }
 

@@ -106,9 +106,12 @@ TEST_CASE("samples of highlights return their integrals over the hemisphere") {
         Device device(info);
         CHECK(mean_weight(draw(device, shiny, 1)).y ==
               Approx(kd + lobe).epsilon(0.02));  // four standard deviations
+        // How Phong's lie about the normal: of c^e, weighed by c^e once more.
         Material black = shiny;
         black.diffuse = {0, 0, 0, 0};
-        CHECK(mean_weight(draw(device, black, 1)).y == Approx(lobe).epsilon(0.01));
+        if (!blinn)
+          CHECK(mean_weight(draw(device, black, 1), 20).y ==
+                Approx(lobe * (exponent + 1) / (2 * exponent + 1)).epsilon(0.01));
       }
   }
 }

@@ -96,3 +96,27 @@ TEST_CASE("a directional light along an axis is stopped by what stands in its wa
   scene.lights.push_back(sun);
   on_every_device([&](const DeviceInfo& device) { CHECK(scenes::pixel_on(device, scene).x == 0); });
 }
+
+TEST_CASE("a shadow ray that passes too many panes is given up, and counted") {
+  const auto under = [](int panes) {
+    SceneDescription scene = scenes::line_of_sight({3, 0.05, 0}, {0, 0, 0});
+    LightDescription sun;
+    sun.type = LightType::directional;
+    sun.direction = {0, -1, 0};
+    scene.lights.push_back(sun);
+    scenes::place(scene, PlaneShape{}, scenes::add_white(scene));
+    const int clear = scenes::add_mirror(scene, 0);
+    scene.materials.back().transmission = {1, 1, 1};
+    for (int i = 0; i < panes; ++i)
+      scenes::place(scene, DiskShape{1, 0}, clear, glm::translate(glm::dmat4(1), {0, 1 + 0.1 * i, 0}));
+    return scene;
+  };
+  on_every_device([&](const DeviceInfo& device) {
+    const RenderResult few = scenes::render_on(device, under(60)),
+                       many = scenes::render_on(device, under(80));
+    CHECK(few.image.data.at(0) == Approx(1).epsilon(1e-5));
+    CHECK(few.counts[COUNT_SHADOW_LIMIT] == 0);
+    CHECK(many.image.data.at(0) == 0);
+    CHECK(many.counts[COUNT_SHADOW_LIMIT] == 1);
+  });
+}
