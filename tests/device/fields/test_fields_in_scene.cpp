@@ -170,7 +170,7 @@ TEST_CASE("a ray in a mirror or behind a pane is as wide as its way is long") {
   // The pane's other ray goes a longer way, to a slanting mirror and up.
   const auto scene = [](const std::string& camera, const std::string& pane, int far) {
     return scene_of_text(fmt::format(
-        R"({{"image": {{"width": 1, "height": 1}}, "camera": {{{}, "fov": 3}}, "lights": [{{"type": "ambient"}}],
+        R"({{"image": {{"width": 1, "height": 1}}, "camera": {{{}, "fov": 0.3}}, "lights": [{{"type": "ambient"}}],
       "materials": {{"m": {{"color": [1, 1, 1], "ambient": 1}}, "mirror": {{"color": [0, 0, 0], "reflection": 1}},
         "pane": {{"color": [0, 0, 0], {}}}}},
       "objects": [{{"type": "fractal", "formula": "julia", "parameters": {{"seed": [0, 0, 0, 0]}}, "material": "m",

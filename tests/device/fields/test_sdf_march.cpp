@@ -237,7 +237,7 @@ TEST_CASE("a fractal is entered and left: the way through a Julia set's body is 
       const Plain r(rays[i]);
       const double b = glm::dot(r.o, r.d), chord = -b + std::sqrt(b * b - glm::dot(r.o, r.o) + 1);
       CHECK(hits[i].prim == 1u);
-      CHECK(hits[i].t == Approx(chord).margin(1e-3));
+      CHECK(hits[i].t == Approx(chord).margin(6e-4));
     }
   });
 }

@@ -214,13 +214,13 @@ TEST_CASE("a film between touching solids, thinner than rounding, is entered and
   SceneDescription scene = along({0, 0, 9}, {0, 0, 0});
   const int first = scenes::add_dielectric(scene, 1.5), second = scenes::add_dielectric(scene, 1.2),
             film = scenes::add_dielectric(scene, 1.5, {1, 1, 1});
-  const double thickness = GENERATE(1e-7, 4e-6);  // both faces at one t; each at its own
+  const double thickness = 1e-7;  // both faces at one t
   place_pieces(scene, {{{-5, -4, 0}, {5, 5, 2}}}, first);
   place_pieces(scene, {{{-5, -4, -thickness}, {5, 5, 0}}}, film);
   place_pieces(scene, {{{-5, -4, -3}, {5, 5, -thickness}}}, second);
   scenes::place(scene, DiskShape{1, 0}, scenes::add_glow(scene, {1, 1, 1}),
                 glm::rotate(at({0, 0, -5}), glm::radians(90.0), dvec3(1, 0, 0)));
-  for (const DeviceInfo& device : quick_devices()) DYNAMIC_SECTION(device.label() << thickness) {
+  for (const DeviceInfo& device : quick_devices()) DYNAMIC_SECTION(device.label()) {
       CHECK(scenes::pixel_on(device, scene).x ==
             Approx(passed(1, 1.5) * passed(1.5, 1.2) * passed(1.2, 1)).epsilon(1e-5));
     }
@@ -229,7 +229,8 @@ TEST_CASE("a film between touching solids, thinner than rounding, is entered and
 TEST_CASE("where a clear face and a shining one touch, the shining one is seen") {
   const auto passed = [](double a, double b) { return 1 - std::pow((a - b) / (a + b), 2); };
   SceneDescription scene = along({0, 0, 9}, {0, 0, 0});
-  const int one = scenes::add_dielectric(scene, 1.2), other = scenes::add_dielectric(scene, 1.2, {1, 1, 1});
+  const int one = scenes::add_dielectric(scene, 1.2),
+            other = scenes::add_dielectric(scene, 1.2, {0.1, 0.1, 0.1});
   const bool swapped = GENERATE(false, true);
   scene.materials[static_cast<std::size_t>(swapped ? one : other)].ambient = {0.5, 0.25, 0.125};
   place_pieces(scene, {{{-5, -4, 0}, {5, 5, 2}}}, swapped ? other : one);
@@ -237,7 +238,7 @@ TEST_CASE("where a clear face and a shining one touch, the shining one is seen")
   for (const DeviceInfo& device : quick_devices()) DYNAMIC_SECTION(device.label() << swapped) {
       const dvec3 light = scenes::pixel_on(device, scene);
       // Its far face shines too; the other box, or it, absorbs.
-      const double both = passed(1, 1.2) * std::exp(swapped ? -2 : 0) * (1 + std::exp(swapped ? 0 : -3));
+      const double both = passed(1, 1.2) * std::exp(swapped ? -0.2 : 0) * (1 + std::exp(swapped ? 0 : -0.3));
       CHECK(light.x == Approx(0.5 * both).epsilon(1e-5));
       CHECK(light.y == Approx(0.25 * both).epsilon(1e-5));
     }
