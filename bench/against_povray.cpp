@@ -90,7 +90,7 @@ povray::Run time_theirs(const Options& options, const std::string& scene, const 
   return run;
 }
 
-// How the pictures differ. Both lie beside each other for whoever wants to look.
+// How the pictures differ. Both pictures are kept side by side.
 ImageDifference compare(const Options& options, const std::string& name, Image ours, const Image& theirs) {
   for (float& value : ours.data) value = std::clamp(value, 0.0f, 1.0f);  // POV-Ray's picture ends at 1
   write_image(ours, std::filesystem::path(options.folder) / (name + "_sundog.png"));

@@ -14,7 +14,7 @@ namespace {
 void set_ray(RTCRay& to, const plain::Ray& from) {
   to.org_x = from.o.x, to.org_y = from.o.y, to.org_z = from.o.z;
   to.dir_x = from.d.x, to.dir_y = from.d.y, to.dir_z = from.d.z;
-  // Embree's interval is closed, the integrator's open below: it goes on behind what it has met.
+  // Embree's interval is closed, the integrator's open below: it continues behind its hits.
   to.tnear = from.t_min > 0 ? std::nextafter(from.t_min, std::numeric_limits<float>::infinity()) : from.t_min;
   to.tfar = from.t_max;
   to.time = 0, to.mask = ~0u, to.id = 0, to.flags = 0;

@@ -2,7 +2,7 @@
 // (https://github.com/jbikker/tinybvh: two-wide after Aila and Laine, compressed eight-wide) on one device,
 // in turn, and prints millions of rays a second by kernel time (by the host's clock where the driver gives no
 // times) and their ratio by kind of ray. Its kernels know no ends of rays, so every ray here begins at 0 and
-// has none, for both: a shadow ray goes on behind its light. Hits are compared before a time counts.
+// has none, for both: a shadow ray continues behind its light. Hits are compared before a time counts.
 #include <fmt/format.h>
 
 #include <algorithm>

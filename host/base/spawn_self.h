@@ -1,4 +1,4 @@
-// Starts this program again, for what may crash, hang or go on beside it.
+// Starts this program again, for work that may crash, hang or run beside it.
 #pragma once
 #include <sys/types.h>
 

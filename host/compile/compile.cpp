@@ -82,7 +82,7 @@ CompiledFields near_fields(const SceneDescription& scene, const std::vector<Fiel
   return compile_fields(fields);
 }
 
-/// Reading has checked each formula; what is left to fail is their number and how they are put together.
+/// Reading has checked each formula; only their number and their combination may still fail.
 CompiledFields fields_of(const SceneDescription& scene, const std::vector<FieldView>& views,
                          CompiledScene& out) {
   try {

@@ -82,7 +82,7 @@ std::optional<CompileProcess> CompileProcess::start(const DeviceInfo& device, co
       process.emplace(CompileProcess(started, out));
     }
   } catch (const std::exception&) {
-    // no process to be had
+    // no process can be started
   }
   if (in >= 0) ::close(in);
   if (out >= 0 && !process) ::close(out);

@@ -36,7 +36,7 @@ int lock_folder(const fs::path& folder, int more_flags) {
   return -1;
 }
 
-/// Old enough that whoever made it would have locked it by now.
+/// Old enough that its maker would have locked it by now.
 bool is_old(const fs::path& folder) {
   std::error_code error;
   const auto written = fs::last_write_time(folder, error);

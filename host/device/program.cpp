@@ -108,8 +108,8 @@ cl::Program program_from_binary(const cl::Context& context, const cl::Device& de
   return program;
 }
 
-/// Builds a program of nothing: the driver reads what it needs to build any. A name of its own, lest the
-/// driver has it in a cache.
+/// Builds a program of nothing: the driver reads what it needs to build any. A name of its own, so that
+/// the driver does not have it in a cache.
 cl_int build_nothing(const cl::Context& context, const cl::Device& device, const std::string& name,
                      const std::string& options) {
   cl_int status = CL_SUCCESS;

@@ -73,7 +73,7 @@ std::string outcome_text(const DeviceInfo& device, const TuneOutcome& outcome) {
       outcome.frames.empty() ? "" : fmt::format("; frames of {}", outcome.frames));
 }
 
-/// The scenes in turn; each may take its share of what is left of the budget. Returns what there was no time
+/// The scenes in turn; each may take its share of the remaining budget. Returns what there was no time
 /// to begin.
 std::vector<std::string> tune_scenes(const DeviceInfo& device, const std::vector<NamedScene>& scenes,
                                      double budget, const Stopwatch& clock, TuneCosts& costs) {

@@ -24,7 +24,7 @@ struct FrameFiles {
   std::string image, scene, checkpoint;
 };
 
-/// Which frames are done, kept in a JSON file beside the checkpoint, so that an interrupted animation goes on
+/// Which frames are done, kept in a JSON file beside the checkpoint, so that an interrupted animation continues
 /// with the first frame that is not. Empty path: nothing is kept.
 class FrameLog {
  public:

@@ -25,7 +25,7 @@ class StopOnSignal {
   void ends_all(const std::string& why) const;
 
   const std::atomic<bool>& flag() const;
-  /// Set by SIGCONT; whoever has seen it takes it back.
+  /// Set by SIGCONT; its reader clears it.
   std::atomic<bool>& continued() const;
 };
 

@@ -46,7 +46,7 @@ std::string rescue(const Picture& picture, const fs::path& path, const char* wha
     write_to(elsewhere);
     return fmt::format("; the {} is in {}", what, elsewhere.string());
   } catch (const IoError&) {
-    return "; nor is there room for it elsewhere, and it is lost";
+    return "; there is no room for it elsewhere either, and it is lost";
   }
 }
 

@@ -45,9 +45,9 @@ double percent_done(const RenderResult& result) {
 std::string part_text(const RenderCommand& command, const RenderResult& result) {
   if (command.part)
     return fmt::format("{} is not written{}", command.out,
-                       command.resume.empty() ? "" : "; the same command goes on from its checkpoint");
+                       command.resume.empty() ? "" : "; the same command continues from its checkpoint");
   return fmt::format("{:.3g} % of the pixels are in {}{}", percent_done(result), command.out,
-                     command.resume.empty() ? "" : "; the same command goes on from there");
+                     command.resume.empty() ? "" : "; the same command continues from there");
 }
 
 void warn(const SceneDescription& scene, const RenderResult& result) {
@@ -91,7 +91,7 @@ void save_result(const RenderCommand& command, const CompiledScene& scene, const
 
 void tell_kept(const RenderResult& result, const std::string& checkpoint) {
   tell(fmt::format(
-      "sundog: interrupted: {:.3g} % of the pixels are in {}; the same command with --resume {} goes on "
+      "sundog: interrupted: {:.3g} % of the pixels are in {}; the same command with --resume {} continues "
       "from there\n",
       percent_done(result), checkpoint, checkpoint));
 }

@@ -25,7 +25,7 @@ void tell_kept(const RenderResult& result, const std::string& checkpoint);
 void tell_result(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result,
                  const TimeLedger& times);
 
-/// The exit status of a frame of which what there is has been saved. An interrupt is told of, if it was not
+/// The exit status of a frame whose finished part has been saved. An interrupt is reported, if it was not
 /// yet `told`. Throws the failure of a frame for which every device failed.
 int conclude(const RenderCommand& command, const RenderResult& result, bool told);
 

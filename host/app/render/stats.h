@@ -31,7 +31,7 @@ std::uint64_t ray_count(const RayCounts& counts);
 /// left solids of `scene` that they had not entered; empty: none.
 std::vector<std::string> losses(const RayCounts& counts, const SceneDescription& scene);
 
-/// A sentence for each failure of the device that others, or another try, made good.
+/// A sentence for each failure of the device after which others, or another try, did the work.
 std::vector<std::string> failures_text(const DeviceReport& report);
 
 /// Many lines: the times, the rays, and each device's kernels.

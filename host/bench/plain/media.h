@@ -24,7 +24,7 @@ class MediaStack {
   std::size_t count_ = 0;
 };
 
-/// Beer and Lambert: what is left of light after `distance`.
+/// Beer and Lambert: the part of light that passes `distance`.
 glm::vec3 absorb(const CompiledScene& scene, u32 medium, float distance);
 
 }  // namespace sundog::plain

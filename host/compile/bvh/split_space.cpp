@@ -61,7 +61,7 @@ void add_crossing(Halves& halves, const glm::vec3& a, const glm::vec3& b, int ax
   halves.right.extend(point);
 }
 
-/// The boxes of what of `box` holds the triangle's parts on both sides of a plane; a part may be empty.
+/// The parts of `box` that hold the triangle's parts on both sides of a plane; a part may be empty.
 Halves cut(const Mesh& mesh, u32 prim, const Bounds& box, int axis, float position) {
   const glm::uvec3& triangle = mesh.triangles[prim];
   Halves halves;

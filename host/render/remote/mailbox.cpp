@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t largest_piece = std::size_t{4} << 20, piece_head = 8;
 constexpr std::uint32_t control = 0;
 
-// How many times longer than another rank 0 may be silent: who stops it by hand wants to go on with it.
+// How many times longer than another rank 0 may be silent: a user who stops it by hand wants to continue it.
 constexpr double patience_with_rank_0 = 6;
 
 // At the end of the job, a rank that has not said so long that it lives is not waited for.

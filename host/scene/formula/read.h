@@ -12,7 +12,7 @@ namespace sundog {
 Names field_types();
 
 /// Reads an object of one of these types, "type" itself apart. Formulas are checked and tried out here.
-/// Throws SceneError; a place inside a formula's text is told by line and column.
+/// Throws SceneError; a place inside a formula's text is given by line and column.
 SdfDescription read_field(JsonObject& object, std::string_view type);
 
 /// An entry of the scene's table "fields": the same, its tree under "field".

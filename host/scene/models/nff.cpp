@@ -40,7 +40,7 @@ class NffReader {
     text_.fail("one of v b l f s c p pp wanted");
   }
 
-  // Values may go on over the line's end.
+  // Values may continue on the next line.
   double number(std::string_view what) {
     if (text_.at_line_end() && !text_.next_line()) text_.fail(fmt::format("the file ends before {}", what));
     return text_.number(what);

@@ -50,7 +50,7 @@ class TextReader {
   std::size_t next_;       // the byte after the current line
   std::size_t line_;       // number of the current line's first part
   std::size_t following_;  // number of the line at next_
-  std::string_view text_;  // what is left of the current line
+  std::string_view text_;  // the rest of the current line
   std::string joined_;     // holds a line put together from several
 };
 

@@ -69,7 +69,7 @@
 #define MAX_CROSSINGS 64
 #endif
 
-// Whether rays go on behind surfaces: interfaces that they do not see, or filters.
+// Whether rays continue behind surfaces: interfaces that they do not see, or filters.
 #define RAYS_CROSS (HAS_MEDIA || HAS_SHADOW_FILTERS)
 
 #endif

@@ -52,7 +52,7 @@ static inline void pass_touching(const Scene* scene, const SceneRays* rays, Hits
 }
 #endif
 
-// The lanes of `waiting` at their next hits. Returns those that go on to the light, of which `light` is left.
+// The lanes of `waiting` at their next hits. Returns those that continue to the light, with the rest of it in `light`.
 static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits, MASK waiting, REAL3* light) {
   const MASK hit = waiting & hit_anything(hits);
   const MASK here = current_media(scene->media, rays, waiting);
@@ -102,7 +102,7 @@ static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits,
 #endif
 
 // The shadow rays of `lanes` at what they met: what reaches the lights is added to the pixels. Returns those
-// that go on.
+// that continue.
 static inline MASK reach_filters(const Scene* scene, SceneRays* rays, PathStates* paths, Hits* hits,
                                  MASK lanes, float4* radiance, u32* counts) {
 #if HAS_SHADOW_FILTERS

@@ -42,7 +42,7 @@ static inline bool cross_boundary(MediaStack* stack, u32 medium, bool entering) 
   return false;
 }
 
-// Beer-Lambert: what is left of light after `distance` in the medium of each lane of `lanes`, 1 elsewhere.
+// Beer-Lambert: the part of light that passes `distance` in the medium of each lane of `lanes`, 1 elsewhere.
 static inline REAL3 absorb(__global const Medium* restrict media, MASK medium, REAL distance, MASK lanes) {
   REAL3 kept = all3((float3)(1.0f));
 #if HAS_ABSORPTION

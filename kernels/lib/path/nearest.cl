@@ -35,7 +35,7 @@ static inline MASK any_hits(const Scene* scene, SceneRays* rays, MASK active, bo
 }
 
 #if BATCH == 1
-// One ray of either kind, so that the lanes of a group that follow different kinds go on together: the
+// One ray of either kind, so that the lanes of a group that follow different kinds stay together: the
 // nearest hit, or of an opaque scene's shadow ray any.
 static inline void next_hits(const Scene* scene, SceneRays* rays, MASK active, bool to_light, Hits* hits,
                              u32* counts) {

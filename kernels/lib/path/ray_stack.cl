@@ -53,7 +53,7 @@ typedef struct ShadowStack {
   u32 count;
 } ShadowStack;
 #else
-// Rays of both kinds wait together: children, then at most one ray that goes on later, then shadow rays.
+// Rays of both kinds wait together: children, then at most one ray that continues later, then shadow rays.
 #define STACK_LENGTH (RAY_STACK + LIGHT_ROOM + 1)
 #define SHADOW_LENGTH STACK_LENGTH
 #define ShadowStack RayStack

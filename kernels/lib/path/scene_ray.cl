@@ -102,7 +102,7 @@ static inline void start_on_surfaces(__global const SceneInfo* restrict info, Sc
   start_on_hits(info, rays, hits, inside, lanes);
 }
 
-// The lanes of `lanes` go on behind a surface that they do not see.
+// The lanes of `lanes` continue behind a surface that they do not see.
 static inline void continue_behind(__global const SceneInfo* restrict info, SceneRays* rays, const Hits* hits,
                                    MASK entering, MASK lanes) {
   rays->t_min = select(rays->t_min, hits->t, lanes);

@@ -52,7 +52,7 @@ static inline MediaStack media_behind(const SceneRays* rays, const Encounters* m
 #define INTERFACE (MATERIAL_TRANSMITS | MATERIAL_THIN)  // flags to look at: an interface only transmits
 
 #if HAS_TOUCHING
-// The lanes of `lanes`, whose faces may touch others. Returns those that go on, as in cross_unseen().
+// The lanes of `lanes`, whose faces may touch others. Returns those that continue, as in cross_unseen().
 static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounters* met, MASK lanes,
                                   u32* counts) {
   MASK unseen = NO_LANES;
@@ -75,7 +75,7 @@ static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounter
 }
 #endif
 
-// The lanes of `waiting` at their next hits. Returns those that go on through invisible interfaces: their
+// The lanes of `waiting` at their next hits. Returns those that continue through invisible interfaces: their
 // rays are then what holds behind.
 static inline MASK cross_unseen(const Scene* scene, SceneRays* rays, Encounters* met, MASK waiting,
                                 u32* counts) {

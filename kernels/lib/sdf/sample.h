@@ -78,7 +78,7 @@ static inline REAL axis_distance(REAL x, REAL y, REAL z) {
   return real_sqrt(real_min(xx + yy, real_min(yy + zz, xx + zz)));
 }
 
-// A formula that gives no number there counts as empty: the march goes on by a small step.
+// A formula that gives no number there counts as empty: the march advances by a small step.
 static inline REAL finite_distance(REAL d) { return select((REAL)(1e-3f), d, MASK_OF(fabs(d) < 1e30f)); }
 
 // Distance to the surface, to first order, whatever the estimate was scaled by.

@@ -1,5 +1,5 @@
 // Sixteen rays that run close together go through the two-level BVH as one (packet_nodes.cl, packet_mesh.cl).
-// Where few rays are left, they go on alone.
+// Where few rays remain, they continue alone.
 #ifndef SUNDOG_LIB_PACKET_CL
 #define SUNDOG_LIB_PACKET_CL
 #include "lib/core/config.h"

@@ -1,4 +1,4 @@
-// Rays of a packet that go on by themselves.
+// Rays of a packet that continue alone.
 #ifndef SUNDOG_LIB_PACKET_ALONE_CL
 #define SUNDOG_LIB_PACKET_ALONE_CL
 #include "lib/core/config.h"

@@ -6,7 +6,7 @@
 #if PACKETS
 #include "lib/trace/packet_rays.cl"
 
-// So few rays in a node go on alone.
+// So few rays in a node continue alone.
 #ifndef NODE_LEAST
 #define NODE_LEAST 1
 #endif

@@ -1,7 +1,7 @@
 // Rays by themselves through the two-level BVH. Where an incoherent ray goes next cannot be foretold, so the
 // walks of a batch are listed by what comes next, a node or a leaf, and taken a list at a time: eight boxes
 // or eight triangles an instruction, hardly a branch that depends on a ray, and while one walk waits for
-// memory or for its own arithmetic, the next ones go on. In: rays and where they begin. Out: their hits,
+// memory or for its own arithmetic, the next ones advance. In: rays and where they begin. Out: their hits,
 // which do not depend on the rays that go along.
 #ifndef SUNDOG_LIB_WALK_CL
 #define SUNDOG_LIB_WALK_CL
@@ -142,7 +142,7 @@ ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const Prep
   return enter_mesh(scene->instances, walk, index) ? LEAF_TURN : 0u;
 }
 
-// The walks of `bits`, which is not 0, at solids[ray]. Returns those that go on.
+// The walks of `bits`, which is not 0, at solids[ray]. Returns those that continue.
 NEVER_INLINE u32 walk_solids(__global const Instance* restrict instances, const u32* solids, u32 bits,
                              const WalkRays* rays, Walk* walks, bool any) {
   const REAL before = rays->hits->t;
@@ -168,7 +168,7 @@ ALWAYS_INLINE void walk_node(__global const u32* nodes, const REAL* t_min, const
                          : push_crossed(node, &slabs, from, to, stack, stack_t));
 }
 
-// Puts a walk on the list where its next word belongs; one that has ended goes on none. No branch, and the
+// Puts a walk on the list where its next word belongs; one that has ended goes onto none. No branch, and the
 // counts stay in registers: a list that is found by its index would be written and read too close together.
 ALWAYS_INLINE void list_walk(Walk* walk, Walk** at_node, u32* node_words, u32* node_count, Walk** at_leaf,
                              u32* leaf_count) {

@@ -12,7 +12,7 @@
 // its depth then holds the next light in the bits from here on.
 #define DEPTH_BITS 8u
 
-// Takes a ray to what it meets next. Returns whether it goes on.
+// Takes a ray to what it meets next. Returns whether it continues.
 static inline MASK follow_ray(const Scene* scene, SceneRays* rays, PathStates* paths, RayStack* stack,
                               float4* radiance, u32* counts) {
   Encounters met;

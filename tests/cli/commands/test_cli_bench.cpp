@@ -57,7 +57,7 @@ TEST_CASE("bench threads refuses what it cannot measure") {
 
 // PoCL's threads crash when the sub-device of their last event goes under them, most often while the host is
 // busy with the next scene.
-TEST_CASE("bench threads goes on to further sizes after sub-devices were closed") {
+TEST_CASE("bench threads continues with further sizes after sub-devices were closed") {
   const CommandResult result = run_sundog(
       {"bench", "threads", SUNDOG_SOURCE_DIR "/scenes/hollow_ice.json", "--sizes", "8,12,16", "--counts",
        "1,2", "--repeat", "1", "--no-plain", "--device", "portable", "--set", "/render/samples=1"});

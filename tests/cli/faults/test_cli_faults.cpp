@@ -157,7 +157,7 @@ TEST_CASE("a launch that never ends is given up after its limit, also in a fixed
   CHECK(folder.stats()["devices"][0]["abandoned"] == true);
 }
 
-TEST_CASE("when every device fails the part that is done is saved, and a checkpoint goes on from it") {
+TEST_CASE("when every device fails the finished part is saved, and a checkpoint continues from it") {
   FaultyFolder folder;
   const std::string plain = folder.plain();
   folder.options.environment["SUNDOG_LAUNCH_LIMIT"] = "2";

@@ -177,7 +177,7 @@ TEST_CASE("mpirun: the frames of an animation are those of one process") {
   CHECK(last["devices"][1]["kernels_cached"] == true);
 }
 
-TEST_CASE("mpirun: what is wrong is told in one line, by one rank, with its status") {
+TEST_CASE("mpirun: an error is reported in one line, by one rank, with its status") {
   const MpiFolder folder;
   struct Case {
     std::vector<std::string> arguments;
@@ -220,7 +220,7 @@ TEST_CASE("mpirun: a rank without a device, or whose device fails, costs its par
 }
 
 TEST_CASE(
-    "mpirun: when a rank dies, the checkpoint has what was done, and the same command goes on from it") {
+    "mpirun: when a rank dies, the checkpoint has the finished part, and the same command continues from it") {
   const MpiFolder folder;
   // Half of the frame is rank 1's, which dies in it: the frame cannot end before mpirun ends the job.
   std::vector<std::string> arguments = folder.arguments(halves);

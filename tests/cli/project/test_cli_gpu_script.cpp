@@ -54,7 +54,7 @@ TEST_CASE("gpu.sh leaves tables, figures and build logs of every part, and says 
   CHECK(logs >= 6);  // frames, AOVs and rays, for both tracers
 }
 
-TEST_CASE("gpu.sh goes on when parts fail, and tells them") {
+TEST_CASE("gpu.sh continues when parts fail, and names them") {
   const TemporaryFolder folder;
   const CommandResult result = gpu_script(
       {"--device", "no such device", "--quick", (folder / "out").string(), (folder / "none.obj").string()});

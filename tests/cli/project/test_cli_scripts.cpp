@@ -113,7 +113,7 @@ TEST_CASE("only the packages that are missing are installed") {
   CHECK_FALSE(contains(tree.called(), "apt"));
 }
 
-TEST_CASE("a package that this distribution does not have is told and left out") {
+TEST_CASE("a package that this distribution does not have is reported and left out") {
   const ScriptTree tree;
   const CommandResult result = tree.run({(tree.root / "cmake/prepare.sh").string(), "tests"});
   CAPTURE(result.err);
@@ -123,7 +123,7 @@ TEST_CASE("a package that this distribution does not have is told and left out")
   CHECK(contains(tree.called(), "--target all"));
 }
 
-TEST_CASE("without apt the build goes on and says what it needs") {
+TEST_CASE("without apt the build continues and names what it needs") {
   const ScriptTree tree;
   fs::remove(tree.tools / "apt-get");
   fs::create_directory(tree / "bin");  // all that the script calls but apt-get

@@ -171,7 +171,7 @@ TEST_CASE("an interrupted render's AOVs are whole, and hold what is done of the 
 }
 
 // What is interrupted has one unit of the device, so that it takes some seconds on any machine.
-TEST_CASE("an interrupted render goes on from its checkpoint to the same image and AOVs") {
+TEST_CASE("an interrupted render continues from its checkpoint to the same image and AOVs") {
   const CliFolder folder;
   const std::vector<std::string> end = {"--size", "128x96",  "--samples", "400",   "--tile",
                                         "16",     "--float", "--aov",     "depth", "--quiet"};
@@ -189,7 +189,7 @@ TEST_CASE("an interrupted render goes on from its checkpoint to the same image a
   const CommandResult first = run_sundog(parts, options);
   CAPTURE(first.err);
   REQUIRE(first.status == 130);
-  CHECK(first.err.find("the same command goes on from there") != std::string::npos);
+  CHECK(first.err.find("the same command continues from there") != std::string::npos);
   REQUIRE(std::filesystem::exists(folder / "checkpoint"));
   REQUIRE(run_sundog(parts).status == 0);
   CHECK(read_image(folder / "parts.exr").data == read_image(folder / "whole.exr").data);

@@ -132,7 +132,7 @@ TEST_CASE("a glass fractal refracts as its exact solid does, and one of the air'
   });
 }
 
-TEST_CASE("a camera inside a field sees out through what is left of its medium") {
+TEST_CASE("a camera inside a field sees out through the rest of its medium") {
   SceneDescription scene = absorbing_ball(R"({"min": [-2, -2, -2], "max": [2, 2, 2]})");
   scene.camera.position = {0, 0, 0.5};
   on_every_device([&](const DeviceInfo& device) {

@@ -192,7 +192,7 @@ TEST_CASE("operations keep the bound of what they put together") {
   check_bounds(cases);
 }
 
-TEST_CASE("estimates of formulas of one's own keep their bound, whatever their expressions are") {
+TEST_CASE("estimates of a user's formulas keep their bound, whatever their expressions") {
   check_bounds({
       {R"f("type": "formula", "map": "z = z ^ 8 + c")f"},
       {R"f("type": "formula", "map": "z = vec3(z.x * z.x - z.y * z.y - z.z * z.z, 2 * z.x * z.y, 2 * z.x * z.z) + c")f"},

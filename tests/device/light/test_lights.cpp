@@ -94,7 +94,7 @@ TEST_CASE("a ray ends when its throughput is below the cutoff, not sooner") {
   scenes::place(scene, PlaneShape{}, mirror, glm::translate(glm::dmat4(1), {0, 1, 0}));
   scene.render.max_depth = 12;
   on_every_device([&](const DeviceInfo& device) {
-    scene.render.cutoff = 0.1;  // 1, 0.5, 0.25 and 0.125 go on
+    scene.render.cutoff = 0.1;  // 1, 0.5, 0.25 and 0.125 continue
     CHECK(scenes::pixel_on(device, scene).x == Approx(1.875).epsilon(1e-5));
     scene.render.cutoff = 0.2;
     CHECK(scenes::pixel_on(device, scene).x == Approx(1.75).epsilon(1e-5));

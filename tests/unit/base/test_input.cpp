@@ -22,7 +22,7 @@ std::string error_of(const std::filesystem::path& path, std::uintmax_t most = mo
 
 }  // namespace
 
-TEST_CASE("only regular files are read, and whoever writes to a pipe is not waited for") {
+TEST_CASE("only regular files are read, and no writer of a pipe is waited for") {
   const TemporaryFolder folder;
   REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
   std::filesystem::create_symlink("/dev/zero", folder / "endless");

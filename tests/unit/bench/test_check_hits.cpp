@@ -177,7 +177,7 @@ TEST_CASE("at a silhouette, at an edge and at the ends of its interval a ray may
     CHECK(is_right(scene, either, true));
     CHECK(is_right(scene, either, false));
   }
-  // On the edge between the two triangles, behind which the surface goes on, a ray hits.
+  // On the edge between the two triangles, behind which the surface continues, a ray hits.
   for (const Ray& met : {ray(0.5f, 0.5f, infinity), ray(0.25f, 0.5f, 2.001f)}) {
     CHECK(is_right(scene, met, hit));
     CHECK_FALSE(is_right(scene, met, none));

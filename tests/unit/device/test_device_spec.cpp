@@ -171,7 +171,7 @@ TEST_CASE("a device is put in a class by its type and its vectors") {
   CHECK(device_class(vectors) == DeviceClass::cpu);
 }
 
-TEST_CASE("an exclusion that takes nothing away is told, with what there is") {
+TEST_CASE("an exclusion that takes nothing away is reported, with the devices that exist") {
   std::vector<std::string> warnings;
   select_devices(machine(), {"cpu", "gpu", "!0:0", "!geforce"}, &warnings);
   CHECK(warnings.empty());
@@ -182,7 +182,7 @@ TEST_CASE("an exclusion that takes nothing away is told, with what there is") {
   CHECK_THAT(warnings[1], ContainsSubstring("'!7:0'"));
 }
 
-TEST_CASE("the default is told with its estimate and those it was preferred to") {
+TEST_CASE("the default is reported with its estimate and those it was preferred to") {
   const auto rows = machine();
   const std::string text = choice_text(rows, select_devices(rows, {}).front());
   CHECK_THAT(text, ContainsSubstring("2:0 NVIDIA CUDA / GeForce 4090/D (estimate 90000), before 0:0"));

@@ -206,7 +206,7 @@ TEST_CASE("a frame is finished whatever its size, with more devices than there a
       }
 }
 
-TEST_CASE("a device that is ready late takes its part of what is left") {
+TEST_CASE("a device that is ready late takes its part of the rest") {
   const Simulated first{100'000, 1};
   Simulated late{100'000, 1};
   late.ready = 1;
@@ -253,7 +253,7 @@ TEST_CASE("nothing is left over for a device that would last longer than all the
   CHECK(guided_pixels(devices, 1, 1'000'000'000) > 0);
 }
 
-TEST_CASE("the fastest device at work never rests, so that a frame always goes on") {
+TEST_CASE("the fastest device at work never rests, so that a frame always advances") {
   for (const double a : {0.0, 1.0, 1000.0})
     for (const double b : {0.0, 1.0, 1000.0})
       for (const std::uint64_t left : {1u, 15u, 16u, 1000u}) {

@@ -52,7 +52,7 @@ FormulaDefinition map_of(const std::string& map) {
   return d;
 }
 
-/// White and Nylander's power by angles, as everybody writes it.
+/// White and Nylander's power by angles, as it is usually written.
 std::vector<double> triplex_power(const std::vector<double>& z, double n) {
   const double r = length(z), t = n * std::acos(z[2] / r), f = n * std::atan2(z[1], z[0]),
                rn = std::pow(r, n);

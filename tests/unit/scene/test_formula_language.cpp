@@ -99,7 +99,7 @@ TEST_CASE("division by what may be zero is kept finite") {
   CHECK(std::isfinite(value_of("q = p - vec3(0.5, -2, 3); length(normalize(q))")));
 }
 
-TEST_CASE("a place in the text is told by line and column") {
+TEST_CASE("a place in the text is given by line and column") {
   check_failure("z = z + q", 1, 9, "unknown name 'q': there are ");
   check_failure("t = 1\nz = z * (c +\n  y)", 3, 3, "unknown name 'y'");
   check_failure("z = z + ", 1, 9, "expected a value, found the statement's end");

@@ -1,5 +1,5 @@
 // A scene's formula is measured when it is read: what is no distance is made one, once, with a warning that
-// names the place; what cannot look as it was meant is told.
+// names the place; what cannot look as it was meant is reported.
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
@@ -123,7 +123,7 @@ TEST_CASE("a listed formula's parameters lower its safety where they must") {
   CHECK(says(scene, "", "is too long at"));
 }
 
-TEST_CASE("an argument outside of its function's domain is told with its place, its value and a point") {
+TEST_CASE("an argument outside of its function's domain is reported with its place, its value and a point") {
   const auto map = scene_of_formula({{"map", {"t = 2", "z = vec3(log(z.x), z.y, z.z) ^ t + c"}}});
   CHECK(says(map, "/map", "line 2, column 10: log is asked for -"));
   const auto root = scene_of_formula({{"distance", "length(p) - 0.8 + 0.01 * sqrt(p.x)"}});
@@ -136,7 +136,7 @@ TEST_CASE("an argument outside of its function's domain is told with its place, 
   CHECK(guarded.warnings.empty());  // a branch that is not taken computes nothing
 }
 
-TEST_CASE("points without a number, and intervals without a surface, are told with a point") {
+TEST_CASE("points without a number, and intervals without a surface, are reported with a point") {
   const auto lost = scene_of_formula({{"distance", "p.x > 0.5 ? exp(70) * exp(70) * p.x : length(p) - 0.4"}});
   CHECK(says(lost, "", "no finite distance at"));
   CHECK(says(lost, "", "of 1024 points"));
