@@ -113,7 +113,7 @@ void add_field_features(CompiledScene& out) {
 }
 
 void set_counts(CompiledScene& out) {
-  out.info.light_count = static_cast<u32>(out.lights.size());
+  out.info.light_count = static_cast<u32>(out.light_rays.size());
   out.info.material_count = static_cast<u32>(out.materials.size());
   out.info.medium_count = static_cast<u32>(out.media.size());
   out.info.camera_inside = out.features.camera_inside ? 1 : 0;

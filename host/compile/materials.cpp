@@ -10,6 +10,8 @@
 
 #include "base/error.h"
 #include "compile/pack.h"
+#include "scene/kinds.h"
+#include "scene/lamps.h"
 
 namespace sundog {
 namespace {
@@ -71,6 +73,7 @@ Material make_material(const MaterialDescription& material, const std::vector<u3
   packed.transmission = pack(material.transmission);
   packed.checker_ambient = pack(material.checker_ambient);
   packed.checker_diffuse = pack(material.checker_diffuse, 1 / material.checker_size);
+  packed.emission = pack(material.emission);
   packed.kind = material.type == MaterialType::dielectric ? MATERIAL_DIELECTRIC : MATERIAL_PHONG;
   packed.flags = material_flags(material);
   packed.medium = material.medium < 0 ? 0 : media.at(static_cast<std::size_t>(material.medium));
@@ -96,6 +99,23 @@ dvec3 unit_direction(const SceneDescription& scene, const LightDescription& ligh
 
 double cosine(double degrees) { return std::cos(degrees * std::numbers::pi / 180); }
 
+/// The extent of a light, in `packed`.
+void pack_extent(const SceneDescription& scene, std::size_t index, const dvec3& origin, Light& packed) {
+  const LightDescription& light = scene.lights[index];
+  if (light.type == LightType::sphere) {
+    packed.edge_u.w = static_cast<float>(light.radius);
+    return;
+  }
+  unit_direction(scene, light, index);
+  const LampAxes axes = lamp_axes(light);
+  const bool rectangle = light.type == LightType::rectangle;
+  const double area = glm::length(glm::cross(axes.u, axes.v)) * (rectangle ? 1 : std::numbers::pi);
+  if (rectangle) packed.position = pack(light.position - (axes.u + axes.v) / 2.0 - origin);
+  packed.direction = pack(axes.normal, area);
+  packed.edge_u = pack(axes.u, glm::length(axes.u));
+  packed.edge_v = pack(axes.v, glm::length(axes.v));
+}
+
 Light pack_light(const SceneDescription& scene, std::size_t index, const dvec3& origin) {
   const LightDescription& light = scene.lights[index];
   Light packed{};
@@ -119,8 +139,24 @@ Light pack_light(const SceneDescription& scene, std::size_t index, const dvec3& 
       packed.direction = pack(unit_direction(scene, light, index), cosine(light.outer_angle));
       packed.color.w = static_cast<float>(cosine(light.inner_angle));
       break;
+    case LightType::rectangle:
+      packed.kind = LIGHT_RECTANGLE;
+      break;
+    case LightType::disk:
+      packed.kind = LIGHT_DISK;
+      break;
+    case LightType::sphere:
+      packed.kind = LIGHT_SPHERE;
+      break;
   }
+  if (facts_of(light.type).extent) pack_extent(scene, index, origin, packed);
   return packed;
+}
+
+/// The shadow rays that surfaces send to the light `index` of the table.
+void add_light_rays(const LightDescription& light, u32 index, CompiledScene& out) {
+  const u32 rays = facts_of(light.type).extent ? static_cast<u32>(light.samples) : 1;
+  for (u32 ray = 0; ray < rays; ++ray) out.light_rays.push_back({index, ray, rays, 0});
 }
 
 }  // namespace
@@ -142,8 +178,11 @@ void add_lights(const SceneDescription& scene, CompiledScene& out) {
     const LightDescription& light = scene.lights[i];
     if (light.type == LightType::ambient)
       ambient += light.color * light.intensity;
-    else
+    else {
+      add_light_rays(light, static_cast<u32>(out.lights.size()), out);
       out.lights.push_back(pack_light(scene, i, out.origin));
+      out.features.area_lights |= facts_of(light.type).extent;
+    }
   }
   out.info.ambient = pack(ambient);
 }

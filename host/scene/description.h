@@ -49,18 +49,23 @@ struct RenderSettings {
   bool spatial_splits = false;  // build the BVH with cut triangles: slower, better for long thin ones
 };
 
-#define SUNDOG_LIGHT_TYPE(constant, name, placed, aimed) name,
+#define SUNDOG_LIGHT_TYPE(constant, name, placed, aimed, extent) name,
 enum class LightType { ambient, LIGHTS(SUNDOG_LIGHT_TYPE) };
 #undef SUNDOG_LIGHT_TYPE
 
 struct LightDescription {
   LightType type = LightType::point;
   dvec3 color{1, 1, 1};
-  double intensity = 1;
-  dvec3 position{0, 0, 0};
+  double intensity = 1;                       // times colour: of a light with an extent its radiance
+  dvec3 position{0, 0, 0};                    // of an extent the middle
   dvec3 direction{0, -1, 0};                  // the way the light travels; normalised by compile()
   double inner_angle = 20, outer_angle = 30;  // spot: half angles in degrees, 0 <= inner <= outer < 90
   dvec3 falloff{1, 0, 0};                     // constant, linear, quadratic
+  dvec2 size{1, 1};                           // rectangle: across and along `up`
+  dvec3 up{0, 1, 0};
+  double radius = 0.5;  // disk, sphere
+  int samples = 1;      // an extent: shadow rays that a surface sends to it
+  bool visible = true;  // an extent: rays meet it (scene/lamps.h places what they meet)
 };
 
 /// The world's medium gives way to every other where solids overlap; a scene file's priorities are
@@ -83,6 +88,7 @@ struct MaterialDescription {
   dvec3 ambient{0.1}, diffuse{0.8}, specular{0};  // colour times coefficient
   double exponent = 32;
   bool blinn = false;
+  dvec3 emission{0};                     // radiance that the outside sends out
   dvec3 reflection{0}, transmission{0};  // a dielectric's tints default to 1 (set by the loader)
   int medium = -1;  // index into media of the inside; -1: thin, transmits straight through
   bool shadow_opaque = false;

@@ -38,14 +38,15 @@ inline constexpr auto filter_names = [] {
 struct LightTypeFacts {
   std::string_view name;  // in scene files and figures
   LightType type;
-  bool placed;  // it has a position and a falloff
+  bool placed;  // it has a position
   bool aimed;   // it has a direction
+  bool extent;  // it has an extent, and no falloff
 };
 
 /// By LightType.
-inline constexpr std::array light_types = {LightTypeFacts{"ambient", LightType::ambient, false, false},
-#define SUNDOG_LIGHT_FACTS(constant, name, placed, aimed) \
-  LightTypeFacts{#name, LightType::name, placed, aimed},
+inline constexpr std::array light_types = {LightTypeFacts{"ambient", LightType::ambient, false, false, false},
+#define SUNDOG_LIGHT_FACTS(constant, name, placed, aimed, extent) \
+  LightTypeFacts{#name, LightType::name, placed, aimed, extent},
                                            LIGHTS(SUNDOG_LIGHT_FACTS)
 #undef SUNDOG_LIGHT_FACTS
 };

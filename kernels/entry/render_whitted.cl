@@ -25,9 +25,11 @@ static inline uint2 lane_pixel(const Launch* launch, u32 item, u32 lane) {
 
 // The camera's rays of one sample. Returns the lanes that have a pixel; signs[lane] is what a sample counts.
 static inline MASK start_rays(const Scene* scene, const Launch* launch, u32 item, u32 sample,
-                              MediaStack around, SceneRays* rays, float* signs) {
+                              MediaStack around, SceneRays* rays, float* signs,
+                              TileSamples* tile) {
   __global const SceneInfo* restrict info = scene->info;
   MASK lanes = NO_LANES;
+  tile->sample = sample;
   REAL x = (REAL)(0.0f), y = (REAL)(0.0f);
   for (u32 lane = 0; lane < BATCH; ++lane) {
     const uint2 at = lane_pixel(launch, item, lane);
@@ -38,6 +40,7 @@ static inline MASK start_rays(const Scene* scene, const Launch* launch, u32 item
     REAL_LANE(x, lane) = (float)pixel.x + in_pixel.x;
     REAL_LANE(y, lane) = (float)pixel.y + in_pixel.y;
     MASK_LANE(lanes, lane) = -1;
+    set_tile_pixel(tile, lane, pixel);
   }
   const Rays camera = camera_rays(info, x, y);
   *rays = scene_rays(&camera, around);
@@ -77,7 +80,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
 #endif
     SceneRays rays;
     float signs[BATCH];
-    const MASK lanes = start_rays(scene, launch, item, sample, around, &rays, signs);
+    const MASK lanes = start_rays(scene, launch, item, sample, around, &rays, signs, &tile);
     counts[COUNT_PRIMARY] += lane_count(lanes);
     trace_whitted(scene, &rays, lanes, &stack, radiance, counts);
     store_sample(launch, item, lanes, radiance, signs, film, weights, counts);

@@ -21,6 +21,8 @@
   FEATURE(bool, HAS_UV, surface_coordinates)        /* some material asks for surface coordinates */    \
   FEATURE(bool, HAS_FILTER, filter)                 /* samples lie elsewhere than evenly in their pixels */ \
   FEATURE(u32, SAMPLER, sampler)                    /* a SAMPLER_* constant */                          \
+  FEATURE(bool, HAS_AREA_LIGHTS, area_lights)       /* some light has an extent */                      \
+  FEATURE(bool, HAS_EMISSION, emission)             /* some material shines by itself */                \
   FEATURE(u32, SDF_FLAGS, field_flags)              /* SdfField.flags that some field has */
 // clang-format on
 

@@ -1,31 +1,47 @@
 // The lights that have a place or a direction, in one list: from it come LIGHT_*, the description's
 // LightType, and the names in scene files and figures. Ambient lights are no part of it: they are summed into
 // SceneInfo.ambient.
-//   LIGHT(constant after LIGHT_, name, 1 = it has a position and a falloff, 1 = it has a direction)
+//   LIGHT(constant after LIGHT_, name, 1 = it has a position, 1 = it has a direction, 1 = it has an extent;
+//         those without one have a falloff where they have a position)
 #ifndef SUNDOG_SHARED_LIGHTS_H
 #define SUNDOG_SHARED_LIGHTS_H
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
-#define LIGHTS(LIGHT)                   \
-  LIGHT(DIRECTIONAL, directional, 0, 1) \
-  LIGHT(POINT, point, 1, 0)             \
-  LIGHT(SPOT, spot, 1, 1)
+#define LIGHTS(LIGHT)                      \
+  LIGHT(DIRECTIONAL, directional, 0, 1, 0) \
+  LIGHT(POINT, point, 1, 0, 0)             \
+  LIGHT(SPOT, spot, 1, 1, 0)               \
+  LIGHT(RECTANGLE, rectangle, 1, 1, 1)     \
+  LIGHT(DISK, disk, 1, 1, 1)               \
+  LIGHT(SPHERE, sphere, 1, 0, 1)
 
-#define LIGHT_CONSTANT(constant, name, placed, aimed) LIGHT_##constant,
-typedef enum LightKind SUNDOG_ENUM_OF_U32 { LIGHTS(LIGHT_CONSTANT) } LightKind;
+#define LIGHT_CONSTANT(constant, name, placed, aimed, extent) LIGHT_##constant,
+typedef enum LightKind SUNDOG_ENUM_OF_U32 { LIGHTS(LIGHT_CONSTANT) LIGHT_KINDS } LightKind;
 #undef LIGHT_CONSTANT
 
-// 64 bytes.
+// 96 bytes. A light with an extent shines from its front, the side that `direction` points to; a sphere from
+// its outside.
 typedef struct Light {
-  float4 position;   // world
-  float4 direction;  // unit, the way the light travels; w = cosine of the cone's outer half angle
-  float4 color;      // times intensity; w = cosine of the cone's inner half angle
+  float4 position;  // world; of a rectangle the corner, else the centre
+  float4
+      direction;  // unit, the way the light travels; w = cosine of the cone's outer half angle, or the area
+  float4 color;   // times intensity (the radiance, of an extent); w = cosine of the cone's inner half angle
   float falloff_constant, falloff_linear,
       falloff_quadratic;  // intensity / (c + l d + q d^2), d in world units
   u32 kind;               // LIGHT_*
+  float4 edge_u, edge_v;  // sides of a rectangle, from the centre to the rim of a disk; w = their lengths (of
+                          // a sphere edge_u.w is the radius)
 } Light;
-SUNDOG_SHARED_SIZE(Light, 64)
+SUNDOG_SHARED_SIZE(Light, 96)
+
+// 16 bytes: a shadow ray that surfaces send, the number `ray` of the `rays` that share one light's weight.
+typedef struct LightRay {
+  u32 light;  // index
+  u32 ray, rays;
+  u32 pad;
+} LightRay;
+SUNDOG_SHARED_SIZE(LightRay, 16)
 
 SUNDOG_SHARED_END
 #endif

@@ -20,7 +20,7 @@ SUNDOG_SHARED_BEGIN
 // Highlights up to this exponent, where it is whole, are products alone.
 #define GREATEST_WHOLE_EXPONENT 65535.0f
 
-// 128 bytes. Each colour is already multiplied by its coefficient.
+// 144 bytes. Each colour is already multiplied by its coefficient.
 typedef struct Material {
   float4 ambient;          // ka
   float4 diffuse;          // kd
@@ -29,12 +29,13 @@ typedef struct Material {
   float4 transmission;     // kt (a dielectric's tint, normally 1)
   float4 checker_ambient;  // ka in odd cells
   float4 checker_diffuse;  // kd in odd cells; w = 1 / cell size (object space)
+  float4 emission;         // radiance that the outside sends out
   u32 kind;                // MATERIAL_PHONG, MATERIAL_DIELECTRIC
   u32 flags;
   u32 medium;  // index of the medium inside the surface
   u32 pad;
 } Material;
-SUNDOG_SHARED_SIZE(Material, 128)
+SUNDOG_SHARED_SIZE(Material, 144)
 
 #define MAX_MEDIA 255  // a ray's stack of media keeps an index in a byte
 
@@ -63,7 +64,7 @@ typedef struct SceneInfo {
   u32 tlas_root;      // first node of the scene BVH
   u32 bounded_count;  // instances in the scene BVH (0: the BVH is empty)
   u32 instance_count;
-  u32 light_count;
+  u32 light_count;  // rays that a surface sends to lights: one a light, or with HAS_AREA_LIGHTS light_rays
   u32 material_count, medium_count;
   u32 max_depth;        // 1 = no secondary rays; the camera's ray has depth 1
   u32 samples;          // per pixel

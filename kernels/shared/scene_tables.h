@@ -19,6 +19,7 @@
   TABLE(Material, Material, materials, "materials")               \
   TABLE(Medium, Medium, media, "media")                           \
   TABLE(Light, Light, lights, "lights")                           \
+  TABLE(LightRay, LightRay, light_rays, "rays to lights")         \
   TABLE(SdfField, SdfField, sdf_fields, "fields")                 \
   TABLE(float, float, sdf_parameters, "field parameters")         \
   TABLE(float, float, filter, "filter")

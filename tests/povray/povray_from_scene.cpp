@@ -89,6 +89,10 @@ std::string light_source(const LightDescription& light) {
           "light_source {{ {} color {}{} spotlight point_at {} radius {} falloff {} tightness 0 }}\n",
           text(light.position), rgb(color), fade, text(light.position + along), text(light.inner_angle),
           text(light.outer_angle));
+    case LightType::rectangle:
+    case LightType::disk:
+    case LightType::sphere:
+      throw Unsupported("a light with an extent: POV-Ray's shines without the cosine of its surface");
     case LightType::ambient:
       break;
   }

@@ -10,6 +10,7 @@
 #include "scene/formula/read.h"
 #include "scene/inside.h"
 #include "scene/json/parse.h"
+#include "scene/lamps.h"
 #include "scene/procedural/procedural.h"
 #include "scene/read/library.h"
 #include "scene/read/parts.h"
@@ -48,6 +49,7 @@ class SceneReader {
     if (!placed)
       scene_.camera = frame(bounds_of(scene_.objects, scene_.meshes, scene_.fields),
                             static_cast<double>(scene_.image.width) / scene_.image.height, scene_.camera);
+    add_lamps(scene_);
   }
 
   void read_tables(JsonObject& object) {

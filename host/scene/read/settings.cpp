@@ -33,10 +33,12 @@ dvec3 read_falloff(JsonObject& object) {
 
 void read_placed_light(JsonObject& object, LightDescription& light) {
   light.position = object.at("position", "a point [x, y, z]").vec3();
+  if (facts_of(light.type).extent) return;
   if (const auto falloff = object.find("falloff")) light.falloff = falloff->object("falloff", read_falloff);
 }
 
-void read_spot(JsonObject& object, LightDescription& light) {
+/// The way it shines, given as such or by a point that it shines at.
+void read_aim(JsonObject& object, LightDescription& light) {
   static constexpr std::string_view aims[] = {"direction", "target"};
   const std::string aim = object.one_of(aims);
   const JsonValue value = *object.find(aim);
@@ -47,6 +49,23 @@ void read_spot(JsonObject& object, LightDescription& light) {
     if (!(glm::length(light.direction) > 1e-12)) value.fail("wanted a point away from the light's position");
     light.direction = glm::normalize(light.direction);
   }
+}
+
+void read_extent(JsonObject& object, LightDescription& light) {
+  light.samples = object.integer("samples", light.samples, 1, 1024);
+  light.visible = object.boolean("visible", light.visible);
+  if (light.type == LightType::rectangle) {
+    if (const auto up = object.find("up")) light.up = up->direction();
+    const JsonValue size = object.at("size", "the two edges [width, height]");
+    const auto edges = size.items("2 lengths");
+    if (edges.size() != 2) size.wanted("an array of 2 lengths");
+    light.size = {edges[0].number(above_0), edges[1].number(above_0)};
+  } else {
+    light.radius = object.number("radius", light.radius, above_0);
+  }
+}
+
+void read_spot(JsonObject& object, LightDescription& light) {
   const Range angle{.low = 0, .high = 90, .low_open = true, .high_open = true};
   light.outer_angle = object.number("outer_angle", light.outer_angle, angle);
   light.inner_angle =
@@ -156,14 +175,21 @@ LightDescription read_light(const JsonValue& value) {
     const auto facts = std::find(types.begin(), types.end(), type) - types.begin();
     light.type = light_types[static_cast<std::size_t>(facts)].type;
     if (facts_of(light.type).placed) read_placed_light(object, light);
+    if (facts_of(light.type).extent) read_extent(object, light);
     switch (light.type) {
       case LightType::ambient:
       case LightType::point:
+      case LightType::sphere:
         break;
       case LightType::directional:
         light.direction = object.at("direction", "the way the light travels [x, y, z]").direction();
         break;
+      case LightType::rectangle:
+      case LightType::disk:
+        read_aim(object, light);
+        break;
       case LightType::spot:
+        read_aim(object, light);
         read_spot(object, light);
         break;
     }

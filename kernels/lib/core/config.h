@@ -69,6 +69,9 @@
 #define MAX_CROSSINGS 64
 #endif
 
+// Whether a sample needs random numbers beyond the camera's.
+#define HAS_RANDOM HAS_AREA_LIGHTS
+
 // Whether rays continue behind surfaces: interfaces that they do not see, or filters.
 #define RAYS_CROSS (HAS_MEDIA || HAS_SHADOW_FILTERS)
 

@@ -2,20 +2,17 @@
 #ifndef SUNDOG_LIB_LIGHT_CL
 #define SUNDOG_LIB_LIGHT_CL
 #include "lib/core/tables.h"
+#include "lib/light/area_light.cl"
+#include "lib/light/light_sample.cl"
 #include "lib/path/scene_ray.cl"
-
-typedef struct LightSamples {
-  REAL3 wi;        // unit, from the surface to the light
-  REAL distance;   // infinite for a directional light
-  REAL3 radiance;  // before shadowing; of a delta light the irradiance on a surface that faces it
-  REAL density;    // of wi, per steradian; of a delta light 1
-  MASK delta;      // all light comes along wi: no other way of sampling finds it
-} LightSamples;
 
 // A way from the points p to the light `index`, chosen by the two numbers u in [0, 1)^2, which lights without
 // extent leave alone.
 static inline LightSamples sample_light(const Scene* scene, u32 index, REAL3 p, REAL u_x, REAL u_y) {
   __global const Light* light = scene->lights + index;
+#if HAS_AREA_LIGHTS
+  if (light->kind >= LIGHT_RECTANGLE) return sample_area_light(light, p, u_x, u_y);
+#endif
   LightSamples sample;
   sample.density = (REAL)(1.0f);
   sample.delta = ALL_LANES;

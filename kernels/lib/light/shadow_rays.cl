@@ -3,6 +3,7 @@
 #define SUNDOG_LIB_SHADOW_RAYS_CL
 #include "lib/light/field_light.cl"
 #include "lib/light/light.cl"
+#include "lib/path/path_samples.cl"
 #include "lib/path/ray_stack.cl"
 #include "lib/shade/bsdf.cl"
 
@@ -12,14 +13,31 @@ typedef struct Shading {
   Bsdfs bsdf;
 } Shading;
 
+// The way of the shadow ray `index` from the surfaces of `lanes`, which have 1 a light, or those of the table
+// light_rays. The radiance of rays that share a light is divided among them.
+static inline LightSamples choose_way(const Scene* scene, u32 index, const TileSamples* tile,
+                                      const PathStates* paths, REAL3 p, MASK lanes) {
+  const REAL middle = (REAL)(0.5f);
+#if HAS_AREA_LIGHTS
+  const LightRay way = scene->light_rays[index];
+  REAL u_x = middle, u_y = middle;
+  if (scene->lights[way.light].kind >= LIGHT_RECTANGLE)
+    bounce_numbers(tile, paths, way.light, BOUNCE_LIGHT_POINT, way.ray, way.rays, lanes, &u_x, &u_y);
+  LightSamples light = sample_light(scene, way.light, p, u_x, u_y);
+  light.radiance = scale3(light.radiance, light_weight(&light) / (float)way.rays);
+  return light;
+#else
+  return sample_light(scene, index, p, middle, middle);
+#endif
+}
+
 // Sends shadow rays from the surfaces of `lanes` to one light, with what it would do there: Ij (kd n.l +
 // ks (r.v)^b) Vj.
-static inline void cast_shadows(const Scene* scene, u32 index, const SceneRays* rays, const PathStates* paths,
-                                MASK lanes, const Hits* hits, const Shading* at, ShadowStack* stack,
-                                u32* counts) {
+static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples* tile, const SceneRays* rays,
+                                const PathStates* paths, MASK lanes, const Hits* hits, const Shading* at,
+                                ShadowStack* stack, u32* counts) {
   const SurfaceInteractions* s = &at->s;
-  const REAL middle = (REAL)(0.5f);
-  const LightSamples light = sample_light(scene, index, s->p, middle, middle);
+  const LightSamples light = choose_way(scene, index, tile, paths, s->p, lanes);
   const MASK facing = lanes & MASK_OF(dot3(s->ns, light.wi) > 0.0f);
   if (!any_lane(facing)) return;
   const REAL3 possible =

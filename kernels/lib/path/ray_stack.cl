@@ -9,6 +9,9 @@ typedef struct PathStates {
   REAL3 throughput;  // of a shadow ray: the light that it would bring
   MASK pixel;        // in the work-item's tile
   MASK depth;        // the camera's ray has 1, a shadow ray 0
+#if HAS_RANDOM
+  MASK branch;  // the ray's place in the ray tree, for random numbers; 0: the camera's ray
+#endif
 } PathStates;
 
 // What is kept of each waiting ray, in this order: from this list come the count, the writing and the
@@ -17,6 +20,11 @@ typedef struct PathStates {
 #define STACKED_PIXEL(REALS, MASKS) MASKS(paths->pixel)
 #else
 #define STACKED_PIXEL(REALS, MASKS)
+#endif
+#if HAS_RANDOM
+#define STACKED_BRANCH(REALS, MASKS) MASKS(paths->branch)
+#else
+#define STACKED_BRANCH(REALS, MASKS)
 #endif
 #if RAYS_CROSS
 #define STACKED_CROSSINGS(REALS, MASKS) MASKS(rays->crossings)
@@ -39,7 +47,7 @@ typedef struct PathStates {
   REALS(rays->t_min) REALS(rays->t_max)                                                                     \
   REALS(paths->throughput.x) REALS(paths->throughput.y) REALS(paths->throughput.z) MASKS(paths->depth)      \
   STACKED_PIXEL(REALS, MASKS) STACKED_CROSSINGS(REALS, MASKS) STACKED_MEDIA(REALS, MASKS)                   \
-  STACKED_FIELDS(REALS, MASKS)
+  STACKED_FIELDS(REALS, MASKS) STACKED_BRANCH(REALS, MASKS)
 // clang-format on
 #define COUNT_MEMBER(member) +1u
 #define STACK_MEMBERS (0u STACKED(COUNT_MEMBER, COUNT_MEMBER))

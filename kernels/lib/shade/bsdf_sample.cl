@@ -2,6 +2,7 @@
 // (perfect reflection and transmission, diffuse, highlight), then a direction of it. A surface a lane.
 #ifndef SUNDOG_LIB_BSDF_SAMPLE_CL
 #define SUNDOG_LIB_BSDF_SAMPLE_CL
+#include "lib/core/directions.cl"
 #include "lib/shade/bsdf.cl"
 
 typedef struct BsdfSamples {
@@ -10,23 +11,6 @@ typedef struct BsdfSamples {
   REAL density;   // of wi, per steradian; of a specular sample the probability of its term
   MASK specular;  // perfect reflection or transmission: bsdf_eval() does not know it
 } BsdfSamples;
-
-// Two vectors at right angles to the unit vector n and to each other (Duff and others 2017, "Building an
-// Orthonormal Basis, Revisited").
-static inline void tangent_frame(REAL3 n, REAL3* s, REAL3* t) {
-  const REAL sign = copysign((REAL)(1.0f), n.z);
-  const REAL a = -1.0f / (sign + n.z), b = n.x * n.y * a;
-  *s = real3(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
-  *t = real3(b, sign + n.y * n.y * a, -n.y);
-}
-
-// The direction at the cosine `c` to the unit axis, turned about it by the share `turn` of a circle.
-static inline REAL3 direction_about(REAL3 axis, REAL c, REAL turn) {
-  REAL3 s, t;
-  tangent_frame(axis, &s, &t);
-  const REAL sine = real_sqrt(real_max(1.0f - c * c, (REAL)(0.0f))), angle = 2.0f * M_PI_F * turn;
-  return add3(scale3(axis, c), add3(scale3(s, sine * cos(angle)), scale3(t, sine * sin(angle))));
-}
 
 // Density of directions whose cosine c to an axis is distributed as c^e, on its hemisphere.
 static inline REAL lobe_density(REAL c, REAL e) {

@@ -1,6 +1,7 @@
 // The reflected and refracted rays that come of surfaces (Whitted 1980), left on a stack.
 #ifndef SUNDOG_LIB_CHILDREN_CL
 #define SUNDOG_LIB_CHILDREN_CL
+#include "lib/path/path_samples.cl"
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
@@ -42,12 +43,18 @@ static inline void spawn_children(const Scene* scene, const SurfaceInteractions*
   child.d = reflected_direction(bsdf, wo);
   child.o = along3(s->p, s->offset, s->ng);
   state.throughput = multiply3(paths->throughput, split.kr);
+#if HAS_RANDOM
+  state.branch = child_branch(paths->branch, 0u);
+#endif
   spawn(scene->info, stack, &child, &state, split.branches, COUNT_REFLECTION, counts);
 
   if (!any_lane(split.transmits)) return;
   child.d = transmitted_direction(bsdf, &split, wo);
   child.o = along3(s->p, -s->offset, s->ng);
   state.throughput = multiply3(paths->throughput, split.kt);
+#if HAS_RANDOM
+  state.branch = child_branch(paths->branch, 1u);
+#endif
   start_on_hits(scene->info, &child, &met->hit, s->entering, split.transmits);
   enter_behind(met, rays, split.transmits, &child);
   spawn(scene->info, stack, &child, &state, split.transmits, COUNT_REFRACTION, counts);

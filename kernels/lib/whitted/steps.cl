@@ -39,6 +39,21 @@ static inline REAL3 see_ambient(const Scene* scene, const SceneRays* rays, const
   return multiply3(paths->throughput, own);
 }
 
+// What surfaces of `lanes` shine by themselves, on their outsides.
+static inline REAL3 see_shining(const Scene* scene, const PathStates* paths, const SurfaceInteractions* s,
+                                MASK lanes) {
+  REAL3 light = all3((float3)(0.0f));
+#if HAS_EMISSION
+  u32 index;
+  for (MASK left = lanes & s->entering; any_lane(left);) {
+    const MASK mine = take_alike(s->material, &left, &index);
+    light = select3(light, all3(scene->materials[index].emission.xyz), mine);
+  }
+  light = multiply3(paths->throughput, light);
+#endif
+  return light;
+}
+
 // Marks the pixels whose camera rays have hit something.
 static inline void note_first_hits(const PathStates* paths, MASK lanes, float4* radiance, u32* counts) {
   const MASK first = lanes & MASK_OF(paths->depth == 1);
@@ -57,9 +72,10 @@ static inline void shade_hits(const Scene* scene, const SceneRays* rays, const E
 
 // The rays of `lanes` at what they met: the surfaces of those that hit something, which are returned, and
 // what the `fresh` ones see and spawn there. The rays of `unseen` saw only what lay before.
-static inline MASK meet_surfaces(const Scene* scene, const SceneRays* rays, PathStates* paths, MASK lanes,
-                                 MASK unseen, MASK fresh, const Encounters* met, Shading* at, REAL3* light,
-                                 RayStack* stack, float4* radiance, u32* counts) {
+static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
+                                 PathStates* paths, MASK lanes, MASK unseen, MASK fresh,
+                                 const Encounters* met, Shading* at, REAL3* light, RayStack* stack,
+                                 float4* radiance, u32* counts) {
   REAL3 seen = see_emitted(rays, paths);
   paths->throughput = multiply3(paths->throughput, met->absorbed);
   if (BATCH > 1 && any_lane(unseen)) push_rays(stack, rays, paths, unseen);
@@ -69,6 +85,7 @@ static inline MASK meet_surfaces(const Scene* scene, const SceneRays* rays, Path
   if (any_lane(hit)) {
     shade_hits(scene, rays, met, hit, at);
     seen = select3(seen, add3(seen, see_ambient(scene, rays, paths, &met->hit, &at->bsdf, hit)), hit);
+    if (HAS_EMISSION) seen = add3(seen, see_shining(scene, paths, &at->s, hit));
     spawn_children(scene, &at->s, &at->bsdf, met, rays, paths, hit & fresh, stack, counts);
     note_first_hits(paths, hit & fresh, radiance, counts);
   }

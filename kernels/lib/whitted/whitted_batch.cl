@@ -8,9 +8,9 @@
 #if BATCH > 1
 // Adds the lights that the surfaces of `lanes` see. `coherent`: the rays run close together, and so do those
 // to one light; else shadow rays wait until there are many, or with `last` until no others come.
-static inline void add_lights(const Scene* scene, const SceneRays* rays, const PathStates* paths, MASK lanes,
-                              bool coherent, bool last, const Hits* hits, const Shading* at,
-                              ShadowStack* stack, float4* radiance, u32* counts) {
+static inline void add_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
+                              const PathStates* paths, MASK lanes, bool coherent, bool last, const Hits* hits,
+                              const Shading* at, ShadowStack* stack, float4* radiance, u32* counts) {
   u32 light = any_lane(lanes) ? 0u : scene->info->light_count;
   for (;;) {
     u32 most = BATCH;
@@ -18,7 +18,7 @@ static inline void add_lights(const Scene* scene, const SceneRays* rays, const P
     if (stack->count < BATCH) {
       if (light < scene->info->light_count) {
         const u32 before = stack->count;
-        cast_shadows(scene, light++, rays, paths, lanes, hits, at, stack, counts);
+        cast_shadows(scene, light++, tile, rays, paths, lanes, hits, at, stack, counts);
         most = stack->count - before;
         together = coherent && most;
         if (!together) continue;
@@ -32,24 +32,28 @@ static inline void add_lights(const Scene* scene, const SceneRays* rays, const P
 
 // Takes a batch to the next interfaces, adds what it sees there to the pixels and leaves the rays that come
 // of it on the stacks.
-NEVER_INLINE void follow_batch(const Scene* scene, SceneRays* rays, PathStates* paths, MASK lanes,
-                               bool coherent, RayStack* stack, ShadowStack* shadows, float4* radiance,
-                               u32* counts) {
+NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, SceneRays* rays,
+                               PathStates* paths, MASK lanes, bool coherent, RayStack* stack,
+                               ShadowStack* shadows, float4* radiance, u32* counts) {
   Encounters met;
   Shading at;
   REAL3 seen;
   const MASK unseen = next_interfaces(scene, rays, lanes, coherent, &met, counts);
-  const MASK hit =
-      meet_surfaces(scene, rays, paths, lanes, unseen, ALL_LANES, &met, &at, &seen, stack, radiance, counts);
-  add_lights(scene, rays, paths, hit, coherent, stack->count == 0u, &met.hit, &at, shadows, radiance, counts);
+  const MASK hit = meet_surfaces(scene, tile, rays, paths, lanes, unseen, ALL_LANES, &met, &at, &seen, stack,
+                                 radiance, counts);
+  add_lights(scene, tile, rays, paths, hit, coherent, stack->count == 0u, &met.hit, &at, shadows, radiance,
+             counts);
   add_to_pixels(seen, paths->pixel, lanes, radiance);
 }
 
 // The camera's rays of the lanes of `lanes`, pixel i in lane i, with all that comes of them. radiance[i].xyz
 // receives the light of pixel i of the tile, w whether its camera ray hit anything.
-static inline void trace_whitted(const Scene* scene, SceneRays* rays, MASK lanes, RayStack* stack,
-                                 float4* radiance, u32* counts) {
+static inline void trace_whitted(const Scene* scene, const TileSamples* tile, SceneRays* rays, MASK lanes,
+                                 RayStack* stack, float4* radiance, u32* counts) {
   PathStates paths;
+#if HAS_RANDOM
+  paths.branch = NO_LANES;
+#endif
   paths.throughput = all3((float3)(1.0f));
   paths.depth = (MASK)(1);
   for (u32 i = 0; i < BATCH; ++i) MASK_LANE(paths.pixel, i) = (int)i;
@@ -58,7 +62,7 @@ static inline void trace_whitted(const Scene* scene, SceneRays* rays, MASK lanes
   stack->count = 0;
   bool from_camera = true;
   do {
-    follow_batch(scene, rays, &paths, lanes, from_camera, stack, &shadows, radiance, counts);
+    follow_batch(scene, tile, rays, &paths, lanes, from_camera, stack, &shadows, radiance, counts);
     from_camera = false;
     lanes = stack->count ? pop_rays(stack, BATCH, rays, &paths) : NO_LANES;
   } while (any_lane(lanes));

@@ -13,8 +13,8 @@
 #define DEPTH_BITS 8u
 
 // Takes a ray to what it meets next. Returns whether it continues.
-static inline MASK follow_ray(const Scene* scene, SceneRays* rays, PathStates* paths, RayStack* stack,
-                              float4* radiance, u32* counts) {
+static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, SceneRays* rays, PathStates* paths,
+                              RayStack* stack, float4* radiance, u32* counts) {
   Encounters met;
   const bool to_light = paths->depth == 0;
   next_hits(scene, rays, ALL_LANES, to_light, &met.hit, counts);
@@ -26,8 +26,8 @@ static inline MASK follow_ray(const Scene* scene, SceneRays* rays, PathStates* p
   paths->depth &= (1 << DEPTH_BITS) - 1;
   Shading at;
   REAL3 seen;
-  const MASK hit =
-      meet_surfaces(scene, rays, paths, ALL_LANES, unseen, fresh, &met, &at, &seen, stack, radiance, counts);
+  const MASK hit = meet_surfaces(scene, tile, rays, paths, ALL_LANES, unseen, fresh, &met, &at, &seen, stack,
+                                 radiance, counts);
   add_to_pixels(seen, paths->pixel, fresh, radiance);
   forget_glow(rays);
   if (!hit) return unseen;
@@ -37,18 +37,25 @@ static inline MASK follow_ray(const Scene* scene, SceneRays* rays, PathStates* p
     again.depth = paths->depth | (int)(last << DEPTH_BITS);
     push_rays(stack, rays, &again, ALL_LANES);
   }
-  for (; light < last; ++light) cast_shadows(scene, light, rays, paths, hit, &met.hit, &at, stack, counts);
+  for (; light < last; ++light)
+    cast_shadows(scene, light, tile, rays, paths, hit, &met.hit, &at, stack, counts);
   return NO_LANES;
 }
 
 // The camera's ray in `rays`, with all that comes of it. radiance->xyz receives the light of the pixel, w
 // whether the ray hit anything.
-static inline void trace_whitted(const Scene* scene, SceneRays* rays, MASK lanes, RayStack* stack,
-                                 float4* radiance, u32* counts) {
-  PathStates paths = {all3((float3)(1.0f)), NO_LANES, (MASK)(1)};
+static inline void trace_whitted(const Scene* scene, const TileSamples* tile, SceneRays* rays, MASK lanes,
+                                 RayStack* stack, float4* radiance, u32* counts) {
+  PathStates paths;
+  paths.throughput = all3((float3)(1.0f));
+  paths.pixel = NO_LANES;
+  paths.depth = (MASK)(1);
+#if HAS_RANDOM
+  paths.branch = NO_LANES;
+#endif
   stack->count = 0;
   while (any_lane(lanes)) {
-    lanes = follow_ray(scene, rays, &paths, stack, radiance, counts);
+    lanes = follow_ray(scene, tile, rays, &paths, stack, radiance, counts);
     if (!any_lane(lanes) && stack->count) lanes = pop_rays(stack, 1u, rays, &paths);
   }
 }

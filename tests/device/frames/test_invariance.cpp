@@ -41,12 +41,17 @@ SceneDescription busy_scene() {
   return scene;
 }
 
-// The same with a mesh of glass in it, smaller: the compact tracer is slow on processors.
+// The same with a mesh of glass in it and a lamp, smaller: the compact tracer is slow on processors.
 SceneDescription busy_mesh_scene() {
   SceneDescription scene = busy_scene();
   scene.image.width = 21;
   scene.image.height = 17;
   scene.render.samples = 2;
+  LightDescription lamp;
+  lamp.type = LightType::sphere;
+  lamp.position = {3, 4, 2};
+  lamp.samples = 2;
+  scene.lights.push_back(lamp);
   scene.meshes = {bumpy_sphere(12)};
   scenes::place(scene, MeshShape{0}, scenes::add_dielectric(scene, 1.5, {0.3, 0.1, 0.2}, 5),
                 glm::scale(glm::translate(glm::dmat4(1), dvec3(-1.7, -0.2, 0.9)), dvec3(0.6)));

@@ -45,8 +45,9 @@ std::string settings(const SceneDescription& scene) {
 }
 
 std::string line(const LightDescription& l) {
-  return fmt::format("light {} {} {} {} {} {} {} {}\n", static_cast<int>(l.type), text(l.color), l.intensity,
-                     text(l.position), text(l.direction), l.inner_angle, l.outer_angle, text(l.falloff));
+  return fmt::format("light {} {} {} {} {} {} {} {}", static_cast<int>(l.type), text(l.color), l.intensity,
+                     text(l.position), text(l.direction), l.inner_angle, l.outer_angle, text(l.falloff)) +
+         fmt::format(" {} {} {} {} {} {}\n", l.size.x, l.size.y, text(l.up), l.radius, l.samples, l.visible);
 }
 
 std::string tree(const SdfNode& n) {
@@ -70,8 +71,8 @@ std::string line(const MediumDescription& m) {
 }
 
 std::string line(const MaterialDescription& m) {
-  return fmt::format("material {} {} {} {} {} {} {} ", m.name, static_cast<int>(m.type), text(m.ambient),
-                     text(m.diffuse), text(m.specular), m.exponent, m.blinn) +
+  return fmt::format("material {} {} {} {} {} {} {} {} ", m.name, static_cast<int>(m.type), text(m.ambient),
+                     text(m.diffuse), text(m.specular), text(m.emission), m.exponent, m.blinn) +
          fmt::format("{} {} {} {} {} {} {} {} {}\n", text(m.reflection), text(m.transmission), m.medium,
                      m.shadow_opaque, m.checker, text(m.checker_ambient), text(m.checker_diffuse),
                      m.checker_size, m.vertex_color);

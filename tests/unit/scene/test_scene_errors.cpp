@@ -136,8 +136,7 @@ TEST_CASE("bad lights are refused with their place") {
       {scene_with(R"("lights": {})"), "/lights", {"wanted an array of lights", "found an object"}},
       light("3", "", {"wanted an object", "found 3"}),
       light(R"({"color": [1, 1, 1]})", "", {"missing key \"type\"", "\"ambient\"", "\"spot\""}),
-      light(R"({"type": "sun"})", "/type",
-            {"\"ambient\", \"directional\", \"point\" or \"spot\"", "\"sun\""}),
+      light(R"({"type": "sun"})", "/type", {"\"ambient\", \"directional\", \"point\", \"spot\"", "\"sun\""}),
       light(R"({"type": "ambient", "position": [0, 0, 0]})", "/position", {"unknown key \"position\""}),
       light(R"({"type": "directional"})", "", {"missing key \"direction\""}),
       light(R"({"type": "directional", "direction": [0, 0, 0]})", "/direction", {"length 0"}, false),
@@ -159,6 +158,16 @@ TEST_CASE("bad lights are refused with their place") {
       light(
           R"({"type": "spot", "position": [0, 1, 0], "target": [0, 0, 0], "outer_angle": 20, "inner_angle": 25})",
           "", {"\"inner_angle\"", "20", "found 25"}, false),
+      light(R"({"type": "rectangle", "position": [0, 1, 0], "target": [0, 0, 0]})", "",
+            {"missing key \"size\""}),
+      light(R"({"type": "rectangle", "position": [0, 1, 0], "target": [0, 0, 0], "size": [1]})", "/size",
+            {"2 lengths", "1 item"}),
+      light(R"({"type": "rectangle", "position": [0, 1, 0], "target": [0, 0, 0], "size": [1, 0]})", "/size/1",
+            {"above 0", "found 0"}),
+      light(R"({"type": "disk", "position": [0, 1, 0]})", "", {"\"direction\" or \"target\"", "found none"}),
+      light(R"({"type": "sphere", "position": [0, 1, 0], "radius": 0})", "/radius", {"above 0", "found 0"}),
+      light(R"({"type": "sphere", "position": [0, 1, 0], "samples": 0})", "/samples", {"1", "found 0"}),
+      light(R"({"type": "sphere", "position": [0, 1, 0], "falloff": {}})", "/falloff", {"unknown key"}),
   });
 }
 

@@ -31,7 +31,9 @@ const std::string everything = R"({
   "media": {"a": {"absorption": {"color": [1, 1, 1], "distance": 1}}, "b": {"absorption": [0, 1, 2]}},
   "lights": [{"type": "ambient"}, {"type": "directional", "direction": [0, -1, 0]},
     {"type": "point", "position": [0, 0, 0], "falloff": {}},
-    {"type": "spot", "position": [0, 0, 0], "direction": [0, 1, 0]}],
+    {"type": "spot", "position": [0, 0, 0], "direction": [0, 1, 0]},
+    {"type": "rectangle", "position": [0, 0, 0], "direction": [0, 1, 0], "size": [1, 2]},
+    {"type": "disk", "position": [0, 0, 0], "target": [0, 1, 0]}, {"type": "sphere", "position": [0, 0, 0]}],
   "materials": {
     "m": {"color": {"checker": [[0, 0, 0], [1, 1, 1]]}, "ambient": {}, "specular": {}, "reflection": {}},
     "plain": {"color": [0, 1, 0], "ambient": 0, "specular": 0.5, "transmission": 1, "ior": 1.5},

@@ -1,0 +1,50 @@
+// Random numbers for what happens on the way of rays: of each ray's pixel, sample and place in the ray tree.
+#ifndef SUNDOG_LIB_PATH_SAMPLES_CL
+#define SUNDOG_LIB_PATH_SAMPLES_CL
+#include "lib/core/sampler.cl"
+#include "lib/path/ray_stack.cl"
+
+// The pixels of a work-item's tile, and which of their samples is made.
+typedef struct TileSamples {
+#if HAS_RANDOM
+  u32 x[BATCH], y[BATCH];
+#endif
+  u32 sample;
+} TileSamples;
+
+static inline void set_tile_pixel(TileSamples* tile, u32 lane, uint2 pixel) {
+#if HAS_RANDOM
+  tile->x[lane] = pixel.x;
+  tile->y[lane] = pixel.y;
+#endif
+}
+
+#if HAS_RANDOM
+// Place in the ray tree of a child of `branch` (0: the camera's ray) by the number of its kind: what it adds
+// to dimensions, so that surfaces of one depth differ.
+static inline MASK child_branch(MASK branch, u32 kind) {
+  MASK child;
+  for (u32 i = 0; i < BATCH; ++i)
+    MASK_LANE(child, i) = (int)(hash_u32((u32)MASK_LANE(branch, i) + kind + 1u) & ~0xFFFu);
+  return child;
+}
+
+// Two numbers for each of `lanes`, whose rays have met a surface: the dimensions `offset` (BOUNCE_...) and
+// the next of that surface, for the light `light` (0 where it is no light's); of the sample `part` of the
+// `parts` into which the pixel's sample is divided.
+NEVER_INLINE void bounce_numbers(const TileSamples* tile, const PathStates* paths, u32 light, u32 offset,
+                                 u32 part, u32 parts, MASK lanes, REAL* u_x, REAL* u_y) {
+  *u_x = *u_y = (REAL)(0.5f);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits), pixel = (u32)MASK_LANE(paths->pixel, i);
+    const u32 first =
+        dimension_of_bounce((u32)MASK_LANE(paths->depth, i), light) + (u32)MASK_LANE(paths->branch, i);
+    const float2 u =
+        sample_2d((uint2)(tile->x[pixel], tile->y[pixel]), tile->sample * parts + part, first + offset);
+    REAL_LANE(*u_x, i) = u.x;
+    REAL_LANE(*u_y, i) = u.y;
+  }
+}
+#endif
+
+#endif
