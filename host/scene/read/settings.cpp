@@ -51,6 +51,9 @@ void read_aim(JsonObject& object, LightDescription& light) {
   }
 }
 
+/// Products of two such lengths are floats.
+constexpr Range lamp_range{.low = 1e-15, .high = 1e15};
+
 void read_extent(JsonObject& object, LightDescription& light) {
   light.samples = object.integer("samples", light.samples, 1, 1024);
   light.visible = object.boolean("visible", light.visible);
@@ -59,9 +62,9 @@ void read_extent(JsonObject& object, LightDescription& light) {
     const JsonValue size = object.at("size", "the two edges [width, height]");
     const auto edges = size.items("2 lengths");
     if (edges.size() != 2) size.wanted("an array of 2 lengths");
-    light.size = {edges[0].number(above_0), edges[1].number(above_0)};
+    light.size = {edges[0].number(lamp_range), edges[1].number(lamp_range)};
   } else {
-    light.radius = object.number("radius", light.radius, above_0);
+    light.radius = object.number("radius", light.radius, lamp_range);
   }
 }
 

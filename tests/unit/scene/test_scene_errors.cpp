@@ -163,9 +163,9 @@ TEST_CASE("bad lights are refused with their place") {
       light(R"({"type": "rectangle", "position": [0, 1, 0], "target": [0, 0, 0], "size": [1]})", "/size",
             {"2 lengths", "1 item"}),
       light(R"({"type": "rectangle", "position": [0, 1, 0], "target": [0, 0, 0], "size": [1, 0]})", "/size/1",
-            {"above 0", "found 0"}),
+            {"1e-15", "found 0"}),
       light(R"({"type": "disk", "position": [0, 1, 0]})", "", {"\"direction\" or \"target\"", "found none"}),
-      light(R"({"type": "sphere", "position": [0, 1, 0], "radius": 0})", "/radius", {"above 0", "found 0"}),
+      light(R"({"type": "sphere", "position": [0, 1, 0], "radius": 0})", "/radius", {"1e-15", "found 0"}),
       light(R"({"type": "sphere", "position": [0, 1, 0], "samples": 0})", "/samples", {"1", "found 0"}),
       light(R"({"type": "sphere", "position": [0, 1, 0], "falloff": {}})", "/falloff", {"unknown key"}),
   });
