@@ -25,8 +25,7 @@ static inline uint2 lane_pixel(const Launch* launch, u32 item, u32 lane) {
 
 // The camera's rays of one sample. Returns the lanes that have a pixel; signs[lane] is what a sample counts.
 static inline MASK start_rays(const Scene* scene, const Launch* launch, u32 item, u32 sample,
-                              MediaStack around, SceneRays* rays, float* signs,
-                              TileSamples* tile) {
+                              MediaStack around, SceneRays* rays, float* signs, TileSamples* tile) {
   __global const SceneInfo* restrict info = scene->info;
   MASK lanes = NO_LANES;
   tile->sample = sample;
@@ -80,9 +79,10 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
 #endif
     SceneRays rays;
     float signs[BATCH];
+    TileSamples tile;
     const MASK lanes = start_rays(scene, launch, item, sample, around, &rays, signs, &tile);
     counts[COUNT_PRIMARY] += lane_count(lanes);
-    trace_whitted(scene, &rays, lanes, &stack, radiance, counts);
+    trace_whitted(scene, &tile, &rays, lanes, &stack, radiance, counts);
     store_sample(launch, item, lanes, radiance, signs, film, weights, counts);
   }
   counts[COUNT_MARCH_LEFT] = 0u;
