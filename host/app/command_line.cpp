@@ -12,6 +12,7 @@
 #include "app/bench/tune_command.h"
 #include "app/commands/check_command.h"
 #include "app/commands/formulas_command.h"
+#include "app/commands/gallery_command.h"
 #include "app/options/command_words.h"
 #include "app/options/commands.h"
 #include "app/options/option_helpers.h"
@@ -234,6 +235,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_check(arguments, chosen);
   add_tune(arguments, chosen);
   add_merge(arguments, chosen);
+  add_gallery(arguments, chosen);
   add_bench(arguments, chosen);
   const CommandWords words = words_of(root);
   if (argc < 2) return ShowText{fmt::format(short_help, fmt::join(command_names(words), ", ")), exit_usage};

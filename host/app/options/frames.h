@@ -24,8 +24,8 @@ struct FrameFiles {
   std::string image, scene, checkpoint;
 };
 
-/// Which frames are done, kept in a JSON file beside the checkpoint, so that an interrupted animation continues
-/// with the first frame that is not. Empty path: nothing is kept.
+/// Which frames are done, kept in a JSON file beside the checkpoint, so that an interrupted animation
+/// continues with the first frame that is not. Empty path: nothing is kept.
 class FrameLog {
  public:
   /// Reads the file when it is there. A damaged one is renamed, with a warning; the pictures then tell which

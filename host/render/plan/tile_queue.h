@@ -43,8 +43,8 @@ class TileQueue {
   /// making and that this one would finish sooner. Waits while there may come one; nullopt when the frame is
   /// finished or closed.
   std::optional<TileJob> take(std::size_t device);
-  /// A tile was made, in `seconds`. True: it is the first to come and counts. The others that make it are told
-  /// to stop by their cancelled().
+  /// A tile was made, in `seconds`. True: it is the first to come and counts. The others that make it are
+  /// told to stop by their cancelled().
   bool finished(std::size_t device, const TileJob& job, double seconds);
   /// Only a part of the tile was made, because the frame was stopped or another was faster. True: no other
   /// device has finished the tile or given a part of it.

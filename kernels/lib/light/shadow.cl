@@ -52,7 +52,8 @@ static inline void pass_touching(const Scene* scene, const SceneRays* rays, Hits
 }
 #endif
 
-// The lanes of `waiting` at their next hits. Returns those that continue to the light, with the rest of it in `light`.
+// The lanes of `waiting` at their next hits. Returns those that continue to the light, with the rest of it in
+// `light`.
 static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits, MASK waiting, REAL3* light) {
   const MASK hit = waiting & hit_anything(hits);
   const MASK here = current_media(scene->media, rays, waiting);

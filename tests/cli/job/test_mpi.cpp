@@ -220,7 +220,8 @@ TEST_CASE("mpirun: a rank without a device, or whose device fails, costs its par
 }
 
 TEST_CASE(
-    "mpirun: when a rank dies, the checkpoint has the finished part, and the same command continues from it") {
+    "mpirun: when a rank dies, the checkpoint has the finished part, and the same command continues from "
+    "it") {
   const MpiFolder folder;
   // Half of the frame is rank 1's, which dies in it: the frame cannot end before mpirun ends the job.
   std::vector<std::string> arguments = folder.arguments(halves);
