@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "compile/camera.h"
 #include "compile/compiled_scene.h"
+#include "compile/environment.h"
 #include "compile/fields/sdf_deep.h"
 #include "compile/filter.h"
 #include "compile/instances.h"
@@ -114,6 +115,7 @@ void add_field_features(CompiledScene& out) {
 
 void set_counts(CompiledScene& out) {
   out.info.light_count = static_cast<u32>(out.light_rays.size());
+  out.info.table_lights = static_cast<u32>(out.lights.size());
   out.info.material_count = static_cast<u32>(out.materials.size());
   out.info.medium_count = static_cast<u32>(out.media.size());
   out.info.camera_inside = out.features.camera_inside ? 1 : 0;
@@ -156,6 +158,7 @@ CompiledScene compile(const SceneDescription& scene) {
   out.origin = std::ranges::any_of(views, is_deep) ? scene.camera.position : local_origin(scene);
   set_camera(scene, out.origin, out.info);
   add_lights(scene, out);
+  add_environment(scene, out);
   const u32 default_material = add_materials(scene, out);
   out.features.sampler = scene.render.sampler;
   out.filter = filter_table(scene.render);

@@ -88,25 +88,33 @@ bool lacks_material(const SceneDescription& scene, const Object& object) {
   return materials.empty() || std::any_of(materials.begin(), materials.end(), [](int m) { return m < 0; });
 }
 
-dvec3 unit_direction(const SceneDescription& scene, const LightDescription& light, std::size_t index) {
-  const double length = glm::length(light.direction);
+/// A light and its place in the scene file, for messages.
+struct NamedLight {
+  const SceneDescription& scene;
+  const LightDescription& light;
+  const std::string& place;
+};
+
+dvec3 unit_direction(const NamedLight& named) {
+  const dvec3& direction = named.light.direction;
+  const double length = glm::length(direction);
   if (!(length > 0) || !std::isfinite(length))
-    throw SceneError(scene.file.string(), fmt::format("/lights/{}/direction", index),
+    throw SceneError(named.scene.file.string(), named.place + "/direction",
                      fmt::format("wanted a direction, found ({}, {}, {}); give the way the light travels",
-                                 light.direction.x, light.direction.y, light.direction.z));
-  return light.direction / length;
+                                 direction.x, direction.y, direction.z));
+  return direction / length;
 }
 
 double cosine(double degrees) { return std::cos(degrees * std::numbers::pi / 180); }
 
 /// The extent of a light, in `packed`.
-void pack_extent(const SceneDescription& scene, std::size_t index, const dvec3& origin, Light& packed) {
-  const LightDescription& light = scene.lights[index];
+void pack_extent(const NamedLight& named, const dvec3& origin, Light& packed) {
+  const LightDescription& light = named.light;
   if (light.type == LightType::sphere) {
     packed.edge_u.w = static_cast<float>(light.radius);
     return;
   }
-  unit_direction(scene, light, index);
+  unit_direction(named);
   const LampAxes axes = lamp_axes(light);
   const bool rectangle = light.type == LightType::rectangle;
   const double area = glm::length(glm::cross(axes.u, axes.v)) * (rectangle ? 1 : std::numbers::pi);
@@ -116,8 +124,18 @@ void pack_extent(const SceneDescription& scene, std::size_t index, const dvec3& 
   packed.edge_v = pack(axes.v, glm::length(axes.v));
 }
 
-Light pack_light(const SceneDescription& scene, std::size_t index, const dvec3& origin) {
-  const LightDescription& light = scene.lights[index];
+/// A sun of the given angle across, with the irradiance of the directional light: sin^2 of half the angle
+/// times pi is what a surface that faces it sees of it.
+void pack_sun(const LightDescription& light, Light& packed) {
+  const double half = light.angle * std::numbers::pi / 360, sine = std::sin(half);
+  const double cap = 2 * std::sin(half / 2) * std::sin(half / 2);
+  packed.kind = LIGHT_SUN;
+  packed.color = pack(light.color * light.intensity / (sine * sine));
+  packed.direction.w = static_cast<float>(light.visible ? cap : -cap);
+}
+
+Light pack_light(const NamedLight& named, const dvec3& origin) {
+  const LightDescription& light = named.light;
   Light packed{};
   packed.position = pack(light.position - origin);
   packed.color = pack(light.color * light.intensity);
@@ -132,11 +150,12 @@ Light pack_light(const SceneDescription& scene, std::size_t index, const dvec3& 
       break;
     case LightType::directional:
       packed.kind = LIGHT_DIRECTIONAL;
-      packed.direction = pack(unit_direction(scene, light, index));
+      packed.direction = pack(unit_direction(named));
+      if (light.angle > 0) pack_sun(light, packed);
       break;
     case LightType::spot:
       packed.kind = LIGHT_SPOT;
-      packed.direction = pack(unit_direction(scene, light, index), cosine(light.outer_angle));
+      packed.direction = pack(unit_direction(named), cosine(light.outer_angle));
       packed.color.w = static_cast<float>(cosine(light.inner_angle));
       break;
     case LightType::rectangle:
@@ -149,14 +168,8 @@ Light pack_light(const SceneDescription& scene, std::size_t index, const dvec3& 
       packed.kind = LIGHT_SPHERE;
       break;
   }
-  if (facts_of(light.type).extent) pack_extent(scene, index, origin, packed);
+  if (facts_of(light.type).extent) pack_extent(named, origin, packed);
   return packed;
-}
-
-/// The shadow rays that surfaces send to the light `index` of the table.
-void add_light_rays(const LightDescription& light, u32 index, CompiledScene& out) {
-  const u32 rays = facts_of(light.type).extent ? static_cast<u32>(light.samples) : 1;
-  for (u32 ray = 0; ray < rays; ++ray) out.light_rays.push_back({index, ray, rays, 0});
 }
 
 }  // namespace
@@ -172,17 +185,25 @@ u32 add_materials(const SceneDescription& scene, CompiledScene& out) {
   return static_cast<u32>(out.materials.size() - 1);
 }
 
+void add_light(const SceneDescription& scene, const LightDescription& light, const std::string& place,
+               CompiledScene& out) {
+  const Light packed = pack_light({scene, light, place}, out.origin);
+  const bool extent = facts_of(light.type).extent || packed.kind == LIGHT_SUN;
+  const auto index = static_cast<u32>(out.lights.size()), rays = extent ? static_cast<u32>(light.samples) : 1;
+  for (u32 ray = 0; ray < rays; ++ray) out.light_rays.push_back({index, ray, rays, 0});
+  out.lights.push_back(packed);
+  out.features.area_lights |= extent;
+  out.features.sky |= packed.kind == LIGHT_SUN && light.visible;
+}
+
 void add_lights(const SceneDescription& scene, CompiledScene& out) {
   dvec3 ambient(0);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const LightDescription& light = scene.lights[i];
     if (light.type == LightType::ambient)
       ambient += light.color * light.intensity;
-    else {
-      add_light_rays(light, static_cast<u32>(out.lights.size()), out);
-      out.lights.push_back(pack_light(scene, i, out.origin));
-      out.features.area_lights |= facts_of(light.type).extent;
-    }
+    else
+      add_light(scene, light, fmt::format("/lights/{}", i), out);
   }
   out.info.ambient = pack(ambient);
 }

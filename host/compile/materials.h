@@ -1,5 +1,6 @@
 // Materials, media and lights as the kernels read them.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "compile/compiled_scene.h"
@@ -14,6 +15,10 @@ u32 add_materials(const SceneDescription& scene, CompiledScene& out);
 /// Fills `out.lights`, whose positions count from `out.origin`, and `out.info.ambient`. Throws SceneError for
 /// a direction of length zero.
 void add_lights(const SceneDescription& scene, CompiledScene& out);
+
+/// One light that is not ambient; `place` is its own in the scene file.
+void add_light(const SceneDescription& scene, const LightDescription& light, const std::string& place,
+               CompiledScene& out);
 
 /// The world's fog, into `out.info`.
 void add_fog(const SceneDescription& scene, CompiledScene& out);

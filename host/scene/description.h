@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/image.h"
 #include "scene/formula/sdf.h"
 #include "shared/lights.h"
 #include "shared/sampler.h"
@@ -64,8 +65,28 @@ struct LightDescription {
   dvec2 size{1, 1};                           // rectangle: across and along `up`
   dvec3 up{0, 1, 0};
   double radius = 0.5;  // disk, sphere
+  double angle = 0;     // directional: degrees across that it takes up in the sky, [0, 90]; above 0 an extent
   int samples = 1;      // an extent: shadow rays that a surface sends to it
   bool visible = true;  // an extent: rays meet it (scene/lamps.h places what they meet)
+};
+
+enum class EnvironmentType { none, image, gradient, sky };
+
+/// Light from all around, infinitely far away. Radiance is colour times intensity times that of the type.
+struct EnvironmentDescription {
+  EnvironmentType type = EnvironmentType::none;
+  dvec3 color{1};
+  double intensity = 1;
+  dvec3 up{0, 1, 0};
+  double rotate = 0;    // degrees about `up`
+  int samples = 1;      // shadow rays that a surface sends to it, and as many to its sun
+  bool visible = true;  // rays that meet nothing see it
+  Image picture;        // image: equirectangular, the sky's top in row 0
+  dvec3 bottom{0.3}, top{1};                   // gradient: linear in the elevation's sine
+  double sun_altitude = 40, sun_azimuth = 60;  // sky: degrees, [0, 90], and from ahead to the right
+  double sun_size = 0.53;                      // sky: degrees across; 0: no sun
+  double turbidity = 3;                        // sky: 2 very clear .. 10 hazy
+  dvec3 ground{0.2};                           // sky: the part of light that the ground throws back
 };
 
 /// The world's medium gives way to every other where solids overlap; a scene file's priorities are
@@ -193,6 +214,7 @@ struct SceneDescription {
   ImageSettings image;
   RenderSettings render;
   FogDescription fog;
+  EnvironmentDescription environment;
   std::vector<LightDescription> lights;
   std::vector<MediumDescription> media;  // [0] is the world's, of priority world_priority
   std::vector<MaterialDescription> materials;

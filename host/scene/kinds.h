@@ -51,11 +51,14 @@ inline constexpr std::array light_types = {LightTypeFacts{"ambient", LightType::
 #undef SUNDOG_LIGHT_FACTS
 };
 
+/// By EnvironmentType, from image on.
+inline constexpr std::array<std::string_view, 3> environment_types = {"image", "gradient", "sky"};
+
 constexpr const LightTypeFacts& facts_of(LightType type) {
   return light_types.at(static_cast<std::size_t>(type));
 }
 
-/// Of a LIGHT_* constant.
+/// Of a LIGHT_* constant of the list.
 constexpr const LightTypeFacts& facts_of_kind(u32 kind) { return light_types.at(kind + 1); }
 
 }  // namespace sundog

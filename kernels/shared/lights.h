@@ -17,16 +17,20 @@ SUNDOG_SHARED_BEGIN
   LIGHT(SPHERE, sphere, 1, 0, 1)
 
 #define LIGHT_CONSTANT(constant, name, placed, aimed, extent) LIGHT_##constant,
-typedef enum LightKind SUNDOG_ENUM_OF_U32 { LIGHTS(LIGHT_CONSTANT) LIGHT_KINDS } LightKind;
+typedef enum LightKind SUNDOG_ENUM_OF_U32 {
+  LIGHTS(LIGHT_CONSTANT) LIGHT_KINDS,
+  LIGHT_SUN = LIGHT_KINDS,  // a directional light from a disk in the sky
+  LIGHT_ENVIRONMENT         // from all around (shared/environment.h)
+} LightKind;
 #undef LIGHT_CONSTANT
 
 // 96 bytes. A light with an extent shines from its front, the side that `direction` points to; a sphere from
-// its outside.
+// its outside. direction.w: of a spot the cosine of the cone's outer half angle; of an extent its area; of a
+// sun 1 minus the cosine of its half angle, below 0 where it is not seen.
 typedef struct Light {
-  float4 position;  // world; of a rectangle the corner, else the centre
-  float4
-      direction;  // unit, the way the light travels; w = cosine of the cone's outer half angle, or the area
-  float4 color;   // times intensity (the radiance, of an extent); w = cosine of the cone's inner half angle
+  float4 position;   // world; of a rectangle the corner, else the centre
+  float4 direction;  // unit, the way the light travels; w: see above
+  float4 color;  // times intensity (the radiance, of an extent); w = cosine of the cone's inner half angle
   float falloff_constant, falloff_linear,
       falloff_quadratic;  // intensity / (c + l d + q d^2), d in world units
   u32 kind;               // LIGHT_*

@@ -66,15 +66,17 @@ typedef struct SceneInfo {
   u32 instance_count;
   u32 light_count;  // rays that a surface sends to lights: one a light, or with HAS_AREA_LIGHTS light_rays
   u32 material_count, medium_count;
-  u32 max_depth;        // 1 = no secondary rays; the camera's ray has depth 1
-  u32 samples;          // per pixel
-  float cutoff;         // a ray whose greatest throughput component is below it ends
-  u32 camera_inside;    // 1: the camera may be inside a solid with a medium; its media stack must be found
-  float4 scene_center;  // bounding sphere of all instances but planes and fields; w = radius
-  float4 up;            // unit: the scene's up
-  float4 fog;           // colour of the world's fog; w = its density per unit of length (0: none)
-  u32 field_end;        // instances [instance_count, field_end) place distance fields
-  u32 pad0, pad1, pad2;
+  u32 max_depth;         // 1 = no secondary rays; the camera's ray has depth 1
+  u32 samples;           // per pixel
+  float cutoff;          // a ray whose greatest throughput component is below it ends
+  u32 camera_inside;     // 1: the camera may be inside a solid with a medium; its media stack must be found
+  float4 scene_center;   // bounding sphere of all instances but planes and fields; w = radius
+  float4 up;             // unit: the scene's up
+  float4 fog;            // colour of the world's fog; w = its density per unit of length (0: none)
+  u32 field_end;         // instances [instance_count, field_end) place distance fields
+  u32 table_lights;      // rows of the table of lights
+  u32 sees_environment;  // 1: rays that meet nothing see the environment, else the background
+  u32 pad0;
   float4 origin;       // of the tables' coordinates, in the world
   float4 origin_rest;  // what its floats leave out
 } SceneInfo;

@@ -7,6 +7,7 @@
 #ifndef SUNDOG_SHARED_SCENE_TABLES_H
 #define SUNDOG_SHARED_SCENE_TABLES_H
 #include "shared/bvh.h"
+#include "shared/environment.h"
 #include "shared/scene.h"
 #include "shared/sdf.h"
 
@@ -20,6 +21,9 @@
   TABLE(Medium, Medium, media, "media")                           \
   TABLE(Light, Light, lights, "lights")                           \
   TABLE(LightRay, LightRay, light_rays, "rays to lights")         \
+  TABLE(Environment, Environment, environments, "environments")   \
+  TABLE(float4, float4, environment, "environment's pixels")      \
+  TABLE(float, float, environment_shares, "environment's shares") \
   TABLE(SdfField, SdfField, sdf_fields, "fields")                 \
   TABLE(float, float, sdf_parameters, "field parameters")         \
   TABLE(float, float, filter, "filter")

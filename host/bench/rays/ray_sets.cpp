@@ -137,7 +137,7 @@ Viewpoint scene_viewpoint(const CompiledScene& scene) {
   const float radius = info.scene_center.w;
   view.light = view.eye + radius * (view.right + view.up);
   for (const Light& light : scene.lights)
-    if (facts_of_kind(light.kind).placed) {
+    if (light.kind < LIGHT_KINDS && facts_of_kind(light.kind).placed) {
       view.light = xyz(light.position);
       break;
     }

@@ -1,5 +1,6 @@
 // The parts of a scene file, each read from its JSON value. All throw SceneError with file and pointer.
 #pragma once
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -21,6 +22,9 @@ Camera read_camera(const JsonValue& value, bool& placed);
 ImageSettings read_image(const JsonValue& value);
 RenderSettings read_render(const JsonValue& value);
 LightDescription read_light(const JsonValue& value);
+/// `read_picture` reads the image file that a value names.
+EnvironmentDescription read_environment(const JsonValue& value,
+                                        const std::function<Image(const JsonValue&)>& read_picture);
 FogDescription read_fog(const JsonValue& value);
 
 MediumDescription read_medium(const JsonValue& value, std::string name);

@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "base/error.h"
+#include "base/image_io.h"
 #include "scene/animate.h"
 #include "scene/bounds.h"
 #include "scene/formula/read.h"
@@ -43,6 +46,9 @@ class SceneReader {
     if (const auto camera = object.find("camera")) scene_.camera = read_camera(*camera, placed);
     if (const auto lights = object.find("lights"))
       for (const JsonValue& light : lights->items("lights")) scene_.lights.push_back(read_light(light));
+    if (const auto environment = object.find("environment"))
+      scene_.environment =
+          read_environment(*environment, [&](const JsonValue& file) { return read_picture(file); });
     read_tables(object);
     for (const JsonValue& item : object.at("objects", "an array of objects").items("objects"))
       read_object(item, Placement{});
@@ -85,15 +91,35 @@ class SceneReader {
     });
   }
 
-  /// A model file named in the scene, by a path from the scene's own folder.
-  fs::path find_model(const JsonValue& value) const {
+  /// A file named in the scene, by a path from the scene's own folder.
+  fs::path find_file(const JsonValue& value) const {
     const fs::path file = scene_.file.parent_path() / value.text();
     if (file != scene_.file && !root_.context().outside_files && leads_outside(scene_.file, file))
       value.fail(fmt::format("\"{}\" leads out of the scene's folder: {}", value.text(), outside_hint));
     require_readable(file, scene_.file, value.pointer());
+    return file;
+  }
+
+  fs::path find_model(const JsonValue& value) const {
+    fs::path file = find_file(value);
     if (!is_model_file(file))
       value.wanted("a model file (.gltf, .glb, .obj, .ply, .stl or .nff, each also .gz)");
     return file;
+  }
+
+  /// An image file named in the scene, whose pixels must be finite.
+  Image read_picture(const JsonValue& value) const {
+    const fs::path file = find_file(value);
+    Image image = read_image(file);
+    for (std::size_t i = 0; i < image.data.size(); ++i)
+      if (!std::isfinite(image.data[i])) {
+        const auto pixel = i / static_cast<std::size_t>(image.channels);
+        const auto width = static_cast<std::size_t>(image.width);
+        throw SceneError(file.string(), "",
+                         fmt::format("the pixel ({}, {}) is not finite; wanted a picture of finite light",
+                                     pixel % width, pixel / width));
+      }
+    return image;
   }
 
   ModelOptions model_options() const { return {.outside_files = root_.context().outside_files}; }

@@ -51,12 +51,24 @@ void read_aim(JsonObject& object, LightDescription& light) {
   }
 }
 
+void read_sun(const JsonValue& value, EnvironmentDescription& e) {
+  value.object("sun", [&](JsonObject& object) {
+    e.sun_altitude = object.number("altitude", e.sun_altitude, {.low = 0, .high = 90});
+    e.sun_azimuth = object.number("azimuth", e.sun_azimuth, {.low = -360, .high = 360});
+    e.sun_size = object.number("size", e.sun_size, {.low = 0, .high = 90});
+  });
+}
+
 /// Products of two such lengths are floats.
 constexpr Range lamp_range{.low = 1e-15, .high = 1e15};
 
+void read_sampling(JsonObject& object, int& samples, bool& visible) {
+  samples = object.integer("samples", samples, 1, 1024);
+  visible = object.boolean("visible", visible);
+}
+
 void read_extent(JsonObject& object, LightDescription& light) {
-  light.samples = object.integer("samples", light.samples, 1, 1024);
-  light.visible = object.boolean("visible", light.visible);
+  read_sampling(object, light.samples, light.visible);
   if (light.type == LightType::rectangle) {
     if (const auto up = object.find("up")) light.up = up->direction();
     const JsonValue size = object.at("size", "the two edges [width, height]");
@@ -163,6 +175,34 @@ FogDescription read_fog(const JsonValue& value) {
   });
 }
 
+EnvironmentDescription read_environment(const JsonValue& value,
+                                        const std::function<Image(const JsonValue&)>& read_picture) {
+  const std::string type = value.member("type", list_names(environment_types)).choice(environment_types);
+  return value.object(type + "_environment", [&](JsonObject& object) {
+    EnvironmentDescription e;
+    object.at("type", "");
+    e.color = object.color("color", e.color);
+    e.intensity = object.number("intensity", e.intensity, at_least_0);
+    if (const auto up = object.find("up")) e.up = up->direction();
+    e.rotate = object.number("rotate", e.rotate, {.low = -1e6, .high = 1e6});
+    read_sampling(object, e.samples, e.visible);
+    if (type == "image") {
+      e.type = EnvironmentType::image;
+      e.picture = read_picture(object.at("file", "the path of an image"));
+    } else if (type == "gradient") {
+      e.type = EnvironmentType::gradient;
+      e.bottom = object.color("bottom", e.bottom);
+      e.top = object.color("top", e.top);
+    } else {
+      e.type = EnvironmentType::sky;
+      e.turbidity = object.number("turbidity", e.turbidity, {.low = 2, .high = 10});
+      e.ground = object.color("ground", e.ground, zero_to_one);
+      if (const auto sun = object.find("sun")) read_sun(*sun, e);
+    }
+    return e;
+  });
+}
+
 LightDescription read_light(const JsonValue& value) {
   static constexpr auto types = [] {
     std::array<std::string_view, light_types.size()> names{};
@@ -186,6 +226,8 @@ LightDescription read_light(const JsonValue& value) {
         break;
       case LightType::directional:
         light.direction = object.at("direction", "the way the light travels [x, y, z]").direction();
+        light.angle = object.number("angle", light.angle, {.low = 0, .high = 90});
+        read_sampling(object, light.samples, light.visible);
         break;
       case LightType::rectangle:
       case LightType::disk:

@@ -3,6 +3,7 @@
 #define SUNDOG_LIB_LIGHT_CL
 #include "lib/core/tables.h"
 #include "lib/light/area_light.cl"
+#include "lib/light/environment.cl"
 #include "lib/light/light_sample.cl"
 #include "lib/path/scene_ray.cl"
 
@@ -11,6 +12,10 @@
 static inline LightSamples sample_light(const Scene* scene, u32 index, REAL3 p, REAL u_x, REAL u_y) {
   __global const Light* light = scene->lights + index;
 #if HAS_AREA_LIGHTS
+  if (light->kind == LIGHT_SUN) return sample_sun(light, u_x, u_y);
+#if HAS_ENVIRONMENT
+  if (light->kind == LIGHT_ENVIRONMENT) return sample_environment(scene, u_x, u_y);
+#endif
   if (light->kind >= LIGHT_RECTANGLE) return sample_area_light(light, p, u_x, u_y);
 #endif
   LightSamples sample;

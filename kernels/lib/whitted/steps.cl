@@ -27,8 +27,9 @@ static inline REAL3 see_fog(const Scene* scene, const Encounters* met, MASK ende
 #endif
 }
 
-static inline REAL3 see_background(const Scene* scene, const SceneRays* rays, const PathStates* paths) {
-  return multiply3(paths->throughput, background_along(scene->info, rays->d));
+static inline REAL3 see_background(const Scene* scene, const SceneRays* rays, const PathStates* paths,
+                                   MASK lanes) {
+  return multiply3(paths->throughput, sky_along(scene, rays->d, lanes));
 }
 
 // Ambient light on surfaces, less in the crevices of fields.
@@ -81,7 +82,7 @@ static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, co
   if (BATCH > 1 && any_lane(unseen)) push_rays(stack, rays, paths, unseen);
   const MASK ended = lanes & ~unseen, hit = ended & hit_anything(&met->hit);
   if (HAS_FOG) seen = add3(seen, see_fog(scene, met, ended, paths));
-  seen = select3(seen, add3(seen, see_background(scene, rays, paths)), ended & ~hit);
+  seen = select3(seen, add3(seen, see_background(scene, rays, paths, ended & ~hit)), ended & ~hit);
   if (any_lane(hit)) {
     shade_hits(scene, rays, met, hit, at);
     seen = select3(seen, add3(seen, see_ambient(scene, rays, paths, &met->hit, &at->bsdf, hit)), hit);

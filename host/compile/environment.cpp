@@ -1,0 +1,179 @@
+// See environment.h.
+#include "compile/environment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "compile/materials.h"
+#include "compile/pack.h"
+#include "compile/sky.h"
+
+namespace sundog {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr u32 most_columns = 1024, most_rows = 512;  // cells
+constexpr int gradient_rows = 256, sky_columns = 512, sky_rows = 256;
+
+/// Columns: to the right, up and ahead, as the picture is turned.
+glm::dmat3 axes_of(const EnvironmentDescription& e) {
+  const dvec3 up = glm::normalize(e.up);
+  // As near to +x and -z as an upright picture has them.
+  dvec3 right = glm::cross(dvec3(0, 0, -1), up);
+  if (glm::length(right) < 1e-6) right = dvec3(1, 0, 0);
+  right = glm::normalize(right);
+  const dvec3 ahead = glm::cross(up, right);
+  const double angle = e.rotate * pi / 180, c = std::cos(angle), s = std::sin(angle);
+  return {c * right + s * ahead, up, c * ahead - s * right};
+}
+
+struct Picture {
+  u32 width = 0, height = 0;
+  std::vector<float4> pixels;
+};
+
+Picture picture_of_image(const EnvironmentDescription& e) {
+  Picture picture{static_cast<u32>(e.picture.width), static_cast<u32>(e.picture.height), {}};
+  const dvec3 factor = e.color * e.intensity;
+  for (int y = 0; y < e.picture.height; ++y)
+    for (int x = 0; x < e.picture.width; ++x) {
+      const float* p = e.picture.pixel(x, y);
+      picture.pixels.push_back(pack(glm::max(dvec3(p[0], p[1], p[2]), dvec3(0)) * factor));
+    }
+  return picture;
+}
+
+Picture picture_of_gradient(const EnvironmentDescription& e) {
+  Picture picture{1, gradient_rows, {}};
+  for (int y = 0; y < gradient_rows; ++y) {
+    const double share = 0.5 + 0.5 * std::cos(pi * (y + 0.5) / gradient_rows);
+    picture.pixels.push_back(pack(glm::mix(e.bottom, e.top, share) * e.color * e.intensity));
+  }
+  return picture;
+}
+
+/// Towards the sun, in the environment's axes: x to the right, y up, z ahead.
+dvec3 sun_in_axes(const EnvironmentDescription& e) {
+  const double height = e.sun_altitude * pi / 180, azimuth = e.sun_azimuth * pi / 180;
+  return {std::cos(height) * std::sin(azimuth), std::sin(height), std::cos(height) * std::cos(azimuth)};
+}
+
+Sky sky_of(const EnvironmentDescription& e) { return {e.turbidity, e.sun_altitude * pi / 180}; }
+
+Picture picture_of_sky(const EnvironmentDescription& e) {
+  const Sky sky = sky_of(e);
+  const dvec3 sun = sun_in_axes(e), factor = e.color * e.intensity;
+  Picture picture{sky_columns, sky_rows, std::vector<float4>(std::size_t{sky_columns} * sky_rows)};
+  dvec3 level(0);  // irradiance of level ground, over pi
+  for (int y = 0; y < sky_rows / 2; ++y)
+    for (int x = 0; x < sky_columns; ++x) {
+      const double zenith = pi * (y + 0.5) / sky_rows, azimuth = 2 * pi * (x + 0.5) / sky_columns - pi;
+      const dvec3 d(std::sin(zenith) * std::sin(azimuth), std::cos(zenith), std::sin(zenith) * std::cos(azimuth));
+      const dvec3 light = sky.radiance(zenith, std::acos(std::clamp(glm::dot(d, sun), -1.0, 1.0)));
+      level += light * (std::cos(zenith) * std::sin(zenith) * 2 * pi / (sky_columns * double{sky_rows}));
+      picture.pixels[std::size_t(y) * sky_columns + std::size_t(x)] = pack(light * factor);
+    }
+  level += sky.sun_irradiance() * sun.y;
+  const auto horizon = picture.pixels.begin() + sky_rows / 2 * sky_columns;
+  std::fill(horizon, picture.pixels.end(), pack(level * e.ground * factor));
+  return picture;
+}
+
+double luminance(const float4& c) { return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z); }
+
+/// The luminance of the blended picture, integrated over a pixel's square: its own and its neighbours'.
+double light_of_pixel(const Picture& picture, u32 x, u32 y) {
+  static constexpr double share[3] = {0.125, 0.75, 0.125};
+  double sum = 0;
+  for (u32 j = 0; j < 3; ++j)
+    for (u32 i = 0; i < 3; ++i) {
+      const u32 row = std::min(y + j > 0 ? y + j - 1 : 0, picture.height - 1);
+      const u32 column = (x + i + picture.width - 1) % picture.width;
+      sum += share[i] * share[j] * luminance(picture.pixels[std::size_t{row} * picture.width + column]);
+    }
+  return sum;
+}
+
+/// Running sums as shares of the whole; even ones where there is no light. Returns the whole.
+double append_shares(std::span<const double> light, std::vector<float>& shares) {
+  double whole = 0, sum = 0;
+  for (const double value : light) whole += value;
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    shares.push_back(static_cast<float>(whole > 0 ? sum / whole : double(i) / double(light.size())));
+    sum += light[i];
+  }
+  shares.push_back(1);
+  return whole;
+}
+
+/// Pixels a cell along an axis.
+u32 pixels_a_cell(u32 pixels, u32 most) {
+  u32 each = 1;
+  while (pixels / each > most || pixels % each != 0) ++each;
+  return each;
+}
+
+void add_shares(const Picture& picture, Environment& e, std::vector<float>& shares) {
+  const u32 across = pixels_a_cell(picture.width, most_columns), down = pixels_a_cell(picture.height, most_rows);
+  e.columns = picture.width / across;
+  e.rows = picture.height / down;
+  std::vector<double> rows(e.rows);
+  std::vector<float> cells;
+  for (u32 row = 0; row < e.rows; ++row) {
+    std::vector<double> light(e.columns);
+    for (u32 y = row * down; y < (row + 1) * down; ++y) {
+      const double angle = std::cos(pi * y / picture.height) - std::cos(pi * (y + 1) / picture.height);
+      for (u32 x = 0; x < picture.width; ++x) light[x / across] += angle * light_of_pixel(picture, x, y);
+    }
+    rows[row] = append_shares(light, cells);
+  }
+  append_shares(rows, shares);
+  shares.insert(shares.end(), cells.begin(), cells.end());
+}
+
+void add_sun(const SceneDescription& scene, const glm::dmat3& axes, CompiledScene& out) {
+  const EnvironmentDescription& e = scene.environment;
+  if (e.sun_size <= 0) return;
+  LightDescription sun;
+  sun.type = LightType::directional;
+  sun.direction = -(axes * sun_in_axes(e));
+  sun.color = sky_of(e).sun_irradiance() * e.color;
+  sun.intensity = e.intensity;
+  sun.angle = e.sun_size;
+  sun.samples = e.samples;
+  sun.visible = e.visible;
+  add_light(scene, sun, "/environment/sun", out);
+}
+
+}  // namespace
+
+void add_environment(const SceneDescription& scene, CompiledScene& out) {
+  const EnvironmentDescription& e = scene.environment;
+  if (e.type == EnvironmentType::none) return;
+  Picture picture = e.type == EnvironmentType::image      ? picture_of_image(e)
+                    : e.type == EnvironmentType::gradient ? picture_of_gradient(e)
+                                                          : picture_of_sky(e);
+  const glm::dmat3 axes = axes_of(e);
+  Environment packed{};
+  packed.right = pack(axes[0]);
+  packed.up = pack(axes[1]);
+  packed.ahead = pack(axes[2]);
+  packed.width = picture.width;
+  packed.height = picture.height;
+  add_shares(picture, packed, out.environment_shares);
+  out.environments.push_back(packed);
+  out.environment = std::move(picture.pixels);
+  out.info.sees_environment = e.visible;
+  out.features.environment = out.features.area_lights = true;
+  out.features.sky |= e.visible;
+  Light light{};
+  light.kind = LIGHT_ENVIRONMENT;
+  for (u32 ray = 0; ray < static_cast<u32>(e.samples); ++ray)
+    out.light_rays.push_back({static_cast<u32>(out.lights.size()), ray, static_cast<u32>(e.samples), 0});
+  out.lights.push_back(light);
+  if (e.type == EnvironmentType::sky) add_sun(scene, axes, out);
+}
+
+}  // namespace sundog
