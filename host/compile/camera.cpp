@@ -25,7 +25,46 @@ dvec3 unit(const SceneDescription& scene, const dvec3& vector, const char* place
   return vector / length;
 }
 
+/// A camera's frame and the vectors from pixel to pixel.
+struct Frame {
+  dvec3 forward, up, corner, dx, dy;
+};
+
 std::string text(const dvec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
+
+Frame frame_of(const SceneDescription& scene, const View& view, const std::string& place) {
+  const ImageSettings& image = scene.image;
+  Frame frame;
+  frame.forward = unit(scene, view.target - view.position, (place + "/target").c_str(),
+                       "wanted a target apart from the position, found both at " + text(view.target));
+  frame.up = unit(scene, scene.camera.up, "/camera/up", "wanted a direction, found " + text(scene.camera.up));
+  const dvec3 side = glm::cross(frame.forward, frame.up);
+  if (glm::length(side) < 1e-9)
+    fail(scene, "/camera/up",
+         "wanted a direction across the view, found one along it: " + text(scene.camera.up));
+  const dvec3 right = glm::normalize(side), screen_up = glm::cross(right, frame.forward);
+  const double pixel = 2 * std::tan(scene.camera.fov * std::numbers::pi / 360) / image.height;
+  frame.corner = frame.forward - right * (pixel * image.width / 2) + screen_up * (pixel * image.height / 2);
+  frame.dx = right * pixel;
+  frame.dy = -screen_up * pixel;
+  return frame;
+}
+
+void set_lens(const Camera& camera, const Frame& frame, SceneInfo& info) {
+  const Lens& lens = camera.lens;
+  const double angle = lens.rotate * std::numbers::pi / 180;
+  const dvec3 right = glm::normalize(frame.dx) * lens.radius, up = -glm::normalize(frame.dy) * lens.radius;
+  const double focus = lens.focus ? *lens.focus : glm::length(camera.target - camera.position);
+  info.lens_x = pack(std::cos(angle) * right + std::sin(angle) * up, focus);
+  info.lens_y = pack(std::cos(angle) * up - std::sin(angle) * right, lens.blades);
+}
+
+void set_motion(const Camera& camera, const Frame& opens, const Frame& closes, SceneInfo& info) {
+  info.moved_position = pack(camera.moves_to->position - camera.position);
+  info.moved_corner = pack(closes.corner - opens.corner);
+  info.moved_dx = pack(closes.dx - opens.dx);
+  info.moved_dy = pack(closes.dy - opens.dy);
+}
 
 }  // namespace
 
@@ -37,24 +76,17 @@ void set_camera(const SceneDescription& scene, const dvec3& origin, SceneInfo& i
   if (!(camera.fov > 0 && camera.fov < 180))
     fail(scene, "/camera/fov", fmt::format("wanted degrees between 0 and 180, found {}", camera.fov));
 
-  const dvec3 forward = unit(scene, camera.target - camera.position, "/camera/target",
-                             "wanted a target apart from the position, found both at " + text(camera.target));
-  const dvec3 up = unit(scene, camera.up, "/camera/up", "wanted a direction, found " + text(camera.up));
-  const dvec3 side = glm::cross(forward, up);
-  if (glm::length(side) < 1e-9)
-    fail(scene, "/camera/up", "wanted a direction across the view, found one along it: " + text(camera.up));
-  const dvec3 right = glm::normalize(side), screen_up = glm::cross(right, forward);
-
-  const double pixel = 2 * std::tan(camera.fov * std::numbers::pi / 360) / image.height;
+  const Frame frame = frame_of(scene, {camera.position, camera.target}, "/camera");
   info.camera_position = pack(camera.position - origin);
-  info.camera_corner =
-      pack(forward - right * (pixel * image.width / 2) + screen_up * (pixel * image.height / 2));
-  info.camera_dx = pack(right * pixel);
-  info.camera_dy = pack(-screen_up * pixel);
-  info.camera_forward = pack(forward, camera.near);
+  info.camera_corner = pack(frame.corner);
+  info.camera_dx = pack(frame.dx);
+  info.camera_dy = pack(frame.dy);
+  info.camera_forward = pack(frame.forward, camera.near);
   info.background_bottom = pack(image.background_bottom, camera.far);
+  if (camera.lens.radius > 0) set_lens(camera, frame, info);
+  if (camera.moves_to) set_motion(camera, frame, frame_of(scene, *camera.moves_to, "/camera/moves_to"), info);
   info.background_top = pack(image.background_top);
-  info.up = pack(up);
+  info.up = pack(frame.up);
   const SplitPoint place = split_point(origin);
   info.origin = place.high;
   info.origin_rest = place.low;

@@ -157,6 +157,8 @@ CompiledScene compile(const SceneDescription& scene) {
   const std::vector<FieldView> views = views_of(scene);
   out.origin = std::ranges::any_of(views, is_deep) ? scene.camera.position : local_origin(scene);
   set_camera(scene, out.origin, out.info);
+  out.features.lens = scene.camera.lens.radius > 0;
+  out.features.camera_motion = scene.camera.moves_to.has_value();
   add_lights(scene, out);
   add_environment(scene, out);
   const u32 default_material = add_materials(scene, out);

@@ -70,7 +70,8 @@ Picture picture_of_sky(const EnvironmentDescription& e) {
   for (int y = 0; y < sky_rows / 2; ++y)
     for (int x = 0; x < sky_columns; ++x) {
       const double zenith = pi * (y + 0.5) / sky_rows, azimuth = 2 * pi * (x + 0.5) / sky_columns - pi;
-      const dvec3 d(std::sin(zenith) * std::sin(azimuth), std::cos(zenith), std::sin(zenith) * std::cos(azimuth));
+      const dvec3 d(std::sin(zenith) * std::sin(azimuth), std::cos(zenith),
+                    std::sin(zenith) * std::cos(azimuth));
       const dvec3 light = sky.radiance(zenith, std::acos(std::clamp(glm::dot(d, sun), -1.0, 1.0)));
       level += light * (std::cos(zenith) * std::sin(zenith) * 2 * pi / (sky_columns * double{sky_rows}));
       picture.pixels[std::size_t(y) * sky_columns + std::size_t(x)] = pack(light * factor);
@@ -81,7 +82,9 @@ Picture picture_of_sky(const EnvironmentDescription& e) {
   return picture;
 }
 
-double luminance(const float4& c) { return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z); }
+double luminance(const float4& c) {
+  return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
+}
 
 /// The luminance of the blended picture, integrated over a pixel's square: its own and its neighbours'.
 double light_of_pixel(const Picture& picture, u32 x, u32 y) {
@@ -116,7 +119,8 @@ u32 pixels_a_cell(u32 pixels, u32 most) {
 }
 
 void add_shares(const Picture& picture, Environment& e, std::vector<float>& shares) {
-  const u32 across = pixels_a_cell(picture.width, most_columns), down = pixels_a_cell(picture.height, most_rows);
+  const u32 across = pixels_a_cell(picture.width, most_columns),
+            down = pixels_a_cell(picture.height, most_rows);
   e.columns = picture.width / across;
   e.rows = picture.height / down;
   std::vector<double> rows(e.rows);

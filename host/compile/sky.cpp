@@ -24,10 +24,10 @@ dvec3 perez(const dvec3* c, double cos_zenith, double sun) {
 /// Luminance and chromaticity to linear sRGB (IEC 61966-2-1).
 dvec3 rgb_of(double luminance, double x, double y) {
   const double X = x / y * luminance, Z = (1 - x - y) / y * luminance;
-  return glm::max(dvec3(3.2406 * X - 1.5372 * luminance - 0.4986 * Z,
-                        -0.9689 * X + 1.8758 * luminance + 0.0415 * Z,
-                        0.0557 * X - 0.2040 * luminance + 1.0570 * Z),
-                  dvec3(0));
+  return glm::max(
+      dvec3(3.2406 * X - 1.5372 * luminance - 0.4986 * Z, -0.9689 * X + 1.8758 * luminance + 0.0415 * Z,
+            0.0557 * X - 0.2040 * luminance + 1.0570 * Z),
+      dvec3(0));
 }
 
 /// Chromaticity at the zenith: a cubic in the sun's angle whose coefficients are quadratics in the turbidity.
@@ -77,7 +77,8 @@ dvec3 Sky::sun_irradiance() const {
   static constexpr double micrometres[3] = {0.61, 0.55, 0.465}, ozone[3] = {0.12, 0.085, 0.014};  // 1/cm
   dvec3 kept;
   for (int i = 0; i < 3; ++i) {
-    const double rayleigh = 0.008735 * std::pow(micrometres[i], -4.08), haze = beta * std::pow(micrometres[i], -1.3);
+    const double rayleigh = 0.008735 * std::pow(micrometres[i], -4.08),
+                 haze = beta * std::pow(micrometres[i], -1.3);
     kept[i] = std::exp(-air * (rayleigh + haze + 0.35 * ozone[i]));
   }
   return kept * (outside / unit);

@@ -22,8 +22,8 @@ class Sky {
 
  private:
   double turbidity_, sun_zenith_;
-  glm::dvec3 zenith_;            // Y in kcd/m^2, x, y
-  glm::dvec3 perez_[5];          // the coefficients A..E of Y, x, y
+  glm::dvec3 zenith_;    // Y in kcd/m^2, x, y
+  glm::dvec3 perez_[5];  // the coefficients A..E of Y, x, y
   glm::dvec3 perez_at_zenith_;
 };
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <limits>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -21,12 +22,27 @@ using glm::dmat4;
 using glm::dvec2;
 using glm::dvec3;
 
-/// A pinhole camera. `fov` is the vertical angle of view in degrees, (0, 180). near/far clip by depth along
-/// the view.
+/// Where a camera is and looks.
+struct View {
+  dvec3 position{0, 0, 5}, target{0, 0, 0};
+};
+
+/// A thin lens: what lies at the depth `focus` along the view is sharp.
+struct Lens {
+  double radius = 0;            // 0: a pinhole
+  std::optional<double> focus;  // without it the target's distance
+  int blades = 0;               // of the aperture, 3..16; 0: round
+  double rotate = 0;            // of the blades, degrees
+};
+
+/// A pinhole camera unless its lens has a radius. `fov` is the vertical angle of view in degrees, (0, 180).
+/// near/far clip by depth along the view.
 struct Camera {
   dvec3 position{0, 0, 5}, target{0, 0, 0}, up{0, 1, 0};
   double fov = 45;
   double near = 0, far = std::numeric_limits<double>::infinity();
+  Lens lens;
+  std::optional<View> moves_to;  // where it is when the shutter closes; between, it moves straight on
 };
 
 struct ImageSettings {
@@ -78,11 +94,11 @@ struct EnvironmentDescription {
   dvec3 color{1};
   double intensity = 1;
   dvec3 up{0, 1, 0};
-  double rotate = 0;    // degrees about `up`
-  int samples = 1;      // shadow rays that a surface sends to it, and as many to its sun
-  bool visible = true;  // rays that meet nothing see it
-  Image picture;        // image: equirectangular, the sky's top in row 0
-  dvec3 bottom{0.3}, top{1};                   // gradient: linear in the elevation's sine
+  double rotate = 0;          // degrees about `up`
+  int samples = 1;            // shadow rays that a surface sends to it, and as many to its sun
+  bool visible = true;        // rays that meet nothing see it
+  Image picture;              // image: equirectangular, the sky's top in row 0
+  dvec3 bottom{0.3}, top{1};  // gradient: linear in the elevation's sine
   double sun_altitude = 40, sun_azimuth = 60;  // sky: degrees, [0, 90], and from ahead to the right
   double sun_size = 0.53;                      // sky: degrees across; 0: no sun
   double turbidity = 3;                        // sky: 2 very clear .. 10 hazy

@@ -4,6 +4,7 @@
 #include "lib/core/counters.cl"
 #include "lib/core/filter.cl"
 #include "lib/core/sampler.cl"
+#include "lib/path/lens.cl"
 #include "lib/whitted/whitted.cl"
 #include "shared/launch.h"
 
@@ -30,6 +31,7 @@ static inline MASK start_rays(const Scene* scene, const Launch* launch, u32 item
   MASK lanes = NO_LANES;
   tile->sample = sample;
   REAL x = (REAL)(0.0f), y = (REAL)(0.0f);
+  CameraSamples samples = {.sample = sample};
   for (u32 lane = 0; lane < BATCH; ++lane) {
     const uint2 at = lane_pixel(launch, item, lane);
     if (at.x >= launch->width || at.y >= launch->height) continue;
@@ -40,8 +42,9 @@ static inline MASK start_rays(const Scene* scene, const Launch* launch, u32 item
     REAL_LANE(y, lane) = (float)pixel.y + in_pixel.y;
     MASK_LANE(lanes, lane) = -1;
     set_tile_pixel(tile, lane, pixel);
+    set_camera_sample(&samples, lane, pixel);
   }
-  const Rays camera = camera_rays(info, x, y);
+  const Rays camera = sampled_camera_rays(info, x, y, &samples);
   *rays = scene_rays(&camera, around);
   return lanes;
 }

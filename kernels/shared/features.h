@@ -24,6 +24,8 @@
   FEATURE(bool, HAS_AREA_LIGHTS, area_lights)       /* some light has an extent */                      \
   FEATURE(bool, HAS_ENVIRONMENT, environment)       /* there is light from all around */                \
   FEATURE(bool, HAS_SKY, sky)                       /* rays that meet nothing see an environment or a sun */ \
+  FEATURE(bool, HAS_LENS, lens)                     /* the camera has a lens */                         \
+  FEATURE(bool, HAS_CAMERA_MOTION, camera_motion)   /* the camera moves while the shutter is open */    \
   FEATURE(bool, HAS_EMISSION, emission)             /* some material shines by itself */                \
   FEATURE(u32, SDF_FLAGS, field_flags)              /* SdfField.flags that some field has */
 // clang-format on

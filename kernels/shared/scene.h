@@ -47,7 +47,7 @@ typedef struct Medium {
 } Medium;
 SUNDOG_SHARED_SIZE(Medium, 32)
 
-// 272 bytes: the scene's constants. Positions in all tables count from a point of the world, `origin` plus
+// 368 bytes: the scene's constants. Positions in all tables count from a point of the world, `origin` plus
 // `origin_rest`, near what the camera looks at (host/compile/local_origin.h). The pixel (x, y), y down,
 // sample offset (a, b) in [0, 1)^2, looks along camera_corner + (x + a) camera_dx + (y + b) camera_dy, which
 // has length 1 along camera_forward.
@@ -79,8 +79,12 @@ typedef struct SceneInfo {
   u32 pad0;
   float4 origin;       // of the tables' coordinates, in the world
   float4 origin_rest;  // what its floats leave out
+  // HAS_LENS: from the lens's middle to its rim, to the right and up; w = the depth that is sharp; blades.
+  float4 lens_x, lens_y;
+  // HAS_CAMERA_MOTION: how far these move while the shutter is open.
+  float4 moved_position, moved_corner, moved_dx, moved_dy;
 } SceneInfo;
-SUNDOG_SHARED_SIZE(SceneInfo, 272)
+SUNDOG_SHARED_SIZE(SceneInfo, 368)
 
 // Ray counts of a launch, added with integer atomics (any order gives the same sum).
 #define COUNT_PRIMARY 0

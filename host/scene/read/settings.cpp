@@ -23,6 +23,24 @@ void check_view(JsonObject& object, const Camera& camera) {
     object.value().fail("wanted an \"up\" that is not along the view from \"position\" to \"target\"");
 }
 
+Lens read_lens(JsonObject& object) {
+  Lens lens;
+  lens.radius = object.number("radius", lens.radius, at_least_0);
+  if (const auto focus = object.find("focus")) lens.focus = focus->number({.low = 1e-9, .high = 1e15});
+  lens.blades = object.integer("blades", lens.blades, 0, 16);
+  if (lens.blades == 1 || lens.blades == 2)
+    object.find("blades")->wanted("3 or more blades, or 0 for a round aperture");
+  lens.rotate = object.number("rotate", lens.rotate, {.low = -360, .high = 360});
+  return lens;
+}
+
+View read_view(JsonObject& object, const Camera& camera) {
+  View view{camera.position, camera.target};
+  if (const auto position = object.find("position")) view.position = position->vec3();
+  if (const auto target = object.find("target")) view.target = target->vec3();
+  return view;
+}
+
 dvec3 read_falloff(JsonObject& object) {
   const dvec3 falloff(object.number("constant", 1, at_least_0), object.number("linear", 0, at_least_0),
                       object.number("quadratic", 0, at_least_0));
@@ -120,6 +138,18 @@ Camera read_camera(const JsonValue& value, bool& placed) {
         far->wanted(fmt::format("a number above the \"near\" of {}", camera.near));
     }
     if (placed) check_view(object, camera);
+    if (const auto lens = object.find("lens")) camera.lens = lens->object("lens", read_lens);
+    if (const auto moves = object.find("moves_to")) {
+      if (!placed) moves->fail("wanted a camera with \"position\" and \"target\" that it moves from");
+      camera.moves_to = moves->object("view", [&](JsonObject& view) {
+        Camera closes = camera;
+        const View end = read_view(view, camera);
+        closes.position = end.position;
+        closes.target = end.target;
+        check_view(view, closes);
+        return end;
+      });
+    }
     return camera;
   });
 }

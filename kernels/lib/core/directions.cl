@@ -1,4 +1,4 @@
-// Directions about an axis. A lane each.
+// Directions about an axis and points in a disk. A lane each.
 #ifndef SUNDOG_LIB_DIRECTIONS_CL
 #define SUNDOG_LIB_DIRECTIONS_CL
 #include "lib/core/lanes.h"
@@ -23,6 +23,17 @@ static inline REAL3 direction_at(REAL3 axis, REAL cosine, REAL sine, REAL turn) 
 // The same by the cosine alone.
 static inline REAL3 direction_about(REAL3 axis, REAL c, REAL turn) {
   return direction_at(axis, c, real_sqrt(real_max(1.0f - c * c, (REAL)(0.0f))), turn);
+}
+
+// A point of the unit disk, uniform in area (Shirley and Chiu 1997, "A Low Distortion Map Between Disk and
+// Square").
+static inline void place_in_disk(REAL u_x, REAL u_y, REAL* x, REAL* y) {
+  const REAL a = fma(u_x, (REAL)(2.0f), (REAL)(-1.0f)), b = fma(u_y, (REAL)(2.0f), (REAL)(-1.0f));
+  const MASK wide = MASK_OF(fabs(a) > fabs(b));
+  const REAL r = select(b, a, wide), part = select(a, b, wide) / nonzero(r) * (0.25f * M_PI_F);
+  const REAL angle = select(0.5f * M_PI_F - part, part, wide);
+  *x = r * cos(angle);
+  *y = r * sin(angle);
 }
 
 #endif

@@ -59,17 +59,6 @@ static inline void place_in_rectangle(const SphericalRectangles* r, REAL u_x, RE
   *y = real_clamp(h * d * real_rsqrt(real_max(rest, (REAL)(1e-14f))), r->y0, r->y1);
 }
 
-// A point of the unit disk, uniform in area (Shirley and Chiu 1997, "A Low Distortion Map Between Disk and
-// Square").
-static inline void place_in_disk(REAL u_x, REAL u_y, REAL* x, REAL* y) {
-  const REAL a = fma(u_x, (REAL)(2.0f), (REAL)(-1.0f)), b = fma(u_y, (REAL)(2.0f), (REAL)(-1.0f));
-  const MASK wide = MASK_OF(fabs(a) > fabs(b));
-  const REAL r = select(b, a, wide), part = select(a, b, wide) / nonzero(r) * (0.25f * M_PI_F);
-  const REAL angle = select(0.5f * M_PI_F - part, part, wide);
-  *x = r * cos(angle);
-  *y = r * sin(angle);
-}
-
 // The density, per steradian, of directions to points that are uniform on the light's area: at the distance
 // d along wi.
 static inline REAL density_by_area(__global const Light* light, REAL3 wi, REAL d) {

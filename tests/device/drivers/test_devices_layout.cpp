@@ -5,6 +5,7 @@
 #include "catch.h"
 #include "devices.h"
 #include "shared/bvh.h"
+#include "shared/environment.h"
 #include "shared/launch.h"
 #include "shared/scene.h"
 #include "shared/sdf.h"
@@ -28,6 +29,7 @@ const Place places[] = {
 
 const std::string probe = R"(
 #include "shared/bvh.h"
+#include "shared/environment.h"
 #include "shared/launch.h"
 #include "shared/scene.h"
 #include "shared/sdf.h"

@@ -28,11 +28,14 @@ struct Group {
 const std::vector<Group>& groups() {
   static const std::vector<Group> all{
       {"The scene", "", {"scene"}},
-      {"Picture", "", {"camera", "image", "gradient", "render", "world", "fog"}},
+      {"Picture", "", {"camera", "lens", "view", "image", "gradient", "render", "world", "fog"}},
       {"Lights",
        "An entry of `lights` has one of these types.",
        {"ambient_light", "directional_light", "point_light", "spot_light", "rectangle_light", "disk_light",
         "sphere_light", "falloff"}},
+      {"Environment",
+       "`environment` has one of these types.",
+       {"image_environment", "gradient_environment", "sky_environment", "sun"}},
       {"Media and materials",
        "",
        {"medium", "absorption", "material", "checker", "term", "specular_term", "ray_term"}},

@@ -36,8 +36,16 @@ std::string settings(const SceneDescription& scene) {
   const Camera& c = scene.camera;
   const ImageSettings& i = scene.image;
   const RenderSettings& r = scene.render;
-  return fmt::format("camera {} {} {} {} {} {}\n", text(c.position), text(c.target), text(c.up), c.fov,
-                     c.near, c.far) +
+  const EnvironmentDescription& e = scene.environment;
+  const View to = c.moves_to.value_or(View{});
+  return fmt::format("camera {} {} {} {} {} {} ", text(c.position), text(c.target), text(c.up), c.fov, c.near,
+                     c.far) +
+         fmt::format("{} {} {} {} {} {}\n", c.lens.radius, c.lens.focus.value_or(-1), c.lens.blades,
+                     c.lens.rotate, text(to.position), text(to.target)) +
+         fmt::format("environment {} {} {} {} {} {} {} {}", static_cast<int>(e.type), text(e.color),
+                     e.intensity, text(e.up), e.rotate, e.samples, e.visible, e.picture.width) +
+         fmt::format("{} {} {} {} {} {} {}\n", text(e.bottom), text(e.top), e.sun_altitude, e.sun_azimuth,
+                     e.sun_size, e.turbidity, text(e.ground)) +
          fmt::format("image {} {} {} {}\n", i.width, i.height, text(i.background_bottom),
                      text(i.background_top)) +
          fmt::format("render {} {} {} {} {} {}\n", r.max_depth, r.samples, r.cutoff, r.integrator,
@@ -47,7 +55,8 @@ std::string settings(const SceneDescription& scene) {
 std::string line(const LightDescription& l) {
   return fmt::format("light {} {} {} {} {} {} {} {}", static_cast<int>(l.type), text(l.color), l.intensity,
                      text(l.position), text(l.direction), l.inner_angle, l.outer_angle, text(l.falloff)) +
-         fmt::format(" {} {} {} {} {} {}\n", l.size.x, l.size.y, text(l.up), l.radius, l.samples, l.visible);
+         fmt::format(" {} {} {} {} {} {}", l.size.x, l.size.y, text(l.up), l.radius, l.samples, l.visible) +
+         fmt::format(" {}\n", l.angle);
 }
 
 std::string tree(const SdfNode& n) {

@@ -171,6 +171,27 @@ TEST_CASE("bad lights are refused with their place") {
   });
 }
 
+TEST_CASE("bad environments, lenses and moving cameras are refused with their place") {
+  const auto environment = [](const std::string& text) { return scene_with(R"("environment": )" + text); };
+  const auto camera = [](const std::string& text) {
+    return scene_with(R"("camera": {"position": [0, 0, 5], "target": [0, 0, 0], )" + text + "}");
+  };
+  check({
+      {environment("3"), "/environment", {"wanted an object", "found 3"}},
+      {environment(R"({"type": "haze"})"), "/environment/type", {"\"image\", \"gradient\" or \"sky\""}},
+      {environment(R"({"type": "image"})"), "/environment", {"missing key \"file\""}},
+      {environment(R"({"type": "image", "file": "none.exr"})"), "/environment/file", {"none.exr"}, false},
+      {environment(R"({"type": "sky", "turbidity": 1})"), "/environment/turbidity", {"found 1"}},
+      {environment(R"({"type": "sky", "sun": {"altitude": 91}})"), "/environment/sun/altitude", {"found 91"}},
+      {environment(R"({"type": "gradient", "up": [0, 0, 0]})"), "/environment/up", {"length 0"}, false},
+      {camera(R"("lens": {"radius": -1})"), "/camera/lens/radius", {"not below 0", "found -1"}},
+      {camera(R"("lens": {"blades": 2})"), "/camera/lens/blades", {"3 or more", "found 2"}, false},
+      {camera(R"("lens": {"focus": 0})"), "/camera/lens/focus", {"found 0"}},
+      {camera(R"("moves_to": {"target": [0, 0, 5]})"), "/camera/moves_to", {"same point"}, false},
+      {scene_with(R"("camera": {"moves_to": {}})"), "/camera/moves_to", {"\"position\" and \"target\""}},
+  });
+}
+
 TEST_CASE("bad materials and media are refused with their place") {
   check({
       {scene_with(R"("materials": [])"), "/materials", {"wanted an object of materials"}},

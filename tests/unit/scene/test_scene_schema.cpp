@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "base/image_io.h"
 #include "catch.h"
 #include "every_kind.h"
 #include "json_schema.h"
@@ -27,7 +28,8 @@ namespace {
 /// One thing of every kind, so that the reader asks for every key.
 const std::string everything = R"({
   "$schema": "scene.schema.json",
-  "camera": {}, "image": {"background": {"bottom": [0, 0, 0], "top": [1, 1, 1]}}, "render": {}, "world": {"medium": "a", "fog": {"density": 1}},
+  "camera": {"position": [0, 0, 5], "target": [0, 0, 0], "lens": {}, "moves_to": {"position": [1, 0, 5]}},
+  "environment": {"type": "sky", "sun": {}}, "image": {"background": {"bottom": [0, 0, 0], "top": [1, 1, 1]}}, "render": {}, "world": {"medium": "a", "fog": {"density": 1}},
   "media": {"a": {"absorption": {"color": [1, 1, 1], "distance": 1}}, "b": {"absorption": [0, 1, 2]}},
   "lights": [{"type": "ambient"}, {"type": "directional", "direction": [0, -1, 0]},
     {"type": "point", "position": [0, 0, 0], "falloff": {}},
@@ -77,10 +79,11 @@ json everything_document() {
   return document;
 }
 
-/// Reads a document that lies beside tetra.ply.
+/// Reads a document that lies beside tetra.ply and sky.pfm.
 SceneDescription read(const json& document, decltype(JsonContext::asked) asked = nullptr) {
   const TemporaryFolder folder;
   folder.write("tetra.ply", tetrahedron_ply);
+  write_image(Image(2, 1, 3), folder.path() / "sky.pfm");
   const JsonContext context{folder.path() / "scene.json", asked, true};
   return read_scene(JsonValue(document, context));
 }
@@ -119,7 +122,13 @@ std::map<std::string, std::set<std::string>, std::less<>> schema_keys() {
 
 TEST_CASE("the reader and the schema know the same keys") {
   std::map<std::string, std::set<std::string>, std::less<>> asked;
-  read(everything_document(), &asked);
+  json document = everything_document();
+  read(document, &asked);
+  for (const char* environment : {R"({"type": "image", "file": "sky.pfm"})", R"({"type": "gradient"})"}) {
+    document["environment"] = json::parse(environment);
+    read(document, &asked);
+    CHECK(schema_errors(scene_schema(), document).empty());
+  }
   const auto schema = schema_keys();
   CHECK(schema.size() > 30);
   for (const auto& [kind, keys] : asked) {

@@ -1,0 +1,82 @@
+// The camera's rays of a sample: through a lens, and while the camera moves, where the scene has these.
+#ifndef SUNDOG_LIB_LENS_CL
+#define SUNDOG_LIB_LENS_CL
+#include "lib/core/directions.cl"
+#include "lib/core/sampler.cl"
+#include "lib/path/camera.cl"
+
+// A point of the regular polygon of `blades` corners on the unit circle, uniform in area: one of its
+// triangles, then a point of that.
+static inline void place_in_polygon(float blades, REAL u_x, REAL u_y, REAL* x, REAL* y) {
+  const REAL scaled = u_x * blades, blade = real_min(floor(scaled), (REAL)(blades - 1.0f));
+  const REAL out = real_sqrt(real_clamp(scaled - blade, (REAL)(0.0f), (REAL)(1.0f)));
+  const REAL from = blade * (2.0f * M_PI_F / blades), to = from + 2.0f * M_PI_F / blades;
+  *x = out * (cos(from) + u_y * (cos(to) - cos(from)));
+  *y = out * (sin(from) + u_y * (sin(to) - sin(from)));
+}
+
+// What a sample needs beside its place in the pixel.
+typedef struct CameraSamples {
+#if HAS_LENS
+  REAL lens_x, lens_y;
+#endif
+#if HAS_CAMERA_MOTION
+  REAL time;
+#endif
+  u32 sample;
+} CameraSamples;
+
+static inline void set_camera_sample(CameraSamples* samples, u32 lane, uint2 pixel) {
+#if HAS_LENS
+  const float2 u = sample_2d(pixel, samples->sample, DIMENSION_LENS);
+  REAL_LANE(samples->lens_x, lane) = u.x;
+  REAL_LANE(samples->lens_y, lane) = u.y;
+#endif
+#if HAS_CAMERA_MOTION
+  REAL_LANE(samples->time, lane) = sample_1d(pixel, samples->sample, DIMENSION_TIME);
+#endif
+}
+
+#if HAS_LENS
+// What the lens adds to the origin, by its two numbers.
+static inline REAL3 lens_offset(__global const SceneInfo* restrict info, REAL u_x, REAL u_y) {
+  REAL x, y;
+  if (info->lens_y.w > 0.0f)
+    place_in_polygon(info->lens_y.w, u_x, u_y, &x, &y);
+  else
+    place_in_disk(u_x, u_y, &x, &y);
+  return add3(scale3(all3(info->lens_x.xyz), x), scale3(all3(info->lens_y.xyz), y));
+}
+#endif
+
+// The rays through the places (x, y) of the image.
+static inline Rays sampled_camera_rays(__global const SceneInfo* restrict info, REAL x, REAL y,
+                                       const CameraSamples* samples) {
+#if HAS_LENS || HAS_CAMERA_MOTION
+  REAL3 position = all3(info->camera_position.xyz), along = all3(info->camera_corner.xyz);
+  REAL3 dx = all3(info->camera_dx.xyz), dy = all3(info->camera_dy.xyz);
+#if HAS_CAMERA_MOTION
+  position = along3(position, samples->time, all3(info->moved_position.xyz));
+  along = along3(along, samples->time, all3(info->moved_corner.xyz));
+  dx = along3(dx, samples->time, all3(info->moved_dx.xyz));
+  dy = along3(dy, samples->time, all3(info->moved_dy.xyz));
+#endif
+  along = along3(along3(along, x, dx), y, dy);
+#if HAS_LENS
+  const REAL3 offset = lens_offset(info, samples->lens_x, samples->lens_y);
+  position = add3(position, offset);
+  along = along3(along, (REAL)(-1.0f / info->lens_x.w), offset);  // still through what is sharp
+#endif
+  const REAL depth_to_t = length3(along);
+  Rays rays;
+  rays.o = position;
+  rays.d = scale3(along, 1.0f / depth_to_t);
+  rays.t_min = info->camera_forward.w * depth_to_t;
+  rays.t_max = info->background_bottom.w * depth_to_t;
+  return rays;
+#else
+  return camera_rays(info, x, y);
+#endif
+}
+
+#endif

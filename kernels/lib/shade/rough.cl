@@ -1,0 +1,89 @@
+// Rough reflection and transmission: microfacets of the GGX distribution (Walter and others 2007), each a
+// perfect mirror or interface of its own. A surface a lane.
+#ifndef SUNDOG_LIB_ROUGH_CL
+#define SUNDOG_LIB_ROUGH_CL
+#include "lib/core/directions.cl"
+#include "lib/shade/bsdf.cl"
+
+#if HAS_ROUGH
+// The normal of a facet that wo sees, by its visible area (Dupuy and Benyoub 2023, "Sampling Visible GGX
+// Normals with Spherical Caps"). `alpha` is the width of the distribution.
+static inline REAL3 visible_normal(REAL3 n, REAL3 wo, REAL alpha, REAL u_x, REAL u_y) {
+  REAL3 s, t;
+  tangent_frame(n, &s, &t);
+  const REAL3 stretched =
+      safe_unit3(real3(alpha * dot3(wo, s), alpha * dot3(wo, t), real_max(dot3(wo, n), (REAL)(1e-6f))));
+  const REAL z = fma(1.0f - u_y, 1.0f + stretched.z, -stretched.z), angle = 2.0f * M_PI_F * u_x;
+  const REAL side = real_sqrt(real_clamp(1.0f - z * z, (REAL)(0.0f), (REAL)(1.0f)));
+  const REAL3 h = add3(real3(side * cos(angle), side * sin(angle), z), stretched);
+  const REAL3 facet = real3(alpha * h.x, alpha * h.y, real_max(h.z, (REAL)(1e-6f)));
+  return safe_unit3(add3(scale3(n, facet.z), add3(scale3(s, facet.x), scale3(t, facet.y))));
+}
+
+// Smith's measure of how much facets hide each other from a direction at the cosine c to the normal.
+static inline REAL smith_lambda(REAL c, REAL alpha) {
+  const REAL square = real_max(c * c, (REAL)(1e-12f));
+  return 0.5f * (real_sqrt(1.0f + alpha * alpha * (1.0f - square) / square) - 1.0f);
+}
+
+// The part of light that facets send on without a second reflection, for white ones that are seen at the
+// cosine c: the table that host/compile/lobe_energy.h makes, by alpha and then by c.
+static inline REAL lobe_energy(const Scene* scene, REAL c, REAL alpha, MASK lanes) {
+  REAL energy = (REAL)(1.0f);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    const float x = clamp(REAL_LANE(c, i), 0.0f, 1.0f) * (LOBE_STEPS - 1u),
+                y = clamp(REAL_LANE(alpha, i), 0.0f, 1.0f) * (LOBE_STEPS - 1u);
+    const u32 x0 = min((u32)x, LOBE_STEPS - 2u), y0 = min((u32)y, LOBE_STEPS - 2u);
+    __global const float* at = scene->lobe_energy + y0 * LOBE_STEPS + x0;
+    const float low = mix(at[0], at[1], x - (float)x0),
+                high = mix(at[LOBE_STEPS], at[LOBE_STEPS + 1u], x - (float)x0);
+    REAL_LANE(energy, i) = mix(low, high, y - (float)y0);
+  }
+  return energy;
+}
+
+// Facets of surfaces: what rays meet in place of the surface.
+typedef struct Facets {
+  MASK rough;
+  REAL alpha, lambda_o, energy;
+  Bsdfs bsdf;  // the surface's, with the facet's normal where it is rough
+} Facets;
+
+static inline Facets make_facets(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL u_x, REAL u_y,
+                                 MASK lanes) {
+  Facets facets;
+  facets.alpha = (REAL)(0.0f);
+  u32 index;
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
+    facets.alpha = select(facets.alpha, (REAL)(scene->materials[index].reflection.w), mine);
+  }
+  facets.rough = lanes & MASK_OF(facets.alpha > 0.0f);
+  facets.bsdf = *bsdf;
+  if (!any_lane(facets.rough)) return facets;
+  const REAL cosine = dot3(bsdf->ns, wo);
+  facets.bsdf.ns = select3(bsdf->ns, visible_normal(bsdf->ns, wo, facets.alpha, u_x, u_y), facets.rough);
+  facets.lambda_o = smith_lambda(cosine, facets.alpha);
+  facets.energy = lobe_energy(scene, cosine, facets.alpha, facets.rough);
+  return facets;
+}
+
+// What light of a lobe of the given colour counts for: the part that is not hidden on its way out, and what
+// is lost to further reflections among the facets, by scaling (Turquin 2019, "Practical multiple scattering
+// compensation for microfacet models"). `side` is 1 for directions before the surface, -1 behind it.
+static inline REAL3 facet_weight(const Facets* facets, const Bsdfs* bsdf, REAL3 wi, float side, REAL3 color,
+                                 MASK mends) {
+  const REAL c = side * dot3(bsdf->ns, wi);
+  const REAL lambda_i = smith_lambda(c, facets->alpha);
+  const REAL seen = (1.0f + facets->lambda_o) / (1.0f + facets->lambda_o + lambda_i);
+  const MASK out = MASK_OF(c > 0.0f) & MASK_OF(side * dot3(bsdf->ng, wi) > 0.0f);
+  const REAL kept = select((REAL)(0.0f), seen, out);
+  const REAL more = select((REAL)(0.0f), 1.0f / facets->energy - 1.0f, mends);
+  const REAL3 weight = real3(kept * fma(color.x, more, (REAL)(1.0f)), kept * fma(color.y, more, (REAL)(1.0f)),
+                             kept * fma(color.z, more, (REAL)(1.0f)));
+  return select3(all3((float3)(1.0f)), weight, facets->rough);
+}
+#endif
+
+#endif

@@ -1,0 +1,199 @@
+// Light from all around: what rays see of it, how its directions are chosen, and what it does to surfaces;
+// suns.
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+#include <vector>
+
+#include "catch.h"
+#include "compile/environment.h"
+#include "devices.h"
+#include "scenes.h"
+
+using namespace sundog;
+using glm::dvec3;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr u32 count = 1u << 14;
+
+/// A picture of one colour, with one pixel of another.
+EnvironmentDescription picture(int width, int height, float all, int x = 0, int y = 0, float one = -1) {
+  EnvironmentDescription e;
+  e.type = EnvironmentType::image;
+  e.picture = Image(width, height, 3);
+  for (float& value : e.picture.data) value = all;
+  if (one >= 0)
+    for (int c = 0; c < 3; ++c) e.picture.pixel(x, y)[c] = one;
+  return e;
+}
+
+// Four floats for each of `count` directions that are even over the sphere (density there, radiance) and each
+// of as many samples (the density reported, that of the direction; radiance by density).
+const char* const draw_kernel = R"(
+#include "lib/core/sampler.cl"
+#include "lib/light/environment.cl"
+__kernel void draw(__global const Environment* environments, __global const float4* pixels,
+                   __global const float* shares, __global float4* out, u32 count) {
+  const u32 i = get_global_id(0);
+  if (i >= count) return;
+  const Scene scene = {.environments = environments, .environment = pixels, .environment_shares = shares};
+  const uint2 pixel = (uint2)(3u, 5u);
+  const float2 u = sample_2d(pixel, i, 8u), v = sample_2d(pixel, i, 16u);
+  const float up = 1.0f - 2.0f * u.y, side = sqrt(fmax(1.0f - up * up, 0.0f));
+  const REAL3 d = real3(side * cospi(2.0f * u.x), up, side * sinpi(2.0f * u.x));
+  out[2u * i] = (float4)(environment_density(&scene, d, ALL_LANES), environment_along(&scene, d, ALL_LANES).x, d.y, 0.0f);
+  const LightSamples s = sample_environment(&scene, v.x, v.y);
+  out[2u * i + 1u] = (float4)(s.density, environment_density(&scene, s.wi, ALL_LANES), s.radiance.x / s.density, s.wi.y);
+}
+)";
+
+std::vector<float4> draw(const DeviceInfo& info, const EnvironmentDescription& e) {
+  SceneDescription scene;
+  scene.environment = e;
+  CompiledScene flat;
+  add_environment(scene, flat);
+  Device device(info);
+  const KernelDefines one_lane{{"TILE_W", "1"}, {"TILE_H", "1"}, {"LANES", "1"}, {"WIDE_VECTORS", "0"}};
+  auto kernel = build_text(device, draw_kernel, one_lane)
+                    .kernel<Buffer<Environment>, Buffer<float4>, Buffer<float>, Buffer<float4>, u32>("draw");
+  const auto environments = device.upload<Environment>(flat.environments);
+  const auto pixels = device.upload<float4>(flat.environment);
+  const auto shares = device.upload<float>(flat.environment_shares);
+  const auto out = device.make<float4>(2 * count);
+  device.run(kernel, {.x = count}, environments, pixels, shares, out, count);
+  std::vector<float4> values(2 * count);
+  device.read(out, std::span<float4>(values));
+  return values;
+}
+
+/// What a ray along `d` sees.
+dvec3 seen_along(const DeviceInfo& device, SceneDescription scene, const dvec3& d) {
+  scene.camera.position = {0, 0, 0};
+  scene.camera.target = d;
+  scene.camera.up = std::abs(d.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
+  return scenes::pixel_on(device, scene);
+}
+
+SceneDescription floor_scene(int width) {
+  SceneDescription scene = scenes::line_of_sight({1, 1, 0}, {0, 0, 0});
+  scene.image.width = scene.image.height = width;
+  scenes::place(scene, PlaneShape{}, scenes::add_white(scene));
+  return scene;
+}
+
+double mean_of(const Image& image) {
+  double sum = 0;
+  for (std::size_t i = 0; i < image.data.size(); i += 4) sum += double(image.data[i]);
+  return 4 * sum / double(image.data.size());
+}
+
+}  // namespace
+
+TEST_CASE("the density of an environment's directions integrates to one and is that of its samples") {
+  EnvironmentDescription sky;
+  sky.type = EnvironmentType::sky;
+  on_every_device([&](const DeviceInfo& device) {
+    for (const EnvironmentDescription& e :
+         {picture(1, 1, 0.5f), picture(2, 2, 0.2f, 1, 0, 3), picture(16, 8, 0, 0, 2, 50), picture(3, 1, 1),
+          picture(4, 4, 0), sky}) {
+      INFO(e.picture.width << " x " << e.picture.height);
+      double integral = 0, light = 0, estimate = 0;
+      std::size_t apart = 0;
+      const std::vector<float4> drawn = draw(device, e);
+      for (std::size_t i = 0; i < drawn.size(); i += 2) {
+        const float4 &even = drawn[i], &sample = drawn[i + 1];
+        integral += double(even.x) * 4 * pi / count;
+        light += double(even.y) * 4 * pi / count;
+        estimate += double(sample.z) / count;
+        REQUIRE(sample.x > 0);
+        apart += std::abs(sample.y / sample.x - 1) > 1e-3f;  // by rounding, on a cell's border
+      }
+      CHECK(integral == Approx(1).epsilon(0.02));
+      CHECK(apart < drawn.size() / 200);
+      CHECK(estimate == Approx(light).epsilon(0.02).margin(1e-6));
+    }
+  });
+}
+
+TEST_CASE("an environment is seen upright, its middle along -z, and turns counterclockwise") {
+  SceneDescription scene = scenes::line_of_sight({0, 0, 0}, {0, 0, -1});
+  scene.environment = picture(4, 1, 0);
+  for (int x = 0; x < 4; ++x) scene.environment.picture.pixel(x, 0)[0] = float(x + 1);
+  on_every_device([&](const DeviceInfo& device) {
+    CHECK(seen_along(device, scene, {1, 0.2, -1}).x == Approx(3).epsilon(1e-4));
+    CHECK(seen_along(device, scene, {-1, 0.2, -1}).x == Approx(2).epsilon(1e-4));
+    CHECK(seen_along(device, scene, {1, -0.5, 1}).x == Approx(4).epsilon(1e-4));
+    CHECK(seen_along(device, scene, {-1e-6, 0, 1}).x == Approx(2.5).epsilon(1e-3));  // across the seam
+    SceneDescription turned = scene;
+    turned.environment.rotate = 90;
+    CHECK(seen_along(device, turned, {-1, 0.2, -1}).x == Approx(3).epsilon(1e-4));
+    SceneDescription hidden = scene;
+    hidden.environment.visible = false;
+    hidden.image.background_bottom = hidden.image.background_top = {0.25, 0, 0};
+    CHECK(seen_along(device, hidden, {1, 0.2, -1}).x == Approx(0.25));
+    SceneDescription high = scene;
+    high.environment = picture(2, 2, 1, 0, 0, 1);
+    for (int x = 0; x < 2; ++x) high.environment.picture.pixel(x, 0)[0] = 7;
+    CHECK(seen_along(device, high, {0, 1, 0}).x == Approx(7).epsilon(1e-4));
+  });
+}
+
+TEST_CASE("in a white environment a white surface is white, and so are mirrors and glass") {
+  on_every_device([&](const DeviceInfo& device) {
+    SceneDescription scene = floor_scene(8);
+    scene.environment = picture(1, 1, 1);
+    scene.environment.samples = 16;
+    // A plane sees the upper half alone: half of the samples.
+    CHECK(mean_of(scenes::render_on(device, scene).image) == Approx(1).epsilon(0.01));
+    scene = scenes::line_of_sight({0, 0.3, 4}, {0, 0.1, 0});
+    scene.environment = picture(1, 1, 1);
+    scenes::place(scene, SphereShape{1}, scenes::add_mirror(scene, 1));
+    CHECK(scenes::pixel_on(device, scene).x == Approx(1).epsilon(1e-4));
+    scene.render.max_depth = 30;
+    scene.objects.clear();
+    scenes::place(scene, SphereShape{1}, scenes::add_dielectric(scene, 1.5));
+    CHECK(scenes::pixel_on(device, scene).x == Approx(1).epsilon(1e-4));
+  });
+}
+
+TEST_CASE("one bright pixel of an environment shines as a directional light does, and casts its shadow") {
+  constexpr int width = 256, height = 128, x = 150, y = 20;
+  const double zenith = pi * (y + 0.5) / height, azimuth = 2 * pi * (x + 0.5) / width - pi;
+  const dvec3 to(std::sin(zenith) * std::sin(azimuth), std::cos(zenith),
+                 -std::sin(zenith) * std::cos(azimuth));
+  const double angle = 2 * pi / width * (std::cos(pi * y / height) - std::cos(pi * (y + 1) / height));
+  on_every_device([&](const DeviceInfo& device) {
+    SceneDescription scene = floor_scene(8);
+    scene.environment = picture(width, height, 0, x, y, 1000);
+    scene.environment.samples = 64;
+    CHECK(mean_of(scenes::render_on(device, scene).image) == Approx(1000 * angle * to.y / pi).epsilon(0.02));
+    scenes::place(scene, DiskShape{0.2, 0}, 0, glm::translate(glm::dmat4(1), to));
+    CHECK(mean_of(scenes::render_on(device, scene).image) == 0);
+  });
+}
+
+TEST_CASE("a directional light of some degrees across is as bright, is seen, and has a penumbra") {
+  LightDescription sun;
+  sun.type = LightType::directional;
+  sun.direction = {0, -1, 0};
+  sun.angle = 6;
+  sun.samples = 8;
+  on_every_device([&](const DeviceInfo& device) {
+    SceneDescription scene = floor_scene(8);
+    scene.lights.push_back(sun);
+    CHECK(mean_of(scenes::render_on(device, scene).image) == Approx(1).epsilon(2e-3));
+    // A box over x < 0, twenty up: half of the sun is behind its edge.
+    scenes::place(scene, BoxShape{{5, 0.1, 5}}, 0, glm::translate(glm::dmat4(1), {-5, 20, 0}));
+    CHECK(mean_of(scenes::render_on(device, scene).image) == Approx(0.5).epsilon(0.1));
+    SceneDescription open = scenes::line_of_sight({0, 0, 0}, {0, 1, 0}, {1, 0, 0});
+    open.lights.push_back(sun);
+    const double radiance = 1 / std::pow(std::sin(glm::radians(3.0)), 2);
+    CHECK(seen_along(device, open, {std::sin(glm::radians(2.9)), std::cos(glm::radians(2.9)), 0}).x ==
+          Approx(radiance).epsilon(1e-4));
+    CHECK(seen_along(device, open, {std::sin(glm::radians(3.1)), std::cos(glm::radians(3.1)), 0}).x == 0);
+    open.lights.back().visible = false;
+    CHECK(seen_along(device, open, {0, 1, 0}).x == 0);
+  });
+}

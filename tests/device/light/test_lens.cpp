@@ -1,0 +1,97 @@
+// The camera's lens and motion by geometry.
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "catch.h"
+#include "devices.h"
+#include "scenes.h"
+
+using namespace sundog;
+using glm::dvec3;
+
+namespace {
+
+constexpr int size = 64;
+
+/// A glowing ball of radius 0.02 at the depth 8, straight ahead.
+SceneDescription ball_ahead() {
+  SceneDescription scene = scenes::line_of_sight({0, 0, 0}, {0, 0, -8});
+  scene.camera.fov = 20;
+  scene.image.width = scene.image.height = size;
+  scene.render.samples = 128;
+  scenes::place(scene, SphereShape{0.02}, scenes::add_glow(scene, {1, 1, 1}),
+                glm::translate(glm::dmat4(1), {0, 0, -8}));
+  return scene;
+}
+
+double pixels_a_unit(const SceneDescription& scene) {  // at the depth 1
+  return size / (2 * std::tan(glm::radians(scene.camera.fov) / 2));
+}
+
+/// How far light reaches from the middle along a direction in the image, in pixels, and its sum.
+struct Spread {
+  double along = 0, sum = 0;
+};
+Spread spread_along(const Image& image, double x, double y) {
+  Spread spread;
+  for (int row = 0; row < size; ++row)
+    for (int column = 0; column < size; ++column) {
+      const double value = double(image.pixel(column, row)[0]);
+      spread.sum += value;
+      if (value > 0)
+        spread.along = std::max(spread.along, (column + 0.5 - size / 2) * x + (row + 0.5 - size / 2) * y);
+    }
+  return spread;
+}
+
+}  // namespace
+
+TEST_CASE("the circle of confusion is as large as geometry has it, and what is at the focus is sharp") {
+  SceneDescription scene = ball_ahead();
+  const double scale = pixels_a_unit(scene), ball = 0.02 / 8 * scale;
+  on_every_device([&](const DeviceInfo& device) {
+    const Spread sharp = spread_along(scenes::render_on(device, scene).image, 1, 0);
+    SceneDescription blurred = scene;
+    blurred.camera.lens = {.radius = 0.3, .focus = 4};
+    const Image image = scenes::render_on(device, blurred).image;
+    const double expected = 0.3 * (1.0 / 4 - 1.0 / 8) * scale + ball;
+    CHECK(std::abs(spread_along(image, 1, 0).along - expected) < 1);
+    CHECK(std::abs(spread_along(image, 0.6, -0.8).along - expected) < 1);
+    CHECK(spread_along(image, 1, 0).sum == Approx(sharp.sum).epsilon(0.1));
+    SceneDescription focused = blurred;
+    focused.camera.lens.focus = std::nullopt;  // the target
+    CHECK(spread_along(scenes::render_on(device, focused).image, 1, 0).along == sharp.along);
+    SceneDescription square = blurred;  // its corners lie to the right, up, left and down
+    square.camera.lens.blades = 4;
+    const Image diamond = scenes::render_on(device, square).image;
+    CHECK(std::abs(spread_along(diamond, 1, 0).along - expected) < 2.2);  // few samples lie in a corner
+    CHECK(std::abs(spread_along(diamond, std::sqrt(0.5), std::sqrt(0.5)).along -
+                   ((expected - ball) * std::sqrt(0.5) + ball)) < 1);
+    square.camera.lens.rotate = 45;
+    CHECK(std::abs(spread_along(scenes::render_on(device, square).image, 1, 0).along -
+                   ((expected - ball) * std::sqrt(0.5) + ball)) < 1);
+  });
+}
+
+TEST_CASE("a moving camera makes of an edge a ramp as wide as it moves") {
+  SceneDescription scene = scenes::line_of_sight({0, 0, 0}, {0, 0, -5});
+  scene.camera.fov = 20;
+  scene.image.width = scene.image.height = size;
+  scene.render.samples = 16;
+  scenes::place(scene, BoxShape{{50, 50, 1}}, scenes::add_glow(scene, {1, 1, 1}),
+                glm::translate(glm::dmat4(1), {50, 0, -6}));  // from x = 0 to the right, at the depth 5
+  scene.camera.moves_to = View{{0.5, 0, 0}, {0.5, 0, -5}};
+  const double ramp = 0.5 / 5 * pixels_a_unit(scene);
+  on_every_device([&](const DeviceInfo& device) {
+    const Image image = scenes::render_on(device, scene).image;
+    for (int column = 0; column < size; ++column) {
+      double mean = 0;
+      for (int row = 0; row < size; ++row) mean += double(image.pixel(column, row)[0]) / size;
+      // The edge goes from the middle to the left.
+      const double expected = std::clamp((column + 0.5 - (size / 2.0 - ramp)) / ramp, 0.0, 1.0);
+      INFO(column);
+      CHECK(std::abs(mean - expected) < 0.03);
+    }
+  });
+}
