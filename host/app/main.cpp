@@ -44,7 +44,9 @@ int run_command_line(int argc, char** argv) {
     command = parse_command_line(argc, argv);
     return exit_done;
   };
-  if (const int status = exit_status_of(parse, job_rank() <= 0)) return status;
+  // mpirun ends a job at the first rank that fails, and may lose what another prints then: rank 0 alone
+  // fails.
+  if (const int status = exit_status_of(parse, job_rank() <= 0)) return job_rank() > 0 ? exit_done : status;
   const int status = std::visit([](const auto& chosen) { return run(chosen); }, command);
   if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw IoError("the standard output cannot be written");
   return status;

@@ -21,6 +21,8 @@ struct MpiFolder : CliFolder {
     options.environment = {{"OMPI_ALLOW_RUN_AS_ROOT", "1"},
                            {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"},
                            {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
+                           {"PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"},  // Open MPI 5
+                           {"OMPI_MCA_btl", "^tcp"},  // one machine, perhaps without a network
                            {"POCL_DEVICES", "pthread"},
                            {"SUNDOG_SILENCE_LIMIT", "3"}};
     REQUIRE(run_sundog(arguments({"--device", "0:0"}), options).status == 0);
@@ -60,6 +62,11 @@ std::vector<std::string> lines_of_sundog(const std::string& text) {
     at = end + 1;
   }
   return lines;
+}
+
+/// Open MPI 5 names a dead rank itself, and ends the job before sundog has missed the rank.
+bool named_by_mpirun(const std::string& text) {
+  return contains(text, "prterun noticed that process rank 1 ");
 }
 
 const std::vector<std::string> halves = {"--device", "0:0/1", "--split", "static"};
@@ -229,8 +236,10 @@ TEST_CASE(
   const CommandResult died = folder.mpirun(2, arguments, "export SUNDOG_FAULTS=crash@0:0#2;");
   CAPTURE(died.err);
   CHECK(died.status != 0);
-  CHECK(contains(died.err, "sundog: warning: rank 1 on "));
-  CHECK(contains(died.err, "it has died or is stopped"));
+  if (!named_by_mpirun(died.err)) {
+    CHECK(contains(died.err, "sundog: warning: rank 1 on "));
+    CHECK(contains(died.err, "it has died or is stopped"));
+  }
   CHECK(contains(died.err, "sundog: interrupted: "));
   REQUIRE(std::filesystem::exists(folder / "checkpoint"));
   CHECK(folder.stats()["devices"][0]["pixels"] == 160 * 60);
@@ -242,7 +251,7 @@ TEST_CASE(
   CHECK_FALSE(std::filesystem::exists(folder / "checkpoint"));
 }
 
-TEST_CASE("mpirun: a dead rank is named first, then what is done is kept, then the picture is written") {
+TEST_CASE("mpirun: a dead rank is named first, then finished work is kept, then the picture is written") {
   const char* crash = "export SUNDOG_FAULTS=crash@0:0#2;";
   struct Case {
     const char* fault;  // of rank 0: what never comes to its end before mpirun ends the job
@@ -256,15 +265,19 @@ TEST_CASE("mpirun: a dead rank is named first, then what is done is kept, then t
     CAPTURE(died.err);
     CHECK(died.status != 0);
     const std::string checkpoint = folder.file("a.pfm.checkpoint");
-    const std::vector<std::string> lines = lines_of_sundog(died.err);
-    REQUIRE(lines.size() == (c.kept ? 2 : 1));
-    CHECK(lines[0].starts_with("sundog: warning: rank 1 on "));
-    CHECK(lines[0].ends_with("what is done is kept in " + checkpoint));
+    std::vector<std::string> lines = lines_of_sundog(died.err);
+    if (!named_by_mpirun(died.err)) {
+      REQUIRE_FALSE(lines.empty());
+      CHECK(lines[0].starts_with("sundog: warning: rank 1 on "));
+      CHECK(lines[0].ends_with("finished work is kept in " + checkpoint));
+      lines.erase(lines.begin());
+    }
     CHECK_FALSE(std::filesystem::exists(folder / "a.pfm"));
     CHECK(std::filesystem::exists(checkpoint) == c.kept);
+    REQUIRE(lines.size() == (c.kept ? 1 : 0));
     if (!c.kept) continue;
-    CHECK(contains(lines[1], "sundog: interrupted: "));
-    CHECK(contains(lines[1], "--resume " + checkpoint));
+    CHECK(contains(lines[0], "sundog: interrupted: "));
+    CHECK(contains(lines[0], "--resume " + checkpoint));
     folder.options.environment.erase("SUNDOG_FAULTS");
     REQUIRE(
         run_sundog(folder.arguments({"--device", "0:0", "--resume", checkpoint}), folder.options).status ==

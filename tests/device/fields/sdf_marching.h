@@ -32,14 +32,13 @@ __kernel void march(__global const SdfField* fields, __global const float* q, __
   MarchHits h = march_rays(&scene, field, &r);
   REAL3 normal = sdf_normal(&scene, field, along3(r.origin, h.t, r.direction), h.threshold, h.hit, h.cut);
   for (u32 i = 0; i < LANES; ++i) {
-    Hit hit;
-    hit.t = REAL_LANE(h.t, i);
-    hit.u = (float)MASK_LANE(h.steps, i);
-    hit.v = (float)MASK_LANE(h.taken_back, i);
-    hit.prim = (MASK_LANE(h.hit, i) ? 1u : 0u) | (MASK_LANE(h.cut, i) ? 2u : 0u) | (MASK_LANE(h.limited, i) ? 4u : 0u);
-    hit.instance = 0;
-    hit.ng_x = REAL_LANE(normal.x, i); hit.ng_y = REAL_LANE(normal.y, i); hit.ng_z = REAL_LANE(normal.z, i);
-    hits[item * LANES + i] = hit;
+    __global Hit* hit = hits + item * LANES + i;  // assigned whole, Mesa 25 keeps the last one alone
+    hit->t = REAL_LANE(h.t, i);
+    hit->u = (float)MASK_LANE(h.steps, i);
+    hit->v = (float)MASK_LANE(h.taken_back, i);
+    hit->prim = (MASK_LANE(h.hit, i) ? 1u : 0u) | (MASK_LANE(h.cut, i) ? 2u : 0u) | (MASK_LANE(h.limited, i) ? 4u : 0u);
+    hit->instance = 0;
+    hit->ng_x = REAL_LANE(normal.x, i); hit->ng_y = REAL_LANE(normal.y, i); hit->ng_z = REAL_LANE(normal.z, i);
   }
 }
 )";
