@@ -15,6 +15,8 @@
 #include "compile/fields/sdf_deep.h"
 #include "compile/filter.h"
 #include "compile/instances.h"
+#include "compile/light_tree.h"
+#include "compile/lobe_energy.h"
 #include "compile/local_origin.h"
 #include "compile/materials.h"
 #include "compile/mesh_bvh.h"
@@ -161,6 +163,7 @@ CompiledScene compile(const SceneDescription& scene) {
   out.features.camera_motion = scene.camera.moves_to.has_value();
   add_lights(scene, out);
   add_environment(scene, out);
+  add_light_tree(scene, out);
   const u32 default_material = add_materials(scene, out);
   out.features.sampler = scene.render.sampler;
   out.filter = filter_table(scene.render);
@@ -172,6 +175,7 @@ CompiledScene compile(const SceneDescription& scene) {
   add_instances(scene, meshes, default_material, out);
   add_fields(fields_of(scene, views, out), out);
   add_field_features(out);
+  if (out.features.rough) out.lobe_energy = make_lobe_energy();
   add_fog(scene, out);
   set_counts(out);
   set_figures(out);

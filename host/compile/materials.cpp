@@ -69,7 +69,7 @@ Material make_material(const MaterialDescription& material, const std::vector<u3
   packed.ambient = pack(material.ambient);
   packed.diffuse = pack(material.diffuse);
   packed.specular = pack(material.specular, material.exponent);
-  packed.reflection = pack(material.reflection);
+  packed.reflection = pack(material.reflection, material.roughness * material.roughness);
   packed.transmission = pack(material.transmission);
   packed.checker_ambient = pack(material.checker_ambient);
   packed.checker_diffuse = pack(material.checker_diffuse, 1 / material.checker_size);

@@ -55,8 +55,10 @@ enum class Tracer { automatic, wide, compact };
 enum class Filter { box, tent, gaussian, blackman_harris, mitchell };
 
 struct RenderSettings {
-  int max_depth = 8;     // 1..64; 1 = the camera's rays alone
-  int samples = 1;       // per pixel, 1..65536; 1 = the pixel's centre
+  int max_depth = 8;  // 1..64; 1 = the camera's rays alone
+  int samples = 1;    // per pixel, 1..65536; 1 = the pixel's centre
+  int light_samples =
+      0;                 // rays to lights with an extent that each surface chooses, 0..1024; 0: to each light
   double cutoff = 1e-3;  // throughput below which a ray ends, [0, 1]
   std::string integrator = "whitted";
   u32 sampler = SAMPLER_AUTO;  // a SAMPLER_* constant
@@ -127,7 +129,8 @@ struct MaterialDescription {
   bool blinn = false;
   dvec3 emission{0};                     // radiance that the outside sends out
   dvec3 reflection{0}, transmission{0};  // a dielectric's tints default to 1 (set by the loader)
-  int medium = -1;  // index into media of the inside; -1: thin, transmits straight through
+  double roughness = 0;  // of reflection and transmission, [0, 1]; the GGX distribution's alpha is its square
+  int medium = -1;       // index into media of the inside; -1: thin, transmits straight through
   bool shadow_opaque = false;
   bool checker = false;
   dvec3 checker_ambient{0}, checker_diffuse{0};  // ka and kd in odd cells: colour times coefficient

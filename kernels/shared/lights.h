@@ -39,6 +39,8 @@ typedef struct Light {
 } Light;
 SUNDOG_SHARED_SIZE(Light, 96)
 
+#define LIGHT_CHOSEN 0xFFFFFFFFu  // LightRay.light: one of the lights of the tree, chosen for each surface
+
 // 16 bytes: a shadow ray that surfaces send, the number `ray` of the `rays` that share one light's weight.
 typedef struct LightRay {
   u32 light;  // index
@@ -46,6 +48,16 @@ typedef struct LightRay {
   u32 pad;
 } LightRay;
 SUNDOG_SHARED_SIZE(LightRay, 16)
+
+// 32 bytes: a node of the tree over the lights with an extent. Its left child follows it.
+typedef struct LightNode {
+  float lower[3];
+  float power;  // of all its lights
+  float upper[3];
+  u32 next;  // the right child, or LIGHT_LEAF | index of its light
+} LightNode;
+SUNDOG_SHARED_SIZE(LightNode, 32)
+#define LIGHT_LEAF 0x80000000u
 
 SUNDOG_SHARED_END
 #endif

@@ -20,12 +20,14 @@ SUNDOG_SHARED_BEGIN
 // Highlights up to this exponent, where it is whole, are products alone.
 #define GREATEST_WHOLE_EXPONENT 65535.0f
 
+#define LOBE_STEPS 32u  // of the table lobe_energy, along each axis
+
 // 144 bytes. Each colour is already multiplied by its coefficient.
 typedef struct Material {
   float4 ambient;          // ka
   float4 diffuse;          // kd
   float4 specular;         // ks; w = exponent
-  float4 reflection;       // kr (a dielectric's tint, normally 1)
+  float4 reflection;       // kr (a dielectric's tint, normally 1); w = alpha, the width of rough lobes
   float4 transmission;     // kt (a dielectric's tint, normally 1)
   float4 checker_ambient;  // ka in odd cells
   float4 checker_diffuse;  // kd in odd cells; w = 1 / cell size (object space)

@@ -21,6 +21,8 @@
   TABLE(Medium, Medium, media, "media")                           \
   TABLE(Light, Light, lights, "lights")                           \
   TABLE(LightRay, LightRay, light_rays, "rays to lights")         \
+  TABLE(LightNode, LightNode, light_nodes, "nodes over lights")   \
+  TABLE(float, float, lobe_energy, "energy of lobes")             \
   TABLE(Environment, Environment, environments, "environments")   \
   TABLE(float4, float4, environment, "environment's pixels")      \
   TABLE(float, float, environment_shares, "environment's shares") \

@@ -151,6 +151,7 @@ MaterialDescription read_material(const JsonValue& value, std::string name, cons
     };
     material.reflection = ray_term("reflection");
     material.transmission = ray_term("transmission");
+    material.roughness = object.number("roughness", material.roughness, zero_to_one);
     read_interior(object, material, medium_names, media);
     material.shadow_opaque = object.choice("shadow", "filter", shadows) == "opaque";
     material.vertex_color = object.boolean("vertex_color", false);

@@ -181,6 +181,7 @@ RenderSettings read_render(const JsonValue& value) {
     RenderSettings render;
     render.max_depth = object.integer("max_depth", render.max_depth, 1, 64);
     render.samples = object.integer("samples", render.samples, 1, 65536);
+    render.light_samples = object.integer("light_samples", render.light_samples, 0, 1024);
     render.cutoff = object.number("cutoff", render.cutoff, zero_to_one);
     render.integrator = object.choice("integrator", render.integrator, integrator_names);
     const std::string sampler =

@@ -70,7 +70,7 @@
 #endif
 
 // Whether a sample needs random numbers beyond the camera's.
-#define HAS_RANDOM HAS_AREA_LIGHTS
+#define HAS_RANDOM (HAS_AREA_LIGHTS || HAS_ROUGH)
 
 // Whether rays continue behind surfaces: interfaces that they do not see, or filters.
 #define RAYS_CROSS (HAS_MEDIA || HAS_SHADOW_FILTERS)

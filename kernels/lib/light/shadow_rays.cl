@@ -1,6 +1,7 @@
 // Shadow rays from surfaces to the lights, left on a stack with the light that each would bring.
 #ifndef SUNDOG_LIB_SHADOW_RAYS_CL
 #define SUNDOG_LIB_SHADOW_RAYS_CL
+#include "lib/light/choose_light.cl"
 #include "lib/light/field_light.cl"
 #include "lib/light/light.cl"
 #include "lib/path/path_samples.cl"
@@ -13,6 +14,35 @@ typedef struct Shading {
   Bsdfs bsdf;
 } Shading;
 
+#if HAS_LIGHT_TREE
+// A way to one of the lights of the tree for each point, for which it stands with all its light.
+NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, const TileSamples* tile,
+                                       const PathStates* paths, REAL3 p, MASK lanes) {
+  REAL u_x, u_y, choice, unused, chance;
+  const u32 turn = scene->info->table_lights;  // of the lights whose numbers these are: none's
+  bounce_numbers(tile, paths, turn, BOUNCE_LIGHT_POINT, way->ray, way->rays, lanes, &u_x, &u_y);
+  bounce_numbers(tile, paths, turn, BOUNCE_LIGHT_CHOICE, way->ray, way->rays, lanes, &choice, &unused);
+  const MASK chosen = choose_lights(scene, p, choice, lanes, &chance);
+  LightSamples light;
+  light.wi = all3((float3)(0.0f));
+  light.distance = (REAL)(0.0f);
+  light.radiance = all3((float3)(0.0f));
+  light.density = (REAL)(1.0f);
+  light.delta = NO_LANES;
+  u32 index;
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(chosen, &left, &index);
+    const LightSamples one = sample_light(scene, index, p, u_x, u_y);
+    light.wi = select3(light.wi, one.wi, mine);
+    light.distance = select(light.distance, one.distance, mine);
+    light.radiance = select3(light.radiance, one.radiance, mine);
+    light.density = select(light.density, one.density * chance, mine);
+  }
+  light.radiance = scale3(light.radiance, light_weight(&light) / (float)way->rays);
+  return light;
+}
+#endif
+
 // The way of the shadow ray `index` from the surfaces of `lanes`, which have 1 a light, or those of the table
 // light_rays. The radiance of rays that share a light is divided among them.
 static inline LightSamples choose_way(const Scene* scene, u32 index, const TileSamples* tile,
@@ -20,6 +50,9 @@ static inline LightSamples choose_way(const Scene* scene, u32 index, const TileS
   const REAL middle = (REAL)(0.5f);
 #if HAS_AREA_LIGHTS
   const LightRay way = scene->light_rays[index];
+#if HAS_LIGHT_TREE
+  if (way.light == LIGHT_CHOSEN) return choose_among(scene, &way, tile, paths, p, lanes);
+#endif
   REAL u_x = middle, u_y = middle;
   if (scene->lights[way.light].kind >= LIGHT_RECTANGLE)
     bounce_numbers(tile, paths, way.light, BOUNCE_LIGHT_POINT, way.ray, way.rays, lanes, &u_x, &u_y);

@@ -5,6 +5,7 @@
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
+#include "lib/shade/rough.cl"
 
 #if HAS_SECONDARY
 // Puts children on the stack, those of `lanes` that are not too weak, nor too deep, nor without room; each
@@ -28,10 +29,18 @@ NEVER_INLINE void spawn(__global const SceneInfo* restrict info, RayStack* stack
 }
 
 // The children of the surfaces of `lanes`: kr I(reflected) + kt I(transmitted).
-static inline void spawn_children(const Scene* scene, const SurfaceInteractions* s, const Bsdfs* bsdf,
-                                  const Encounters* met, const SceneRays* rays, const PathStates* paths,
-                                  MASK lanes, RayStack* stack, u32* counts) {
+static inline void spawn_children(const Scene* scene, const TileSamples* tile, const SurfaceInteractions* s,
+                                  const Bsdfs* surface, const Encounters* met, const SceneRays* rays,
+                                  const PathStates* paths, MASK lanes, RayStack* stack, u32* counts) {
   const REAL3 wo = negate3(rays->d);
+#if HAS_ROUGH
+  REAL u_x, u_y;
+  bounce_numbers(tile, paths, 0u, BOUNCE_DIRECTION, 0u, 1u, lanes, &u_x, &u_y);
+  const Facets facets = make_facets(scene, surface, wo, u_x, u_y, lanes);
+  const Bsdfs* bsdf = &facets.bsdf;
+#else
+  const Bsdfs* bsdf = surface;
+#endif
   const SpecularSplits split = bsdf_specular(scene, bsdf, wo, lanes);
   if (!any_lane(split.branches)) return;
   SceneRays child = *rays;
@@ -43,6 +52,12 @@ static inline void spawn_children(const Scene* scene, const SurfaceInteractions*
   child.d = reflected_direction(bsdf, wo);
   child.o = along3(s->p, s->offset, s->ng);
   state.throughput = multiply3(paths->throughput, split.kr);
+#if HAS_ROUGH
+  child.d = select3(child.d, reflect_direction(rays->d, bsdf->ns), facets.rough);
+  const MASK simple = MASK_OF(split.kt.x + split.kt.y + split.kt.z == 0.0f) | ~split.transmits;
+  state.throughput =
+      multiply3(state.throughput, facet_weight(&facets, surface, child.d, 1.0f, split.kr, simple));
+#endif
 #if HAS_RANDOM
   state.branch = child_branch(paths->branch, 0u);
 #endif
@@ -50,8 +65,16 @@ static inline void spawn_children(const Scene* scene, const SurfaceInteractions*
 
   if (!any_lane(split.transmits)) return;
   child.d = transmitted_direction(bsdf, &split, wo);
+#if HAS_ROUGH
+  const REAL3 bent = refract_direction(rays->d, bsdf->ns, split.cos_i, split.cos_t, split.eta);
+  child.d = select3(child.d, bent, facets.rough & MASK_OF(split.eta != 1.0f));
+#endif
   child.o = along3(s->p, -s->offset, s->ng);
   state.throughput = multiply3(paths->throughput, split.kt);
+#if HAS_ROUGH
+  state.throughput =
+      multiply3(state.throughput, facet_weight(&facets, surface, child.d, -1.0f, split.kt, NO_LANES));
+#endif
 #if HAS_RANDOM
   state.branch = child_branch(paths->branch, 1u);
 #endif
@@ -60,9 +83,9 @@ static inline void spawn_children(const Scene* scene, const SurfaceInteractions*
   spawn(scene->info, stack, &child, &state, split.transmits, COUNT_REFRACTION, counts);
 }
 #else
-static inline void spawn_children(const Scene* scene, const SurfaceInteractions* s, const Bsdfs* bsdf,
-                                  const Encounters* met, const SceneRays* rays, const PathStates* paths,
-                                  MASK lanes, RayStack* stack, u32* counts) {}
+static inline void spawn_children(const Scene* scene, const TileSamples* tile, const SurfaceInteractions* s,
+                                  const Bsdfs* surface, const Encounters* met, const SceneRays* rays,
+                                  const PathStates* paths, MASK lanes, RayStack* stack, u32* counts) {}
 #endif
 
 #endif

@@ -87,7 +87,7 @@ static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, co
     shade_hits(scene, rays, met, hit, at);
     seen = select3(seen, add3(seen, see_ambient(scene, rays, paths, &met->hit, &at->bsdf, hit)), hit);
     if (HAS_EMISSION) seen = add3(seen, see_shining(scene, paths, &at->s, hit));
-    spawn_children(scene, &at->s, &at->bsdf, met, rays, paths, hit & fresh, stack, counts);
+    spawn_children(scene, tile, &at->s, &at->bsdf, met, rays, paths, hit & fresh, stack, counts);
     note_first_hits(paths, hit & fresh, radiance, counts);
   }
   *light = seen;

@@ -48,7 +48,8 @@ std::string settings(const SceneDescription& scene) {
                      e.sun_size, e.turbidity, text(e.ground)) +
          fmt::format("image {} {} {} {}\n", i.width, i.height, text(i.background_bottom),
                      text(i.background_top)) +
-         fmt::format("render {} {} {} {} {} {}\n", r.max_depth, r.samples, r.cutoff, r.integrator,
+         fmt::format("render {} ", r.light_samples) +
+         fmt::format("{} {} {} {} {} {}\n", r.max_depth, r.samples, r.cutoff, r.integrator,
                      static_cast<int>(r.tracer), r.sampler);
 }
 
@@ -82,6 +83,7 @@ std::string line(const MediumDescription& m) {
 std::string line(const MaterialDescription& m) {
   return fmt::format("material {} {} {} {} {} {} {} {} ", m.name, static_cast<int>(m.type), text(m.ambient),
                      text(m.diffuse), text(m.specular), text(m.emission), m.exponent, m.blinn) +
+         fmt::format("{} ", m.roughness) +
          fmt::format("{} {} {} {} {} {} {} {} {}\n", text(m.reflection), text(m.transmission), m.medium,
                      m.shadow_opaque, m.checker, text(m.checker_ambient), text(m.checker_diffuse),
                      m.checker_size, m.vertex_color);
