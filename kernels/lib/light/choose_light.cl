@@ -24,17 +24,18 @@ static inline float left_share(const Scene* scene, u32 left, u32 right, float3 p
 
 // A light by the number u in [0, 1), and the probability that it is chosen with.
 static inline u32 choose_light(const Scene* scene, float3 p, float u, float* probability) {
-  u32 node = 0;
-  *probability = 1.0f;
-  for (;;) {
-    const u32 right = scene->light_nodes[node].next;
-    if (right & LIGHT_LEAF) return right & ~LIGHT_LEAF;
-    const float share = left_share(scene, node + 1u, right, p);
+  u32 node = 0, next = scene->light_nodes[0].next;
+  float chance = 1.0f;
+  while (!(next & LIGHT_LEAF)) {
+    const float share = left_share(scene, node + 1u, next, p);
     const bool left = u < share;
-    node = left ? node + 1u : right;
-    *probability *= left ? share : 1.0f - share;
     u = fmin(left ? u / share : (u - share) / (1.0f - share), 0x1.fffffep-1f);
+    chance *= left ? share : 1.0f - share;
+    node = left ? node + 1u : next;
+    next = scene->light_nodes[node].next;
   }
+  *probability = chance;
+  return next & ~LIGHT_LEAF;
 }
 
 // The probability that choose_light() chooses the light of leaf `leaf` for p.
