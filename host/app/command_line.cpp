@@ -43,8 +43,9 @@ All commands: {}.
 /// The options of `render` as typed, before they are checked.
 struct TypedRender {
   RenderCommand command;
-  std::string size, samples, max_depth, integrator, filter, filter_radius,
-      work_group = "auto", split = "dynamic", part, tile, frames;
+  std::string size, samples, max_depth, integrator, filter, filter_radius, adaptive, time_limit, noise,
+      write_every, work_group = "auto", split = "dynamic", part, tile, frames;
+  bool subsample = false;
 };
 
 /// The options that only shorten a --set come first, so that a --set of the same value wins.
@@ -58,6 +59,12 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
   if (!typed.integrator.empty()) all.push_back(fmt::format("/render/integrator=\"{}\"", typed.integrator));
   if (!typed.filter.empty()) all.push_back(fmt::format("/render/filter=\"{}\"", typed.filter));
   if (!typed.filter_radius.empty()) all.push_back("/render/filter_radius=" + typed.filter_radius);
+  if (!typed.adaptive.empty())
+    all.push_back(fmt::format("/render/adaptive/threshold={}", parse_amount("--adaptive", typed.adaptive)));
+  if (typed.subsample) all.push_back("/render/subsample/on=true");
+  // What may end early begins with a sample of each pixel.
+  if (typed.adaptive.empty() && !typed.subsample && (!typed.time_limit.empty() || !typed.noise.empty()))
+    all.push_back("/render/progressive=true");
   for (const std::string& setting : typed.command.overrides) {
     check_override(setting);
     all.push_back(setting);
@@ -93,6 +100,9 @@ RenderCommand checked(const TypedRender& typed) {
   command.split = parse_split(typed.split);
   if (!typed.frames.empty()) command.frames = parse_frames(typed.frames);
   if (!typed.part.empty()) command.part = parse_part(typed.part);
+  if (!typed.time_limit.empty()) command.time_limit = parse_amount("--time-limit", typed.time_limit);
+  if (!typed.noise.empty()) command.noise = parse_amount("--noise-threshold", typed.noise);
+  if (!typed.write_every.empty()) command.write_every = parse_amount("--write-every", typed.write_every);
   if (!typed.tile.empty()) command.tile = parse_number("--tile", typed.tile, 4, 65536);
   if (command.devices.empty()) command.devices = devices_of_environment();
   for (const std::string& name : command.aovs)
@@ -125,6 +135,14 @@ void add_render(Arguments& root, Command& chosen) {
   value(app, "--filter", "NAME", typed->filter,
         fmt::format("how a pixel's samples add up: {}", fmt::join(filter_names, ", ")));
   value(app, "--filter-radius", "R", typed->filter_radius, "the filter's reach in pixels");
+  value(app, "--adaptive", "T", typed->adaptive,
+        "more samples only where the picture's estimated error is above T; --samples is the most");
+  app->add_flag("--subsample", typed->subsample,
+                "samples for every second pixel each way, and for the others where they are needed");
+  value(app, "--time-limit", "S", typed->time_limit, "end the render after S seconds with what there is");
+  value(app, "--noise-threshold", "T", typed->noise,
+        "end the render when its mean estimated error is below T");
+  value(app, "--write-every", "S", typed->write_every, "write the picture so far every S seconds");
   values(app, "--set", "POINTER=VALUE", command.overrides, "change the scene, as in /camera/fov=30");
   value(app, "--work-group", "SIZE", typed->work_group, "local size: N, WxH, auto or driver");
   value(app, "--split", "HOW", typed->split,

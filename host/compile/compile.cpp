@@ -132,6 +132,12 @@ void set_figures(CompiledScene& out) {
   figures.bytes = sizeof(SceneInfo) + table_bytes(out);
 }
 
+/// Samples that more are added to come of a sequence.
+u32 sampler_of(const RenderSettings& settings) {
+  const bool grows = settings.sampling.threshold > 0 || settings.sampling.progressive;
+  return grows && settings.sampler == SAMPLER_AUTO ? SAMPLER_SOBOL : settings.sampler;
+}
+
 void add_fields(CompiledFields fields, CompiledScene& out) {
   out.field_source = std::move(fields.source);
   out.sdf_fields = std::move(fields.fields);
@@ -165,7 +171,8 @@ CompiledScene compile(const SceneDescription& scene) {
   add_environment(scene, out);
   add_light_tree(scene, out);
   const u32 default_material = add_materials(scene, out);
-  out.features.sampler = scene.render.sampler;
+  out.sampling = scene.render.sampling;
+  out.features.sampler = sampler_of(scene.render);
   out.filter = filter_table(scene.render);
   out.features.filter = !out.filter.empty();
   out.features.media = absorbs(out.media[0]);

@@ -57,6 +57,7 @@ struct CompiledScene : SceneTables {
   std::string field_source;  // text of generated/sdf.cl (compile/fields/sdf.h); empty without fields
   std::string integrator = "whitted";  // a name of scene/integrators.h
   Tracer tracer = Tracer::automatic;   // of which kind the device shall trace
+  Sampling sampling;
   SceneFeatures features;
   BvhFigures figures;
 };

@@ -77,6 +77,23 @@ TilePlan plan_tiles(const RenderOptions& options, const Film& film, const std::v
   return plan;
 }
 
+/// The passes of a frame that has some, with what a checkpoint has of them; the frame's film is the pass's.
+FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devices,
+                         const RenderOptions& options, std::uint64_t key, Film& film) {
+  FramePasses passes;
+  const int width = static_cast<int>(scene->info.width), height = static_cast<int>(scene->info.height);
+  passes.plan = {scene->sampling, scene->info.samples, options.noise, !options.aovs.empty()};
+  passes.film = GrowingFilm(width, height, !options.aovs.empty() || needs_surfaces(scene->sampling));
+  passes.tiles = [options, devices](const Film& of_pass) { return plan_tiles(options, of_pass, devices); };
+  if (!options.resume.empty() && std::filesystem::exists(options.resume)) {
+    read_growing_checkpoint(options.resume, passes.film, passes.pass, film, key);
+    return passes;
+  }
+  passes.pass = *next_pass(passes.film, passes.plan);
+  film = Film(passes.pass.width, passes.pass.height, passes.pass.surfaces);
+  return passes;
+}
+
 /// A film that holds what a checkpoint has of the frame.
 Film begin_film(const CompiledScene& scene, const RenderOptions& options, std::uint64_t key) {
   Film film(static_cast<int>(scene.info.width), static_cast<int>(scene.info.height), !options.aovs.empty());
@@ -87,7 +104,15 @@ Film begin_film(const CompiledScene& scene, const RenderOptions& options, std::u
 
 std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerPlan>& devices,
                                    const RenderOptions& options, std::uint64_t key) {
-  Film film = begin_film(*scene, options, key);
+  const bool has_passes = in_passes(scene->sampling);
+  if (has_passes && options.part.count > 1)
+    throw UsageError("a frame that is adaptive, subsampled or progressive is made whole: leave --tiles out");
+  Film film;
+  std::optional<FramePasses> passes;
+  if (has_passes)
+    passes = begin_passes(scene, devices, options, key, film);
+  else
+    film = begin_film(*scene, options, key);
   std::vector<DeviceSpeed> speeds(devices.size());
   TilePlan plan = plan_tiles(options, film, devices);
   const auto done = static_cast<std::uint64_t>(
@@ -106,12 +131,21 @@ std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerP
   }
   frame->pixels_done = frame->pixels_kept = done;
   frame->key = key;
+  if (passes) {
+    frame->passes = std::move(passes);
+    frame->queue.expect_more();
+    plan_next_pass(*frame);
+  }
   return frame;
 }
 
 std::vector<DeviceReport> reports(Frame& frame) {
   std::vector<DeviceReport> result;
-  const double pixels = static_cast<double>(std::max<std::size_t>(1, frame.film.done.size()));
+  double pixels = static_cast<double>(std::max<std::size_t>(1, frame.film.done.size()));
+  if (frame.passes) {
+    pixels = 1;
+    for (const Frame::Server& server : frame.servers) pixels += static_cast<double>(server.report.pixels);
+  }
   for (std::size_t i = 0; i < frame.servers.size(); ++i) {
     DeviceReport report = frame.servers[i].report;
     report.busy_seconds = frame.queue.work(i).busy_seconds;
@@ -128,10 +162,10 @@ double frame_efficiency(const Frame& frame) {
 }
 
 /// Keeps what an interrupted frame has; a disk that is full must not take the image along.
-void keep_checkpoint(const RenderOptions& options, RenderResult& result) {
-  if (checkpoint_path(options).empty() || result.complete) return;
+void keep_checkpoint(const Frame& frame, RenderResult& result) {
+  if (checkpoint_path(frame.options).empty() || result.complete) return;
   try {
-    write_checkpoint(checkpoint_path(options), result.film, result.key);
+    write_frame_checkpoint(frame, checkpoint_path(frame.options));
     result.checkpoint_kept = true;
   } catch (const IoError& error) {
     result.checkpoint_error = error.what();
@@ -143,10 +177,19 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   const std::lock_guard lock(frame.mutex);
   RenderResult result;
   result.devices = reports(frame);
-  result.film = std::move(frame.film);
   result.key = key;
   result.complete = frame.queue.complete();
-  keep_checkpoint(frame.options, result);
+  result.time_limited = frame.limited && !result.complete;
+  keep_checkpoint(frame, result);
+  if (frame.passes) {
+    GrowingFilm film = film_so_far(frame);
+    result.film = std::move(film.film);
+    result.taken = std::move(film.taken);
+    result.surfaces_seen = film.surfaces_seen;
+    result.passes = film.stage;
+  } else {
+    result.film = std::move(frame.film);
+  }
   result.efficiency = frame_efficiency(frame);
   result.counts = frame.counts;
   if (frame.options.channels > 0) {

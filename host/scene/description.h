@@ -52,6 +52,17 @@ struct ImageSettings {
 
 enum class Tracer { automatic, wide, compact };
 
+/// How samples are shared out among the pixels.
+struct Sampling {
+  double threshold = 0;    // above 0: a pixel gets samples until its estimated error is below it (adaptive)
+  int first_samples = 2;   // adaptive: that each pixel gets
+  double contrast = 4;     // adaptive: neighbours that differ by so many thresholds get more samples
+  double budget = 0;       // adaptive: samples a pixel in the mean; 0: no limit
+  bool subsample = false;  // every second pixel each way gets samples, the others where they must
+  double subsample_contrast = 0.06;  // difference of colours between which is not interpolated
+  bool progressive = false;          // samples double pass by pass: 1, 2, 4...
+};
+
 enum class Filter { box, tent, gaussian, blackman_harris, mitchell };
 
 struct RenderSettings {
@@ -64,6 +75,7 @@ struct RenderSettings {
   u32 sampler = SAMPLER_AUTO;  // a SAMPLER_* constant
   Filter filter = Filter::box;
   double filter_radius = 0;  // in pixels; 0: the filter's own
+  Sampling sampling;
   Tracer tracer = Tracer::automatic;
   bool spatial_splits = false;  // build the BVH with cut triangles: slower, better for long thin ones
 };

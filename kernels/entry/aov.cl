@@ -3,23 +3,32 @@
 #include "lib/core/counters.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
+#include "shared/launch.h"
 
 // One work-item of the kernel below: the pixels from `first` on.
 NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* restrict camera_media,
-                                      __global float4* restrict aovs, __global u32* restrict counters, u32 x0,
-                                      u32 y0, u32 width, u32 pixel_count, u32 first) {
+                                      __global const u32* restrict pixels, __global float4* restrict aovs,
+                                      __global u32* restrict counters, u32 x0, u32 y0, u32 width,
+                                      u32 pixel_count, u32 listed, u32 first) {
   u32 counts[COUNTERS];
   for (u32 k = 0; k < COUNTERS; ++k) counts[k] = 0;
 #if HAS_SDF
   counts[COUNT_MARCH_LEFT] = MARCH_WORK;
 #endif
   const MediaStack stack = (MediaStack)camera_media[1] << 32 | camera_media[0];
-  const MASK lanes = lanes_of((1u << min((u32)BATCH, pixel_count - first)) - 1u);
+  MASK lanes = lanes_of((1u << min((u32)BATCH, pixel_count - first)) - 1u);
   REAL x = (REAL)(0.0f), y = (REAL)(0.0f);
   for (u32 i = 0; i < BATCH; ++i) {
-    REAL_LANE(x, i) = (float)(x0 + (first + i) % width) + 0.5f;
-    REAL_LANE(y, i) = (float)(y0 + (first + i) / width) + 0.5f;
+    uint2 pixel = (uint2)(x0 + (first + i) % width, y0 + (first + i) / width);
+    if (listed && MASK_LANE(lanes, i)) {
+      const u32 of_image = pixels[first + i];
+      pixel = (uint2)(of_image & 0xffffu, of_image >> 16);
+      if (of_image == NO_PIXEL) MASK_LANE(lanes, i) = 0;
+    }
+    REAL_LANE(x, i) = (float)pixel.x + 0.5f;
+    REAL_LANE(y, i) = (float)pixel.y + 0.5f;
   }
+  if (!any_lane(lanes)) return;
   const Rays camera = camera_rays(scene->info, x, y);
   SceneRays rays = scene_rays(&camera, stack);
   Encounters met;
@@ -46,15 +55,18 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
   add_finished(counters, lane_count(lanes), pixel_count);
 }
 
-// Reads the scene; writes three float4 a pixel of the rectangle, through the pixel's centre: (normal, depth
+// Reads the scene; writes three float4 a pixel of the rectangle (with `listed`, of the image's pixel that
+// `pixels` has for it), through the pixel's centre: (normal, depth
 // along the view), (position in the world, object), (albedo, material). Where nothing is seen depth is
 // infinite, object and material are -1, the rest is 0; adds the pixels finished to counters. A work-item
 // takes BATCH pixels in a row.
 __kernel void first_surfaces(SCENE_PARAMETERS, __global const u32* restrict camera_media,
-                             __global float4* restrict aovs, __global u32* restrict counters, u32 x0, u32 y0,
-                             u32 width, u32 pixel_count) {
+                             __global const u32* restrict pixels, __global float4* restrict aovs,
+                             __global u32* restrict counters, u32 x0, u32 y0, u32 width, u32 pixel_count,
+                             u32 listed) {
   const Scene scene = SCENE_OF_PARAMETERS;
   const u32 first = get_global_id(0) * BATCH;
   if (first >= pixel_count) return;
-  first_surfaces_item(&scene, camera_media, aovs, counters, x0, y0, width, pixel_count, first);
+  first_surfaces_item(&scene, camera_media, pixels, aovs, counters, x0, y0, width, pixel_count, listed,
+                      first);
 }

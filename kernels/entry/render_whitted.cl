@@ -24,18 +24,29 @@ static inline uint2 lane_pixel(const Launch* launch, u32 item, u32 lane) {
   return (uint2)(item % columns * TILE_W + lane % TILE_W, item / columns * TILE_H + lane / TILE_W);
 }
 
+// The pixel of the image that the pixel `at` of the rectangle stands for. False: there is none.
+static inline bool image_pixel(const Launch* launch, __global const u32* restrict pixels, uint2 at,
+                               uint2* pixel) {
+  if (at.x >= launch->width || at.y >= launch->height) return false;
+  *pixel = (uint2)(launch->x0, launch->y0) + at;
+  if (!launch->listed) return true;
+  const u32 listed = pixels[at.y * launch->width + at.x];
+  *pixel = (uint2)(listed & 0xffffu, listed >> 16);
+  return listed != NO_PIXEL;
+}
+
 // The camera's rays of one sample. Returns the lanes that have a pixel; signs[lane] is what a sample counts.
-static inline MASK start_rays(const Scene* scene, const Launch* launch, u32 item, u32 sample,
-                              MediaStack around, SceneRays* rays, float* signs, TileSamples* tile) {
+static inline MASK start_rays(const Scene* scene, const Launch* launch, __global const u32* restrict pixels,
+                              u32 item, u32 sample, MediaStack around, SceneRays* rays, float* signs,
+                              TileSamples* tile) {
   __global const SceneInfo* restrict info = scene->info;
   MASK lanes = NO_LANES;
   tile->sample = sample;
   REAL x = (REAL)(0.0f), y = (REAL)(0.0f);
   CameraSamples samples = {.sample = sample};
   for (u32 lane = 0; lane < BATCH; ++lane) {
-    const uint2 at = lane_pixel(launch, item, lane);
-    if (at.x >= launch->width || at.y >= launch->height) continue;
-    const uint2 pixel = (uint2)(launch->x0, launch->y0) + at;
+    uint2 pixel;
+    if (!image_pixel(launch, pixels, lane_pixel(launch, item, lane), &pixel)) continue;
     float2 in_pixel = pixel_sample(pixel, sample, info->samples);
     signs[lane] = filter_place(scene->filter, info->samples, &in_pixel);
     REAL_LANE(x, lane) = (float)pixel.x + in_pixel.x;
@@ -69,8 +80,8 @@ static inline void store_sample(const Launch* launch, u32 item, MASK lanes, cons
 
 // One work-item of the kernel below.
 NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launch* launch, u32 item,
-                              __global float4* restrict film, __global float* restrict weights,
-                              __global u32* restrict counters) {
+                              __global const u32* restrict pixels, __global float4* restrict film,
+                              __global float* restrict weights, __global u32* restrict counters) {
   u32 counts[COUNTERS];
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
   RayStack stack;
@@ -83,7 +94,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     SceneRays rays;
     float signs[BATCH];
     TileSamples tile;
-    const MASK lanes = start_rays(scene, launch, item, sample, around, &rays, signs, &tile);
+    const MASK lanes = start_rays(scene, launch, pixels, item, sample, around, &rays, signs, &tile);
     counts[COUNT_PRIMARY] += lane_count(lanes);
     trace_whitted(scene, &tile, &rays, lanes, &stack, radiance, counts);
     store_sample(launch, item, lanes, radiance, signs, film, weights, counts);
@@ -94,16 +105,18 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
 }
 
 // Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of work-items
-// [first_item, last_item) of the rectangle (x0, y0, width, height) to film (rgb and coverage) and their
+// [first_item, last_item) of the rectangle (x0, y0, width, height), or of the image's pixels that it stands
+// for (`pixels`, where the launch is of a list), to film (rgb and coverage) and their
 // number to weights (a sample that is not finite counts for nothing, one in a filter's lobe below zero -1);
 // adds to counters.
 __kernel void render_whitted(SCENE_PARAMETERS, __global const u32* restrict camera_media,
-                             __global float4* restrict film, __global float* restrict weights,
-                             __global u32* restrict counters, const Launch launch) {
+                             __global const u32* restrict pixels, __global float4* restrict film,
+                             __global float* restrict weights, __global u32* restrict counters,
+                             const Launch launch) {
   const Scene scene = SCENE_OF_PARAMETERS;
   // Items count through the rectangle row by row; a launch in two dimensions takes whole rows of them.
   const u32 item = launch.first_item + get_global_id(1) * launch.row_items + get_global_id(0);
   if (get_global_id(0) >= launch.row_items || item >= launch.last_item) return;
-  render_item(&scene, (MediaStack)camera_media[1] << 32 | camera_media[0], &launch, item, film, weights,
-              counters);
+  render_item(&scene, (MediaStack)camera_media[1] << 32 | camera_media[0], &launch, item, pixels, film,
+              weights, counters);
 }

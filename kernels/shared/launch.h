@@ -5,6 +5,9 @@
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
+// A list's pixel of the image (x, y) is x | y << 16; NO_PIXEL is none.
+#define NO_PIXEL 0xffffffffu
+
 // 48 bytes.
 typedef struct Launch {
   u32 x0, y0, width, height;  // the rectangle, in pixels of the image
@@ -12,7 +15,8 @@ typedef struct Launch {
   u32 row_items;  // work-items in a row of the launch
   u32 blocks;     // 1: items of one pixel go through blocks of 8x4; 0: row by row
   u32 first_sample, sample_count;
-  u32 pad0, pad1;
+  u32 listed;  // 1: each pixel of the rectangle stands for one of the image, by a list
+  u32 pad;
 } Launch;
 SUNDOG_SHARED_SIZE(Launch, 48)
 

@@ -91,6 +91,12 @@ double parse_tolerance(const std::string& text) {
   return *value;
 }
 
+double parse_amount(const char* option, const std::string& text) {
+  const std::optional<double> value = number(text, 0.0, 1e9);
+  if (!value || !(*value > 0)) throw UsageError(fmt::format("{} {}: wanted a number above 0", option, text));
+  return *value;
+}
+
 std::vector<std::string> parse_image_size(const std::string& text) {
   const auto size = number_pair(text);
   if (!size)

@@ -23,6 +23,9 @@ Split parse_split(const std::string& text);
 /// A finite number, 0 or more.
 double parse_tolerance(const std::string& text);
 
+/// A finite number above 0.
+double parse_amount(const char* option, const std::string& text);
+
 /// "WxH" as the overrides of a scene that make its image so.
 std::vector<std::string> parse_image_size(const std::string& text);
 

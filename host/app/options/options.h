@@ -26,9 +26,10 @@ struct RenderCommand : PictureOptions {
   Split split;
   std::optional<PartOfFrame> part;  // OUT is a part of the frame, not an image
   int tile = 0;
-  std::optional<FrameRange> frames;  // of an animation; the files are numbered
-  std::optional<double> frame;       // the one of them that is rendered now
-  std::string stats, resume;         // files; empty: none
+  double time_limit = 0, noise = 0, write_every = 0;  // 0: none
+  std::optional<FrameRange> frames;                   // of an animation; the files are numbered
+  std::optional<double> frame;                        // the one of them that is rendered now
+  std::string stats, resume;                          // files; empty: none
   std::vector<std::string> aovs;
   bool isolate = false;        // each device in a process of its own
   bool native_code = false;    // the scene may carry OpenCL C

@@ -31,6 +31,9 @@ std::uint64_t encoder_bytes(const std::string& file, std::uint64_t aovs) {
   return extension == ".pfm" || extension == ".PFM" ? 12 : 6;
 }
 
+// What a frame in passes holds besides: the film of all passes, with surfaces, and what has become of pixels.
+constexpr std::uint64_t passes_bytes = film_bytes + film_aov_bytes + 4 + 1 + 16 + 4;
+
 // Tiles that are on their way, on the device and off it, and what the allocator keeps of them: measured where
 // frames are drawn so fast that tiles are large.
 constexpr std::uint64_t tile_bytes = 4;
@@ -44,7 +47,8 @@ std::uint64_t bytes_a_pixel(const FrameOutput& output) {
   const std::uint64_t image = drops_alpha(output.file) ? 12 : 16;
   const bool part = output.file.ends_with(".part");
   const std::uint64_t at_end = film + (part ? film : image + aovs + encoder_bytes(output.file, aovs));
-  return tile_bytes + (output.checkpoints ? std::max(3 * film, at_end) : at_end);
+  return tile_bytes + (output.passes ? passes_bytes : 0) +
+         (output.checkpoints ? std::max(3 * film, at_end) : at_end);
 }
 
 void check_frame_memory(int width, int height, const FrameOutput& output) {

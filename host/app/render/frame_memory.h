@@ -12,6 +12,7 @@ struct FrameOutput {
   std::vector<std::string> aovs;
   bool checkpoints = false;  // written on the way
   int tile = 0;              // edge of the tiles; 0: they are small beside the frame
+  bool passes = false;       // made in passes (render/plan/passes.h)
 };
 
 /// Bytes a pixel where most is taken: while a checkpoint is written, or the image.

@@ -31,6 +31,7 @@
 #include "render/device/tuning.h"
 #include "render/device/view_warnings.h"
 #include "render/film/hash.h"
+#include "render/plan/passes.h"
 #include "scene/json/override.h"
 #include "scene/load.h"
 
@@ -46,6 +47,12 @@ auto timed(double& seconds, const Step& step) {
   return result;
 }
 
+/// What is written again and again needs a file's name.
+void check_write_every(const RenderCommand& command) {
+  if (command.write_every > 0 && (command.part || is_standard_stream(command.out)))
+    throw UsageError(fmt::format("-o {}: --write-every wants an image file", command.out));
+}
+
 /// What would otherwise be found out after the render.
 void check_outputs(const RenderCommand& command) {
   if (command.part && !command.out.ends_with(".part"))
@@ -55,6 +62,7 @@ void check_outputs(const RenderCommand& command) {
     throw UsageError("-o -: under mpirun, whose standard output is for text, a picture wants a file");
   if (is_standard_stream(command.resume)) throw UsageError("--resume -: a checkpoint wants a file");
   check_output_files({command.out, command.stats, command.resume}, {command.scene});
+  check_write_every(command);
   if (command.part)
     check_writable(command.out);
   else
@@ -95,6 +103,8 @@ RenderOptions render_options(const RenderCommand& command) {
   if (const char* seconds = std::getenv("SUNDOG_CHECKPOINT_EVERY"))
     options.checkpoint_seconds = std::max(0.0, std::strtod(seconds, nullptr));
   options.keep_failed = true;
+  options.time_limit = command.time_limit;
+  options.noise = command.noise;
   return options;
 }
 
@@ -130,7 +140,7 @@ LoadedScene load_and_compile(const RenderCommand& command, TimeLedger& times) {
   scene.flat = timed(times.compile_scene,
                      [&] { return std::make_shared<const CompiledScene>(compile(scene.description)); });
   check_frame_memory(static_cast<int>(scene.flat->info.width), static_cast<int>(scene.flat->info.height),
-                     frame_output(command));
+                     frame_output(command, in_passes(scene.flat->sampling)));
   return scene;
 }
 
@@ -160,6 +170,10 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
   options.in_haste = setup.job != nullptr;
   if (setup.job) options.keep_now = &setup.stop.continued();
   options.tuning = [flat = scene.flat](const DeviceInfo& device) { return saved_tuning(device, *flat); };
+  if (command.write_every > 0) {
+    options.picture_seconds = command.write_every;
+    options.on_picture = [&](const Film& film) { write_so_far(command, film); };
+  }
   options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
   const RenderResult result = render(scene.flat, plan_servers(command, scene, setup), options);
   bar.erase();

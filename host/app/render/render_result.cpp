@@ -15,8 +15,11 @@
 #include "app/process/save_image.h"
 #include "app/process/warnings.h"
 #include "base/error.h"
+#include "base/image_io.h"
+#include "base/standard_streams.h"
 #include "render/film/hash.h"
 #include "render/film/part.h"
+#include "render/film/sampling_report.h"
 
 namespace sundog {
 namespace {
@@ -34,6 +37,25 @@ std::map<std::string, std::string> settings_of(const RenderCommand& command, con
   settings["max_depth"] = fmt::format("{}", scene.info.max_depth);
   if (command.frame) settings["frame"] = fmt::format("{}", *command.frame);
   return settings;
+}
+
+/// "out.png" -> "out.samples.png".
+std::string samples_file(const RenderCommand& command) {
+  std::filesystem::path path = command.out;
+  return path.replace_extension(".samples.png").string();
+}
+
+/// Where the samples went, in words, and with --verbose as a picture.
+void tell_samples(const RenderCommand& command, const RenderResult& result, u32 each) {
+  if (result.taken.empty()) return;
+  const SamplingFigures figures = sampling_figures(result.taken, result.surfaces_seen, each);
+  fmt::print(
+      "  {:.3g} samples a pixel in {} passes, at most {}; {:.1f} % of the pixels interpolated; {:.1f} % "
+      "fewer camera rays than {} a pixel\n",
+      figures.mean, result.passes, figures.most, 100 * figures.share_interpolated, 100 * figures.saved, each);
+  if (!command.verbose || is_standard_stream(command.out)) return;
+  write_image(sampling_picture(result.taken, result.film.width, result.film.height), samples_file(command));
+  fmt::print("  where they went: {}\n", samples_file(command));
 }
 
 double percent_done(const RenderResult& result) {
@@ -55,24 +77,27 @@ void warn(const SceneDescription& scene, const RenderResult& result) {
   for (const DeviceReport& report : result.devices) print_warnings(failures_text(report));
 }
 
-void summarise(const RenderCommand& command, const RenderResult& result, const TimeLedger& times) {
+void summarise(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result,
+               const TimeLedger& times) {
   if (command.quiet) return;
   const double rays = static_cast<double>(ray_count(result.counts));
   const double seconds = times.render.render + times.render.readback;
   fmt::print("{}: {}x{}, {:.4g} Mrays in {:.2f} s ({:.3g} Mrays/s), {:.2f} s in all\n", command.out,
              result.film.width, result.film.height, rays / 1e6, seconds,
              seconds > 0 ? rays / 1e6 / seconds : 0, times.total);
+  tell_samples(command, result, static_cast<u32>(scene.render.samples));
   if (!command.verbose) return;
   const double pixels = static_cast<double>(result.film.done.size());
-  const std::uint64_t each = bytes_a_pixel(frame_output(command));
+  const std::uint64_t each = bytes_a_pixel(frame_output(command, !result.taken.empty()));
   fmt::print("{}  {:<22} {:10.1f} MiB, {} bytes a pixel\n", details_text(result, times),
              "memory of the frame", pixels * static_cast<double>(each) / (1 << 20), each);
 }
 
 }  // namespace
 
-FrameOutput frame_output(const RenderCommand& command) {
-  return {format_name(command), command.aovs, !command.resume.empty() || job_rank() >= 0, command.tile};
+FrameOutput frame_output(const RenderCommand& command, bool passes) {
+  return {format_name(command), command.aovs, !command.resume.empty() || job_rank() >= 0, command.tile,
+          passes};
 }
 
 void save_result(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result,
@@ -89,6 +114,15 @@ void save_result(const RenderCommand& command, const CompiledScene& scene, const
   if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint);
 }
 
+void write_so_far(const RenderCommand& command, const Film& film) {
+  try {
+    write_image(film.develop(image_channels(command.out)), command.out, {},
+                command.full_floats ? ExrColor::full : ExrColor::half);
+  } catch (const IoError&) {
+    // The disk may have room again when the whole picture is there.
+  }
+}
+
 void tell_kept(const RenderResult& result, const std::string& checkpoint) {
   tell(fmt::format(
       "sundog: interrupted: {:.3g} % of the pixels are in {}; the same command with --resume {} continues "
@@ -99,11 +133,16 @@ void tell_kept(const RenderResult& result, const std::string& checkpoint) {
 void tell_result(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result,
                  const TimeLedger& times) {
   warn(scene, result);
-  summarise(command, result, times);
+  summarise(command, scene, result, times);
 }
 
 int conclude(const RenderCommand& command, const RenderResult& result, bool told) {
   if (result.complete) return exit_done;
+  if (result.time_limited && !result.failure) {
+    if (!command.quiet)
+      fmt::print("  the time limit of {} s ended it: {}\n", command.time_limit, part_text(command, result));
+    return exit_done;
+  }
   if (result.failure) {
     tell(fmt::format("sundog: every device failed: {}\n", part_text(command, result)));
     std::rethrow_exception(result.failure);

@@ -9,6 +9,7 @@
 #include "app/process/scene_figures.h"
 #include "app/render/stray_exits.h"
 #include "render/device/tuning.h"
+#include "render/film/sampling_report.h"
 
 namespace sundog {
 namespace {
@@ -24,6 +25,21 @@ json image_json(const RenderCommand& command, const SceneDescription& scene, con
           {"integrator", scene.render.integrator},
           {"aovs", command.aovs},
           {"complete", result.complete}};
+}
+
+/// Of a frame in passes; null for others.
+json sampling_json(const SceneDescription& scene, const RenderResult& result) {
+  if (result.taken.empty()) return nullptr;
+  const SamplingFigures figures =
+      sampling_figures(result.taken, result.surfaces_seen, static_cast<u32>(scene.render.samples));
+  return {{"passes", result.passes},
+          {"samples", figures.samples},
+          {"samples_a_pixel", figures.mean},
+          {"most", figures.most},
+          {"interpolated", figures.share_interpolated},
+          {"surface_rays", result.surfaces_seen},
+          {"camera_rays_saved", figures.saved},
+          {"time_limited", result.time_limited}};
 }
 
 std::string host_name() {
@@ -117,6 +133,7 @@ json stats_json(const RenderCommand& command, const SceneDescription& scene, con
           {"sundog", SUNDOG_VERSION},
           {"scene", scene_figures(scene, flat)},
           {"image", image_json(command, scene, result)},
+          {"sampling", sampling_json(scene, result)},
           {"devices", devices},
           {"efficiency", result.efficiency},
           {"rays", rays_json(result.counts)},

@@ -38,9 +38,9 @@ RenderTimes DeviceServer::open() {
 
 void DeviceServer::be_nice() { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 19); }
 
-TileResult DeviceServer::render(const Tile& tile, const StopFlags& flags) {
+TileResult DeviceServer::render(const TileRequest& request, const StopFlags& flags) {
   works_ = false;
-  TileResult result = renderer_->render(tile, flags);
+  TileResult result = renderer_->render(request, flags);
   works_ = true;
   return result;
 }

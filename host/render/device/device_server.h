@@ -16,7 +16,7 @@ class DeviceServer : public TileServer {
 
   const DeviceInfo& info() const override { return info_; }
   RenderTimes open() override;
-  TileResult render(const Tile& tile, const StopFlags& flags) override;
+  TileResult render(const TileRequest& request, const StopFlags& flags) override;
   ServerFigures figures() const override;
   void close() override;
   double overdue() const override { return watch_.overdue(); }

@@ -51,12 +51,14 @@ FrameKernels build_frame_kernels(Device& device, const CompiledScene& scene, con
   const Stopwatch building;
   times.cached = true;
   const Integrator& integrator = *find_integrator(scene.integrator);
-  kernels.integrator = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
-      build(device, integrator.entry, kernels, times), integrator.kernel);
+  kernels.integrator =
+      scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
+          build(device, integrator.entry, kernels, times), integrator.kernel);
   limit_group(device.limits(kernels.integrator).work_group, kernels.most_group);
   if (aovs) {
-    kernels.first_surfaces = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32>(
-        build(device, "entry/aov.cl", kernels, times), "first_surfaces");
+    kernels.first_surfaces =
+        scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>(
+            build(device, "entry/aov.cl", kernels, times), "first_surfaces");
     limit_group(device.limits(kernels.first_surfaces).work_group, kernels.most_group);
   }
   check_work_group(device.info(), kernels.most_group, asked);

@@ -14,8 +14,9 @@ namespace sundog {
 struct FrameKernels {
   KernelConfig config;
   DeviceScene tables;
-  SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch> integrator;
-  SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32> first_surfaces;  // only with AOVs
+  SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch> integrator;
+  SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>
+      first_surfaces;              // only with AOVs
   std::size_t most_group = 0;      // work-items that a group of theirs may have; 0: not known
   std::vector<std::string> notes;  // why a cache could not be used
 };

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/faults.h"
 #include "device/cl_status.h"
+#include "render/plan/passes.h"
 #include "render/plan/tiles.h"
 
 namespace sundog {
@@ -43,63 +44,73 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
       options_(options),
       samples_(scene.info.samples),
       kernels_(build_frame_kernels(device, scene, tuning_of(options, device.info()), options.work_group,
-                                   !options.aovs.empty(), times)),
+                                   !options.aovs.empty() || needs_surfaces(scene.sampling), times)),
       sizer_(limits_of(device.info(), kernels_), options.work_group, tuning_of(options, device.info()),
              !scene.sdf_fields.empty()),
       watch_(watch) {}
 
-void TileRenderer::launch_samples(const StopFlags& flags) {
+void TileRenderer::launch_samples(const TileRequest& request, const StopFlags& flags) {
   while (!flags.set()) {
     const std::optional<SizedLaunch> next = sizer_.next();
     if (!next) return;
     const Stopwatch clock;
     const WatchedLaunch watched(watch_, next->expected_seconds, next->expected_seconds <= 0);
-    run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
-        device_, kernels_.integrator, next->size, kernels_.tables, kernels_.tables.camera_media, film_,
-        weights_, counters_, next->launch);
+    Launch launch = next->launch;
+    launch.first_sample += request.first_sample;
+    launch.listed = !request.pixels.empty();
+    run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
+        device_, kernels_.integrator, next->size, kernels_.tables, kernels_.tables.camera_media, pixels_,
+        film_, weights_, counters_, launch);
     device_.finish();
     sizer_.note_time(clock.seconds());
   }
 }
 
-void TileRenderer::launch_aovs(const Tile& tile, std::vector<float4>& aovs) {
+void TileRenderer::launch_aovs(const TileRequest& request, const Tile& tile, std::vector<float4>& aovs) {
   const std::size_t pixels = pixel_count(tile);
   if (aovs_.count < 3 * pixels) aovs_ = device_.make<float4>(3 * pixels);
   aovs.resize(3 * pixels);
   if (pixels == 0) return;
   constexpr double expected = 3;  // not known: only what stands for minutes is stuck
   const WatchedLaunch watched(watch_, expected, !aovs_launched_);
-  run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32>(
+  run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>(
       device_, kernels_.first_surfaces, sizer_.surfaces(pixels), kernels_.tables,
-      kernels_.tables.camera_media, aovs_, counters_, static_cast<u32>(tile.x), static_cast<u32>(tile.y),
-      static_cast<u32>(tile.width), static_cast<u32>(pixels));
+      kernels_.tables.camera_media, pixels_, aovs_, counters_, static_cast<u32>(tile.x),
+      static_cast<u32>(tile.y), static_cast<u32>(tile.width), static_cast<u32>(pixels),
+      request.pixels.empty() ? 0u : 1u);
   device_.finish();
   aovs_launched_ = true;
   device_.read(aovs_, std::span<float4>(aovs));
 }
 
 // Whether every sample was traced to its end: a driver may end a kernel's loops early without an error.
-void TileRenderer::check_finished(const Tile& asked, const TileResult& made) {
+void TileRenderer::check_finished(const TileRequest& asked, const TileResult& made) {
   const auto primary = static_cast<u32>(made.counts[COUNT_PRIMARY]);  // the device's sums are modulo 2^32
   auto finished = static_cast<u32>(made.counts[COUNT_FINISHED]);
-  const auto wanted = static_cast<u32>(pixel_count(made.tile) * samples_);
-  const auto aovs = options_.aovs.empty() ? 0u : static_cast<u32>(pixel_count(made.tile));
+  std::uint64_t pixels = pixel_count(made.tile);
+  if (!asked.pixels.empty()) {
+    const auto first = asked.pixels.begin();
+    pixels -= static_cast<std::uint64_t>(
+        std::count(first, first + static_cast<std::ptrdiff_t>(pixels), static_cast<u32>(NO_PIXEL)));
+  }
+  const auto wanted = static_cast<u32>(pixels * samples_of(asked));
+  const auto aovs = wants_aovs(asked) ? static_cast<u32>(pixels) : 0u;
   if (fault("cut", fmt::format("{}:{}", device_.info().platform, device_.info().device),
             sizer_.tile_samples()))
     finished = 0;
   // A tile that was stopped may have samples of rows that are not finished.
-  if (finished == 2 * (primary + aovs) && (primary == wanted || made.tile != asked)) return;
+  if (finished == 2 * (primary + aovs) && (primary == wanted || made.tile != asked.tile)) return;
   throw LoopsCutShort(
       fmt::format("{}: the driver ends the kernel's loops too early ({} of {} samples were traced to "
                   "their end)",
                   device_.info().label(), finished / 2, std::max(wanted, primary)));
 }
 
-TileResult TileRenderer::render(const Tile& tile, const StopFlags& flags) {
+TileResult TileRenderer::render(const TileRequest& request, const StopFlags& flags) {
   while (true) {
     try {
-      TileResult made = try_render(tile, flags);
-      check_finished(tile, made);
+      TileResult made = try_render(request, flags);
+      check_finished(request, made);
       return made;
     } catch (const DeviceError& error) {
       const std::optional<LaunchFailure> failure = failure_of(error);
@@ -116,25 +127,38 @@ TileResult TileRenderer::render(const Tile& tile, const StopFlags& flags) {
   }
 }
 
-// A failed launch may have added some of its samples, so a tile is always begun from nothing.
-TileResult TileRenderer::try_render(const Tile& tile, const StopFlags& flags) {
-  const std::size_t pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
-  TileResult result;
-  result.tile = tile;
-  result.sums.resize(pixels);
-  result.weights.resize(pixels);
-  std::array<u32, COUNTERS> counts{};
+// What the tile's samples are added to: nothing, or a pass's earlier ones.
+void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
+  const auto pixels = static_cast<std::size_t>(pixel_count(request.tile));
   if (film_.count < pixels) {
     film_ = device_.make<float4>(pixels);
     weights_ = device_.make<float>(pixels);
   }
+  if (pixels_.count < std::max<std::size_t>(1, request.pixels.size()))
+    pixels_ = device_.make<u32>(std::max<std::size_t>(1, request.pixels.size()));
+  if (!request.pixels.empty()) device_.write(pixels_, std::span<const u32>(request.pixels));
+  result.sums = request.sums;
+  result.weights = request.weights;
+  result.sums.resize(pixels);
+  result.weights.resize(pixels);
   device_.write(film_, std::span<const float4>(result.sums));
   device_.write(weights_, std::span<const float>(result.weights));
+}
+
+// A failed launch may have added some of its samples, so a tile is always begun from what it was.
+TileResult TileRenderer::try_render(const TileRequest& request, const StopFlags& flags) {
+  TileResult result;
+  result.tile = request.tile;
+  std::array<u32, COUNTERS> counts{};
+  write_start(request, result);
   counters_ = device_.upload(std::span<const u32>(counts));
-  sizer_.begin(tile, samples_);
-  launch_samples(flags);
-  result.tile.height = static_cast<int>(sizer_.finished_rows());
-  if (!options_.aovs.empty()) launch_aovs(result.tile, result.aovs);
+  const unsigned samples = samples_of(request);
+  if (samples > 0) {
+    sizer_.begin(request.tile, samples);
+    launch_samples(request, flags);
+    result.tile.height = static_cast<int>(sizer_.finished_rows());
+  }
+  if (wants_aovs(request)) launch_aovs(request, result.tile, result.aovs);
   const Stopwatch reading;
   device_.read(film_, std::span<float4>(result.sums));
   device_.read(weights_, std::span<float>(result.weights));

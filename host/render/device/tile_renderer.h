@@ -19,11 +19,17 @@ class TileRenderer {
   TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options, RenderTimes& times,
                LaunchWatch& watch);
 
-  /// Renders all samples of a tile in launches of bounded time. Where the device runs out of memory or
+  /// Renders what is asked for of a tile in launches of bounded time. Where the device runs out of memory or
   /// resources, once more in launches of half the size, and so on; where its driver ended the kernel's loops
   /// early, in launches of half the samples, at last in work-groups of one; where a work-group is too large
   /// for it, in groups of half the size. Throws DeviceError.
-  TileResult render(const Tile& tile, const StopFlags& flags);
+  TileResult render(const TileRequest& request, const StopFlags& flags);
+  /// The same of a plain frame's tile.
+  TileResult render(const Tile& tile, const StopFlags& flags) {
+    TileRequest request;
+    request.tile = tile;
+    return render(request, flags);
+  }
 
   /// Most work-items that a group of its kernels may have; 0: not known.
   std::size_t greatest_group() const { return sizer_.most_group(); }
@@ -32,10 +38,17 @@ class TileRenderer {
   const std::vector<std::string>& notes() const { return kernels_.notes; }
 
  private:
-  TileResult try_render(const Tile& tile, const StopFlags& flags);
-  void launch_samples(const StopFlags& flags);
-  void launch_aovs(const Tile& tile, std::vector<float4>& aovs);
-  void check_finished(const Tile& asked, const TileResult& made);
+  TileResult try_render(const TileRequest& request, const StopFlags& flags);
+  void write_start(const TileRequest& request, TileResult& result);
+  void launch_samples(const TileRequest& request, const StopFlags& flags);
+  void launch_aovs(const TileRequest& request, const Tile& tile, std::vector<float4>& aovs);
+  void check_finished(const TileRequest& asked, const TileResult& made);
+  unsigned samples_of(const TileRequest& request) const {
+    return request.in_pass ? request.sample_count : samples_;
+  }
+  bool wants_aovs(const TileRequest& request) const {
+    return request.in_pass ? request.surfaces : !options_.aovs.empty();
+  }
 
   Device& device_;
   const RenderOptions& options_;
@@ -44,6 +57,7 @@ class TileRenderer {
   LaunchSizer sizer_;
   LaunchWatch& watch_;
   bool aovs_launched_ = false;
+  Buffer<u32> pixels_;
   Buffer<float4> film_;
   Buffer<float> weights_;
   Buffer<float4> aovs_;

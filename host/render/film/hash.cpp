@@ -30,6 +30,15 @@ std::uint64_t hash_scene(const CompiledScene& scene) {
   state = hash_bytes(&scene.origin, sizeof scene.origin, state);
   state = hash_bytes(&scene.tracer, sizeof scene.tracer, state);
   state = hash_bytes(&scene.features.sampler, sizeof scene.features.sampler, state);
+  const Sampling& sampling = scene.sampling;
+  const double shared_out[] = {sampling.threshold,
+                               static_cast<double>(sampling.first_samples),
+                               sampling.contrast,
+                               sampling.budget,
+                               sampling.subsample ? 1.0 : 0.0,
+                               sampling.subsample_contrast,
+                               sampling.progressive ? 1.0 : 0.0};
+  state = hash_bytes(shared_out, sizeof shared_out, state);
   mix(scene.integrator);
   mix(scene.field_source);
   for_each_table(scene, [&](const char*, const auto& table) { mix(table); });

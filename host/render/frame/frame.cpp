@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "device/cl_status.h"
+#include "render/plan/subsample.h"
 
 namespace sundog {
 namespace {
@@ -42,6 +43,66 @@ void look_for_stop(Frame& frame) {
   frame.queue.close();
 }
 
+/// The pixels of a tile, one each.
+template <class Visit>
+void for_each_pixel(const Film& film, const Tile& tile, const Visit& visit) {
+  for (int y = tile.y; y < tile.y + tile.height; ++y)
+    for (int x = tile.x; x < tile.x + tile.width; ++x)
+      visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(x));
+}
+
+/// What a server is asked for.
+TileRequest request_of(Frame& frame, const Tile& tile) {
+  TileRequest request;
+  request.tile = tile;
+  const std::lock_guard lock(frame.mutex);
+  if (!frame.passes) return request;
+  const Pass& pass = frame.passes->pass;
+  const GrowingFilm& film = frame.passes->film;
+  request.in_pass = true;
+  request.first_sample = pass.first_sample, request.sample_count = pass.sample_count;
+  request.surfaces = pass.surfaces;
+  for_each_pixel(frame.film, tile, [&](std::size_t i) {
+    if (!pass.pixels.empty()) request.pixels.push_back(pass.pixels[i]);
+    if (pass.first_sample == 0) return;
+    const std::int64_t p = image_index(film, pass, i);
+    request.sums.push_back(p < 0 ? float4{} : film.film.sums[static_cast<std::size_t>(p)]);
+    request.weights.push_back(p < 0 ? 0 : film.film.weights[static_cast<std::size_t>(p)]);
+  });
+  return request;
+}
+
+void write_state(const std::filesystem::path& path, const Film& film,
+                 const std::optional<FramePasses>& passes, std::uint64_t key) {
+  if (passes)
+    write_growing_checkpoint(path, passes->film, passes->pass, film, key);
+  else
+    write_checkpoint(path, film, key);
+}
+
+/// Shows the picture so far, every so often.
+void show_picture(Frame& frame) {
+  if (!frame.options.on_picture || frame.since_picture.seconds() < frame.options.picture_seconds) return;
+  GrowingFilm film;
+  {
+    const std::lock_guard lock(frame.mutex);
+    film = film_so_far(frame);
+  }
+  frame.options.on_picture(film.film);
+  frame.since_picture = Stopwatch();
+}
+
+/// Ends the frame when its time is over.
+void look_at_clock(Frame& frame) {
+  if (!(frame.options.time_limit > 0) || frame.clock.seconds() < frame.options.time_limit) return;
+  {
+    const std::lock_guard lock(frame.mutex);
+    frame.limited = true;
+  }
+  frame.stop = true;
+  frame.queue.close();
+}
+
 /// Keeps what is done against what gives no warning: a process killed, a machine that goes down.
 void keep_checkpoint(Frame& frame) {
   const RenderOptions& options = frame.options;
@@ -50,14 +111,16 @@ void keep_checkpoint(Frame& frame) {
   if (!now && frame.since_checkpoint.seconds() < options.checkpoint_seconds) return;
   frame.since_checkpoint = Stopwatch();
   Film film;
+  std::optional<FramePasses> passes;
   {
     const std::lock_guard lock(frame.mutex);
     if (frame.pixels_done == frame.pixels_kept) return;
     frame.pixels_kept = frame.pixels_done;
     film = frame.film;
+    passes = frame.passes;
   }
   try {
-    write_checkpoint(checkpoint_path(options), film, frame.key);
+    write_state(checkpoint_path(options), film, passes, frame.key);
   } catch (const IoError&) {
     // What keeps it from being written is reported at the end, if the frame does not come to its end.
   }
@@ -70,6 +133,7 @@ void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
   frame.pixels_done += frame.film.put(made.tile, made.sums, made.weights, made.aovs);
   for (std::size_t c = 0; c < COUNTERS; ++c) frame.counts[c] += made.counts[c];
   frame.servers[i].report.pixels += pixel_count(made.tile);
+  if (!frame.stop) plan_next_pass(frame);
   report_progress(frame);
   look_for_stop(frame);
 }
@@ -98,7 +162,7 @@ RenderTimes open(Frame& frame, std::size_t i) {
 void make_tile(Frame& frame, std::size_t i, const TileJob& job) {
   const StopFlags flags{&frame.stop, &frame.queue.cancelled(i)};
   const Stopwatch busy;
-  const TileResult made = frame.servers[i].server->render(job.tile, flags);
+  const TileResult made = frame.servers[i].server->render(request_of(frame, job.tile), flags);
   const bool whole = made.tile == job.tile;
   const bool first = whole ? frame.queue.finished(i, job, busy.seconds()) : frame.queue.given_up(i, job);
   if (first) keep_tile(frame, i, made);
@@ -189,7 +253,9 @@ void serve(const std::shared_ptr<Frame>& frame, std::size_t i) {
 void watch(Frame& frame) {
   while (!frame.queue.wait(look_again)) {
     look_for_stop(frame);
+    look_at_clock(frame);
     keep_checkpoint(frame);
+    show_picture(frame);
     for (std::size_t i = 0; i < frame.servers.size(); ++i) {
       const double seconds = frame.servers[i].server->overdue();
       if (seconds <= 0) continue;
@@ -219,6 +285,38 @@ void wait_for_threads(Frame& frame, bool stopped) {
 }  // namespace
 
 unsigned threads_left_behind() { return left_behind; }
+
+void plan_next_pass(Frame& frame) {
+  const auto all_done = [&] { return std::ranges::count(frame.film.done, 0) == 0; };
+  while (frame.passes && frame.queue.waits_for_more() && all_done()) {
+    FramePasses& passes = *frame.passes;
+    add_pass(passes.film, passes.pass, frame.film, true);
+    frame.film = Film();
+    frame.pixels_done = 0;
+    frame.pixels_kept = ~std::uint64_t{0};
+    std::optional<Pass> next = next_pass(passes.film, passes.plan);
+    if (!next) return frame.queue.no_more();
+    passes.pass = std::move(*next);
+    frame.film = Film(passes.pass.width, passes.pass.height, passes.pass.surfaces);
+    frame.queue.refill(passes.tiles(frame.film));
+  }
+}
+
+GrowingFilm film_so_far(const Frame& frame) {
+  GrowingFilm film;
+  if (!frame.passes) {
+    film.film = frame.film;
+    return film;
+  }
+  film = frame.passes->film;
+  if (!frame.film.done.empty()) add_pass(film, frame.passes->pass, frame.film, false);
+  if (frame.passes->plan.settings.subsample) interpolate_rest(film);
+  return film;
+}
+
+void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& path) {
+  write_state(path, frame.film, frame.passes, frame.key);
+}
 
 void run_frame(const std::shared_ptr<Frame>& frame, bool wait) {
   std::vector<std::thread> threads;

@@ -3,16 +3,27 @@
 #pragma once
 #include <condition_variable>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "base/clock.h"
 #include "render/frame/tile_server.h"
+#include "render/plan/passes.h"
 #include "render/plan/tile_queue.h"
 
 namespace sundog {
+
+/// A frame that is made in passes: the one in hand is Frame::film and the queue's tiles.
+struct FramePasses {
+  GrowingFilm film;  // all passes before
+  Pass pass;
+  SamplingPlan plan;
+  std::function<TilePlan(const Film&)> tiles;  // of a pass
+};
 
 /// What the threads share. It lives until the last of them is gone, which may be after the frame's end.
 struct Frame {
@@ -32,6 +43,7 @@ struct Frame {
   std::mutex mutex;  // for everything below, and the servers' reports and phases
   std::condition_variable changed;
   Film film;
+  std::optional<FramePasses> passes;
   TileQueue queue;
   RayCounts counts{};
   RenderTimes times;  // of the first server to be ready
@@ -40,8 +52,9 @@ struct Frame {
   std::exception_ptr last_error;
   std::uint64_t pixels_done = 0, pixels_kept = 0;  // the latter are in the checkpoint
   std::uint64_t key = 0;                           // the checkpoint's
-  Stopwatch clock, since_checkpoint;
-  bool over = false;  // the result is being gathered: nothing more goes in
+  Stopwatch clock, since_checkpoint, since_picture;
+  bool over = false;     // the result is being gathered: nothing more goes in
+  bool limited = false;  // the time limit ended it
   std::atomic<bool> stop{false};
 };
 
@@ -49,6 +62,16 @@ struct Frame {
 inline const std::filesystem::path& checkpoint_path(const RenderOptions& options) {
   return options.checkpoint.empty() ? options.resume : options.checkpoint;
 }
+
+/// Plans the next pass when all pixels of the one in hand are done; without another the frame is complete.
+/// The caller holds the frame's mutex, or is alone with it.
+void plan_next_pass(Frame& frame);
+
+/// What there is of the picture: of a frame in passes with what is done of the one in hand.
+GrowingFilm film_so_far(const Frame& frame);
+
+/// Writes the frame's state.
+void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& path);
 
 /// Runs the frame to its end: finished, stopped (options.stop), or out of servers. With `wait`, every thread
 /// has ended on return; else those in a driver are left behind (see threads_left_behind()).

@@ -11,6 +11,19 @@
 
 namespace sundog {
 
+/// What is to be made: of a plain frame's tile all samples, and its AOVs; of a pass's tile the pixels that it
+/// stands for.
+struct TileRequest {
+  Tile tile;
+  bool in_pass = false;
+  // Of a pass:
+  std::vector<u32> pixels;                 // each pixel's of the image (Pass::pixels); empty: its own
+  u32 first_sample = 0, sample_count = 0;  // samples to add to what follows
+  bool surfaces = false;                   // AOVs
+  std::vector<float4> sums;                // of each pixel's earlier samples; empty: none
+  std::vector<float> weights;
+};
+
 /// A tile's pixels and ray counts. `tile` is what was finished: less rows than asked for when it was stopped
 /// on the way.
 struct TileResult {
@@ -43,8 +56,8 @@ class TileServer {
   /// Makes it ready: kernels built, scene uploaded. Called again after a failure, to begin afresh. Throws
   /// DeviceError, BuildError.
   virtual RenderTimes open() = 0;
-  /// All samples of the tile. Throws DeviceError; then it must be opened again.
-  virtual TileResult render(const Tile& tile, const StopFlags& flags) = 0;
+  /// Makes what is asked for. Throws DeviceError; then it must be opened again.
+  virtual TileResult render(const TileRequest& request, const StopFlags& flags) = 0;
   virtual ServerFigures figures() const = 0;
   /// Lets go of the device, and keeps its compiled kernels for the next time.
   virtual void close() = 0;

@@ -21,6 +21,36 @@ TileQueue::TileQueue(TilePlan plan, std::vector<DeviceSpeed> devices)
   for (std::size_t i = 0; i < speeds_.size(); ++i) devices_.push_back(std::make_unique<State>());
 }
 
+void TileQueue::expect_more() {
+  const std::lock_guard lock(mutex_);
+  more_ = true;
+}
+
+void TileQueue::refill(TilePlan plan) {
+  const std::lock_guard lock(mutex_);
+  plan_ = std::move(plan);
+  for (const WaitingTiles& list : plan_.lists) unfinished_ += list.pixels();
+  if (plan_.lists.size() > 1)
+    for (std::size_t i = 0; i < devices_.size(); ++i)
+      while (devices_[i]->retired) {
+        const std::optional<Tile> tile = plan_.lists[i].take_whole();
+        if (!tile) break;
+        returned_.give_back(*tile);
+      }
+  changed_.notify_all();
+}
+
+void TileQueue::no_more() {
+  const std::lock_guard lock(mutex_);
+  more_ = false;
+  changed_.notify_all();
+}
+
+bool TileQueue::waits_for_more() const {
+  const std::lock_guard lock(mutex_);
+  return unfinished_ == 0 && more_;
+}
+
 bool TileQueue::wait_until_needed(std::size_t device) {
   std::unique_lock lock(mutex_);
   while (!over()) {
@@ -202,7 +232,7 @@ bool TileQueue::wait(double seconds) {
 
 bool TileQueue::complete() const {
   const std::lock_guard lock(mutex_);
-  return unfinished_ == 0;
+  return unfinished_ == 0 && !more_;
 }
 
 DeviceWork TileQueue::work(std::size_t device) const {

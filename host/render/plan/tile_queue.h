@@ -34,6 +34,13 @@ class TileQueue {
   /// `devices` hold estimates; none is working yet.
   TileQueue(TilePlan plan, std::vector<DeviceSpeed> devices);
 
+  /// The frame has passes: when the tiles are made there are more to come, by refill(), until no_more().
+  void expect_more();
+  void refill(TilePlan plan);
+  void no_more();
+  /// The tiles are made, and more are expected.
+  bool waits_for_more() const;
+
   /// Waits while the device is better not started (is_spared); false when it never will be, because the
   /// frame is finished or closed. In a fixed split every device is needed.
   bool wait_until_needed(std::size_t device);
@@ -79,7 +86,7 @@ class TileQueue {
     std::optional<Stopwatch> ready;
   };
 
-  bool over() const { return closed_ || unfinished_ == 0; }
+  bool over() const { return closed_ || (unfinished_ == 0 && !more_); }
   static HeldTile as_held(const Held& held);
   void find_stuck();
   WaitingTiles& list_of(std::size_t device);
@@ -99,6 +106,7 @@ class TileQueue {
   std::uint64_t next_id_ = 1;
   std::uint64_t unfinished_ = 0;  // pixels, waiting or held
   bool closed_ = false;
+  bool more_ = false;  // another pass may follow
 };
 
 }  // namespace sundog

@@ -23,7 +23,7 @@ struct Message {
     devices,  // back: {devices, cores}
     open,     // to a worker: make a device ready for a frame
     ready,    // back: {times, scene}
-    render,   // to a worker: {job, tile}
+    render,   // to a worker: {job, tile...}, data: the pixels of a pass and their earlier samples
     stop,     // to a worker: {job}: enough of that tile
     tile,     // back: {tile, counts, figures}, data: its pixels
     failed,   // back, at any time: {what, status, build, log}; {closed}: nothing else will come; {hangs}:

@@ -64,10 +64,12 @@ RenderTimes RemoteServer::open() {
   }
 }
 
-TileResult RemoteServer::render(const Tile& tile, const StopFlags& flags) {
+TileResult RemoteServer::render(const TileRequest& request, const StopFlags& flags) {
   try {
     ++job_;
-    channel_->send({Message::render, {{"job", job_}, {"tile", tile}}, {}});
+    PackedTile packed = pack_request(request);
+    packed.values["job"] = job_;
+    channel_->send({Message::render, std::move(packed.values), std::move(packed.data)});
     const Message made = answer(Message::tile, flags);
     figures_ = made.values.at("figures").get<ServerFigures>();
     return unpack_tile(made.values, made.data);

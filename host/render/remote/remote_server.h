@@ -25,7 +25,7 @@ class RemoteServer : public TileServer {
 
   const DeviceInfo& info() const override { return device_.info; }
   RenderTimes open() override;
-  TileResult render(const Tile& tile, const StopFlags& flags) override;
+  TileResult render(const TileRequest& request, const StopFlags& flags) override;
   ServerFigures figures() const override;
   void close() override;
   void be_nice() override { device_.settings["nice"] = true; }

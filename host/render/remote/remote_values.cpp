@@ -24,6 +24,40 @@ std::vector<T> take(const std::string& bytes, std::size_t& at, std::size_t count
 
 }  // namespace
 
+PackedTile pack_request(const TileRequest& request) {
+  PackedTile packed;
+  packed.values = {{"tile", request.tile}};
+  if (!request.in_pass) return packed;
+  packed.values["pass"] = {{"pixels", request.pixels.size()},
+                           {"sums", request.sums.size()},
+                           {"first", request.first_sample},
+                           {"count", request.sample_count},
+                           {"surfaces", request.surfaces}};
+  append(packed.data, request.pixels, request.pixels.size());
+  append(packed.data, request.sums, request.sums.size());
+  append(packed.data, request.weights, request.weights.size());
+  return packed;
+}
+
+TileRequest unpack_request(const nlohmann::json& values, const std::string& data) {
+  TileRequest request;
+  request.tile = values.at("tile").get<Tile>();
+  if (!values.contains("pass")) return request;
+  const nlohmann::json& pass = values.at("pass");
+  request.in_pass = true;
+  request.first_sample = pass.at("first").get<u32>();
+  request.sample_count = pass.at("count").get<u32>();
+  request.surfaces = pass.at("surfaces").get<bool>();
+  const auto pixels = pass.at("pixels").get<std::size_t>(), sums = pass.at("sums").get<std::size_t>();
+  if (data.size() != pixels * sizeof(u32) + sums * (sizeof(float4) + sizeof(float)))
+    throw DeviceError("a tile was asked for with too many or too few bytes");
+  std::size_t at = 0;
+  request.pixels = take<u32>(data, at, pixels);
+  request.sums = take<float4>(data, at, sums);
+  request.weights = take<float>(data, at, sums);
+  return request;
+}
+
 PackedTile pack_tile(const TileResult& result) {
   const std::size_t pixels = pixel_count(result.tile);
   PackedTile packed;

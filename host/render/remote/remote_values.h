@@ -24,6 +24,9 @@ struct PackedTile {
   nlohmann::json values;
   std::string data;
 };
+PackedTile pack_request(const TileRequest& request);
+/// Throws DeviceError when the bytes are not those of the request.
+TileRequest unpack_request(const nlohmann::json& values, const std::string& data);
 PackedTile pack_tile(const TileResult& result);
 /// Throws DeviceError when the bytes are not those of the tile.
 TileResult unpack_tile(const nlohmann::json& values, const std::string& data);

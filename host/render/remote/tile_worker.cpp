@@ -86,7 +86,7 @@ Message opened(OpenedServer& current, const Message& order,
 }
 
 Message made(TileServer& server, const Message& order, const StopFlags& flags) {
-  PackedTile packed = pack_tile(server.render(order.values.at("tile").get<Tile>(), flags));
+  PackedTile packed = pack_tile(server.render(unpack_request(order.values, order.data), flags));
   packed.values["job"] = order.values.at("job");
   packed.values["figures"] = server.figures();
   return {Message::tile, std::move(packed.values), std::move(packed.data)};

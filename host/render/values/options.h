@@ -14,6 +14,7 @@
 namespace sundog {
 
 class DevicePool;
+struct Film;
 
 /// How tiles are shared among devices: by measured speed as they come, or in fixed parts, one a device.
 struct Split {
@@ -44,8 +45,12 @@ struct RenderOptions {
   std::filesystem::path checkpoint;  // written on interrupt and on the way, and removed by the caller; empty:
                                      // that is `resume`
   double checkpoint_seconds = 60;    // between those written on the way
-  std::atomic<bool>* keep_now = nullptr;                   // set: write one at once, and take this back
-  bool in_haste = false;                                   // when stopped, a moment more may be too long
+  std::atomic<bool>* keep_now = nullptr;        // set: write one at once, and take this back
+  bool in_haste = false;                        // when stopped, a moment more may be too long
+  double time_limit = 0;                        // seconds; then what there is is returned; 0: none
+  double noise = 0;                             // a frame in passes ends below this mean error
+  std::function<void(const Film&)> on_picture;  // the film so far, every `picture_seconds`
+  double picture_seconds = 0;
   std::function<void(const RenderProgress&)> on_progress;  // called by one thread at a time
   const std::atomic<bool>* stop = nullptr;                 // set: finish what runs, return what there is
   bool keep_failed = false;  // when every device failed, return what there is, and the failure, not throw it

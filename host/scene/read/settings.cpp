@@ -118,6 +118,40 @@ void read_filter(JsonObject& object, RenderSettings& render) {
                                     least, render.samples));
 }
 
+void read_adaptive(JsonObject& object, Sampling& sampling) {
+  sampling.threshold = object.number("threshold", 0, {.low = 0, .high = 100});
+  sampling.first_samples = object.integer("first_samples", sampling.first_samples, 1, 65536);
+  sampling.contrast = object.number("contrast", sampling.contrast, {.low = 0, .high = 1e6});
+  sampling.budget = object.number("budget", 0, {.low = 0, .high = 65536});
+}
+
+void read_sampling(JsonObject& object, RenderSettings& render) {
+  Sampling& sampling = render.sampling;
+  if (const auto adaptive = object.find("adaptive"))
+    adaptive->object("adaptive", [&](JsonObject& inner) {
+      read_adaptive(inner, sampling);
+      return true;
+    });
+  if (const auto subsample = object.find("subsample"))
+    subsample->object("subsample", [&](JsonObject& inner) {
+      sampling.subsample = inner.boolean("on", true);
+      sampling.subsample_contrast =
+          inner.number("contrast", sampling.subsample_contrast, {.low = 0, .high = 100});
+      return true;
+    });
+  sampling.progressive = object.boolean("progressive", false);
+  const bool grows = sampling.threshold > 0 || sampling.progressive;
+  if (sampling.subsample && grows)
+    object.value().fail("\"subsample\" goes with neither \"adaptive\" nor \"progressive\": leave one out");
+  if (grows && (render.sampler == SAMPLER_STRATIFIED || render.sampler == SAMPLER_REGULAR))
+    object.value().fail(
+        fmt::format("the sampler {} has a fixed number of samples: wanted auto, sobol or "
+                    "independent with \"adaptive\" or \"progressive\"",
+                    sampler_names[render.sampler]));
+  if (sampling.threshold > 0 && render.samples < 2)
+    object.value().fail("wanted \"samples\" above 1, the most that a pixel gets, with \"adaptive\"");
+}
+
 }  // namespace
 
 Camera read_camera(const JsonValue& value, bool& placed) {
@@ -188,6 +222,7 @@ RenderSettings read_render(const JsonValue& value) {
         object.choice("sampler", std::string(sampler_names[SAMPLER_AUTO]), sampler_names);
     render.sampler = static_cast<u32>(std::ranges::find(sampler_names, sampler) - sampler_names.begin());
     read_filter(object, render);
+    read_sampling(object, render);
     const std::string tracer = object.choice("tracer", "auto", tracers);
     render.tracer = tracer == "wide"      ? Tracer::wide
                     : tracer == "compact" ? Tracer::compact

@@ -28,7 +28,9 @@ struct Group {
 const std::vector<Group>& groups() {
   static const std::vector<Group> all{
       {"The scene", "", {"scene"}},
-      {"Picture", "", {"camera", "lens", "view", "image", "gradient", "render", "world", "fog"}},
+      {"Picture",
+       "",
+       {"camera", "lens", "view", "image", "gradient", "render", "adaptive", "subsample", "world", "fog"}},
       {"Lights",
        "An entry of `lights` has one of these types.",
        {"ambient_light", "directional_light", "point_light", "spot_light", "rectangle_light", "disk_light",

@@ -32,7 +32,8 @@ struct MadeUpServer : TileServer {
   double overdue() const override { return hangs ? 1 : 0; }
   int processor() const override { return -1; }
 
-  TileResult render(const Tile& tile, const StopFlags& flags) override {
+  TileResult render(const TileRequest& request, const StopFlags& flags) override {
+    const Tile& tile = request.tile;
     before(++tiles);
     TileResult made{tile, {}, {}, {}, {}};
     if (flags.set()) made.tile.height = 0;

@@ -1,0 +1,106 @@
+#include "render/film/growing_film.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sundog {
+namespace {
+
+// Pixels of a row of a pass over a list, in blocks of 4x4.
+constexpr int list_width = 256, block = 4;
+
+/// The bits of x and y in turn: neighbours in the order are neighbours in the image.
+u32 morton(u32 x, u32 y) {
+  const auto spread = [](u32 v) {
+    v = (v | v << 8) & 0x00ff00ffu;
+    v = (v | v << 4) & 0x0f0f0f0fu;
+    v = (v | v << 2) & 0x33333333u;
+    return (v | v << 1) & 0x55555555u;
+  };
+  return spread(x) | spread(y) << 1;
+}
+
+}  // namespace
+
+Pass list_pass(std::vector<u32> indices, int image_width, u32 first_sample, u32 sample_count) {
+  const auto width = static_cast<u32>(image_width);
+  for (u32& index : indices) index = (index % width) | (index / width) << 16;
+  std::ranges::sort(indices, {}, [](u32 pixel) { return morton(pixel & 0xffffu, pixel >> 16); });
+  const int blocks = static_cast<int>((indices.size() + 15) / 16);
+  const int columns = std::clamp(blocks, 1, list_width / block);
+  Pass pass;
+  pass.width = columns * block;
+  pass.height = (blocks + columns - 1) / columns * block;
+  pass.pixels.assign(static_cast<std::size_t>(pass.width) * static_cast<std::size_t>(pass.height), NO_PIXEL);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const int at = static_cast<int>(i / 16), in = static_cast<int>(i % 16);
+    const int x = at % columns * block + in % block, y = at / columns * block + in / block;
+    pass.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(pass.width) +
+                static_cast<std::size_t>(x)] = indices[i];
+  }
+  pass.first_sample = first_sample;
+  pass.sample_count = sample_count;
+  return pass;
+}
+
+GrowingFilm::GrowingFilm(int width, int height, bool with_aovs) : film(width, height, with_aovs) {
+  taken.resize(film.done.size());
+  states.resize(film.done.size());
+  earlier.resize(film.done.size());
+}
+
+std::int64_t image_index(const GrowingFilm& film, const Pass& pass, std::size_t i) {
+  if (pass.pixels.empty()) return static_cast<std::int64_t>(i);
+  const u32 pixel = pass.pixels[i];
+  if (pixel == NO_PIXEL) return -1;
+  return static_cast<std::int64_t>(pixel >> 16) * film.film.width +
+         static_cast<std::int64_t>(pixel & 0xffffu);
+}
+
+void add_pass(GrowingFilm& film, const Pass& pass, const Film& made, bool complete) {
+  Film& whole = film.film;
+  for (std::size_t i = 0; i < made.done.size(); ++i) {
+    const std::int64_t found = made.done[i] ? image_index(film, pass, i) : -1;
+    if (found < 0) continue;
+    const auto p = static_cast<std::size_t>(found);
+    if (pass.surfaces && !whole.aovs.empty())
+      std::copy_n(made.aovs.begin() + static_cast<std::ptrdiff_t>(3 * i), 3,
+                  whole.aovs.begin() + static_cast<std::ptrdiff_t>(3 * p));
+    film.surfaces_seen += pass.surfaces;
+    if (film.states[p] == PixelState::empty) film.states[p] = PixelState::looked_at;
+    if (pass.sample_count == 0) continue;
+    film.earlier[p] = {whole.sums[p].x, whole.sums[p].y, whole.sums[p].z, whole.weights[p]};
+    whole.sums[p] = made.sums[i];
+    whole.weights[p] = made.weights[i];
+    whole.done[p] = 1;
+    film.taken[p] = pass.first_sample + pass.sample_count;
+    film.states[p] = PixelState::sampled;
+  }
+  film.stage += complete;
+}
+
+std::vector<float> pixel_errors(const GrowingFilm& film) {
+  std::vector<float> errors(film.taken.size());
+  for (std::size_t p = 0; p < errors.size(); ++p) {
+    if (film.states[p] != PixelState::sampled) continue;
+    const float4 &sum = film.film.sums[p], &before = film.earlier[p];
+    const float weight = film.film.weights[p];
+    if (!(weight > 0) || !(before.w > 0)) {
+      errors[p] = std::numeric_limits<float>::infinity();
+      continue;
+    }
+    const float now[3] = {sum.x / weight, sum.y / weight, sum.z / weight};
+    const float then[3] = {before.x / before.w, before.y / before.w, before.z / before.w};
+    float moved = 0, light = 0;
+    for (int c = 0; c < 3; ++c) {
+      moved += std::abs(now[c] - then[c]);
+      light += now[c];
+    }
+    constexpr float darkest = 0.01f;  // below it nobody sees a relative error
+    errors[p] = moved / std::sqrt(std::sqrt(std::max(light, darkest)));
+  }
+  return errors;
+}
+
+}  // namespace sundog

@@ -1,0 +1,63 @@
+// A frame that is made in passes: some of its pixels, some of their samples at a time. Between two passes the
+// film is whole, and what comes next follows from it alone.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "render/film/film.h"
+#include "shared/launch.h"
+
+namespace sundog {
+
+/// One pass: samples [first_sample, first_sample + sample_count) of its pixels, and with `surfaces` what the
+/// camera sees first there. It is rendered as a film of its own, of width x height pixels.
+struct Pass {
+  int width = 0, height = 0;
+  std::vector<u32> pixels;  // of the image, x | y << 16, or NO_PIXEL; empty: the image's own
+  u32 first_sample = 0, sample_count = 0;
+  bool surfaces = false;
+};
+
+/// A pass over a list of the image's pixels (y * image_width + x): neighbours stay together, and each run of
+/// 16 is a square of 4x4 in the pass, the pixels that a work-item takes together.
+Pass list_pass(std::vector<u32> indices, int image_width, u32 first_sample, u32 sample_count);
+
+/// What has become of a pixel. The film's own weights say how many samples count.
+enum class PixelState : std::uint8_t { empty, looked_at, sampled, interpolated };
+
+struct GrowingFilm {
+  Film film;                        // done: a sample or more
+  std::vector<u32> taken;           // samples of each pixel
+  std::vector<PixelState> states;   // of each pixel
+  std::vector<float4> earlier;      // the sums before a pixel's last pass; w = weight
+  u32 stage = 0;                    // passes that are complete
+  u32 step = 0;                     // of the planner
+  std::uint64_t surfaces_seen = 0;  // pixels looked at by a ray of their own, for the surface alone
+
+  GrowingFilm() = default;
+  GrowingFilm(int width, int height, bool with_aovs);
+};
+
+/// The image's pixel (y * width + x) that pixel `i` of the pass stands for; -1: none.
+std::int64_t image_index(const GrowingFilm& film, const Pass& pass, std::size_t i);
+
+/// Puts the pixels of a pass that are done in their places. `complete`: all are, and the next pass may be
+/// planned; else the film is good to be looked at only.
+void add_pass(GrowingFilm& film, const Pass& pass, const Film& made, bool complete);
+
+/// The estimated standard error of each pixel's colour: by how far a pass that doubled the samples moved it
+/// (Dammertz and others 2010). Summed over the channels and divided by the fourth root of their sum, which
+/// lies between the errors that are measured and those that are seen. Infinite where nothing is known, 0
+/// where no sample is.
+std::vector<float> pixel_errors(const GrowingFilm& film);
+
+/// The state of an unfinished frame: the film before the pass in hand, and as much of it as is made.
+void write_growing_checkpoint(const std::filesystem::path& path, const GrowingFilm& film, const Pass& pass,
+                              const Film& made, std::uint64_t key);
+
+/// Reads one into `film`, which has the frame's size, `pass` and `made`. Throws as read_checkpoint() does.
+void read_growing_checkpoint(const std::filesystem::path& path, GrowingFilm& film, Pass& pass, Film& made,
+                             std::uint64_t key);
+
+}  // namespace sundog

@@ -1,0 +1,174 @@
+// See subsample.h.
+#include "render/plan/subsample.h"
+
+#include <algorithm>
+#include <array>
+
+#include "render/plan/passes.h"
+#include "render/plan/pixel_rules.h"
+
+namespace sundog {
+namespace {
+
+// Normals of an even surface, at pixels that are two apart.
+constexpr float even_cosine = 0.98f;
+
+/// The image as cells between corners, which are two pixels apart, or one at the far edges.
+struct Grid {
+  const GrowingFilm& film;
+  float threshold;
+  int width = film.film.width, height = film.film.height;
+
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
+  bool is_corner(int x, int y) const { return on_line(x, width) && on_line(y, height); }
+  static bool on_line(int x, int size) { return x % 2 == 0 || x == size - 1; }
+
+  /// The corners about a pixel; on a line between two cells two of them twice, or all four the pixel itself.
+  std::array<std::size_t, 4> corners(int x, int y) const {
+    const int left = on_line(x, width) ? x : x - 1, right = on_line(x, width) ? x : x + 1;
+    const int top = on_line(y, height) ? y : y - 1, bottom = on_line(y, height) ? y : y + 1;
+    return {at(left, top), at(right, top), at(left, bottom), at(right, bottom)};
+  }
+
+  /// Whether four corners agree.
+  bool agree(const std::array<std::size_t, 4>& four) const {
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t k = i + 1; k < 4; ++k) {
+        if (!same_surface(film.film, four[i], four[k], even_cosine)) return false;
+        if (contrast(color_at(film.film, four[i]), color_at(film.film, four[k])) > threshold) return false;
+      }
+    return true;
+  }
+
+  /// Whether all cells that a pixel lies in agree.
+  bool between_alike(int x, int y) const {
+    const int u = on_line(x, width) ? 1 : 0, v = on_line(y, height) ? 1 : 0;
+    for (int dy = -v; dy <= v; dy += 2)
+      for (int dx = -u; dx <= u; dx += 2) {
+        const int cx = x + dx, cy = y + dy;
+        if (cx < 0 || cy < 0 || cx >= width || cy >= height) continue;
+        if (!agree(corners(cx, cy))) return false;
+      }
+    return true;
+  }
+
+  Color promised(int x, int y) const {
+    Color sum;
+    for (const std::size_t corner : corners(x, y)) {
+      const Color color = color_at(film.film, corner);
+      sum.r += 0.25f * color.r, sum.g += 0.25f * color.g, sum.b += 0.25f * color.b;
+    }
+    return sum;
+  }
+};
+
+/// The pixels, no corners among them, that `wanted` is true of.
+template <class Wanted>
+std::vector<u32> pick(const Grid& grid, const Wanted& wanted) {
+  std::vector<u32> indices;
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x)
+      if (!grid.is_corner(x, y) && wanted(x, y)) indices.push_back(static_cast<u32>(grid.at(x, y)));
+  return indices;
+}
+
+/// Whether a pixel's own surface is one with all its corners'.
+bool fits_corners(const Grid& grid, int x, int y) {
+  for (const std::size_t corner : grid.corners(x, y))
+    if (!same_surface(grid.film.film, corner, grid.at(x, y), even_cosine)) return false;
+  return true;
+}
+
+/// A sampled pixel whose light is not what its corners of the same surface promised: a shadow's or a
+/// reflection's edge, which may go on between the corners nearby.
+bool surprises(const Grid& grid, int x, int y) {
+  const std::size_t p = grid.at(x, y);
+  const GrowingFilm& film = grid.film;
+  if (film.states[p] != PixelState::sampled || grid.is_corner(x, y)) return false;
+  return contrast(color_at(film.film, p), grid.promised(x, y)) > grid.threshold;
+}
+
+std::vector<u32> near_surprises(const Grid& grid) {
+  std::vector<std::uint8_t> wanted(grid.film.taken.size());
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x) {
+      if (!surprises(grid, x, y)) continue;
+      for (int v = std::max(0, y - 1); v <= std::min(grid.height - 1, y + 1); ++v)
+        for (int u = std::max(0, x - 1); u <= std::min(grid.width - 1, x + 1); ++u) wanted[grid.at(u, v)] = 1;
+    }
+  return pick(grid, [&](int x, int y) {
+    const std::size_t p = grid.at(x, y);
+    return wanted[p] && grid.film.states[p] != PixelState::sampled;
+  });
+}
+
+/// The pixels without samples of their own become the mean of their corners, where those have some.
+void interpolate(GrowingFilm& film, const Grid& grid) {
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x) {
+      const std::size_t p = grid.at(x, y);
+      if (film.states[p] == PixelState::sampled || grid.is_corner(x, y)) continue;
+      const auto sampled = [&](std::size_t corner) { return film.states[corner] == PixelState::sampled; };
+      if (!std::ranges::all_of(grid.corners(x, y), sampled)) continue;
+      const Color color = grid.promised(x, y);
+      float coverage = 0;
+      for (const std::size_t corner : grid.corners(x, y))
+        coverage += 0.25f * film.film.sums[corner].w / std::max(film.film.weights[corner], 1.0f);
+      film.film.sums[p] = {color.r, color.g, color.b, coverage};
+      film.film.weights[p] = 1;
+      film.film.done[p] = 1;
+      film.states[p] = PixelState::interpolated;
+    }
+}
+
+Pass corner_pass(const GrowingFilm& film, u32 samples) {
+  const Grid grid{film, 0};
+  std::vector<u32> corners;
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x)
+      if (grid.is_corner(x, y)) corners.push_back(static_cast<u32>(grid.at(x, y)));
+  Pass pass = list_pass(std::move(corners), grid.width, 0, samples);
+  pass.surfaces = true;
+  return pass;
+}
+
+}  // namespace
+
+void interpolate_rest(GrowingFilm& film) { interpolate(film, Grid{film, 0}); }
+
+std::optional<Pass> next_subsampling_pass(GrowingFilm& film, const SamplingPlan& plan) {
+  const int width = film.film.width;
+  const Grid grid{film, static_cast<float>(plan.settings.subsample_contrast)};
+  if (film.step == 0) {
+    ++film.step;
+    return corner_pass(film, plan.samples);
+  }
+  const auto unseen = [&](std::size_t p) { return film.states[p] == PixelState::empty; };
+  if (film.step == 1) {
+    ++film.step;
+    std::vector<u32> look = pick(grid, [&](int x, int y) {
+      return unseen(grid.at(x, y)) && (plan.surfaces || grid.between_alike(x, y));
+    });
+    if (!look.empty()) {
+      Pass pass = list_pass(std::move(look), width, 0, 0);
+      pass.surfaces = true;
+      return pass;
+    }
+  }
+  if (film.step == 2) {
+    ++film.step;
+    std::vector<u32> other = pick(grid, [&](int x, int y) {
+      return !grid.between_alike(x, y) || (!unseen(grid.at(x, y)) && !fits_corners(grid, x, y));
+    });
+    if (!other.empty()) return list_pass(std::move(other), width, 0, plan.samples);
+  }
+  ++film.step;
+  std::vector<u32> more = near_surprises(grid);
+  if (!more.empty()) return list_pass(std::move(more), width, 0, plan.samples);
+  interpolate(film, grid);
+  return std::nullopt;
+}
+
+}  // namespace sundog

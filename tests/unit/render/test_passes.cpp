@@ -1,0 +1,239 @@
+// Passes over a frame's samples: which pixels come next is arithmetic over the film, without any device.
+#include "render/plan/passes.h"
+
+#include <cmath>
+#include <set>
+
+#include "base/error.h"
+#include "catch.h"
+#include "render/plan/subsample.h"
+#include "shared/sampler.h"
+#include "temporary_folder.h"
+
+using namespace sundog;
+
+namespace {
+
+constexpr int width = 33, height = 18;
+
+/// What a pixel's sample is, and the object seen there.
+struct MadeUpPixel {
+  float value;
+  int object;
+};
+
+/// Makes all pixels of a pass by `pixel(x, y, sample)`, as a device would.
+template <class Pixel>
+Film made(const GrowingFilm& film, const Pass& pass, const Pixel& pixel) {
+  Film result(pass.width, pass.height, pass.surfaces);
+  for (std::size_t i = 0; i < result.done.size(); ++i) {
+    result.done[i] = 1;
+    const std::int64_t p = image_index(film, pass, i);
+    if (p < 0) continue;
+    const int x = static_cast<int>(p % width), y = static_cast<int>(p / width);
+    result.sums[i] = film.film.sums[static_cast<std::size_t>(p)];
+    result.weights[i] = film.film.weights[static_cast<std::size_t>(p)];
+    for (u32 s = pass.first_sample; s < pass.first_sample + pass.sample_count; ++s) {
+      const float value = pixel(x, y, s).value;
+      result.sums[i].x += value, result.sums[i].y += value, result.sums[i].z += value;
+      result.weights[i] += 1;
+    }
+    if (!pass.surfaces) continue;
+    const auto object = static_cast<float>(pixel(x, y, 0).object);
+    result.aovs[3 * i] = {0, 0, 1, 5};
+    result.aovs[3 * i + 1] = {0, 0, 0, object};
+    result.aovs[3 * i + 2] = {0.5f, 0.5f, 0.5f, object};
+  }
+  return result;
+}
+
+/// Runs all passes. Returns how many there were.
+template <class Pixel>
+int run(GrowingFilm& film, const SamplingPlan& plan, const Pixel& pixel) {
+  int passes = 0;
+  while (const auto pass = next_pass(film, plan)) {
+    REQUIRE(++passes < 100);
+    add_pass(film, *pass, made(film, *pass, pixel), true);
+  }
+  return passes;
+}
+
+std::size_t at(int x, int y) { return static_cast<std::size_t>(y * width + x); }
+
+SamplingPlan adaptive_plan(double threshold, u32 samples) {
+  SamplingPlan plan;
+  plan.settings.threshold = threshold;
+  plan.samples = samples;
+  return plan;
+}
+
+SamplingPlan subsampling_plan(u32 samples) {
+  SamplingPlan plan;
+  plan.settings.subsample = true;
+  plan.samples = samples;
+  return plan;
+}
+
+}  // namespace
+
+TEST_CASE("a pass over a list holds each of its pixels once, in whole blocks") {
+  for (const u32 count : {1u, 15u, 16u, 17u, 594u}) {
+    std::vector<u32> indices;
+    for (u32 i = 0; i < count; ++i) indices.push_back((i * 7) % (width * height));
+    const Pass pass = list_pass(indices, width, 4, 4);
+    CHECK(pass.width % 4 == 0);
+    CHECK(pass.height % 4 == 0);
+    std::multiset<u32> found;
+    for (const u32 pixel : pass.pixels)
+      if (pixel != NO_PIXEL) found.insert((pixel >> 16) * width + (pixel & 0xffffu));
+    CHECK(found == std::multiset<u32>(indices.begin(), indices.end()));
+  }
+}
+
+TEST_CASE("a progressive frame doubles the samples of all pixels up to the number asked for") {
+  SamplingPlan plan;
+  plan.settings.progressive = true;
+  plan.samples = 11;
+  GrowingFilm film(width, height, false);
+  const int passes = run(film, plan, [](int, int, u32 sample) { return MadeUpPixel{float(sample), 0}; });
+  CHECK(passes == 5);  // 1, 2, 4, 8, 11
+  for (std::size_t p = 0; p < film.taken.size(); ++p) {
+    REQUIRE(film.taken[p] == 11);
+    REQUIRE(film.film.sums[p].x == 55);
+  }
+}
+
+TEST_CASE("a picture without noise gets the first samples alone, and an edge all of them") {
+  const auto flat = [](int, int, u32) { return MadeUpPixel{0.5f, 1}; };
+  GrowingFilm film(width, height, true);
+  run(film, adaptive_plan(0.02, 64), flat);
+  for (const u32 taken : film.taken) REQUIRE(taken == 2);
+
+  const auto edge = [](int x, int, u32 sample) {  // noise in column 16 that does not go away
+    const bool odd = (sample & (sample - 1)) == 0;
+    return MadeUpPixel{x == 16 ? (odd ? 40.0f * float(sample) : 0.0f) : 0.5f, 1};
+  };
+  GrowingFilm other(width, height, true);
+  run(other, adaptive_plan(0.02, 64), edge);
+  for (int y = 0; y < height; ++y) {
+    CHECK(other.taken[at(16, y)] == 64);
+    CHECK(other.taken[at(2, y)] == 2);
+    CHECK(other.taken[at(30, y)] == 2);
+  }
+}
+
+TEST_CASE("neighbours with other objects get more samples though they have the same colour") {
+  const auto two = [](int x, int, u32) { return MadeUpPixel{0.5f, x < 10 ? 1 : 2}; };
+  GrowingFilm film(width, height, true);
+  run(film, adaptive_plan(0.02, 64), two);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) CHECK(film.taken[at(x, y)] == (x == 9 || x == 10 ? 4 : 2));
+}
+
+TEST_CASE("a budget is kept, and the pixels of the largest errors get it") {
+  const auto noisy = [](int x, int, u32 sample) {
+    return MadeUpPixel{sample % 2 ? 0.5f : 0.5f + 0.1f * float(x), 1};
+  };
+  SamplingPlan plan = adaptive_plan(1e-4, 1024);
+  plan.settings.budget = 3;
+  GrowingFilm film(width, height, true);
+  run(film, plan, noisy);
+  double sum = 0;
+  for (const u32 taken : film.taken) sum += taken;
+  CHECK(sum <= 3.0 * width * height);
+  CHECK(sum >= 2.9 * width * height);
+  CHECK(film.taken[at(32, 5)] > film.taken[at(1, 5)]);
+}
+
+TEST_CASE("a frame ends when its mean error is below the noise threshold") {
+  SamplingPlan plan;
+  plan.settings.progressive = true;
+  plan.samples = 65536;
+  plan.noise = 0.01;
+  const auto noisy = [](int x, int y, u32 sample) {
+    return MadeUpPixel{float(hash_u32(sample + hash_u32(static_cast<u32>(at(x, y)))) & 1u), 1};
+  };
+  GrowingFilm film(width, height, false);
+  run(film, plan, noisy);
+  CHECK(mean_error(film) < 0.01);
+  CHECK(film.taken[0] < 65536);
+  CHECK(film.taken[0] > 8);
+}
+
+TEST_CASE("subsampling interpolates even surfaces, and looks at each pixel before") {
+  const auto ramp = [](int x, int y, u32) { return MadeUpPixel{0.5f + 0.001f * float(x + y), 1}; };
+  GrowingFilm film(width, height, true);
+  run(film, subsampling_plan(4), ramp);
+  int sampled = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const std::size_t p = at(x, y);
+      const bool corner = (x % 2 == 0 || x == width - 1) && (y % 2 == 0 || y == height - 1);
+      CHECK(film.states[p] == (corner ? PixelState::sampled : PixelState::interpolated));
+      CHECK(film.film.sums[p].x / film.film.weights[p] == Approx(ramp(x, y, 0).value).margin(1e-5));
+      sampled += corner;
+    }
+  CHECK(sampled == 17 * 10);
+  CHECK(film.surfaces_seen == width * height);
+}
+
+TEST_CASE("a thing one pixel wide between the corners is found by its surface") {
+  const auto wire = [](int x, int y, u32) {
+    const bool on = x == 7 || y == 9;
+    return MadeUpPixel{on ? 0.51f : 0.5f, on ? 2 : 1};
+  };
+  GrowingFilm film(width, height, true);
+  run(film, subsampling_plan(1), wire);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      CHECK(film.film.sums[at(x, y)].x / film.film.weights[at(x, y)] == Approx(wire(x, y, 0).value));
+}
+
+TEST_CASE("a shadow one pixel wide is followed from where a corner lies in it") {
+  // It falls mostly between the corners, and is one only here and there.
+  const auto shadow = [](int x, int y, u32) { return MadeUpPixel{x == (y < 4 ? 8 : 7) ? 0.1f : 0.5f, 1}; };
+  GrowingFilm film(width, height, true);
+  run(film, subsampling_plan(1), shadow);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      CHECK(film.film.sums[at(x, y)].x / film.film.weights[at(x, y)] == Approx(shadow(x, y, 0).value));
+}
+
+TEST_CASE("a frame in passes goes on from its checkpoint, and takes no other's") {
+  const TemporaryFolder folder;
+  const auto noisy = [](int x, int y, u32 sample) {
+    return MadeUpPixel{float((x * 7 + y * 3 + int(sample) * 5) % 11) / 11, (x / 5) % 3};
+  };
+  const SamplingPlan plan = adaptive_plan(0.05, 32);
+  GrowingFilm whole(width, height, true);
+  run(whole, plan, noisy);
+
+  GrowingFilm film(width, height, true);
+  for (int pass = 0; pass < 3; ++pass) {
+    const auto next = next_pass(film, plan);
+    REQUIRE(next);
+    add_pass(film, *next, made(film, *next, noisy), true);
+  }
+  const Pass pass = *next_pass(film, plan);
+  Film half = made(film, pass, noisy);
+  for (std::size_t i = 0; i < half.done.size() / 2; ++i) half.done[i] = 0;
+  const auto file = folder / "state";
+  write_growing_checkpoint(file, film, pass, half, 42);
+
+  GrowingFilm back(width, height, true);
+  Pass same;
+  Film part;
+  CHECK_THROWS_AS(read_growing_checkpoint(file, back, same, part, 43), UsageError);
+  read_growing_checkpoint(file, back, same, part, 42);
+  CHECK(same.pixels == pass.pixels);
+  CHECK(part.done == half.done);
+  add_pass(back, same, made(back, same, noisy), true);
+  run(back, plan, noisy);
+  CHECK(back.taken == whole.taken);
+  for (std::size_t p = 0; p < back.taken.size(); ++p) REQUIRE(back.film.sums[p] == whole.film.sums[p]);
+
+  GrowingFilm smaller(width, height - 1, true);
+  CHECK_THROWS_AS(read_growing_checkpoint(file, smaller, same, part, 42), UsageError);
+  std::filesystem::resize_file(file, 500);
+  CHECK_THROWS_AS(read_growing_checkpoint(file, back, same, part, 42), SceneError);
+}
