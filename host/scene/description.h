@@ -59,8 +59,8 @@ struct Sampling {
   double contrast = 4;     // adaptive: neighbours that differ by so many thresholds get more samples
   double budget = 0;       // adaptive: samples a pixel in the mean; 0: no limit
   bool subsample = false;  // every second pixel each way gets samples, the others where they must
-  double subsample_contrast = 0.06;  // difference of colours between which is not interpolated
-  bool progressive = false;          // samples double pass by pass: 1, 2, 4...
+  double subsample_contrast = 0.1;  // difference of colours between which is not interpolated
+  bool progressive = false;         // samples double pass by pass: 1, 2, 4...
 };
 
 enum class Filter { box, tent, gaussian, blackman_harris, mitchell };

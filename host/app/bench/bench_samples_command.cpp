@@ -1,20 +1,47 @@
 // `sundog bench samples`: time and error by samples a pixel.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "app/bench/bench_options.h"
 #include "app/options/option_helpers.h"
 #include "base/error.h"
 #include "bench/frames/sample_scaling.h"
+#include "bench/frames/sample_ways.h"
 
 namespace sundog {
 namespace {
 
+/// "a,b" -> a, b: JSON numbers, which the scene's reader checks.
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    if (comma > at) parts.push_back(text.substr(at, comma - at));
+    at = comma + 1;
+  }
+  return parts;
+}
+
 struct SamplesOptions : BenchOptions {
   std::string counts = "1,2,4,8,16,32";
-  int reference = 0;  // 0: four times the most
+  int reference = 0;                        // 0: four times the most
+  std::string adaptive = "0.01,0.02,0.05";  // thresholds
 };
+
+/// Frames whose samples go where they are needed, up to four times the most that all pixels get.
+std::vector<SampleWay> sample_ways(const SamplesOptions& options, int most) {
+  std::vector<SampleWay> ways;
+  for (const std::string& threshold : split_list(options.adaptive))
+    ways.push_back(
+        {"adaptive, " + threshold,
+         {fmt::format("/render/samples={}", 4 * most), "/render/adaptive/threshold=" + threshold}});
+  ways.push_back({fmt::format("subsampled, {}", most),
+                  {fmt::format("/render/samples={}", most), "/render/adaptive/threshold=0",
+                   "/render/subsample/on=true"}});
+  return ways;
+}
 
 int bench_samples(const SamplesOptions& options) {
   const std::vector<int> counts = parse_list("--counts", options.counts, 1, 65536);
@@ -34,10 +61,17 @@ int bench_samples(const SamplesOptions& options) {
       plan.reference = reference;
       plan.repeat = options.repeat;
       plan.compile_for = [&](int samples) {
-        return bench_scene(file, options, {fmt::format("/render/samples={}", samples)});
+        return bench_scene(file, options,
+                           {fmt::format("/render/samples={}", samples), "/render/adaptive/threshold=0"});
       };
       const auto on_step = [&](const std::string& step) { show_step(options, step); };
-      add_sample_tables(report, plan, measure_samples(plan, on_step));
+      const std::vector<SampleTime> even = measure_samples(plan, on_step);
+      add_sample_tables(report, plan, even);
+      SampleWays ways{plan.scene, {}, device, sample_ways(options, counts.back()), reference, options.repeat};
+      ways.compile_with = [&](const std::vector<std::string>& overrides) {
+        return bench_scene(file, options, overrides);
+      };
+      add_way_table(report, ways, measure_ways(ways, even, on_step));
     }
   report.notes.push_back(
       fmt::format("Median of {} frames after one to warm up; the counts take turns, and the image of each "
@@ -65,6 +99,8 @@ void add_bench_samples(Arguments& bench, Command& chosen) {
                   "samples of the picture that counts as right (default: four times the most)")
       ->type_name("N")
       ->range(2, 1 << 18);
+  value(app, "--adaptive", "LIST", options->adaptive,
+        "thresholds of the adaptive frames (default 0.01,0.02,0.05)");
   app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_samples(*options); }}; });
 }
 

@@ -148,8 +148,6 @@ void read_sampling(JsonObject& object, RenderSettings& render) {
         fmt::format("the sampler {} has a fixed number of samples: wanted auto, sobol or "
                     "independent with \"adaptive\" or \"progressive\"",
                     sampler_names[render.sampler]));
-  if (sampling.threshold > 0 && render.samples < 2)
-    object.value().fail("wanted \"samples\" above 1, the most that a pixel gets, with \"adaptive\"");
 }
 
 }  // namespace
