@@ -2,6 +2,7 @@
 #ifndef SUNDOG_LIB_FILTER_CL
 #define SUNDOG_LIB_FILTER_CL
 #include "shared/filter.h"
+#include "shared/types.h"
 
 #if HAS_FILTER
 // How far along an axis from the centre the sample value u in [0, 1) lies. `sign` is multiplied by the sign
