@@ -8,7 +8,7 @@ build=$root/build/release
 
 # The build cannot do without these. PoCL is among them, so that the first picture needs no GPU.
 needed=(g++ cmake ninja-build ocl-icd-opencl-dev opencl-clhpp-headers pocl-opencl-icd libglm-dev libstb-dev
-  libopenexr-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtbb-dev zlib1g-dev catch2)
+  libopenexr-dev libspng-dev libturbojpeg0-dev libwebp-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtbb-dev zlib1g-dev catch2)
 # The tests compare with these where they are; Open MPI is what `mpirun sundog` needs.
 peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin)
 # Of one version, so that every machine finds the same: tests/check_format.sh, tests/tidy.sh.

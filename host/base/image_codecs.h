@@ -13,9 +13,6 @@ namespace sundog {
 std::string encode_png(const Image& image);
 /// Likewise, without alpha; colours in full resolution.
 std::string encode_jpeg(const Image& image);
-/// PNG (8 or 16 bits) and JPEG as linear RGBA. A PNG's gAMA chunk is honoured when it has no sRGB or iCCP
-/// one.
-Image decode_png_or_jpeg(std::string_view bytes);
 /// The exponent that makes a PNG's samples linear; none: sRGB.
 std::optional<float> png_decoding_exponent(std::string_view bytes);
 

@@ -137,6 +137,13 @@ class Reader {
   int width_ = 0, height_ = 0;
 };
 
+/// Files of several images, or of several samples a pixel; by the flags of the version.
+void refuse_deep_and_parts(std::string_view bytes) {
+  const unsigned flags = bytes.size() > 5 ? static_cast<unsigned char>(bytes[5]) : 0;
+  if (flags & 0x08) throw std::runtime_error("a deep EXR file; wanted one sample a pixel");
+  if (flags & 0x10) throw std::runtime_error("an EXR file of several parts; wanted one image");
+}
+
 /// Bytes that a file does not exceed: blocks that cannot be compressed are stored as they are.
 std::size_t greatest_size(const Imf::Header& header) {
   std::size_t pixel = 0;
@@ -182,6 +189,7 @@ std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color
 }
 
 Image decode_exr(std::string_view bytes) {
+  refuse_deep_and_parts(bytes);
   Reader reader(bytes);
   if (reader.has("R") || reader.has("G") || reader.has("B"))
     return reader.read({"R", "G", "B", "A"}, {0, 0, 0, 1});
@@ -193,6 +201,7 @@ Image decode_exr(std::string_view bytes) {
 }
 
 AovImages decode_exr_aovs(std::string_view bytes) {
+  refuse_deep_and_parts(bytes);
   Reader reader(bytes);
   std::map<std::string, Suffixes> layers;
   for (auto channel = reader.channels().begin(); channel != reader.channels().end(); ++channel) {

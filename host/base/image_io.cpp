@@ -14,6 +14,7 @@
 #include "base/image_codecs.h"
 #include "base/input.h"
 #include "base/limits.h"
+#include "base/pixels/stored_image.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -32,7 +33,7 @@ Image decode(std::string_view bytes) {
   if (is_exr(bytes)) return decode_exr(bytes);
   if (bytes.starts_with("PF") || bytes.starts_with("Pf")) return decode_pfm(bytes);
   if (bytes.starts_with("#?")) return decode_hdr(bytes);
-  return decode_png_or_jpeg(bytes);
+  return linear_image(decode_stored(bytes));
 }
 
 /// Calls `read(bytes)`; what goes wrong in it becomes a SceneError about the file.

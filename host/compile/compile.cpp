@@ -20,6 +20,7 @@
 #include "compile/local_origin.h"
 #include "compile/materials.h"
 #include "compile/mesh_bvh.h"
+#include "compile/textures.h"
 #include "scene/integrators.h"
 
 namespace sundog {
@@ -175,10 +176,13 @@ CompiledScene compile(const SceneDescription& scene) {
   out.features.sampler = sampler_of(scene.render);
   out.filter = filter_table(scene.render);
   out.features.filter = !out.filter.empty();
+  add_textures(scene, out);
   out.features.media = absorbs(out.media[0]);
   out.features.absorption = std::ranges::any_of(out.media, absorbs);
   out.features.fractional_exponents = std::ranges::any_of(out.materials, has_fractional_exponent);
   const std::vector<PlacedMesh> meshes = add_meshes(scene, default_material, out);
+  add_further_uvs(scene, meshes, out);
+  add_tangents(scene, meshes, out);
   add_instances(scene, meshes, default_material, out);
   add_fields(fields_of(scene, views, out), out);
   add_field_features(out);

@@ -11,6 +11,7 @@
 #include "compile/instance_bounds.h"
 #include "compile/local_origin.h"
 #include "compile/shapes.h"
+#include "compile/textures.h"
 #include "compile/touching/touching.h"
 
 namespace sundog {
@@ -91,8 +92,9 @@ class Placer {
     const auto* shape = std::get_if<MeshShape>(&object.shape);
     const PlacedMesh* mesh = shape ? &meshes_[static_cast<std::size_t>(shape->mesh)] : nullptr;
     if (mesh) unit.scale = dvec3(mesh->unit);
+    const double size = std::cbrt(std::abs(glm::determinant(glm::dmat3(object.world_from_object))));
     instance.pattern_scale = {static_cast<float>(unit.scale.x), static_cast<float>(unit.scale.y),
-                              static_cast<float>(unit.scale.z), 0};
+                              static_cast<float>(unit.scale.z), static_cast<float>(1 / size)};
     if (mesh) {
       instance.root = mesh->root;
       placed.cost = mesh->cost;
@@ -124,8 +126,10 @@ class Placer {
   }
 
   /// A plane moved along itself, so that the middle of its own space is near: by whole periods of its
-  /// pattern.
+  /// pattern. With textures, which may have any period, it stays.
   dmat4 nearer_plane(const Object& object, const dmat4& local_from_object) const {
+    if (object.material >= 0 && has_maps(scene_.materials[static_cast<std::size_t>(object.material)]))
+      return local_from_object;
     const dvec3 here(glm::inverse(local_from_object)[3]);
     dmat4 result = local_from_object;
     for (const int axis : {0, 2}) {

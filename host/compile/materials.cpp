@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "compile/pack.h"
+#include "compile/textures.h"
 #include "scene/kinds.h"
 #include "scene/lamps.h"
 
@@ -54,11 +55,18 @@ u32 material_flags(const MaterialDescription& material) {
   if (material.blinn) flags |= MATERIAL_BLINN;
   if (material.shadow_opaque) flags |= MATERIAL_SHADOW_OPAQUE;
   if (material.checker) flags |= MATERIAL_CHECKER;
-  if (!is_zero(material.transmission)) flags |= MATERIAL_TRANSMITS;
+  if (!is_zero(material.transmission) || material.opacity < 1 || material.textures.opacity >= 0)
+    flags |= MATERIAL_TRANSMITS;
   if (!is_zero(material.reflection)) flags |= MATERIAL_REFLECTS;
   if (material.medium < 0) flags |= MATERIAL_THIN;
   if (material.vertex_color) flags |= MATERIAL_VERTEX_COLOR;
-  const bool local = !is_zero(material.ambient) || !is_zero(material.diffuse) || !is_zero(material.specular);
+  if (material.one_sided) flags |= MATERIAL_ONE_SIDED | MATERIAL_TRANSMITS;
+  if (material.metal_rough) {
+    flags |= MATERIAL_METAL_ROUGH;
+    if (material.metal_rough->metalness > 0) flags |= MATERIAL_REFLECTS;
+  }
+  const bool local = !is_zero(material.ambient) || !is_zero(material.diffuse) ||
+                     !is_zero(material.specular) || has_maps(material);
   if (material.type == MaterialType::dielectric && !local && material.transmission == dvec3(1))
     flags |= MATERIAL_CLEAR;
   return flags;

@@ -234,6 +234,8 @@ std::vector<u32> distinct_materials(std::span<const TriangleShading> triangles) 
 void fill_tables(const Mesh& mesh, const WideBvh& tree, const Rows& first, u32 default_material,
                  CompiledScene& out, PlacedMesh& placed) {
   placed.root = static_cast<u32>(first.nodes);
+  placed.first_vertex = static_cast<u32>(first.vertices);
+  placed.first_triangle = static_cast<u32>(first.triangles);
   placed.triangle_count = static_cast<u32>(mesh.triangles.size());
   placed.boxes = grandchildren(tree.nodes);
   const auto triangles = std::span(out.triangles).subspan(first.triangles, mesh.triangles.size());

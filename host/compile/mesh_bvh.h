@@ -12,6 +12,7 @@ struct PlacedMesh {
   bool used = false;  // some object places it
   double unit = 1;    // of the tables' coordinates, in the mesh's: a power of two
   u32 root = 0;       // its first node
+  u32 first_vertex = 0, first_triangle = 0;
   u32 triangle_count = 0;
   double cost = 0;             // expected cost of a ray that crosses its box
   u32 stack = 0;               // entries its traversal may need

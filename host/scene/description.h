@@ -12,6 +12,7 @@
 
 #include "base/image.h"
 #include "scene/formula/sdf.h"
+#include "scene/texture_description.h"
 #include "shared/lights.h"
 #include "shared/sampler.h"
 #include "shared/shapes.h"
@@ -77,6 +78,7 @@ struct RenderSettings {
   double filter_radius = 0;  // in pixels; 0: the filter's own
   Sampling sampling;
   Tracer tracer = Tracer::automatic;
+  int texture_memory = 1024;    // MiB that images may take on a device, 1..65536
   bool spatial_splits = false;  // build the BVH with cut triangles: slower, better for long thin ones
 };
 
@@ -148,6 +150,15 @@ struct MaterialDescription {
   dvec3 checker_ambient{0}, checker_diffuse{0};  // ka and kd in odd cells: colour times coefficient
   double checker_size = 1;                       // edge of a cell, object space
   bool vertex_color = false;
+  double opacity = 1;      // [0, 1]: the rest is what lies behind, seen straight through; with a medium 1
+  double cutoff = 0;       // above 0: opacity from there on is 1, else 0
+  bool one_sided = false;  // from behind it is not there
+  MaterialTextures textures{};              // factors on the values here
+  std::optional<MetalRough> metal_rough{};  // takes the place of ambient, diffuse, specular and reflection
+  double normal_scale = 1;                  // factor on the slopes of a normal map
+  double bump = 1;                          // height of a 1 of the height texture, object space
+  double bump_uv = 0;                       // the same in units of u and v, added
+  double occlusion = 1;                     // how much of the occlusion texture counts, [0, 1]
 };
 
 /// Triangles with shared vertices. `normals` (empty: flat shading), `uvs` and `colors` are empty or as long
@@ -156,7 +167,8 @@ struct Mesh {
   std::string name;
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
-  std::vector<glm::vec2> uvs;
+  std::vector<glm::vec2> uvs;                       // v up
+  std::vector<std::vector<glm::vec2>> further_uvs;  // sets 1, 2, ..., each empty or as long as `positions`
   std::vector<glm::vec3> colors;
   std::vector<glm::uvec3> triangles;
   std::vector<int> materials;  // per triangle, index into SceneDescription::materials; empty: the object's
@@ -248,6 +260,8 @@ struct SceneDescription {
   EnvironmentDescription environment;
   std::vector<LightDescription> lights;
   std::vector<MediumDescription> media;  // [0] is the world's, of priority world_priority
+  std::vector<ImageDescription> images;
+  std::vector<TextureDescription> textures;
   std::vector<MaterialDescription> materials;
   std::vector<Mesh> meshes;
   std::vector<SdfDescription> fields;

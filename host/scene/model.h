@@ -17,6 +17,8 @@ namespace sundog {
 /// of an added material "default".
 struct Model {
   std::vector<Mesh> meshes;
+  std::vector<ImageDescription> images;
+  std::vector<TextureDescription> textures;
   std::vector<MaterialDescription> materials;
   std::vector<MediumDescription> media;
   std::vector<Object> objects;
@@ -39,7 +41,7 @@ struct ModelOptions {
 };
 
 /// Reads .gltf .glb .obj .ply .stl .nff, each also gzipped (.gz). Polygons come triangulated (n corners make
-/// n - 2 triangles, those without area too), normals made where missing. Textures are not read. Throws
+/// n - 2 triangles, those without area too), normals made where missing; textures with their images. Throws
 /// SceneError{file, "line N", "byte N" or a JSON pointer, what}.
 Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});
 

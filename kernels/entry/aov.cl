@@ -3,6 +3,7 @@
 #include "lib/core/counters.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
+#include "lib/shade/relief.cl"
 #include "shared/launch.h"
 
 // One work-item of the kernel below: the pixels from `first` on.
@@ -36,6 +37,8 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
   next_surfaces(scene, &rays, lanes, true, &met, counts);
   const MASK hit = lanes & hit_anything(&met.hit);
   interact(scene, rays.o, rays.d, &met.hit, &met.face, hit, &s);
+  set_footprints(&rays, met.hit.t, &s);
+  add_relief(scene, rays.d, hit, &s);
   const Bsdfs bsdf = make_bsdfs(scene, &s, met.before, met.after, hit);
   const REAL3 world = add3(add3(s.p, all3(scene->info->origin_rest.xyz)), all3(scene->info->origin.xyz));
   const REAL depth = met.hit.t * dot3(rays.d, all3(scene->info->camera_forward.xyz));

@@ -34,8 +34,14 @@ static inline float cross_faces(const Scene* scene, const SceneRays* rays, const
 NEVER_INLINE void follow_line_outside(const Scene* scene, __global u32* restrict camera_media) {
   const float3 d =
       (float3)(0.3141f, 0.8660f, 0.3890f);  // off every axis that a scene is likely to be built along
-  const Rays line = {all3(scene->info->camera_position.xyz), renormalized3(all3(d)), (REAL)(0.0f),
-                     (REAL)(INFINITY)};
+  Rays line;
+  line.o = all3(scene->info->camera_position.xyz);
+  line.d = renormalized3(all3(d));
+  line.t_min = (REAL)(0.0f);
+  line.t_max = (REAL)(INFINITY);
+#if HAS_CONES
+  line.spread = (REAL)(0.0f);
+#endif
   SceneRays rays = scene_rays(&line, 0);  // one ray, in lane 0
   const MASK lane = lanes_of(1u);
   u32 counts[COUNTERS];  // marching counts, which nobody asks for here

@@ -93,7 +93,8 @@ typedef struct Instance {
   float touch;   // above 0 where surfaces of it may lie on others' or its own: how far rounding may part them
   u32 pad0, pad1;
   float4 world_center;   // of the bounds; w = half the diagonal (0 when unbounded)
-  float4 pattern_scale;  // xyz: from object space to that of the scene file, where patterns are measured
+  float4 pattern_scale;  // xyz: from object space to that of the scene file, where patterns are measured;
+                         // w: lengths there over lengths in the world, their geometric mean
 } Instance;
 SUNDOG_SHARED_SIZE(Instance, 128)
 

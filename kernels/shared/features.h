@@ -29,6 +29,15 @@
   FEATURE(bool, HAS_LENS, lens)                     /* the camera has a lens */                         \
   FEATURE(bool, HAS_CAMERA_MOTION, camera_motion)   /* the camera moves while the shutter is open */    \
   FEATURE(bool, HAS_EMISSION, emission)             /* some material shines by itself */                \
+  FEATURE(bool, HAS_MAPS, maps)                     /* some material has a texture, emission or opacity */ \
+  FEATURE(bool, HAS_RELIEF, relief)                 /* some material has a normal or height map */      \
+  FEATURE(bool, HAS_METAL_ROUGH, metal_rough)       /* some material has metalness and roughness of its own */ \
+  FEATURE(u32, TEXTURE_MAPPINGS, texture_mappings)  /* bit i: some texture has the mapping i */         \
+  FEATURE(u32, TEXTURE_KINDS, texture_kinds)        /* bit i: some texture has a node of kind i */      \
+  FEATURE(u32, TEXTURE_STACK, texture_stack)        /* values that a texture keeps at a time, at most */ \
+  FEATURE(u32, TEXEL_FORMATS, texel_formats)        /* bit i: some image has the format i */            \
+  FEATURE(bool, HAS_TEXEL_PAGES, texel_pages)       /* images take more than texels0 */                 \
+  FEATURE(u32, EXTRA_UVS, extra_uvs)                /* sets of texture coordinates beside the first */  \
   FEATURE(u32, SDF_FLAGS, field_flags)              /* SdfField.flags that some field has */
 // clang-format on
 

@@ -16,6 +16,8 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_THIN 32u          // no interior: transmits straight through and changes no medium
 #define MATERIAL_VERTEX_COLOR 64u  // ambient and diffuse are multiplied by the vertex colour
 #define MATERIAL_CLEAR 128u        // no local terms or tint: cannot be seen between equal indices
+#define MATERIAL_METAL_ROUGH 256u  // its terms follow from metalness and roughness (shared/metal_rough.h)
+#define MATERIAL_ONE_SIDED 512u    // from behind it is not there
 
 // Highlights up to this exponent, where it is whole, are products alone.
 #define GREATEST_WHOLE_EXPONENT 65535.0f
@@ -35,7 +37,7 @@ typedef struct Material {
   u32 kind;                // MATERIAL_PHONG, MATERIAL_DIELECTRIC
   u32 flags;
   u32 medium;  // index of the medium inside the surface
-  u32 pad;
+  u32 maps;    // index of its MaterialMaps; 0: none
 } Material;
 SUNDOG_SHARED_SIZE(Material, 144)
 
@@ -78,9 +80,9 @@ typedef struct SceneInfo {
   u32 field_end;         // instances [instance_count, field_end) place distance fields
   u32 table_lights;      // rows of the table of lights
   u32 sees_environment;  // 1: rays that meet nothing see the environment, else the background
-  u32 pad0;
-  float4 origin;       // of the tables' coordinates, in the world
-  float4 origin_rest;  // what its floats leave out
+  u32 texel_page;        // units of TEXEL_UNIT bytes in each of texels0 to texels2
+  float4 origin;         // of the tables' coordinates, in the world
+  float4 origin_rest;    // what its floats leave out
   // HAS_LENS: from the lens's middle to its rim, to the right and up; w = the depth that is sharp; blades.
   float4 lens_x, lens_y;
   // HAS_CAMERA_MOTION: how far these move while the shutter is open.

@@ -10,24 +10,35 @@
 #include "shared/environment.h"
 #include "shared/scene.h"
 #include "shared/sdf.h"
+#include "shared/textures.h"
 
-#define SCENE_TABLES(TABLE)                                       \
-  TABLE(u32, Bvh8Node, nodes, "BVH nodes")                        \
-  TABLE(TriangleBlock, TriangleBlock, blocks, "triangle blocks")  \
-  TABLE(Instance, Instance, instances, "instances")               \
-  TABLE(TriangleShading, TriangleShading, triangles, "triangles") \
-  TABLE(Vertex, Vertex, vertices, "vertices")                     \
-  TABLE(Material, Material, materials, "materials")               \
-  TABLE(Medium, Medium, media, "media")                           \
-  TABLE(Light, Light, lights, "lights")                           \
-  TABLE(LightRay, LightRay, light_rays, "rays to lights")         \
-  TABLE(LightNode, LightNode, light_nodes, "nodes over lights")   \
-  TABLE(float, float, lobe_energy, "energy of lobes")             \
-  TABLE(Environment, Environment, environments, "environments")   \
-  TABLE(float4, float4, environment, "environment's pixels")      \
-  TABLE(float, float, environment_shares, "environment's shares") \
-  TABLE(SdfField, SdfField, sdf_fields, "fields")                 \
-  TABLE(float, float, sdf_parameters, "field parameters")         \
-  TABLE(float, float, filter, "filter")
+#define SCENE_TABLES(TABLE)                                              \
+  TABLE(u32, Bvh8Node, nodes, "BVH nodes")                               \
+  TABLE(TriangleBlock, TriangleBlock, blocks, "triangle blocks")         \
+  TABLE(Instance, Instance, instances, "instances")                      \
+  TABLE(TriangleShading, TriangleShading, triangles, "triangles")        \
+  TABLE(Vertex, Vertex, vertices, "vertices")                            \
+  TABLE(Material, Material, materials, "materials")                      \
+  TABLE(Medium, Medium, media, "media")                                  \
+  TABLE(Light, Light, lights, "lights")                                  \
+  TABLE(LightRay, LightRay, light_rays, "rays to lights")                \
+  TABLE(LightNode, LightNode, light_nodes, "nodes over lights")          \
+  TABLE(float, float, lobe_energy, "energy of lobes")                    \
+  TABLE(Environment, Environment, environments, "environments")          \
+  TABLE(float4, float4, environment, "environment's pixels")             \
+  TABLE(float, float, environment_shares, "environment's shares")        \
+  TABLE(SdfField, SdfField, sdf_fields, "fields")                        \
+  TABLE(float, float, sdf_parameters, "field parameters")                \
+  TABLE(float, float, filter, "filter")                                  \
+  TABLE(MaterialMaps, MaterialMaps, material_maps, "textured materials") \
+  TABLE(TextureNode, TextureNode, texture_nodes, "textures")             \
+  TABLE(float, float, texture_values, "values of textures")              \
+  TABLE(TexelLevel, TexelLevel, texel_levels, "levels of images")        \
+  TABLE(u32, u32, texels0, "images")                                     \
+  TABLE(u32, u32, texels1, "images")                                     \
+  TABLE(u32, u32, texels2, "images")                                     \
+  TABLE(u32, u32, texels3, "images")                                     \
+  TABLE(float, float, extra_uvs, "further texture coordinates")          \
+  TABLE(u32, u32, tangents, "tangents")
 
 #endif

@@ -29,6 +29,15 @@ std::string point_text(const json& point) {
                      point[2].get<double>());
 }
 
+void print_image(const json& image) {
+  const auto number = [&](const char* key) { return image[key].get<int>(); };
+  const bool smaller = image["width"] != image["file_width"] || image["height"] != image["file_height"];
+  fmt::print("image      {}: {}x{}{}, {} bits, {}, {:.2f} MiB\n", image["name"].get<std::string>(),
+             number("width"), number("height"),
+             smaller ? fmt::format(" (of {}x{})", number("file_width"), number("file_height")) : "",
+             number("bits"), image["use"].get<std::string>(), image["bytes"].get<double>() / (1 << 20));
+}
+
 void print_text(const json& figures) {
   const auto number = [&](const char* key) { return figures[key].get<std::uint64_t>(); };
   const auto mebibytes = [&](const char* key) { return figures["bytes"][key].get<double>() / (1 << 20); };
@@ -44,8 +53,10 @@ void print_text(const json& figures) {
              bvh["mean_block_fill"].get<double>(), 1000 * bvh["build_seconds"].get<double>());
   fmt::print("SAH cost   {:.2f}: {}\n", bvh["sah_cost"].get<double>(),
              bvh["sah_cost_unit"].get<std::string>());
-  fmt::print("memory     {:.2f} MiB: BVH {:.2f}, shading {:.2f}, tables {:.2f}\n", mebibytes("total"),
-             mebibytes("bvh"), mebibytes("shading"), mebibytes("tables"));
+  fmt::print("memory     {:.2f} MiB: BVH {:.2f}, shading {:.2f}, images {:.2f}, tables {:.2f}\n",
+             mebibytes("total"), mebibytes("bvh"), mebibytes("shading"), mebibytes("images"),
+             mebibytes("tables"));
+  for (const json& image : figures["images"]) print_image(image);
   for (const json& field : figures["field_bounds"])
     fmt::print("field      {}: {} to {}\n", field["name"].get<std::string>(), point_text(field["min"]),
                point_text(field["max"]));

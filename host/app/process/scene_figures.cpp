@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "compile/texels.h"
 #include "scene/kinds.h"
 
 namespace sundog {
@@ -47,7 +48,13 @@ json bytes_by_kind(const CompiledScene& flat) {
   const std::size_t bvh = bytes_of(flat.nodes) + bytes_of(flat.blocks);
   const std::size_t shading = bytes_of(flat.triangles) + bytes_of(flat.vertices);
   const std::size_t total = table_bytes(flat);
-  return {{"bvh", bvh}, {"shading", shading}, {"tables", total - bvh - shading}, {"total", total}};
+  const std::size_t images =
+      bytes_of(flat.texels0) + bytes_of(flat.texels1) + bytes_of(flat.texels2) + bytes_of(flat.texels3);
+  return {{"bvh", bvh},
+          {"shading", shading},
+          {"images", images},
+          {"tables", total - bvh - shading - images},
+          {"total", total}};
 }
 
 json bounds(const CompiledScene& flat) {
@@ -101,6 +108,22 @@ json whole_bounds(json box, const json& fields) {
   return whole_bounds({{"min", fields[0]["min"]}, {"max", fields[0]["max"]}}, fields);
 }
 
+/// Each with its size in the file and on a device, and what it takes there with its smaller levels.
+json images(const SceneDescription& scene) {
+  json list = json::array();
+  for (const ImageDescription& image : scene.images)
+    list.push_back({{"name", image.name},
+                    {"width", image.pixels.width},
+                    {"height", image.pixels.height},
+                    {"file_width", image.file_width},
+                    {"file_height", image.file_height},
+                    {"use", image.srgb ? "color" : "data"},
+                    {"bits", 8 * image.pixels.sample_bytes()},
+                    {"channels", image.pixels.channels},
+                    {"bytes", texel_bytes(image.pixels)}});
+  return list;
+}
+
 json planes(const CompiledScene& flat) {
   return std::count_if(flat.instances.begin(), flat.instances.end(),
                        [](const Instance& instance) { return instance.shape == SHAPE_PLANE; });
@@ -120,6 +143,8 @@ json scene_figures(const SceneDescription& scene, const CompiledScene& flat) {
           {"materials", scene.materials.size()},
           {"media", scene.media.size()},
           {"fields", scene.fields.size()},
+          {"textures", scene.textures.size()},
+          {"images", images(scene)},
           {"bvh",
            {{"nodes", flat.figures.nodes},
             {"blocks", flat.figures.blocks},

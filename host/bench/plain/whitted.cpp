@@ -253,6 +253,7 @@ Path camera_path(const SceneInfo& info, float x, float y, const MediaStack& medi
 
 std::string plain_refusal(const CompiledScene& scene) {
   if (scene.features.shapes[SHAPE_SDF]) return "the plain C++ program knows no distance fields";
+  if (scene.features.maps) return "the plain C++ program knows no textures, emission or opacity";
   if (scene.features.fog || scene.features.glow) return "the plain C++ program knows no fog and no glow";
   if (scene.features.sampler != SAMPLER_AUTO || scene.features.filter)
     return "the plain C++ program knows the default sampler and filter alone";

@@ -66,7 +66,8 @@ class GltfReader {
   GltfReader(const Source& source, const GltfContainer& container, const JsonAt& root, double crease_degrees)
       : root_(root),
         accessors_(source, container, root),
-        materials_(root),
+        textures_(root, accessors_),
+        materials_(root, textures_),
         meshes_(root, accessors_, materials_, crease_degrees) {}
 
   Model read() {
@@ -233,6 +234,7 @@ class GltfReader {
 
   JsonAt root_;
   GltfAccessors accessors_;
+  GltfTextures textures_;
   GltfMaterials materials_;
   GltfMeshes meshes_;
   std::vector<GltfCamera> cameras_;
@@ -241,15 +243,32 @@ class GltfReader {
   Model model_;
 };
 
-// Extensions that a file may require: those that are read, and those that change colours alone.
+constexpr std::string_view read_extensions[] = {
+    "KHR_lights_punctual",        "EXT_mesh_gpu_instancing",
+    "KHR_mesh_quantization",      "KHR_texture_transform",
+    "EXT_texture_webp",           "KHR_materials_ior",
+    "KHR_materials_transmission", "KHR_materials_volume",
+    "KHR_materials_unlit",        "KHR_materials_emissive_strength",
+    "KHR_materials_specular",     "KHR_materials_clearcoat"};
+
+// A required extension that is not read is an error, but for those that change colours alone; images of
+// KHR_texture_basisu are errors where they are used.
 void check_extensions(const JsonAt& root) {
   for (const JsonAt& at : root.list("extensionsRequired")) {
     const std::string name = at.text();
-    const bool known =
-        name == "KHR_lights_punctual" || name == "EXT_mesh_gpu_instancing" || name == "KHR_mesh_quantization";
-    const bool color = name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
-                       name.starts_with("EXT_texture_") || name.starts_with("MSFT_texture_");
-    if (!known && !color) at.fail(fmt::format("the file requires the extension {}, which is not read", name));
+    const bool color = name.starts_with("KHR_materials_") || name == "KHR_texture_basisu";
+    if (std::ranges::count(read_extensions, name) == 0 && !color)
+      at.fail(fmt::format("the file requires the extension {}, which is not read", name));
+  }
+}
+
+// Extensions of materials are found where materials use them (gltf_unread.h).
+void name_unread_extensions(const JsonAt& root, Model& model) {
+  for (const JsonAt& at : root.list("extensionsUsed")) {
+    const std::string name = at.text();
+    if (std::ranges::count(read_extensions, name) == 0 && !name.starts_with("KHR_materials_") &&
+        name != "KHR_texture_basisu")
+      leave_unread(model, name);
   }
 }
 
@@ -280,6 +299,7 @@ Model load_gltf(const Source& source, const ModelOptions& options) {
   check_extensions(root);
   Model model = GltfReader(source, container, root, options.crease_angle.value_or(0)).read();
   find_unread(json, model);
+  name_unread_extensions(root, model);
   return model;
 }
 

@@ -172,6 +172,13 @@ void GltfAccessors::read_accessor(const JsonAt& at) {
   accessors_.push_back(std::move(accessor));
 }
 
+std::string GltfAccessors::view_bytes(const JsonAt& at) const {
+  const BufferView& view = views_[at.index(views_.size(), "buffer view")];
+  const Buffer& buffer = buffers_[view.buffer];
+  if (!buffer.present) at.fail("the view's buffer is out of reach");
+  return std::string(buffer.bytes.substr(view.offset, view.length));
+}
+
 void GltfAccessors::read_sparse(const JsonAt& at, Accessor& accessor) {
   const std::size_t count = at.member("count").integer(1, accessor.dense.count);
   const JsonAt indices = at.member("indices"), values = at.member("values");

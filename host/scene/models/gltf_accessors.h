@@ -53,6 +53,8 @@ class GltfAccessors {
   }
   /// `components` floats an element, integers scaled where normalised; decoded once. All are finite.
   const std::vector<float>& floats(std::size_t index);
+  /// The bytes of a buffer view, which `at` names.
+  std::string view_bytes(const JsonAt& at) const;
   /// A SCALAR accessor of an unsigned type.
   const std::vector<std::uint32_t>& indices(std::size_t index);
   /// Counts `amount` things made from the file (values, triangles, objects). Fails at `pointer` when the sum

@@ -96,14 +96,17 @@ std::string decode_percent(std::string_view text, const JsonAt& uri) {
   return bytes;
 }
 
-std::string read_data_uri(std::string_view text, const JsonAt& uri) {
+std::string read_data_uri(std::string_view text, const JsonAt& uri, UriContent content) {
   const std::size_t comma = text.find(',');
   if (comma == text.npos) uri.fail("a data URI without a comma");
   std::string head(text.substr(5, comma - 5));
   std::transform(head.begin(), head.end(), head.begin(), [](unsigned char c) { return std::tolower(c); });
   const bool base64 = head.ends_with(";base64");
   if (base64) head.resize(head.size() - 7);
-  if (head != "application/octet-stream" && head != "application/gltf-buffer")
+  if (content == UriContent::image && !head.starts_with("image/"))
+    uri.fail("a data URI of type image/png, image/jpeg or image/webp wanted");
+  if (content == UriContent::buffer && head != "application/octet-stream" &&
+      head != "application/gltf-buffer")
     uri.fail("a data URI of type application/octet-stream or application/gltf-buffer wanted");
   return base64 ? decode_base64(text.substr(comma + 1), uri) : decode_percent(text.substr(comma + 1), uri);
 }
@@ -135,17 +138,28 @@ GltfContainer open_container(const Source& source) {
   return container;
 }
 
-std::optional<std::string> read_uri(const Source& source, const JsonAt& uri) {
+std::optional<fs::path> missing_file(const Source& source, const JsonAt& uri) {
+  const std::string text = uri.text();
+  if (scheme_length(text, uri) > 0) return std::nullopt;
+  const fs::path path = source.path.parent_path() / fs::path(decode_percent(text, uri));
+  std::error_code ignored;
+  if (!source.outside_files && leads_outside(source.path, path)) return std::nullopt;
+  return fs::exists(path, ignored) ? std::nullopt : std::optional(path);
+}
+
+std::optional<std::string> read_uri(const Source& source, const JsonAt& uri, UriContent content) {
   const std::string text = uri.text();
   const std::size_t scheme = scheme_length(text, uri);
-  if (scheme > 0) return text.starts_with("data:") ? std::optional(read_data_uri(text, uri)) : std::nullopt;
+  if (scheme > 0)
+    return text.starts_with("data:") ? std::optional(read_data_uri(text, uri, content)) : std::nullopt;
   const fs::path path = source.path.parent_path() / fs::path(decode_percent(text, uri));
   if (!source.outside_files && leads_outside(source.path, path))
     uri.fail(fmt::format("'{}' leads out of the model's folder: {}", text, outside_hint));
   try {
     return read_source(path).bytes;
   } catch (const SceneError& error) {
-    uri.fail(fmt::format("the buffer's file {} {}", path.string(), error.reason));
+    uri.fail(fmt::format("the {}'s file {} {}", content == UriContent::image ? "image" : "buffer",
+                         path.string(), error.reason));
   }
 }
 

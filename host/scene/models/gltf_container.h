@@ -16,8 +16,14 @@ struct GltfContainer {
 /// A .glb's chunks, or the whole of a .gltf as JSON. Views into `source`.
 GltfContainer open_container(const Source& source);
 
-/// The bytes behind a buffer's URI: a data URI, or a file beside `source`. nullopt for a URI with a scheme,
-/// which is not fetched. Throws SceneError at `uri`.
-std::optional<std::string> read_uri(const Source& source, const JsonAt& uri);
+/// The file that a URI names, if it is not there.
+std::optional<std::filesystem::path> missing_file(const Source& source, const JsonAt& uri);
+
+enum class UriContent { buffer, image };
+
+/// The bytes behind a URI: a data URI, or a file beside `source`. nullopt for a URI with a scheme, which is
+/// not fetched. Throws SceneError at `uri`.
+std::optional<std::string> read_uri(const Source& source, const JsonAt& uri,
+                                    UriContent content = UriContent::buffer);
 
 }  // namespace sundog::models

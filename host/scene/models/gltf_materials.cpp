@@ -7,6 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "shared/metal_rough.h"
+
 namespace sundog::models {
 namespace {
 
@@ -23,6 +25,15 @@ double read_ior(const JsonAt& at) {
 
 // An index of 0 stands for total reflection.
 double reflectance(double ior) { return ior == 0 ? 1 : square((ior - 1) / (ior + 1)); }
+
+/// KHR_materials_specular: what a dielectric reflects straight on, by a factor and a colour.
+dvec3 read_specular(const JsonAt& at, double reflectance) {
+  const auto extension = at.extension("KHR_materials_specular");
+  if (!extension) return dvec3(reflectance);
+  const double factor = extension->number("specularFactor", 1, unit_range);
+  const dvec3 color = extension->vector("specularColorFactor", dvec3(1), not_negative);
+  return glm::min(reflectance * color, dvec3(1)) * factor;
+}
 
 struct Volume {
   double thickness = 0, distance = std::numeric_limits<double>::infinity();
@@ -41,14 +52,26 @@ Volume read_volume(const JsonAt& at) {
 
 }  // namespace
 
-GltfMaterials::GltfMaterials(const JsonAt& root) {
+GltfMaterials::GltfMaterials(const JsonAt& root, GltfTextures& textures) : textures_(textures) {
   for (const JsonAt& at : root.list("materials")) materials_.push_back(read(at));
   const nlohmann::json empty = nlohmann::json::object();
   materials_.push_back(read(JsonAt(Source{}, empty, "")));
   materials_.back().material.name = "default";
+  settle_sides();
 }
 
-GltfMaterials::Entry GltfMaterials::read(const JsonAt& at) {
+// Files whose materials are all of one side are mostly closed solids, or made without a thought of it: they
+// keep both. Where some say that they have two, the others have one.
+void GltfMaterials::settle_sides() {
+  if (std::ranges::none_of(materials_, &Entry::two_sided)) return;
+  for (Entry& entry : materials_) {
+    MaterialDescription& m = entry.material;
+    if (entry.two_sided || m.transmission != dvec3(0)) continue;
+    m.one_sided = true;
+  }
+}
+
+GltfMaterials::Entry GltfMaterials::read(const JsonAt& at) const {
   Entry entry;
   MaterialDescription& m = entry.material;
   m.name = at.text("name");
@@ -63,14 +86,23 @@ GltfMaterials::Entry GltfMaterials::read(const JsonAt& at) {
     metallic = pbr->number("metallicFactor", 1, unit_range);
     roughness = pbr->number("roughnessFactor", 1, unit_range);
   }
-  const double ior = read_ior(at), mirror = metallic * square(1 - roughness);
+  const double ior = read_ior(at), mirror = metal_mirror(metallic, roughness);
+  const dvec3 plain = read_specular(at, reflectance(ior));
   m.diffuse = base * (1 - mirror);
   m.ambient = 0.1 * m.diffuse;
-  m.specular = glm::mix(dvec3(reflectance(ior)), base, metallic);
-  m.exponent = std::clamp(2 / std::max(square(square(roughness)), 1e-9) - 2, 1.0, 1e5);
+  m.specular = glm::mix(plain, base, metallic);
+  m.exponent = rough_exponent(roughness);
   m.blinn = true;
   m.reflection = base * mirror;
+  entry.values = {base, metallic, roughness, plain.x};
+  m.emission = at.vector("emissiveFactor", dvec3(0), unit_range);
+  if (const auto strength = at.extension("KHR_materials_emissive_strength"))
+    m.emission *= strength->number("emissiveStrength", 1, not_negative);
   transmit(at, entry, base * (1 - metallic), ior);
+  entry.two_sided = at.boolean("doubleSided", false);
+  read_textures(at, entry);
+  add_clearcoat(at, m);
+  read_unlit(at, entry, base);
   blend(at, entry, alpha);
   return entry;
 }
@@ -102,17 +134,91 @@ void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double 
   }
 }
 
+void GltfMaterials::read_textures(const JsonAt& at, Entry& entry) const {
+  MaterialDescription& m = entry.material;
+  if (const auto pbr = at.find("pbrMetallicRoughness")) {
+    if (const auto base = pbr->find("baseColorTexture")) entry.base = textures_.read(*base);
+    if (const auto both = pbr->find("metallicRoughnessTexture")) entry.metal_rough = textures_.read(*both);
+  }
+  if (const auto emission = at.find("emissiveTexture"))
+    if (m.emission != dvec3(0)) entry.emission = textures_.read(*emission);
+  if (const auto normal = at.find("normalTexture")) {
+    entry.normal = textures_.read(*normal);
+    m.normal_scale = normal->number("scale", 1, {});
+  }
+  if (const auto occlusion = at.find("occlusionTexture")) {
+    entry.occlusion = textures_.read(*occlusion);
+    entry.occlusion->channel = 0;
+    m.occlusion = occlusion->number("strength", 1, unit_range);
+  }
+  const bool half_metal = entry.values.metalness > 0 && entry.values.metalness < 1;
+  entry.by_values = (entry.metal_rough || (entry.base && half_metal)) && m.transmission == dvec3(0) &&
+                    m.type != MaterialType::dielectric;
+}
+
+/// KHR_materials_unlit: the base colour as it stands, under whatever light.
+void GltfMaterials::read_unlit(const JsonAt& at, Entry& entry, dvec3 base) {
+  entry.unlit = at.extension("KHR_materials_unlit").has_value();
+  if (!entry.unlit) return;
+  MaterialDescription& m = entry.material;
+  m.ambient = m.diffuse = m.specular = m.reflection = m.transmission = dvec3(0);
+  m.type = MaterialType::phong;
+  m.emission = base;
+  entry.has_medium = entry.by_values = false;
+  entry.emission = entry.base;
+  entry.normal = entry.occlusion = std::nullopt;
+}
+
+/// KHR_materials_clearcoat as a mirror of 4 % above the rest, as far as it is smooth.
+void GltfMaterials::add_clearcoat(const JsonAt& at, MaterialDescription& material) {
+  const auto extension = at.extension("KHR_materials_clearcoat");
+  if (!extension || material.type == MaterialType::dielectric) return;
+  const double factor = extension->number("clearcoatFactor", 0, unit_range);
+  const double coat =
+      0.04 * factor * square(1 - extension->number("clearcoatRoughnessFactor", 0, unit_range));
+  for (dvec3* part : {&material.ambient, &material.diffuse, &material.specular, &material.reflection})
+    *part *= 1 - coat;
+  material.reflection += coat;
+}
+
 void GltfMaterials::blend(const JsonAt& at, Entry& entry, double alpha) {
   const std::string mode = at.text("alphaMode");
   const double cutoff = at.number("alphaCutoff", 0.5, not_negative);
-  double opacity = 1;
-  if (mode == "BLEND") opacity = alpha;
-  if (mode == "MASK") opacity = alpha >= cutoff ? 1 : 0;
-  if (opacity == 1) return;
+  if (mode != "BLEND" && mode != "MASK") return;
   MaterialDescription& m = entry.material;
   if (m.type == MaterialType::dielectric) return;  // its own transmission says more
+  if (mode == "MASK" && cutoff == 0) return;
+  if (entry.base) {
+    m.opacity = alpha;
+    if (mode == "MASK") m.cutoff = cutoff;
+    entry.opacity = entry.base;
+    entry.opacity->channel = 3;
+    return;
+  }
+  // The same everywhere: a thin pane.
+  const double opacity = mode == "BLEND" ? alpha : alpha >= cutoff ? 1 : 0;
   for (dvec3* part : {&m.ambient, &m.diffuse, &m.specular, &m.reflection, &m.transmission}) *part *= opacity;
+  m.emission *= opacity;
   m.transmission += 1 - opacity;
+}
+
+void GltfMaterials::use_textures(const Entry& entry, MaterialDescription& material, Model& model) {
+  MaterialTextures& to = material.textures;
+  if (entry.base && !entry.unlit) {
+    to.ambient = to.diffuse = textures_.use(*entry.base, true, model);
+    if (material.reflection != dvec3(0) && !entry.has_medium) to.reflection = to.diffuse;
+    if (material.transmission != dvec3(0)) to.transmission = to.diffuse;
+    if (entry.values.metalness == 1) to.specular = to.diffuse;
+  }
+  if (entry.by_values) {
+    material.metal_rough = entry.values;
+    to.ambient = to.reflection = to.specular = -1;
+    if (entry.metal_rough) to.metal_rough = textures_.use(*entry.metal_rough, false, model);
+  }
+  if (entry.opacity) to.opacity = textures_.use(*entry.opacity, true, model);
+  if (entry.emission) to.emission = textures_.use(*entry.emission, true, model);
+  if (entry.normal) to.normal = textures_.use(*entry.normal, false, model);
+  if (entry.occlusion) to.occlusion = textures_.use(*entry.occlusion, false, model);
 }
 
 int GltfMaterials::use(std::size_t index, bool vertex_color, Model& model) {
@@ -122,6 +228,7 @@ int GltfMaterials::use(std::size_t index, bool vertex_color, Model& model) {
     const Entry& entry = materials_.at(index);
     model.materials.push_back(entry.material);
     model.materials.back().vertex_color = vertex_color;
+    use_textures(entry, model.materials.back(), model);
     if (entry.has_medium) {
       model.materials.back().medium = static_cast<int>(model.media.size());
       model.media.push_back(entry.medium);

@@ -1,25 +1,27 @@
 // glTF's materials as sundog's.
 #pragma once
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "scene/model.h"
 #include "scene/models/gltf_json.h"
+#include "scene/models/gltf_textures.h"
 
 namespace sundog::models {
 
 /// Checks all materials of a document, and adds to a model those that its triangles use.
 ///
-/// base, metallic, roughness: F0 = 0.04 (or from KHR_materials_ior) mixed with base by metallic is the
-/// highlight's colour, its Blinn exponent 2 / roughness^4 - 2. What mirrors is metallic * base * (1 -
-/// roughness)^2, the rest of base scatters: a rough metal is no mirror. KHR_materials_transmission lets that
+/// base, metallic, roughness: by shared/metal_rough.h, with a reflectance of 0.04 or from KHR_materials_ior
+/// and _specular; KHR_materials_clearcoat adds a mirror, _unlit makes all of it emission.
+/// KHR_materials_transmission lets that
 /// share of base through: with a volume (thickness above 0) as a dielectric with a medium, absorbing
 /// -ln(attenuationColor) / attenuationDistance; without one as a thin pane, straight through. alphaMode BLEND
-/// and MASK are thin panes, too. Textures are not read.
+/// and MASK become the opacity. The base colour's texture is a factor on all terms that have its colour.
 class GltfMaterials {
  public:
-  explicit GltfMaterials(const JsonAt& root);
+  GltfMaterials(const JsonAt& root, GltfTextures& textures);
 
   std::size_t count() const { return materials_.size(); }
   /// The index in `model` of material `index` (or of the default one, for `count()`), with or without vertex
@@ -31,11 +33,21 @@ class GltfMaterials {
     MaterialDescription material;
     MediumDescription medium;
     bool has_medium = false;
+    std::optional<TextureDescription> base, opacity, emission, metal_rough, normal, occlusion;
+    MetalRough values;
+    bool two_sided = false, unlit = false,
+         by_values = false;  // by_values: textures change metalness or roughness
   };
-  static Entry read(const JsonAt& at);
+  Entry read(const JsonAt& at) const;
+  void read_textures(const JsonAt& at, Entry& entry) const;
+  void settle_sides();
+  static void read_unlit(const JsonAt& at, Entry& entry, glm::dvec3 base);
+  static void add_clearcoat(const JsonAt& at, MaterialDescription& material);
+  void use_textures(const Entry& entry, MaterialDescription& material, Model& model);
   static void transmit(const JsonAt& at, Entry& entry, glm::dvec3 base, double ior);
   static void blend(const JsonAt& at, Entry& entry, double alpha);
 
+  GltfTextures& textures_;
   std::vector<Entry> materials_;  // and the default one at the end
   std::map<std::pair<std::size_t, bool>, int> used_;
 };

@@ -20,9 +20,9 @@ struct AttributeRule {
   std::string_view name, type, other_type;
   bool normalized_integers;
 };
-constexpr AttributeRule rules[] = {{"POSITION", "VEC3", "VEC3", false},
-                                   {"NORMAL", "VEC3", "VEC3", false},
-                                   {"TEXCOORD_0", "VEC2", "VEC2", true},
+constexpr AttributeRule rules[] = {{"POSITION", "VEC3", "VEC3", false},  {"NORMAL", "VEC3", "VEC3", false},
+                                   {"TEXCOORD_0", "VEC2", "VEC2", true}, {"TEXCOORD_1", "VEC2", "VEC2", true},
+                                   {"TEXCOORD_2", "VEC2", "VEC2", true}, {"TEXCOORD_3", "VEC2", "VEC2", true},
                                    {"COLOR_0", "VEC3", "VEC4", true}};
 
 // What KHR_mesh_quantization adds: integers of 8 and 16 bits, for normals signed and normalised ones.
@@ -31,7 +31,7 @@ bool fits_quantized(std::string_view name, const Accessor& accessor) {
   const bool is_signed = component == component_byte || component == component_short;
   const bool is_unsigned = component == component_unsigned_byte || component == component_unsigned_short;
   if (name == "NORMAL") return is_signed && accessor.normalized;
-  return (name == "POSITION" || name == "TEXCOORD_0") && (is_signed || is_unsigned);
+  return (name == "POSITION" || name.starts_with("TEXCOORD_")) && (is_signed || is_unsigned);
 }
 
 bool fits(const AttributeRule& rule, const Accessor& accessor, bool quantized) {
@@ -118,10 +118,13 @@ GltfMeshes::Primitive GltfMeshes::read_primitive(const JsonAt& at) const {
   const JsonAt attributes = at.member("attributes");
   p.position = read_attribute(attributes, "POSITION");
   p.normal = read_attribute(attributes, "NORMAL");
-  p.uv = read_attribute(attributes, "TEXCOORD_0");
+  for (std::uint64_t set = 0; set < most_uv_sets; ++set)
+    p.uvs.push_back(read_attribute(attributes, fmt::format("TEXCOORD_{}", set).c_str()));
   p.color = read_attribute(attributes, "COLOR_0");
   const auto vertices = [&](std::size_t accessor) { return accessors_.all()[accessor].dense.count; };
-  for (const auto& other : {p.normal, p.uv, p.color})
+  std::vector<std::optional<std::size_t>> others = p.uvs;
+  others.insert(others.end(), {p.normal, p.color});
+  for (const auto& other : others)
     if (p.position && other && vertices(*other) != vertices(*p.position))
       attributes.fail(fmt::format("an attribute of {} elements beside {} positions", vertices(*other),
                                   vertices(*p.position)));
@@ -148,15 +151,20 @@ int GltfMeshes::use(std::size_t index, Model& model) {
 Mesh GltfMeshes::build(const Entry& entry, Model& model) {
   Mesh mesh;
   mesh.name = entry.name;
-  bool any_uv = false, any_color = false;
+  bool any_color = false;
+  std::vector<bool> any_uv(most_uv_sets, false);
+  mesh.further_uvs.resize(most_uv_sets - 1);
   std::vector<bool> has_normal;
   for (const Primitive& primitive : entry.primitives) {
     if (!primitive.position || primitive.mode < 4) continue;
     append(primitive, model, mesh, has_normal);
-    any_uv = any_uv || primitive.uv;
+    for (std::size_t set = 0; set < most_uv_sets; ++set) any_uv[set] = any_uv[set] || primitive.uvs[set];
     any_color = any_color || primitive.color;
   }
-  if (!any_uv) mesh.uvs.clear();
+  if (!any_uv[0]) mesh.uvs.clear();
+  for (std::size_t set = 1; set < most_uv_sets; ++set)
+    if (!any_uv[set]) mesh.further_uvs[set - 1].clear();
+  while (!mesh.further_uvs.empty() && mesh.further_uvs.back().empty()) mesh.further_uvs.pop_back();
   if (!any_color) mesh.colors.clear();
   const bool smooth =
       crease_degrees_ > 0 && std::find(has_normal.begin(), has_normal.end(), false) != has_normal.end();
@@ -183,6 +191,22 @@ std::vector<std::uint32_t> GltfMeshes::vertex_numbers(const Primitive& primitive
   return numbers;
 }
 
+// The file's v goes down.
+void GltfMeshes::append_uvs(const Primitive& primitive, const std::vector<std::uint32_t>& used, Mesh& mesh) {
+  for (std::size_t set = 0; set < most_uv_sets; ++set) {
+    std::vector<glm::vec2>& to = set == 0 ? mesh.uvs : mesh.further_uvs[set - 1];
+    if (!primitive.uvs[set]) {
+      to.resize(to.size() + used.size(), glm::vec2(0));
+      continue;
+    }
+    const std::vector<float>& uvs = accessors_.floats(*primitive.uvs[set]);
+    for (const std::uint32_t v : used) {
+      const auto uv = element<glm::vec2>(uvs, 2, v);
+      to.emplace_back(uv.x, 1 - uv.y);
+    }
+  }
+}
+
 // Of the attributes' elements only those that the triangles use are copied: primitives often share them.
 void GltfMeshes::append(const Primitive& primitive, Model& model, Mesh& mesh, std::vector<bool>& has_normal) {
   const std::vector<float>& positions = accessors_.floats(*primitive.position);
@@ -195,17 +219,16 @@ void GltfMeshes::append(const Primitive& primitive, Model& model, Mesh& mesh, st
   used.erase(std::unique(used.begin(), used.end()), used.end());
   const std::vector<float> none;
   const std::vector<float>& normals = primitive.normal ? accessors_.floats(*primitive.normal) : none;
-  const std::vector<float>& uvs = primitive.uv ? accessors_.floats(*primitive.uv) : none;
   const std::vector<float>& colors = primitive.color ? accessors_.floats(*primitive.color) : none;
   const std::size_t channels = primitive.color ? accessors_.all()[*primitive.color].dense.components : 3;
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   for (const std::uint32_t v : used) {
     mesh.positions.push_back(element<glm::vec3>(positions, 3, v));
     mesh.normals.push_back(primitive.normal ? element<glm::vec3>(normals, 3, v) : glm::vec3(0));
-    mesh.uvs.push_back(primitive.uv ? element<glm::vec2>(uvs, 2, v) : glm::vec2(0));
     mesh.colors.push_back(primitive.color ? element<glm::vec3>(colors, channels, v) : glm::vec3(1));
     has_normal.push_back(primitive.normal.has_value());
   }
+  append_uvs(primitive, used, mesh);
   const auto place = [&](std::uint32_t v) {
     return first + static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), v) - used.begin());
   };

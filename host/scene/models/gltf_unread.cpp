@@ -33,10 +33,17 @@ struct Named {
   const char* feature;
 };
 
-constexpr std::array textures{
-    Named{"baseColorTexture", "colour textures"}, Named{"metallicRoughnessTexture", "roughness textures"},
-    Named{"normalTexture", "normal textures"}, Named{"occlusionTexture", "occlusion textures"},
-    Named{"emissiveTexture", "emission textures"}};
+constexpr std::array textures{Named{"baseColorTexture", nullptr},  // read
+                              Named{"emissiveTexture", nullptr},
+                              Named{"metallicRoughnessTexture", nullptr},
+                              Named{"normalTexture", nullptr},
+                              Named{"occlusionTexture", nullptr},
+                              Named{"transmissionTexture", "transmission textures"},
+                              Named{"clearcoatTexture", "clearcoat textures"},
+                              Named{"clearcoatRoughnessTexture", "clearcoat textures"},
+                              Named{"clearcoatNormalTexture", "clearcoat textures"},
+                              Named{"specularTexture", "specular textures"},
+                              Named{"specularColorTexture", "specular textures"}};
 
 constexpr std::array material_extensions{
     Named{"KHR_materials_ior", nullptr},  // read
@@ -44,13 +51,13 @@ constexpr std::array material_extensions{
     Named{"KHR_materials_volume", nullptr},
     Named{"KHR_materials_emissive_strength", nullptr},  // of emission
     Named{"KHR_materials_sheen", "sheen"},
-    Named{"KHR_materials_clearcoat", "clearcoat"},
-    Named{"KHR_materials_specular", "specular colour"},
+    Named{"KHR_materials_clearcoat", nullptr},
+    Named{"KHR_materials_specular", nullptr},
     Named{"KHR_materials_iridescence", "iridescence"},
     Named{"KHR_materials_anisotropy", "anisotropy"},
     Named{"KHR_materials_dispersion", "dispersion"},
     Named{"KHR_materials_diffuse_transmission", "diffuse transmission"},
-    Named{"KHR_materials_unlit", "unlit materials"},
+    Named{"KHR_materials_unlit", nullptr},
     Named{"KHR_materials_pbrSpecularGlossiness", "specular-glossiness materials"}};
 
 /// Extensions nest a few levels; a file may nest without end.
@@ -62,7 +69,7 @@ void find_textures(const json& value, Model& model, int levels = 8) {
       const char* feature = "other textures";
       for (const Named& known : textures)
         if (key == known.key) feature = known.feature;
-      leave_unread(model, feature);
+      if (feature) leave_unread(model, feature);
     } else {
       find_textures(inner, model, levels - 1);
     }
@@ -71,12 +78,6 @@ void find_textures(const json& value, Model& model, int levels = 8) {
 
 void find_in_material(const json& material, Model& model) {
   find_textures(material, model);
-  const json& mode = member(material, "alphaMode");
-  if ((mode == "BLEND" || mode == "MASK") &&
-      member(member(material, "pbrMetallicRoughness"), "baseColorTexture").is_object())
-    leave_unread(model, "alpha of textures");
-  for (const json& factor : items(material, "emissiveFactor"))
-    if (factor.is_number() && factor.get<double>() > 0) leave_unread(model, "emission");
   const json& extensions = member(material, "extensions");
   if (!extensions.is_object()) return;
   for (const auto& [name, extension] : extensions.items()) {

@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "scene/inside.h"
+#include "scene/models/mtl_maps.h"
 #include "scene/models/readers.h"
 #include "scene/models/text.h"
 
@@ -19,6 +21,8 @@ namespace {
 struct Statements {
   std::string name;
   std::optional<dvec3> ambient, diffuse, specular, filter;
+  std::optional<dvec3> emission;
+  std::map<std::string, MtlMap, std::less<>> maps;  // by keyword
   double exponent = 32, ior = 1, opacity = 1;
   int illumination = 2;
 };
@@ -35,18 +39,10 @@ std::optional<dvec3> read_color(TextReader& text) {
 }
 
 /// Statements that would change the picture.
-constexpr std::pair<std::string_view, const char*> unread_properties[] = {{"map_Kd", "colour textures"},
-                                                                          {"map_Ka", "ambient textures"},
-                                                                          {"map_Ks", "specular textures"},
-                                                                          {"map_Ns", "specular textures"},
-                                                                          {"map_d", "alpha of textures"},
+constexpr std::string_view read_maps[] = {"map_Kd",   "map_Ka",   "map_Ks", "map_Ke", "map_d",
+                                          "map_Bump", "map_bump", "bump",   "norm",   "map_Kn"};
+constexpr std::pair<std::string_view, const char*> unread_properties[] = {{"map_Ns", "specular textures"},
                                                                           {"map_Tr", "alpha of textures"},
-                                                                          {"map_Ke", "emission textures"},
-                                                                          {"map_bump", "bump maps"},
-                                                                          {"map_Bump", "bump maps"},
-                                                                          {"bump", "bump maps"},
-                                                                          {"norm", "normal textures"},
-                                                                          {"map_Kn", "normal textures"},
                                                                           {"disp", "displacement"},
                                                                           {"map_disp", "displacement"},
                                                                           {"decal", "decals"},
@@ -69,7 +65,6 @@ void note_unread(TextReader text, std::string_view key, Model& model) {
         return false;
     return true;
   };
-  if (key == "Ke" && !all_zero()) leave_unread(model, "emission");
   for (const auto& [word, feature] : unread_properties)
     if (key == word && !all_zero()) leave_unread(model, feature);
 }
@@ -85,6 +80,8 @@ void read_statement(TextReader& text, std::string_view key, Statements& m) {
   if (key == "Kd") m.diffuse = read_color(text);
   if (key == "Ks") m.specular = read_color(text);
   if (key == "Tf") m.filter = read_color(text);
+  if (key == "Ke") m.emission = read_color(text);
+  if (std::ranges::count(read_maps, key) > 0) m.maps.insert_or_assign(std::string(key), read_mtl_map(text));
   if (key == "Ns") m.exponent = std::max(text.number("Ns"), 0.0);
   if (key == "Ni") m.ior = text.number("Ni");
   if (key == "d") m.opacity = read_opacity(text);
@@ -93,8 +90,50 @@ void read_statement(TextReader& text, std::string_view key, Statements& m) {
     m.illumination = static_cast<int>(std::clamp<std::int64_t>(text.integer("illum"), 0, 10));
 }
 
+/// Heights and normals. The format gives heights no unit: here a height of 1 is a hundredth of a unit of u
+/// and v, times -bm.
+void add_relief_maps(const Statements& m, const Source& obj, const fs::path& library, MtlTextures& textures,
+                     MaterialDescription& out) {
+  for (const char* key : {"norm", "map_Kn"})
+    if (const auto found = m.maps.find(key); found != m.maps.end())
+      out.textures.normal = textures.use(found->second, false, obj, library);
+  for (const char* key : {"bump", "map_bump", "map_Bump"})
+    if (const auto found = m.maps.find(key); found != m.maps.end()) {
+      MtlMap map = found->second;
+      if (map.channel < 0) map.channel = 0;
+      out.textures.height = textures.use(map, false, obj, library);
+      out.bump = 0;
+      out.bump_uv = 0.01 * map.bump;
+    }
+}
+
+/// The textures of a material; what has one and no colour of its own is white.
+void add_maps(const Statements& m, const Source& obj, const fs::path& library, MtlTextures& textures,
+              MaterialDescription& out) {
+  const auto use = [&](const char* key) {
+    const auto found = m.maps.find(key);
+    return found == m.maps.end() ? -1 : textures.use(found->second, true, obj, library);
+  };
+  MaterialTextures& to = out.textures;
+  to.diffuse = use("map_Kd");
+  to.ambient = m.maps.contains("map_Ka") ? use("map_Ka") : to.diffuse;
+  to.specular = use("map_Ks");
+  to.emission = use("map_Ke");
+  if (to.diffuse >= 0 && !m.diffuse) out.diffuse = dvec3(1);
+  if (to.specular >= 0 && !m.specular) out.specular = dvec3(1);
+  if (to.emission >= 0 && !m.emission) out.emission = dvec3(1);
+  add_relief_maps(m, obj, library, textures, out);
+  const auto alpha = m.maps.find("map_d");
+  if (alpha == m.maps.end() || out.medium >= 0) return;
+  MtlMap map = alpha->second;
+  const auto color = m.maps.find("map_Kd");
+  const bool of_color = color != m.maps.end() && color->second.file == map.file;
+  if (map.channel < 0) map.channel = of_color ? 3 : 0;
+  to.opacity = textures.use(map, of_color, obj, library);
+}
+
 // Illumination models: 3 to 8 trace reflections; 4, 6, 7 and 9 are glass; 5 and 7 have Fresnel's equations.
-void add_material(const Statements& m, Model& model) {
+MaterialDescription make_material(const Statements& m, Model& model) {
   const int illum = m.illumination;
   const bool traced = illum >= 4 && illum <= 7, fresnel = illum == 5 || illum == 7;
   const bool glass = m.opacity < 1 || (m.filter && (traced || illum == 9) && *m.filter != dvec3(0));
@@ -104,6 +143,7 @@ void add_material(const Statements& m, Model& model) {
   out.diffuse = m.diffuse.value_or(out.diffuse);
   out.specular = m.specular.value_or(out.specular);
   out.exponent = m.exponent;
+  out.emission = m.emission.value_or(out.emission);
   if (illum >= 3 && illum <= 8) out.reflection = glm::min(out.specular, dvec3(1));
   if (glass) {
     const dvec3 filter = glm::min(m.filter.value_or(dvec3(1)), dvec3(1));
@@ -122,7 +162,7 @@ void add_material(const Statements& m, Model& model) {
       out.reflection = dvec3(1);
     }
   }
-  model.materials.push_back(out);
+  return out;
 }
 
 // An mtllib line holds one name with blanks, or several names: those end in ".mtl".
@@ -159,12 +199,12 @@ bool MaterialLibrary::is_refused(const Source& obj, const TextReader& line, cons
 
 void MaterialLibrary::load(const Source& obj, const TextReader& line, std::string_view names) {
   const fs::path whole = beside(obj.path, std::string(names));
-  if ((obj.outside_files || !leads_outside(obj.path, whole)) && is_file(whole)) return read(whole);
+  if ((obj.outside_files || !leads_outside(obj.path, whole)) && is_file(whole)) return read(obj, whole);
   for (const std::string& name : split_names(names)) {
     const fs::path path = beside(obj.path, name);
     if (is_refused(obj, line, path)) continue;
     if (is_file(path)) {
-      read(path);
+      read(obj, path);
     } else {
       model_.warnings.push_back(
           fmt::format("{}: the material library {} is missing", obj.path.string(), path.string()));
@@ -172,7 +212,7 @@ void MaterialLibrary::load(const Source& obj, const TextReader& line, std::strin
   }
 }
 
-void MaterialLibrary::read(const fs::path& path) {
+void MaterialLibrary::read(const Source& obj, const fs::path& path) {
   const Source source = read_source(path);
   TextReader text(source, {});
   Statements material;
@@ -180,7 +220,10 @@ void MaterialLibrary::read(const fs::path& path) {
   const auto finish = [&] {
     if (!begun) return;
     const auto at = static_cast<int>(model_.materials.size());
-    if (index_.try_emplace(material.name, at).second) add_material(material, model_);
+    if (!index_.try_emplace(material.name, at).second) return;
+    MaterialDescription out = make_material(material, model_);
+    add_maps(material, obj, path, textures_, out);
+    model_.materials.push_back(out);
   };
   while (text.next_line()) {
     const std::string_view key = text.word();

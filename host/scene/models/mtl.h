@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "scene/model.h"
+#include "scene/models/mtl_maps.h"
 #include "scene/models/text.h"
 
 namespace sundog::models {
@@ -12,7 +13,7 @@ namespace sundog::models {
 /// The materials that an OBJ file has at hand, by name.
 class MaterialLibrary {
  public:
-  explicit MaterialLibrary(Model& model) : model_(model) {}
+  explicit MaterialLibrary(Model& model) : model_(model), textures_(model) {}
 
   /// Reads the files that an mtllib statement names, beside `obj`. One that is missing, or that leaves the
   /// folder of `obj` where that may not be, leaves a warning. Throws SceneError with the MTL file's line.
@@ -23,10 +24,11 @@ class MaterialLibrary {
 
  private:
   bool is_refused(const Source& obj, const TextReader& line, const std::filesystem::path& path);
-  void read(const std::filesystem::path& path);
+  void read(const Source& obj, const std::filesystem::path& path);
   void warn_undefined(std::string_view name);
 
   Model& model_;
+  MtlTextures textures_;
   std::map<std::string, int, std::less<>> index_;
   std::size_t undefined_ = 0, warning_ = 0;  // how many materials; the warning's place among the model's
   std::string names_;                        // of the first ones

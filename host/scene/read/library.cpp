@@ -12,6 +12,13 @@ void append(std::vector<Value>& to, std::vector<Value>& from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
+void shift_textures(MaterialTextures& textures, int by){
+#define SUNDOG_SHIFT_MAP(constant, name) \
+  if (textures.name >= 0) textures.name += by;
+    MAP_SLOTS(SUNDOG_SHIFT_MAP)
+#undef SUNDOG_SHIFT_MAP
+}
+
 /// The same file by whatever path it is named.
 std::string file_key(const fs::path& file) {
   std::error_code ignored;
@@ -35,6 +42,13 @@ ModelLibrary::Parts ModelLibrary::add(Model model, const std::string& name) {
   for (const std::string& warning : model.warnings)
     scene_.warnings.push_back(fmt::format("{}: {}", name, warning));
   if (model.objects.empty()) scene_.warnings.push_back(fmt::format("{}: holds no surfaces", name));
+  const int first_texture = static_cast<int>(scene_.textures.size());
+  const int first_image = static_cast<int>(scene_.images.size());
+  for (TextureDescription& texture : model.textures)
+    if (texture.image >= 0) texture.image += first_image;
+  for (MaterialDescription& material : model.materials) shift_textures(material.textures, first_texture);
+  append(scene_.images, model.images);
+  append(scene_.textures, model.textures);
   append(scene_.media, model.media);
   append(scene_.materials, model.materials);
   append(scene_.meshes, model.meshes);

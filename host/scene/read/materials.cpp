@@ -7,20 +7,22 @@
 
 #include "base/names.h"
 #include "scene/read/parts.h"
+#include "scene/read/textures.h"
 
 namespace sundog {
 
 namespace {
 
-/// What colours a surface: one colour, or two in a checkerboard.
+/// What colours a surface: one colour, two in a checkerboard, or a texture (a factor on both).
 struct Pattern {
   dvec3 even{1}, odd{1};
+  int texture = -1;
 };
 
 constexpr Range ior_range{.low = 0.01, .high = 100};
 
 Pattern scale(const Pattern& pattern, double coefficient) {
-  return {pattern.even * coefficient, pattern.odd * coefficient};
+  return {pattern.even * coefficient, pattern.odd * coefficient, pattern.texture};
 }
 
 dvec3 read_absorption(const JsonValue& value) {
@@ -35,36 +37,59 @@ dvec3 read_absorption(const JsonValue& value) {
   });
 }
 
-/// One term of the shading: a coefficient on the material's colour, or {"color", "coefficient"} (and for
-/// specular "exponent"). `written` is the coefficient of an object that gives none.
-Pattern read_term(const JsonValue& value, const Pattern& color, double written, const Range& range,
-                  double* exponent) {
-  if (value.json().is_number()) return scale(color, value.number(range));
+/// A colour, or the name of a texture.
+Pattern read_plain_color(const JsonValue& value, TextureLibrary& textures, const Range& range = color_range) {
+  if (value.json().is_string()) return {dvec3(1), dvec3(1), textures.use(value, TextureUse::color)};
+  const dvec3 color = value.color(range);
+  return {color, color, -1};
+}
+
+/// A number, or the name of a texture that is a factor on 1.
+double read_number(const JsonValue& value, TextureLibrary& textures, const Range& range, int* texture) {
+  if (!value.json().is_string()) return value.number(range);
+  *texture = textures.use(value, TextureUse::number);
+  return 1;
+}
+
+/// What a term has when its object leaves it out, and where it puts an exponent.
+struct TermRules {
+  Pattern color;
+  double coefficient = 1;  // of an object or a texture that gives none
+  Range range = color_range;
+  double* exponent = nullptr;
+  int* exponent_texture = nullptr;
+};
+
+/// One term of the shading: a coefficient on the material's colour, the name of a texture, or {"color",
+/// "coefficient"} (and for specular "exponent").
+Pattern read_term(const JsonValue& value, TextureLibrary& textures, const TermRules& rules) {
+  if (value.json().is_number()) return scale(rules.color, value.number(rules.range));
+  if (value.json().is_string()) return scale(read_plain_color(value, textures), rules.coefficient);
   if (!value.json().is_object())
-    value.wanted("a coefficient or {\"color\": [r, g, b], \"coefficient\": number}");
-  return value.object(exponent          ? "specular_term"
-                      : range.high <= 1 ? "ray_term"
-                                        : "term",
+    value.wanted("a coefficient, a texture's name or {\"color\": [r, g, b], \"coefficient\": number}");
+  return value.object(rules.exponent          ? "specular_term"
+                      : rules.range.high <= 1 ? "ray_term"
+                                              : "term",
                       [&](JsonObject& object) {
-                        Pattern result = color;
+                        Pattern result = rules.color;
                         if (const auto own = object.find("color"))
-                          result.even = result.odd = own->color(range);
-                        if (exponent)
-                          *exponent = object.number("exponent", *exponent, {.low = 0, .high = 1e6});
-                        return scale(result, object.number("coefficient", written, range));
+                          result = read_plain_color(*own, textures, rules.range);
+                        if (rules.exponent)
+                          if (const auto exponent = object.find("exponent"))
+                            *rules.exponent = read_number(*exponent, textures, {.low = 0, .high = 1e6},
+                                                          rules.exponent_texture);
+                        return scale(result, object.number("coefficient", rules.coefficient, rules.range));
                       });
 }
 
-Pattern read_color(JsonObject& object, MaterialDescription& material) {
+Pattern read_color(JsonObject& object, MaterialDescription& material, TextureLibrary& textures) {
   Pattern pattern;
   const auto color = object.find("color");
   if (!color) return pattern;
-  if (color->json().is_array()) {
-    pattern.even = pattern.odd = color->color();
-    return pattern;
-  }
+  if (color->json().is_array() || color->json().is_string()) return read_plain_color(*color, textures);
   if (!color->json().is_object())
-    color->wanted("a colour [r, g, b] or {\"checker\": [colour, colour], \"size\": number}");
+    color->wanted(
+        "a colour [r, g, b], a texture's name or {\"checker\": [colour, colour], \"size\": number}");
   color->object("checker", [&](JsonObject& checker) {
     const JsonValue pair = checker.at("checker", "two colours");
     const auto colors = pair.items("2 colours");
@@ -76,20 +101,26 @@ Pattern read_color(JsonObject& object, MaterialDescription& material) {
   return pattern;
 }
 
-void read_local_terms(JsonObject& object, MaterialDescription& material) {
+void read_local_terms(JsonObject& object, MaterialDescription& material, TextureLibrary& textures) {
   const bool dielectric = material.type == MaterialType::dielectric;
-  const Pattern color = read_color(object, material);
-  const auto term = [&](std::string_view key, const Pattern& base, double missing, double written,
-                        double* exponent) {
+  const Pattern color = read_color(object, material, textures);
+  MaterialTextures& maps = material.textures;
+  const auto term = [&](std::string_view key, double missing, const TermRules& rules) {
     const auto found = object.find(key);
-    return found ? read_term(*found, base, written, color_range, exponent)
-                 : scale(base, dielectric ? 0 : missing);
+    return found ? read_term(*found, textures, rules) : scale(rules.color, dielectric ? 0 : missing);
   };
-  const Pattern ambient = term("ambient", color, 0.1, 0.1, nullptr);
-  const Pattern diffuse = term("diffuse", color, 0.8, 0.8, nullptr);
-  material.ambient = ambient.even, material.checker_ambient = ambient.odd;
-  material.diffuse = diffuse.even, material.checker_diffuse = diffuse.odd;
-  material.specular = term("specular", {}, 0, 1, &material.exponent).even;
+  const Pattern ambient = term("ambient", 0.1, {.color = color, .coefficient = 0.1});
+  const Pattern diffuse = term("diffuse", 0.8, {.color = color, .coefficient = 0.8});
+  const Pattern specular =
+      term("specular", 0, {.color = {}, .exponent = &material.exponent, .exponent_texture = &maps.exponent});
+  material.ambient = ambient.even, material.checker_ambient = ambient.odd, maps.ambient = ambient.texture;
+  material.diffuse = diffuse.even, material.checker_diffuse = diffuse.odd, maps.diffuse = diffuse.texture;
+  material.specular = specular.even, maps.specular = specular.texture;
+  if (const auto emission = object.find("emission")) {
+    const Pattern light = emission->json().is_array() ? read_plain_color(*emission, textures)
+                                                      : read_term(*emission, textures, {.color = {}});
+    material.emission = light.even, maps.emission = light.texture;
+  }
   if (dielectric && object.has("color") && !object.has("ambient") && !object.has("diffuse"))
     object.find("color")->fail(
         "a dielectric has no \"color\" unless it has \"ambient\" or \"diffuse\": tint it by \"transmission\" "
@@ -108,6 +139,43 @@ void read_interior(JsonObject& object, MaterialDescription& material, const Name
   } else if (material.type == MaterialType::dielectric) {
     object.at("ior", "a dielectric's index of refraction, or \"medium\" and a medium's name");
   }
+}
+
+/// {"texture": name, KEY: number}, or the name alone.
+int read_relief(const JsonValue& value, TextureLibrary& textures, TextureUse use, const char* kind,
+                const char* key, double* number) {
+  if (value.json().is_string()) return textures.use(value, use);
+  if (!value.json().is_object()) value.wanted("the name of a texture, or an object");
+  return value.object(kind, [&](JsonObject& object) {
+    *number = object.number(key, *number, {.low = -1e6, .high = 1e6});
+    return textures.use(object.at("texture", "the name of a texture"), use);
+  });
+}
+
+void read_surface(JsonObject& object, MaterialDescription& material, TextureLibrary& textures) {
+  static constexpr std::string_view sides[] = {"both", "front"};
+  if (const auto map = object.find("normal_map"))
+    material.textures.normal =
+        read_relief(*map, textures, TextureUse::data, "normal_map", "scale", &material.normal_scale);
+  if (const auto bump = object.find("bump"))
+    material.textures.height =
+        read_relief(*bump, textures, TextureUse::number, "bump_map", "height", &material.bump);
+  if (const auto occlusion = object.find("occlusion"))
+    material.textures.occlusion = textures.use(*occlusion, TextureUse::number);
+  material.one_sided = object.choice("sides", "both", sides) == "front";
+  if (material.one_sided && material.medium >= 0)
+    object.find("sides")->fail("a material with a \"medium\" or an \"ior\" has both sides");
+}
+
+void read_opacity(JsonObject& object, MaterialDescription& material, TextureLibrary& textures) {
+  const auto opacity = object.find("opacity");
+  material.cutoff = object.number("cutoff", 0, zero_to_one);
+  if (!opacity) return;
+  material.opacity = read_number(*opacity, textures, zero_to_one, &material.textures.opacity);
+  if (material.medium >= 0 && (material.opacity < 1 || material.textures.opacity >= 0))
+    opacity->fail(
+        "a material with a \"medium\" or an \"ior\" is not partly there: give it a \"transmission\" "
+        "instead");
 }
 
 }  // namespace
@@ -135,7 +203,7 @@ MediumDescription read_medium(const JsonValue& value, std::string name) {
 }
 
 MaterialDescription read_material(const JsonValue& value, std::string name, const NameTable& medium_names,
-                                  std::vector<MediumDescription>& media) {
+                                  std::vector<MediumDescription>& media, TextureLibrary& textures) {
   static constexpr std::string_view types[] = {"phong", "dielectric"}, shadings[] = {"phong", "blinn"},
                                     shadows[] = {"filter", "opaque"};
   return value.object("material", [&](JsonObject& object) {
@@ -143,16 +211,20 @@ MaterialDescription read_material(const JsonValue& value, std::string name, cons
     material.name = std::move(name);
     const bool dielectric = object.choice("type", "phong", types) == "dielectric";
     material.type = dielectric ? MaterialType::dielectric : MaterialType::phong;
-    read_local_terms(object, material);
+    read_local_terms(object, material, textures);
     material.blinn = object.choice("shading", "phong", shadings) == "blinn";
     const auto ray_term = [&](std::string_view key) {
       const auto found = object.find(key);
-      return found ? read_term(*found, {}, 1, zero_to_one, nullptr).even : dvec3(dielectric ? 1 : 0);
+      if (!found) return Pattern{dvec3(dielectric ? 1 : 0), dvec3(1), -1};
+      return read_term(*found, textures, {.color = {}, .range = zero_to_one});
     };
-    material.reflection = ray_term("reflection");
-    material.transmission = ray_term("transmission");
+    const Pattern reflection = ray_term("reflection"), transmission = ray_term("transmission");
+    material.reflection = reflection.even, material.textures.reflection = reflection.texture;
+    material.transmission = transmission.even, material.textures.transmission = transmission.texture;
     material.roughness = object.number("roughness", material.roughness, zero_to_one);
     read_interior(object, material, medium_names, media);
+    read_opacity(object, material, textures);
+    read_surface(object, material, textures);
     material.shadow_opaque = object.choice("shadow", "filter", shadows) == "opaque";
     material.vertex_color = object.boolean("vertex_color", false);
     return material;

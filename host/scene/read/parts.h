@@ -14,6 +14,8 @@ namespace sundog {
 /// Indices by name, as the scene's tables hold them.
 using NameTable = std::map<std::string, int, std::less<>>;
 
+class TextureLibrary;
+
 /// The index of a name that must be in `table`; `what` says what it names ("material").
 int find_name(const JsonValue& name, const NameTable& table, std::string_view what);
 
@@ -28,9 +30,10 @@ EnvironmentDescription read_environment(const JsonValue& value,
 FogDescription read_fog(const JsonValue& value);
 
 MediumDescription read_medium(const JsonValue& value, std::string name);
-/// Adds an anonymous medium to `media` when the material gives an "ior" of its own.
+/// Adds an anonymous medium to `media` when the material gives an "ior" of its own, and to the scene of
+/// `textures` those that it uses.
 MaterialDescription read_material(const JsonValue& value, std::string name, const NameTable& medium_names,
-                                  std::vector<MediumDescription>& media);
+                                  std::vector<MediumDescription>& media, TextureLibrary& textures);
 
 /// An exact solid in its own units, and where the file's shorthands (center, from, normal, ...) put it.
 struct PlacedShape {

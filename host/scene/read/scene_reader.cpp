@@ -1,4 +1,4 @@
-// The document's sections in the order of what they refer to: media, materials, meshes, objects.
+// The document's sections in the order of what they refer to: media, textures, materials, meshes, objects.
 #include "scene/read/scene_reader.h"
 
 #include <fmt/format.h>
@@ -10,6 +10,7 @@
 #include "base/image_io.h"
 #include "scene/animate.h"
 #include "scene/bounds.h"
+#include "scene/decode_images.h"
 #include "scene/formula/read.h"
 #include "scene/inside.h"
 #include "scene/json/parse.h"
@@ -17,6 +18,7 @@
 #include "scene/procedural/procedural.h"
 #include "scene/read/library.h"
 #include "scene/read/parts.h"
+#include "scene/read/textures.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -33,6 +35,7 @@ class SceneReader {
 
   SceneDescription read() {
     root_.object("scene", [&](JsonObject& object) { read_root(object); });
+    decode_images(scene_);
     return std::move(scene_);
   }
 
@@ -65,10 +68,14 @@ class SceneReader {
         scene_.media.push_back(read_medium(value, name));
       }
     if (const auto world = object.find("world")) read_world(*world);
+    if (const auto textures = object.find("textures")) {
+      for (const auto& [name, value] : textures->members("textures")) textures_.read(value, name);
+      textures_.check_names();
+    }
     if (const auto materials = object.find("materials"))
       for (const auto& [name, value] : materials->members("materials")) {
         materials_.emplace(name, static_cast<int>(scene_.materials.size()));
-        scene_.materials.push_back(read_material(value, name, media_, scene_.media));
+        scene_.materials.push_back(read_material(value, name, media_, scene_.media, textures_));
       }
     if (const auto meshes = object.find("meshes"))
       for (const auto& [name, value] : meshes->members("meshes"))
@@ -223,6 +230,7 @@ class SceneReader {
   const JsonValue& root_;
   SceneDescription scene_;
   ModelLibrary library_;
+  TextureLibrary textures_{scene_};
   NameTable media_, materials_, fields_;
   std::map<std::string, ModelLibrary::Parts, std::less<>> meshes_;
 };

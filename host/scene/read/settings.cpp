@@ -225,6 +225,7 @@ RenderSettings read_render(const JsonValue& value) {
     render.tracer = tracer == "wide"      ? Tracer::wide
                     : tracer == "compact" ? Tracer::compact
                                           : Tracer::automatic;
+    render.texture_memory = object.integer("texture_memory", render.texture_memory, 1, 65536);
     render.spatial_splits = object.boolean("spatial_splits", render.spatial_splits);
     return render;
   });

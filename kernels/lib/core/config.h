@@ -69,6 +69,9 @@
 #define MAX_CROSSINGS 64
 #endif
 
+// Whether rays carry the cone that a pixel sees, by which textures are filtered.
+#define HAS_CONES (HAS_MAPS && TEXTURE_KINDS)
+
 // Whether a sample needs random numbers beyond the camera's.
 #define HAS_RANDOM (HAS_AREA_LIGHTS || HAS_ROUGH)
 

@@ -274,4 +274,24 @@ static inline REAL real_exp(REAL x) {
   return select(AS_REAL(AS_MASK(p) + (TO_MASK(n) << 23)), (REAL)(0.0f), MASK_OF(x < -87.0f));
 }
 
+// Words at the indices of `lanes`, which count from `from`; the others are 0.
+static inline MASK gather_words(__global const u32* from, MASK index, MASK lanes) {
+#if LANES == 1
+  return lanes ? (int)from[index] : 0;
+#elif LANES == 16 && defined(__AVX512F__) && !defined(SUNDOG_PORTABLE)
+  return __builtin_ia32_gathersiv16si(NO_LANES, (const void*)(size_t)from, index, (ushort)lane_bits(lanes),
+                                      4);
+#else
+  MASK words = NO_LANES;
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    MASK_LANE(words, i) = (int)from[MASK_LANE(index, i)];
+  }
+  return words;
+#endif
+}
+static inline REAL gather_floats(__global const float* from, MASK index, MASK lanes) {
+  return AS_REAL(gather_words((__global const u32*)from, index, lanes));
+}
+
 #endif

@@ -6,6 +6,7 @@
 #include "lib/core/optics.cl"
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
+#include "lib/shade/maps.cl"
 
 #define MAX_FILTERS 64
 
@@ -21,18 +22,58 @@ static inline REAL straight_transmittance(__global const Medium* restrict media,
   return 1.0f - fresnel_reflectance(cos_i, refracted_cosine(cos_i, eta), eta);
 }
 
+// What the surfaces of `lanes` let through, by their textures.
+#if HAS_MAPS
+NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
+                                  const Faces* faces, MASK lanes, REAL3 transmission) {
+  SurfaceInteractions s;
+  s.p = along3(rays->o, hits->t, rays->d);
+  s.ng = safe_unit3(faces->outward);
+  s.ns = s.ng;
+  s.instance = hits->instance;
+  s.material = faces->material;
+  locate(scene, hits, lanes, &s);
+  set_footprints(rays, hits->t, &s);
+  TexturePoints at;
+  texture_points(scene, &s, lanes, &at);
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(s.material, &lanes, &index);
+    __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
+    map_term(scene, maps, MAP_TRANSMISSION, &at, mine, &transmission);
+    REAL opacity = opacity_at(scene, maps, &at, mine);
+    if (scene->materials[index].flags & MATERIAL_ONE_SIDED)
+      opacity = select((REAL)(0.0f), opacity, faces->entering);
+    const REAL behind = 1.0f - opacity;
+    transmission =
+        select3(transmission, add3(scale3(transmission, opacity), real3(behind, behind, behind)), mine);
+  }
+  return transmission;
+}
+#else
+static inline REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
+                                   const Faces* faces, MASK lanes, REAL3 transmission) {
+  return transmission;
+}
+#endif
+
 // Multiplies `through` by the transmission of the surfaces that the lanes of `lanes` pass.
-static inline void filter_light(const Scene* scene, const Faces* faces, MASK here, MASK there, REAL3 wi,
-                                MASK lanes, REAL3* through) {
+static inline void filter_light(const Scene* scene, const SceneRays* rays, const Hits* hits,
+                                const Faces* faces, MASK here, MASK there, MASK lanes, REAL3* through) {
   MASK dielectric = NO_LANES;
   u32 index;
+  REAL3 passed = all3((float3)(1.0f));
+  MASK mapped = NO_LANES;
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(faces->material, &left, &index);
-    *through = select3(*through, multiply3(*through, all3(scene->materials[index].transmission.xyz)), mine);
+    passed = select3(passed, all3(scene->materials[index].transmission.xyz), mine);
     if (scene->materials[index].kind == MATERIAL_DIELECTRIC) dielectric |= mine;
+    if (HAS_MAPS && scene->materials[index].maps != NO_MAPS) mapped |= mine;
   }
+  if (HAS_MAPS && any_lane(mapped)) passed = mapped_filters(scene, rays, hits, faces, mapped, passed);
+  *through = select3(*through, multiply3(*through, passed), lanes);
   if (!any_lane(dielectric)) return;
-  const REAL kept = straight_transmittance(scene->media, here, there, faces->outward, wi, dielectric);
+  const REAL kept = straight_transmittance(scene->media, here, there, faces->outward, rays->d, dielectric);
   *through = select3(*through, scale3(*through, kept), dielectric);
 }
 
@@ -96,7 +137,7 @@ static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits,
   const MASK there = here;
 #endif
   if (!any_lane(passing)) return NO_LANES;
-  filter_light(scene, &faces, here, there, rays->d, through, light);
+  filter_light(scene, rays, hits, &faces, here, there, through, light);
   continue_behind(scene->info, rays, hits, faces.entering, passing);
   return passing & MASK_OF(greatest3(*light) > 0.0f);
 }

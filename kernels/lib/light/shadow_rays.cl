@@ -7,6 +7,7 @@
 #include "lib/path/path_samples.cl"
 #include "lib/path/ray_stack.cl"
 #include "lib/shade/bsdf.cl"
+#include "lib/shade/relief.cl"
 
 // What surfaces and the rays that met them are, for all that is done there.
 typedef struct Shading {
@@ -73,8 +74,10 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
   const LightSamples light = choose_way(scene, index, tile, paths, s->p, lanes);
   const MASK facing = lanes & MASK_OF(dot3(s->ns, light.wi) > 0.0f);
   if (!any_lane(facing)) return;
-  const REAL3 possible =
-      multiply3(light.radiance, bsdf_eval(scene, &at->bsdf, negate3(rays->d), light.wi, facing));
+  REAL3 possible = multiply3(light.radiance, bsdf_eval(scene, &at->bsdf, negate3(rays->d), light.wi, facing));
+#if HAS_RELIEF
+  possible = scale3(possible, terminator(s, light.wi));
+#endif
   // A high power of (r.v) may leave less than the least normal float, which some devices take for zero: not
   // worth a ray.
   const MASK lit = facing & MASK_OF(greatest3(possible) >= FLT_MIN);

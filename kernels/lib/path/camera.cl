@@ -8,7 +8,24 @@
 typedef struct Rays {
   REAL3 o, d;  // d unit
   REAL t_min, t_max;
+#if HAS_CONES
+  REAL spread;  // how much wider their cones become on each unit of their way
+#endif
 } Rays;
+
+// How much wider a pixel's footprint becomes on each unit of a ray's way.
+static inline float pixel_spread(__global const SceneInfo* restrict info) {
+  const float3 dx = info->camera_dx.xyz;
+  return sqrt(dot(dx, dx));
+}
+
+// The cones of camera rays. The samples of a pixel share it, but each sees more than its part, or little
+// would be filtered.
+static inline void start_cones(__global const SceneInfo* restrict info, Rays* rays) {
+#if HAS_CONES
+  rays->spread = (REAL)(pixel_spread(info) * fmax(rsqrt((float)info->samples), 0.125f));
+#endif
+}
 
 static inline Rays camera_rays(__global const SceneInfo* restrict info, REAL x, REAL y) {
   Rays rays;
@@ -19,13 +36,8 @@ static inline Rays camera_rays(__global const SceneInfo* restrict info, REAL x, 
   rays.d = scale3(along, 1.0f / depth_to_t);
   rays.t_min = info->camera_forward.w * depth_to_t;
   rays.t_max = info->background_bottom.w * depth_to_t;
+  start_cones(info, &rays);
   return rays;
-}
-
-// How much wider a pixel's footprint becomes on each unit of a ray's way.
-static inline float pixel_spread(__global const SceneInfo* restrict info) {
-  const float3 dx = info->camera_dx.xyz;
-  return sqrt(dot(dx, dx));
 }
 
 // What a ray sees that meets nothing, by its unit direction.

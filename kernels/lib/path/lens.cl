@@ -73,6 +73,7 @@ static inline Rays sampled_camera_rays(__global const SceneInfo* restrict info, 
   rays.d = scale3(along, 1.0f / depth_to_t);
   rays.t_min = info->camera_forward.w * depth_to_t;
   rays.t_max = info->background_bottom.w * depth_to_t;
+  start_cones(info, &rays);
   return rays;
 #else
   return camera_rays(info, x, y);

@@ -41,13 +41,18 @@ typedef struct PathStates {
 #else
 #define STACKED_FIELDS(REALS, MASKS)
 #endif
+#if HAS_CONES
+#define STACKED_CONES(REALS, MASKS) REALS(rays->cone_width) REALS(rays->cone_spread)
+#else
+#define STACKED_CONES(REALS, MASKS)
+#endif
 // clang-format off: a list
 #define STACKED(REALS, MASKS)                                                                               \
   REALS(rays->o.x) REALS(rays->o.y) REALS(rays->o.z) REALS(rays->d.x) REALS(rays->d.y) REALS(rays->d.z)     \
   REALS(rays->t_min) REALS(rays->t_max)                                                                     \
   REALS(paths->throughput.x) REALS(paths->throughput.y) REALS(paths->throughput.z) MASKS(paths->depth)      \
   STACKED_PIXEL(REALS, MASKS) STACKED_CROSSINGS(REALS, MASKS) STACKED_MEDIA(REALS, MASKS)                   \
-  STACKED_FIELDS(REALS, MASKS) STACKED_BRANCH(REALS, MASKS)
+  STACKED_FIELDS(REALS, MASKS) STACKED_BRANCH(REALS, MASKS) STACKED_CONES(REALS, MASKS)
 // clang-format on
 #define COUNT_MEMBER(member) +1u
 #define STACK_MEMBERS (0u STACKED(COUNT_MEMBER, COUNT_MEMBER))

@@ -24,6 +24,9 @@ typedef struct SceneRays {
   MASK from;       // the field that it starts on: instance * 2, plus 1 inside of it; else FROM_NOWHERE
   REAL footprint;  // of the pixel at o, in world units
 #endif
+#if HAS_CONES
+  REAL cone_width, cone_spread;  // of the cone at o, in world units; its growth on a unit of the way
+#endif
 #if HAS_GLOW
   REAL3 glow;  // gathered from fields that it passed
 #endif
@@ -52,6 +55,10 @@ static inline SceneRays scene_rays(const Rays* camera, MediaStack media) {
 #if HAS_SDF
   rays.from = (MASK)(FROM_NOWHERE);
   rays.footprint = (REAL)(0.0f);
+#endif
+#if HAS_CONES
+  rays.cone_width = (REAL)(0.0f);
+  rays.cone_spread = camera->spread;
 #endif
   forget_glow(&rays);
   return rays;
@@ -91,6 +98,9 @@ static inline void start_on_surfaces(__global const SceneInfo* restrict info, Sc
                                      const Hits* hits, MASK inside, MASK lanes) {
 #if HAS_SDF
   rays->footprint = select(rays->footprint, fma(hits->t, (REAL)(pixel_spread(info)), rays->footprint), lanes);
+#endif
+#if HAS_CONES
+  rays->cone_width = select(rays->cone_width, fma(hits->t, rays->cone_spread, rays->cone_width), lanes);
 #endif
   forget_glow(rays);
 #if HAS_MEDIA

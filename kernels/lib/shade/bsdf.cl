@@ -6,12 +6,18 @@
 #include "lib/core/optics.cl"
 #include "lib/path/media.cl"
 #include "lib/shade/interaction.cl"
+#include "lib/shade/maps.cl"
 
 typedef struct Bsdfs {
   REAL3 ng, ns;            // unit, both on the side of the viewer
   REAL3 ambient, diffuse;  // ka and kd, with pattern and colour
   MASK material, flags;    // index; of the material
   MASK before, after;      // media on the viewer's side and behind
+#if HAS_MAPS
+  REAL3 specular, reflection, transmission;  // with textures
+  REAL3 emission;                            // a factor on the material's
+  REAL exponent;
+#endif
 } Bsdfs;
 
 // Whether points, in units of the pattern, lie in odd cells of the checker.
@@ -37,14 +43,49 @@ static inline void add_checker(const Scene* scene, __global const Material* mate
   }
 }
 
+// The terms that textures change, for the lanes of `lanes`.
+static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
+#if HAS_MAPS
+  const REAL3 none = all3((float3)(0.0f));
+  Terms terms = {bsdf->ambient, bsdf->diffuse, none, none, none, all3((float3)(1.0f)), (REAL)(0.0f)};
+  MASK mapped = NO_LANES;
+  u32 index;
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(s->material, &left, &index);
+    __global const Material* material = scene->materials + index;
+    terms.specular = select3(terms.specular, all3(material->specular.xyz), mine);
+    terms.reflection = select3(terms.reflection, all3(material->reflection.xyz), mine);
+    terms.transmission = select3(terms.transmission, all3(material->transmission.xyz), mine);
+    terms.exponent = select(terms.exponent, (REAL)(material->specular.w), mine);
+    if (material->maps != NO_MAPS) mapped |= mine;
+  }
+  if (any_lane(mapped)) map_terms(scene, s, mapped, &terms);
+  bsdf->ambient = terms.ambient;
+  bsdf->diffuse = terms.diffuse;
+  bsdf->specular = terms.specular;
+  bsdf->reflection = terms.reflection;
+  bsdf->transmission = terms.transmission;
+  bsdf->emission = terms.emission;
+  bsdf->exponent = terms.exponent;
+#endif
+}
+
 // The Bsdfs of the surfaces of `lanes`, between the media `before` and `after`.
 static inline Bsdfs make_bsdfs(const Scene* scene, const SurfaceInteractions* s, MASK before, MASK after,
                                MASK lanes) {
   const REAL3 none = all3((float3)(0.0f));
-  Bsdfs bsdf = {s->ng, s->ns, none, none, s->material, s->flags, before, after};
+  Bsdfs bsdf;
+  bsdf.ng = s->ng;
+  bsdf.ns = s->ns;
+  bsdf.ambient = none;
+  bsdf.diffuse = none;
+  bsdf.material = s->material;
+  bsdf.flags = s->flags;
+  bsdf.before = before;
+  bsdf.after = after;
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(s->material, &lanes, &index);
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(s->material, &left, &index);
     __global const Material* material = scene->materials + index;
     bsdf.ambient = select3(bsdf.ambient, all3(material->ambient.xyz), mine);
     bsdf.diffuse = select3(bsdf.diffuse, all3(material->diffuse.xyz), mine);
@@ -52,6 +93,7 @@ static inline Bsdfs make_bsdfs(const Scene* scene, const SurfaceInteractions* s,
   }
   bsdf.ambient = multiply3(bsdf.ambient, s->color);
   bsdf.diffuse = multiply3(bsdf.diffuse, s->color);
+  add_maps(scene, s, lanes, &bsdf);
   return bsdf;
 }
 
@@ -76,12 +118,33 @@ static inline REAL highlight_cosine(u32 flags, REAL3 ns, REAL3 wo, REAL3 wi) {
   return -dot3(subtract3(wi, scale3(ns, 2.0f * dot3(ns, wi))), wo);
 }
 
+#if HAS_MAPS
+// The highlights of surfaces whose colour and exponent may come from textures, the exponent not whole.
+static inline REAL3 mapped_highlights(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes) {
+  REAL3 sum = all3((float3)(0.0f));
+  if (!any_lane(lanes & MASK_OF(greatest3(bsdf->specular) > 0.0f))) return sum;
+  REAL cosine = (REAL)(0.0f);
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(bsdf->material, &lanes, &index);
+    cosine = select(cosine, highlight_cosine(scene->materials[index].flags, bsdf->ns, wo, wi), mine);
+  }
+  const REAL x = real_clamp(cosine, (REAL)(0.0f), (REAL)(1.0f));
+  const REAL power = real_exp(bsdf->exponent * real_log(real_max(x, (REAL)(1e-37f))));
+  const REAL shine = select(power, (REAL)(0.0f), MASK_OF(x < 1e-37f) & MASK_OF(bsdf->exponent > 0.0f));
+  return scale3(bsdf->specular, shine);
+}
+#endif
+
 // kd (n.l) + ks max(r.v, 0)^beta, or max(n.h, 0)^beta for Blinn, where 0^0 is 1: with a beta of 0 a highlight
 // is the same from everywhere. This is pi times the BSDF times the cosine, in the classical units where a
 // white surface that faces a light of intensity 1 has the radiance 1. Perfect reflection and transmission are
 // not in it. For n.l > 0.
 static inline REAL3 bsdf_eval(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes) {
   REAL3 sum = scale3(bsdf->diffuse, dot3(bsdf->ns, wi));
+#if HAS_MAPS
+  return add3(sum, mapped_highlights(scene, bsdf, wo, wi, lanes));
+#endif
   u32 index;
   while (any_lane(lanes)) {
     const MASK mine = take_alike(bsdf->material, &lanes, &index);
@@ -112,8 +175,13 @@ static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf
     const MASK mine = take_alike(bsdf->material, &lanes, &index);
     __global const Material* material = scene->materials + index;
     if (!(material->flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS))) continue;
+#if HAS_MAPS
+    split.kr = select3(split.kr, bsdf->reflection, mine);
+    split.kt = select3(split.kt, bsdf->transmission, mine);
+#else
     split.kr = select3(split.kr, all3(material->reflection.xyz), mine);
     split.kt = select3(split.kt, all3(material->transmission.xyz), mine);
+#endif
     split.branches |= mine;
     if (material->kind == MATERIAL_DIELECTRIC) dielectric |= mine;
   }

@@ -32,6 +32,11 @@ static inline REAL highlight_density(const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK
 // The greatest part of ks and its exponent of the materials of `lanes`.
 static inline void find_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes, REAL* size,
                                    REAL* exponent) {
+#if HAS_MAPS
+  *size = greatest3(bsdf->specular);
+  *exponent = bsdf->exponent;
+  return;
+#endif
   u32 index;
   while (any_lane(lanes)) {
     const MASK mine = take_alike(bsdf->material, &lanes, &index);

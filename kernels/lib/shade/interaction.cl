@@ -3,6 +3,7 @@
 #ifndef SUNDOG_LIB_INTERACTION_CL
 #define SUNDOG_LIB_INTERACTION_CL
 #include "lib/path/faces.cl"
+#include "lib/path/scene_ray.cl"
 #include "lib/shade/parametrize.cl"
 #if HAS_SDF
 #include "lib/path/fields.cl"
@@ -17,7 +18,15 @@ typedef struct SurfaceInteractions {
   MASK material, flags;   // index; of the material
   MASK medium, entering;  // inside the surface; the ray comes from outside
 #if HAS_UV
-  Coordinates at;  // u, v and dpdu
+  Coordinates at;  // u, v and how the point moves with them
+#endif
+#if HAS_MAPS
+  MASK prim;  // the hit's prim, u and v
+  REAL b, c;
+  REAL footprint;  // width of what the ray sees of the surface, in the world
+#endif
+#if HAS_RELIEF
+  MASK bent;  // ns is not the geometry's
 #endif
 } SurfaceInteractions;
 
@@ -82,6 +91,18 @@ NEVER_INLINE REAL3 field_colors(const Scene* scene, u32 index, const REAL3* o, c
 }
 #endif
 
+// What textures want to know of the hits of `lanes`, at the points s->p.
+static inline void locate(const Scene* scene, const Hits* hits, MASK lanes, SurfaceInteractions* s) {
+#if HAS_UV
+  find_coordinates(scene, hits, &s->p, lanes, &s->at);
+#endif
+#if HAS_MAPS
+  s->prim = hits->prim;
+  s->b = hits->u;
+  s->c = hits->v;
+#endif
+}
+
 // Vertex colours count where the material says so, field colours always.
 static inline MASK has_color(const Faces* faces, MASK on_field) {
   return on_field | MASK_OF((faces->flags & (int)MATERIAL_VERTEX_COLOR) != 0);
@@ -124,8 +145,18 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
   }
   s->color = select3(white, color, has_color(faces, on_field));
   s->offset = real_max(triangle_offset(extent, hits->ng, faces->outward), offset_distance(o, s->p));
-#if HAS_UV
-  find_coordinates(scene, hits, &s->p, lanes, &s->at);
+  locate(scene, hits, lanes, s);
+}
+
+// Sets the footprints of surfaces that rays with these cones have met: the longer axis of the ellipse in
+// which the cone meets the surface (Akenine-Moeller and others 2019, "Texture Level of Detail Strategies for
+// Real-Time Ray Tracing").
+static inline void set_footprints(const SceneRays* rays, REAL t, SurfaceInteractions* s) {
+#if HAS_CONES
+  const REAL cosine = real_max(fabs(dot3(s->ng, rays->d)), (REAL)(0.01f));
+  s->footprint = fabs(fma(t, rays->cone_spread, rays->cone_width)) / cosine;
+#elif HAS_MAPS
+  s->footprint = (REAL)(0.0f);
 #endif
 }
 

@@ -5,6 +5,7 @@
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
+#include "lib/shade/cones.cl"
 #include "lib/shade/rough.cl"
 
 #if HAS_SECONDARY
@@ -49,6 +50,10 @@ static inline void spawn_children(const Scene* scene, const TileSamples* tile, c
   PathStates state = *paths;
   state.depth = paths->depth + 1;
   start_on_surfaces(scene->info, &child, &met->hit, ~s->entering, split.branches);
+#if HAS_CONES
+  const REAL curvature = curvatures(scene, s, split.branches), spread = child.cone_spread;
+  spread_reflected(curvature, &child);
+#endif
   child.d = reflected_direction(bsdf, wo);
   child.o = along3(s->p, s->offset, s->ng);
   state.throughput = multiply3(paths->throughput, split.kr);
@@ -64,6 +69,9 @@ static inline void spawn_children(const Scene* scene, const TileSamples* tile, c
   spawn(scene->info, stack, &child, &state, split.branches, COUNT_REFLECTION, counts);
 
   if (!any_lane(split.transmits)) return;
+#if HAS_CONES
+  spread_transmitted(curvature, &split, spread, &child);
+#endif
   child.d = transmitted_direction(bsdf, &split, wo);
 #if HAS_ROUGH
   const REAL3 bent = refract_direction(rays->d, bsdf->ns, split.cos_i, split.cos_t, split.eta);

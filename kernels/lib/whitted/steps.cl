@@ -42,7 +42,7 @@ static inline REAL3 see_ambient(const Scene* scene, const SceneRays* rays, const
 
 // What surfaces of `lanes` shine by themselves, on their outsides.
 static inline REAL3 see_shining(const Scene* scene, const PathStates* paths, const SurfaceInteractions* s,
-                                MASK lanes) {
+                                const Bsdfs* bsdf, MASK lanes) {
   REAL3 light = all3((float3)(0.0f));
 #if HAS_EMISSION
   u32 index;
@@ -51,6 +51,9 @@ static inline REAL3 see_shining(const Scene* scene, const PathStates* paths, con
     light = select3(light, all3(scene->materials[index].emission.xyz), mine);
   }
   light = multiply3(paths->throughput, light);
+#if HAS_MAPS
+  light = multiply3(light, bsdf->emission);
+#endif
 #endif
   return light;
 }
@@ -68,6 +71,8 @@ static inline void shade_hits(const Scene* scene, const SceneRays* rays, const E
                               Shading* at) {
   interact(scene, rays->o, rays->d, &met->hit, &met->face, lanes, &at->s);
   at->s.offset = offset_beyond(met, at->s.offset);
+  set_footprints(rays, met->hit.t, &at->s);
+  add_relief(scene, rays->d, lanes, &at->s);
   at->bsdf = make_bsdfs(scene, &at->s, met->before, met->after, lanes);
 }
 
@@ -86,7 +91,7 @@ static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, co
   if (any_lane(hit)) {
     shade_hits(scene, rays, met, hit, at);
     seen = select3(seen, add3(seen, see_ambient(scene, rays, paths, &met->hit, &at->bsdf, hit)), hit);
-    if (HAS_EMISSION) seen = add3(seen, see_shining(scene, paths, &at->s, hit));
+    if (HAS_EMISSION) seen = add3(seen, see_shining(scene, paths, &at->s, &at->bsdf, hit));
     spawn_children(scene, tile, &at->s, &at->bsdf, met, rays, paths, hit & fresh, stack, counts);
     note_first_hits(paths, hit & fresh, radiance, counts);
   }

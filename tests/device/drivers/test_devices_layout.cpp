@@ -9,6 +9,7 @@
 #include "shared/launch.h"
 #include "shared/scene.h"
 #include "shared/sdf.h"
+#include "shared/textures.h"
 
 using namespace sundog;
 
@@ -33,6 +34,7 @@ const std::string probe = R"(
 #include "shared/launch.h"
 #include "shared/scene.h"
 #include "shared/sdf.h"
+#include "shared/textures.h"
 #define SUNDOG_STRUCT(type) places[n++] = (u32)sizeof(type);
 #define SUNDOG_MEMBER(type, member) \
   { type probed; places[n++] = (u32)((size_t)&probed.member - (size_t)&probed); }

@@ -97,7 +97,7 @@ TEST_CASE("parameters are normalised to the unit shape") {
   CHECK(compile(scene_with(ConeShape{2, 8, 1, false})).instances[0].parameters == float4{0.25f, 1, 0, 0});
   CHECK(compile(scene_with(RoundBoxShape{{2, 4, 1}, 1})).instances[0].parameters ==
         float4{0.5f, 1, 0.25f, 0.25f});
-  CHECK(compile(scene_with(BoxShape{{2, 4, 1}})).instances[0].pattern_scale == float4{2, 4, 1, 0});
+  CHECK(compile(scene_with(BoxShape{{2, 4, 1}})).instances[0].pattern_scale == float4{2, 4, 1, 1});
 }
 
 TEST_CASE("world bounds hold the surface and are tight") {

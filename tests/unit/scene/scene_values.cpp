@@ -86,7 +86,15 @@ std::string line(const MaterialDescription& m) {
          fmt::format("{} ", m.roughness) +
          fmt::format("{} {} {} {} {} {} {} {} {}\n", text(m.reflection), text(m.transmission), m.medium,
                      m.shadow_opaque, m.checker, text(m.checker_ambient), text(m.checker_diffuse),
-                     m.checker_size, m.vertex_color);
+                     m.checker_size, m.vertex_color) +
+         fmt::format("{} {} {} {} {} {}\n", text(m.emission), m.opacity, m.cutoff, m.textures.diffuse,
+                     m.textures.exponent, m.textures.opacity);
+}
+
+std::string line(const TextureDescription& t) {
+  return fmt::format("texture {} {} {} {} {} {} {} {} {}\n", t.name, t.image, static_cast<int>(t.wrap[0]),
+                     static_cast<int>(t.wrap[1]), static_cast<int>(t.filter), t.channel, t.uv_set,
+                     text(t.uv[0]), text(t.uv[2]));
 }
 
 std::string line(const Mesh& m) {
@@ -111,7 +119,7 @@ std::string all_values(const SceneDescription& scene) {
     for (const auto& entry : table) out += line(entry);
   };
   out += fmt::format("fog {} {}\n", text(scene.fog.color), scene.fog.density);
-  add(scene.lights), add(scene.media), add(scene.materials), add(scene.meshes), add(scene.fields),
-      add(scene.objects);
+  add(scene.lights), add(scene.media), add(scene.textures), add(scene.materials), add(scene.meshes),
+      add(scene.fields), add(scene.objects);
   return out;
 }

@@ -17,10 +17,13 @@ namespace {
 
 /// What a choice by "type" is called, and where it leads.
 const std::map<std::string, std::string>& choices() {
-  static const std::map<std::string, std::string> all{
-      {"light", "[light](#lights)"},          {"object", "[object](#objects)"},
-      {"field", "[field](#distance-fields)"}, {"step", "[step](#fractal-step)"},
-      {"track", "[track](#animation)"},       {"generate", "[ice block](#generate-ice-block)"}};
+  static const std::map<std::string, std::string> all{{"light", "[light](#lights)"},
+                                                      {"texture", "[texture](#textures)"},
+                                                      {"object", "[object](#objects)"},
+                                                      {"field", "[field](#distance-fields)"},
+                                                      {"step", "[step](#fractal-step)"},
+                                                      {"track", "[track](#animation)"},
+                                                      {"generate", "[ice block](#generate-ice-block)"}};
   return all;
 }
 

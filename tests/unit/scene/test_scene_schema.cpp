@@ -36,7 +36,13 @@ const std::string everything = R"({
     {"type": "spot", "position": [0, 0, 0], "direction": [0, 1, 0]},
     {"type": "rectangle", "position": [0, 0, 0], "direction": [0, 1, 0], "size": [1, 2]},
     {"type": "disk", "position": [0, 0, 0], "target": [0, 1, 0]}, {"type": "sphere", "position": [0, 0, 0]}],
+  "textures": {"t": {"type": "image", "file": "t.pfm", "wrap": ["clamp", "mirror"], "scale": [2, 1]},
+    "a": {"type": "checker", "colors": [[0, 0, 0], "t"]}, "b": {"type": "stripes"}, "c": {"type": "gradient"}, "d": {"type": "brick"},
+    "e": {"type": "noise"}, "f": {"type": "cells"}, "g": {"type": "marble"}, "h": {"type": "wood"},
+    "i": {"type": "ramp", "of": "e", "stops": [{"at": 0.5, "color": [0, 1, 0]}]}, "j": {"type": "product", "of": ["a", "i"]}},
   "materials": {
+    "textured": {"color": "t", "specular": {"color": "t", "exponent": "t"}, "emission": {"color": "t"}, "opacity": "t",
+      "normal_map": {"texture": "t"}, "bump": {"texture": "e"}, "occlusion": "t"},
     "m": {"color": {"checker": [[0, 0, 0], [1, 1, 1]]}, "ambient": {}, "specular": {}, "reflection": {}},
     "plain": {"color": [0, 1, 0], "ambient": 0, "specular": 0.5, "transmission": 1, "ior": 1.5},
     "glass": {"type": "dielectric", "medium": "a"}},
@@ -73,6 +79,8 @@ const std::string everything = R"({
       {"rotate": {"axis": [0, 1, 0], "degrees": 3}}, {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]},
     {"type": "group", "objects": []}]})";
 
+const std::string small_picture = "PF\n1 1\n-1\n" + std::string(12, '\0');
+
 json everything_document() {
   json document = parse_json(everything, "everything.json");
   for (json& object : document["objects"]) object["material"] = "m";
@@ -84,6 +92,7 @@ SceneDescription read(const json& document, decltype(JsonContext::asked) asked =
   const TemporaryFolder folder;
   folder.write("tetra.ply", tetrahedron_ply);
   write_image(Image(2, 1, 3), folder.path() / "sky.pfm");
+  folder.write("t.pfm", small_picture);
   const JsonContext context{folder.path() / "scene.json", asked, true};
   return read_scene(JsonValue(document, context));
 }
@@ -179,6 +188,7 @@ json with_one_object(json document, std::string& place) {
 TEST_CASE("what the schema refuses, the reader refuses") {
   const TemporaryFolder folder;
   folder.write("tetra.ply", tetrahedron_ply);
+  folder.write("t.pfm", small_picture);
   const json document = everything_document();
   const json strange = json::parse(
       R"([null, true, 0, -1, 0.5, 1e-300, 2e18, "", "x", [], [1, 2, 3], [0, 0, 0], {}, {"x": 1}])");

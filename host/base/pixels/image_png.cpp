@@ -1,0 +1,87 @@
+// PNG through libspng, which is given the image's limits before it decodes a pixel.
+#include <fmt/format.h>
+#include <spng.h>
+
+#include <memory>
+#include <stdexcept>
+
+#include "base/image_codecs.h"
+#include "base/limits.h"
+#include "base/pixels/stored_image.h"
+
+namespace sundog {
+namespace {
+
+using Context = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
+
+/// Deflate packs at most 1032 bytes into one, and eight pixels fit into a byte.
+constexpr std::int64_t png_pixels_a_byte = 1032 * 8;
+/// Texts, profiles: nothing of them is used.
+constexpr std::size_t most_chunk_bytes = std::size_t{1} << 26;
+
+void check_png(int error) {
+  if (error)
+    throw std::runtime_error(
+        fmt::format("wanted a PNG, JPEG, EXR, HDR or PFM image, found a bad PNG: {}", spng_strerror(error)));
+}
+
+std::uint32_t big_endian(std::string_view four) {
+  std::uint32_t value = 0;
+  for (const char c : four) value = value << 8 | static_cast<unsigned char>(c);
+  return value;
+}
+
+/// How the samples are wanted: grey stays grey where nothing is transparent.
+spng_format format_of(const spng_ihdr& header, bool transparent, StoredImage& stored) {
+  const bool grey = header.color_type == SPNG_COLOR_TYPE_GRAYSCALE && !transparent;
+  stored.channels = grey ? 1 : 4;
+  stored.sample = header.bit_depth == 16 ? StoredImage::Sample::word : StoredImage::Sample::byte;
+  if (grey) return header.bit_depth == 16 ? SPNG_FMT_PNG : SPNG_FMT_G8;  // words in the machine's order
+  return header.bit_depth == 16 ? SPNG_FMT_RGBA16 : SPNG_FMT_RGBA8;
+}
+
+}  // namespace
+
+std::optional<float> png_decoding_exponent(std::string_view bytes) {
+  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) return {};
+  std::optional<float> exponent;
+  for (std::size_t at = 8; at + 12 <= bytes.size();) {
+    const std::string_view type = bytes.substr(at + 4, 4);
+    if (type == "sRGB" || type == "iCCP") return {};
+    if (type == "IDAT") break;
+    const std::size_t length = big_endian(bytes.substr(at, 4));
+    if (type == "gAMA" && length == 4) {
+      const std::uint32_t gamma = big_endian(bytes.substr(at + 8, 4));  // 100000 times the encoding exponent
+      // 0.45455 is what writers say who mean sRGB.
+      if (gamma > 0 && (gamma < 45000 || gamma > 46000)) exponent = 1e5f / static_cast<float>(gamma);
+    }
+    at += 12 + length;
+  }
+  return exponent;
+}
+
+StoredImage decode_png(std::string_view bytes) {
+  const Context context(spng_ctx_new(0), spng_ctx_free);
+  if (!context) throw std::bad_alloc();
+  check_png(spng_set_image_limits(context.get(), most_edge, most_edge));
+  check_png(spng_set_chunk_limits(context.get(), most_chunk_bytes, 4 * most_chunk_bytes));
+  check_png(spng_set_png_buffer(context.get(), bytes.data(), bytes.size()));
+  spng_ihdr header{};
+  check_png(spng_get_ihdr(context.get(), &header));
+  StoredImage stored;
+  stored.width = static_cast<int>(header.width);
+  stored.height = static_cast<int>(header.height);
+  check_image_size(header.width, header.height, 8, bytes.size(), png_pixels_a_byte);
+  spng_trns ignored{};
+  const int transparency = spng_get_trns(context.get(), &ignored);
+  if (transparency != SPNG_ECHUNKAVAIL) check_png(transparency);
+  const int format = format_of(header, transparency == 0, stored);
+  std::size_t size = 0;
+  check_png(spng_decoded_image_size(context.get(), format, &size));
+  stored.data.resize(size);
+  check_png(spng_decode_image(context.get(), stored.data.data(), size, format, SPNG_DECODE_TRNS));
+  stored.exponent = png_decoding_exponent(bytes);
+  return stored;
+}
+
+}  // namespace sundog

@@ -1,0 +1,52 @@
+// StoredImage: the pixels of an image file with the precision that the file has, for textures. Each format is
+// decoded by its own library, which is given limits before it decodes a pixel.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "base/image.h"
+
+namespace sundog {
+
+/// Rows from the top, samples interleaved, words and halves in the machine's order. Colours are sRGB, unless
+/// `exponent` makes them linear; halves are linear, alpha always.
+struct StoredImage {
+  enum class Sample { byte, word, half };
+  int width = 0, height = 0;
+  int channels = 4;  // 1: grey, 4: RGBA
+  Sample sample = Sample::byte;
+  std::optional<float> exponent;
+  std::vector<std::uint8_t> data;
+
+  std::size_t sample_bytes() const { return sample == Sample::byte ? 1 : 2; }
+  std::size_t pixel_bytes() const { return sample_bytes() * static_cast<std::size_t>(channels); }
+  std::size_t pixel_count() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
+};
+
+/// PNG, JPEG, WebP, Radiance HDR, EXR and PFM, by the content; samples of the latter three become halves.
+/// Throws std::runtime_error with the reason alone.
+StoredImage decode_stored(std::string_view bytes);
+
+/// One format each. A PNG's gAMA chunk becomes the exponent where it has no sRGB or iCCP chunk and does not
+/// mean sRGB. Animated WebP is refused.
+StoredImage decode_png(std::string_view bytes);
+StoredImage decode_jpeg(std::string_view bytes);
+StoredImage decode_webp(std::string_view bytes);
+
+/// Refuses sizes beyond those of a frame, pixels that `most_pixels_a_byte` of the format cannot hold, and
+/// what does not fit into the memory that is there.
+void check_image_size(std::int64_t width, std::int64_t height, std::size_t pixel_bytes,
+                      std::size_t file_bytes, std::int64_t most_pixels_a_byte);
+
+/// As linear RGBA.
+Image linear_image(const StoredImage& stored);
+
+/// The nearest half of a float, clamped to +-65504 (NaN becomes 0), and back.
+std::uint16_t half_from_float(float value);
+float float_from_half(std::uint16_t half);
+
+}  // namespace sundog

@@ -1,0 +1,22 @@
+// An image's levels as tiles of texels.
+#pragma once
+#include <vector>
+
+#include "scene/texture_description.h"
+#include "shared/textures.h"
+
+namespace sundog {
+
+/// TEXEL_* of an image.
+u32 texel_format(const StoredImage& image);
+
+/// Bytes of an image and its smaller levels on a device.
+std::size_t texel_bytes(const StoredImage& image);
+
+/// Where levels of these sizes lie, the first one at `first` units; returns the first free unit behind them.
+std::size_t lay_out_levels(const StoredImage& image, std::size_t first, std::vector<TexelLevel>& levels);
+
+/// Writes the image and its smaller levels to their places.
+void write_levels(const ImageDescription& image, const TexelLevel* levels, std::vector<u32>& texels);
+
+}  // namespace sundog

@@ -1,0 +1,256 @@
+#include "compile/textures.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "base/error.h"
+#include "base/image_io.h"
+#include "compile/pack.h"
+#include "compile/texels.h"
+
+namespace sundog {
+namespace {
+
+float4 pack4(const glm::dvec4& v) { return pack(dvec3(v), v.w); }
+
+/// Makes nodes of the textures that materials name, each once; images that no node uses are left out.
+class TextureCompiler {
+ public:
+  TextureCompiler(const SceneDescription& scene, CompiledScene& out) : scene_(scene), out_(out) {}
+
+  void compile() {
+    out_.material_maps.emplace_back();  // number 0 says that there is none
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i)
+      if (has_maps(scene_.materials[i])) {
+        out_.materials[i].maps = static_cast<u32>(out_.material_maps.size());
+        add_maps(scene_.materials[i]);
+      }
+    if (out_.material_maps.size() == 1) {
+      out_.material_maps.clear();
+      return;
+    }
+    out_.features.maps = true;
+    for (std::size_t i = 0; i < SRGB_VALUES; ++i)
+      out_.texture_values.push_back(linear_from_srgb(static_cast<float>(i) / (SRGB_VALUES - 1)));
+    out_.texture_values.insert(out_.texture_values.end(), stops_.begin(), stops_.end());
+    write_images();
+  }
+
+ private:
+  static constexpr std::size_t most_nodes = 4096;
+
+  void add_maps(const MaterialDescription& material) {
+    MaterialMaps maps{};
+    std::fill(std::begin(maps.slot), std::end(maps.slot), NO_TEXTURE);
+    const MaterialTextures& textures = material.textures;
+#define SUNDOG_ADD_MAP(constant, name) maps.slot[MAP_##constant] = first_node(textures.name, material);
+    MAP_SLOTS(SUNDOG_ADD_MAP)
+#undef SUNDOG_ADD_MAP
+    maps.opacity = static_cast<float>(material.opacity);
+    maps.cutoff = static_cast<float>(material.cutoff);
+    if (const auto& metal = material.metal_rough) {
+      maps.base = pack(metal->base, metal->metalness);
+      maps.roughness = static_cast<float>(metal->roughness);
+      maps.reflectance = static_cast<float>(metal->reflectance);
+      out_.features.metal_rough = true;
+    }
+    maps.normal_scale = static_cast<float>(material.normal_scale);
+    maps.bump = static_cast<float>(material.bump);
+    maps.bump_uv = static_cast<float>(material.bump_uv);
+    maps.occlusion = static_cast<float>(material.occlusion);
+    if (textures.normal >= 0 || textures.height >= 0) add_relief(textures, maps);
+    out_.material_maps.push_back(maps);
+  }
+
+  /// Tangents and steps along the surface need its coordinates.
+  void add_relief(const MaterialTextures& textures, MaterialMaps& maps) {
+    out_.features.relief = true;
+    out_.features.surface_coordinates = true;
+    if (textures.height < 0) return;
+    const TextureNode& node = out_.texture_nodes[maps.slot[MAP_HEIGHT]];
+    if (node.kind == TEXTURE_IMAGE && (node.mapping & MAPPING_KIND) == MAPPING_UV)
+      maps.height_texels = node.scale;
+  }
+
+  /// The first node of a texture, whose own node comes after those that it works on.
+  u32 first_node(int texture, const MaterialDescription& material) {
+    if (texture < 0) return NO_TEXTURE;
+    const auto found = nodes_.find(texture);
+    if (found != nodes_.end()) return found->second;
+    const auto first = static_cast<u32>(out_.texture_nodes.size());
+    nodes_.emplace(texture, first);
+    add_graph(texture, material, 0);
+    out_.texture_nodes.back().flags |= TEXTURE_LAST;
+    return first;
+  }
+
+  /// Adds the nodes of a texture; `below` values wait on the stack.
+  void add_graph(int index, const MaterialDescription& material, u32 below) {
+    if (index >= static_cast<int>(scene_.textures.size()))
+      throw SceneError(scene_.file.string(), "",
+                       "material \"" + material.name + "\" names a texture that does not exist");
+    if (below + 2 > MOST_TEXTURE_STACK || out_.texture_nodes.size() > most_nodes)
+      throw SceneError(
+          scene_.file.string(), "/textures",
+          "material \"" + material.name + "\" has a texture of too many others inside each other");
+    const TextureDescription& texture = scene_.textures[static_cast<std::size_t>(index)];
+    for (u32 i = 0; i < 2; ++i)
+      if (texture.of[i] >= 0) add_graph(texture.of[i], material, below + i);
+    const bool works = texture.of[0] >= 0;
+    out_.features.texture_stack = std::max(out_.features.texture_stack, below + (works ? 2 : 1));
+    add_node(texture);
+  }
+
+  void add_node(const TextureDescription& texture) {
+    TextureNode node{};
+    node.kind = texture.kind;
+    node.factor = pack4(texture.factor);
+    node.offset = pack4(texture.offset);
+    node.mapping = static_cast<u32>(texture.mapping);
+    out_.features.texture_mappings |= 1u << node.mapping;
+    node.mapping |= static_cast<u32>(texture.uv_set) << MAPPING_SET_SHIFT;
+    if (texture.of[1] >= 0 && texture.kind != TEXTURE_PRODUCT) node.flags |= TEXTURE_MIXES;
+    if (texture.channel >= 0)
+      node.flags |= TEXTURE_ONE_CHANNEL | static_cast<u32>(texture.channel) << TEXTURE_CHANNEL_SHIFT;
+    for (int row = 0; row < 2; ++row)
+      node.uv_rows[row] = pack(dvec3(texture.uv[0][row], texture.uv[1][row], texture.uv[2][row]));
+    for (int row = 0; row < 3; ++row)
+      node.rows[row] = pack4({texture.placement[0][row], texture.placement[1][row], texture.placement[2][row],
+                              texture.placement[3][row]});
+    for (int i = 0; i < 6; ++i) node.parameter[i] = static_cast<float>(texture.parameter[i]);
+    node.scale = static_cast<float>(scale_of(texture));
+    if (texture.kind == TEXTURE_IMAGE) set_image(texture, node);
+    if (texture.kind == TEXTURE_RAMP) set_stops(texture, node);
+    if (texture.kind != TEXTURE_COLOR && texture.mapping == Mapping::uv) {
+      out_.features.surface_coordinates = true;
+      out_.features.extra_uvs = std::max(out_.features.extra_uvs, static_cast<u32>(texture.uv_set));
+    }
+    out_.features.texture_kinds |= 1u << node.kind;
+    out_.texture_nodes.push_back(node);
+  }
+
+  /// Units of the texture on a unit of its mapping's coordinates: the geometric mean.
+  static double scale_of(const TextureDescription& texture) {
+    const double uv = std::sqrt(std::abs(glm::determinant(glm::dmat2(texture.uv))));
+    const double placed = std::cbrt(std::abs(glm::determinant(glm::dmat3(texture.placement))));
+    if (texture.mapping == Mapping::uv) return uv;
+    if (texture.mapping == Mapping::object && texture.kind != TEXTURE_IMAGE) return placed;
+    return uv * placed;
+  }
+
+  void set_stops(const TextureDescription& texture, TextureNode& node) {
+    node.first = static_cast<u32>(SRGB_VALUES + stops_.size());
+    node.count = static_cast<u32>(texture.stops.size());
+    for (const RampStop& stop : texture.stops)
+      for (const double value : {stop.at, stop.color.x, stop.color.y, stop.color.z})
+        stops_.push_back(static_cast<float>(value));
+  }
+
+  void set_image(const TextureDescription& texture, TextureNode& node) {
+    const ImageDescription& image = scene_.images.at(static_cast<std::size_t>(texture.image));
+    const auto [found, added] = levels_.try_emplace(texture.image, 0u, 0u);
+    auto& [first, count] = found->second;
+    if (added) {
+      first = static_cast<u32>(out_.texel_levels.size());
+      units_ = lay_out_levels(image.pixels, units_, out_.texel_levels);
+      count = static_cast<u32>(out_.texel_levels.size()) - first;
+    }
+    node.first = first;
+    node.count = count;
+    node.scale *= static_cast<float>(std::sqrt(double(image.pixels.width) * image.pixels.height));
+    const u32 format = texel_format(image.pixels);
+    node.flags |= format << TEXTURE_FORMAT_SHIFT;
+    out_.features.texel_formats |= 1u << format;
+    if (image.srgb && image.pixels.sample == StoredImage::Sample::byte) node.flags |= TEXTURE_SRGB;
+    if (texture.filter == TextureFilter::nearest) node.flags |= TEXTURE_NEAREST;
+    if (texture.filter == TextureFilter::bilinear) node.flags |= TEXTURE_BILINEAR;
+    node.flags |= static_cast<u32>(texture.wrap[0]) << TEXTURE_WRAP_U_SHIFT;
+    node.flags |= static_cast<u32>(texture.wrap[1]) << TEXTURE_WRAP_V_SHIFT;
+  }
+
+  void write_images() {
+    if (units_ > std::numeric_limits<u32>::max())
+      throw SceneError(scene_.file.string(), "", "the images take more than 64 GiB; use smaller ones");
+    std::vector<u32> texels(units_ * (TEXEL_UNIT / sizeof(u32)));
+    const std::vector<std::pair<int, std::pair<u32, u32>>> images(levels_.begin(), levels_.end());
+    tbb::parallel_for(std::size_t{0}, images.size(), [&](std::size_t i) {
+      write_levels(scene_.images[static_cast<std::size_t>(images[i].first)],
+                   &out_.texel_levels[images[i].second.first], texels);
+    });
+    cut_into_pages(std::move(texels), TEXEL_PAGE_BYTES / TEXEL_UNIT, out_);
+  }
+
+  const SceneDescription& scene_;
+  CompiledScene& out_;
+  std::map<int, u32> nodes_;                   // by texture
+  std::map<int, std::pair<u32, u32>> levels_;  // by image: the first one, how many
+  std::vector<float> stops_;                   // of ramps, behind the values of bytes
+  std::size_t units_ = 0;
+};
+
+}  // namespace
+
+bool has_maps(const MaterialDescription& material) {
+  bool textured = false;
+#define SUNDOG_HAS_MAP(constant, name) textured |= material.textures.name >= 0;
+  MAP_SLOTS(SUNDOG_HAS_MAP)
+#undef SUNDOG_HAS_MAP
+  return textured || material.opacity < 1 || material.one_sided || material.metal_rough;
+}
+
+void cut_into_pages(std::vector<u32> texels, u32 least_page, CompiledScene& out) {
+  const std::size_t unit_words = TEXEL_UNIT / sizeof(u32), units = texels.size() / unit_words;
+  const std::size_t quarter = (units + TEXEL_PAGES - 1) / TEXEL_PAGES;
+  const std::size_t page =
+      std::max<std::size_t>(least_page, (quarter + TEXEL_ALIGNMENT - 1) / TEXEL_ALIGNMENT * TEXEL_ALIGNMENT);
+  out.info.texel_page = static_cast<u32>(page);
+  out.features.texel_pages = units > page;
+  if (units <= page) {
+    out.texels0 = std::move(texels);
+    return;
+  }
+  std::vector<u32>* pages[] = {&out.texels0, &out.texels1, &out.texels2, &out.texels3};
+  for (std::size_t i = 0; i < TEXEL_PAGES; ++i) {
+    const auto at = [&](std::size_t unit) {
+      return texels.begin() + static_cast<std::ptrdiff_t>(std::min(unit, units) * unit_words);
+    };
+    pages[i]->assign(at(i * page), at((i + 1) * page));
+  }
+}
+
+void add_textures(const SceneDescription& scene, CompiledScene& out) {
+  TextureCompiler(scene, out).compile();
+}
+
+void add_further_uvs(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
+                     CompiledScene& out) {
+  const std::size_t sets = out.features.extra_uvs;
+  if (sets == 0) return;
+  out.extra_uvs.assign(out.vertices.size() * sets * 2, 0.0f);
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    if (!meshes[i].used) continue;
+    const Mesh& mesh = scene.meshes[i];
+    for (std::size_t set = 0; set < std::min(sets, mesh.further_uvs.size()); ++set) {
+      const std::vector<glm::vec2>& uvs = mesh.further_uvs[set];
+      if (uvs.empty()) continue;
+      const auto put = [&](std::size_t vertex, std::size_t from) {
+        float* to = &out.extra_uvs[2 * ((meshes[i].first_vertex + vertex) * sets + set)];
+        to[0] = uvs[from].x;
+        to[1] = uvs[from].y;
+      };
+      if (!mesh.normals.empty())
+        for (std::size_t vertex = 0; vertex < uvs.size(); ++vertex) put(vertex, vertex);
+      else  // three vertices a triangle, as vertices.cpp makes them
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+          for (int corner = 0; corner < 3; ++corner)
+            put(3 * t + static_cast<std::size_t>(corner), mesh.triangles[t][corner]);
+    }
+  }
+}
+
+}  // namespace sundog

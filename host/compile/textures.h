@@ -1,0 +1,27 @@
+// Images and textures as the kernels read them (kernels/shared/textures.h).
+#pragma once
+#include "compile/compiled_scene.h"
+#include "compile/mesh_bvh.h"
+
+namespace sundog {
+
+/// Fills the tables of textures and images with what the materials of `scene` use, and Material::maps of
+/// `out.materials`; sets the features. After add_materials(). Throws SceneError for a texture that does not
+/// exist.
+void add_textures(const SceneDescription& scene, CompiledScene& out);
+
+/// The sets of texture coordinates after the first, as far as textures use them. After add_meshes().
+void add_further_uvs(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
+                     CompiledScene& out);
+
+/// Tangents at the corners of each triangle, for normal maps. After add_meshes().
+void add_tangents(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, CompiledScene& out);
+
+/// Whether a material is more than its Material: it has textures, or is not opaque.
+bool has_maps(const MaterialDescription& material);
+
+/// Cuts `texels` into out.texels0 to texels3, of at least `least_page` units each but the last. A page is no
+/// more than a quarter of all, which is what every device has in one piece.
+void cut_into_pages(std::vector<u32> texels, u32 least_page, CompiledScene& out);
+
+}  // namespace sundog

@@ -1,0 +1,84 @@
+// How the cones that pixels see change where rays are reflected and refracted: by the curvature of surfaces
+// (Akenine-Moeller and others 2021, "Improved Shader and Texture Level of Detail Using Ray Cones") and, at
+// interfaces, by the refraction of neighbouring rays. A cone's width is negative behind its focus.
+#ifndef SUNDOG_LIB_CONES_CL
+#define SUNDOG_LIB_CONES_CL
+#include "lib/shade/bsdf.cl"
+
+#if HAS_CONES && HAS_SECONDARY
+// Of the hits of `lanes` on triangles: how their corners' normals turn along the edges, the mean of the
+// three.
+static inline REAL triangle_curvatures(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
+  REAL curvature = (REAL)(0.0f);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    __global const TriangleShading* triangle = scene->triangles + MASK_LANE(s->prim, i);
+    __global const TriangleBlock* block = scene->blocks + (triangle->place >> 3);
+    float sum = 0.0f;
+    for (u32 a = 0; a < 3u; ++a) {
+      const u32 b = a == 2u ? 0u : a + 1u;
+      const Vertex from = scene->vertices[triangle->vertex[a]], to = scene->vertices[triangle->vertex[b]];
+      const float3 edge =
+          corner_of(block, b, triangle->place & 7u) - corner_of(block, a, triangle->place & 7u);
+      const float turn = dot((float3)(to.nx - from.nx, to.ny - from.ny, to.nz - from.nz), edge);
+      sum += turn / fmax(dot(edge, edge), 1e-30f);
+    }
+    REAL_LANE(curvature, i) = sum * (1.0f / 3.0f);
+  }
+  return curvature;
+}
+
+// Of unit shapes, at points p of object space: the mean of the two principal curvatures.
+static inline REAL solid_curvatures(__global const Instance* instance, REAL3 p, MASK part) {
+  const MASK side = MASK_OF(part == 0);
+  const REAL zero = (REAL)(0.0f);
+  if (HAS_SPHERE && instance->shape == SHAPE_SPHERE) return (REAL)(1.0f);
+  if ((HAS_CYLINDER && instance->shape == SHAPE_CYLINDER) || (HAS_CONE && instance->shape == SHAPE_CONE))
+    return select(zero, 0.5f / nonzero(radius_about_y(p)), side);
+  if (HAS_TORUS && instance->shape == SHAPE_TORUS) {
+    const float minor = instance->parameters.x;
+    const REAL radius = radius_about_y(p);
+    return 0.5f * (1.0f / minor + (radius - 1.0f) / (minor * nonzero(radius)));
+  }
+  return zero;
+}
+
+// Seen from the rays: above 0 where surfaces bulge towards them. In the world.
+static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
+  REAL curvature = (REAL)(0.0f);
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(s->instance, &lanes, &index);
+    __global const Instance* instance = scene->instances + index;
+    const float4 scale = instance->pattern_scale;
+    const float size =
+        cbrt(scale.x * scale.y * scale.z) / scale.w;  // of a unit of object space, in the world
+#if HAS_MESH
+    const REAL own = instance->shape == SHAPE_MESH
+                         ? triangle_curvatures(scene, s, mine)
+                         : solid_curvatures(instance, object_points(instance, s->p), s->prim);
+#else
+    const REAL own = solid_curvatures(instance, object_points(instance, s->p), s->prim);
+#endif
+    curvature = select(curvature, own * (1.0f / size), mine);
+  }
+  return select(-curvature, curvature, s->entering);
+}
+
+// The cones of reflected rays: neighbouring rays part by twice the angle between their normals.
+static inline void spread_reflected(REAL curvature, SceneRays* child) {
+  child->cone_spread = fma(2.0f * curvature, child->cone_width, child->cone_spread);
+}
+
+// The cones of transmitted rays, `spread` before: Snell's law for rays beside each other at right angles to
+// the plane of incidence (Coddington's sagittal equation), where the index changes by split->eta.
+static inline void spread_transmitted(REAL curvature, const SpecularSplits* split, REAL spread,
+                                      SceneRays* child) {
+  const REAL inverse = 1.0f / split->eta;
+  const REAL bend = split->cos_t - split->cos_i * inverse;
+  const MASK straight = MASK_OF(split->eta == 1.0f);
+  child->cone_spread = select(fma(-curvature * bend, child->cone_width, spread * inverse), spread, straight);
+}
+#endif
+
+#endif

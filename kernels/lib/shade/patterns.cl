@@ -1,0 +1,156 @@
+// Patterns that are computed, each a number t that mixes two colours, by the place q in the pattern's own
+// units and the width w of what is seen there: above a cell's size a pattern becomes its mean. A point a
+// lane.
+#ifndef SUNDOG_LIB_PATTERNS_CL
+#define SUNDOG_LIB_PATTERNS_CL
+#include "lib/core/lanes.h"
+
+#if LANES == 1
+typedef uint UMASK;
+#define AS_UMASK(x) as_uint(x)
+#elif LANES == 4
+typedef uint4 UMASK;
+#define AS_UMASK(x) as_uint4(x)
+#elif LANES == 8
+typedef uint8 UMASK;
+#define AS_UMASK(x) as_uint8(x)
+#else
+typedef uint16 UMASK;
+#define AS_UMASK(x) as_uint16(x)
+#endif
+
+static inline REAL fraction(REAL x) { return x - floor(x); }
+static inline REAL smooth_step(REAL s) { return s * s * (3.0f - 2.0f * s); }
+
+// What is narrower than this is not filtered: the difference of two integrals would be rounding alone.
+#define PATTERN_SHARP 1e-3f
+
+// +1 where floor(x) is even, -1 where it is odd: the mean over [x - w / 2, x + w / 2] by its integral, a
+// triangle (Quilez 2011, "Checkerboard filtering").
+static inline REAL square_wave(REAL x, REAL w) {
+  const REAL a = x - 0.5f * w, b = x + 0.5f * w;
+  const REAL from = 1.0f - fabs(1.0f - 2.0f * fraction(0.5f * a)),
+             to = 1.0f - fabs(1.0f - 2.0f * fraction(0.5f * b));
+  const REAL sharp = select((REAL)(1.0f), (REAL)(-1.0f), MASK_OF(fraction(0.5f * x) >= 0.5f));
+  const MASK wide = MASK_OF(w > PATTERN_SHARP);
+  return select(sharp, (to - from) / select((REAL)(1.0f), w, wide), wide);
+}
+
+// 1 on the last `share` of each unit of x, else 0: the mean likewise.
+static inline REAL pulse(REAL x, float share, REAL w) {
+  const REAL a = x - 0.5f * w, b = x + 0.5f * w, zero = (REAL)(0.0f);
+  const REAL turns_between = floor(b) - floor(a);
+  const REAL from = real_max(fraction(a) - (1.0f - share), zero),
+             to = real_max(fraction(b) - (1.0f - share), zero);
+  const REAL sharp = select(zero, (REAL)(1.0f), MASK_OF(fraction(x) >= 1.0f - share));
+  const MASK wide = MASK_OF(w > PATTERN_SHARP);
+  return select(sharp, fma(turns_between, (REAL)(share), to - from) / select((REAL)(1.0f), w, wide), wide);
+}
+
+static inline REAL checker_pattern(REAL3 q, REAL3 w) {
+  const float off = 0x1p-17f;  // off the lattice, so that a face on a cell's border is one colour
+  return 0.5f -
+         0.5f * square_wave(q.x + off, w.x) * square_wave(q.y + off, w.y) * square_wave(q.z + off, w.z);
+}
+
+static inline REAL brick_pattern(REAL3 q, REAL3 w, float mortar_x, float mortar_y) {
+  const REAL shift = select((REAL)(0.0f), (REAL)(0.5f), MASK_OF(fraction(0.5f * floor(q.y)) > 0.25f));
+  return 1.0f - (1.0f - pulse(q.x + shift, mortar_x, w.x)) * (1.0f - pulse(q.y, mortar_y, w.y));
+}
+
+// A hash of a lattice point (the finaliser of Appleby's MurmurHash3 over products with odd numbers).
+static inline UMASK lattice_hash(MASK x, MASK y, MASK z) {
+  UMASK h = AS_UMASK(x) * 0x8da6b343u + AS_UMASK(y) * 0xd8163841u + AS_UMASK(z) * 0xcb1ab31fu;
+  h = (h ^ h >> 16) * 0x85ebca6bu;
+  h = (h ^ h >> 13) * 0xc2b2ae35u;
+  return h ^ h >> 16;
+}
+static inline REAL unit_of_hash(UMASK h) { return TO_REAL(AS_MASK(h >> 8)) * 0x1p-24f; }
+
+// A corner's part of noise: a number in [-1, 1], or the product of one of twelve gradients with the way from
+// the corner (Perlin 2002, "Improving Noise").
+static inline REAL corner_noise(UMASK h, REAL x, REAL y, REAL z, bool gradient) {
+  if (!gradient) return 2.0f * unit_of_hash(h) - 1.0f;
+  const MASK k = AS_MASK(h & 15u);
+  const REAL a = select(y, x, MASK_OF(k < 8));
+  const REAL b = select(select(z, x, MASK_OF(k == 12) | MASK_OF(k == 14)), y, MASK_OF(k < 4));
+  return select(a, -a, MASK_OF((k & 1) != 0)) + select(b, -b, MASK_OF((k & 2) != 0));
+}
+
+// Noise on the lattice of whole numbers, in [-1, 1].
+NEVER_INLINE REAL lattice_noise(REAL3 q, bool gradient) {
+  const REAL3 low = real3(floor(q.x), floor(q.y), floor(q.z));
+  const REAL3 f = subtract3(q, low);
+  const MASK x = TO_MASK(low.x), y = TO_MASK(low.y), z = TO_MASK(low.z);
+  const REAL3 s = real3(f.x * f.x * f.x * fma(f.x, fma(f.x, (REAL)(6.0f), (REAL)(-15.0f)), (REAL)(10.0f)),
+                        f.y * f.y * f.y * fma(f.y, fma(f.y, (REAL)(6.0f), (REAL)(-15.0f)), (REAL)(10.0f)),
+                        f.z * f.z * f.z * fma(f.z, fma(f.z, (REAL)(6.0f), (REAL)(-15.0f)), (REAL)(10.0f)));
+  REAL planes[2];
+  for (int k = 0; k < 2; ++k) {
+    REAL rows[2];
+    for (int j = 0; j < 2; ++j) {
+      const REAL left =
+          corner_noise(lattice_hash(x, y + j, z + k), f.x, f.y - (float)j, f.z - (float)k, gradient);
+      const REAL right = corner_noise(lattice_hash(x + 1, y + j, z + k), f.x - 1.0f, f.y - (float)j,
+                                      f.z - (float)k, gradient);
+      rows[j] = fma(s.x, right - left, left);
+    }
+    planes[k] = fma(s.y, rows[1] - rows[0], rows[0]);
+  }
+  return fma(s.z, planes[1] - planes[0], planes[0]);
+}
+
+// Octaves of noise, each twice as fine and `gain` times as strong; what is finer than the footprint fades.
+static inline REAL octave_noise(REAL3 q, REAL w, u32 octaves, float gain, bool gradient) {
+  REAL sum = (REAL)(0.0f);
+  float strength = 1.0f, all = 0.0f, frequency = 1.0f;
+  for (u32 i = 0; i < octaves; ++i) {
+    const REAL seen = real_clamp(2.0f - 2.0f * frequency * w, (REAL)(0.0f), (REAL)(1.0f));
+    const REAL3 at = scale3(q, (REAL)(frequency));
+    if (any_lane(MASK_OF(seen > 0.0f))) sum = fma(strength * seen, lattice_noise(at, gradient), sum);
+    all += strength;
+    strength *= gain;
+    frequency *= 2.0f;
+  }
+  return sum / fmax(all, 1e-6f);
+}
+
+// Distance to the nearest of one point a cell (Worley 1996, "A Cellular Texture Basis Function").
+static inline REAL cell_distance(REAL3 q, REAL w) {
+  const REAL3 low = real3(floor(q.x), floor(q.y), floor(q.z));
+  const REAL3 f = subtract3(q, low);
+  const MASK x = TO_MASK(low.x), y = TO_MASK(low.y), z = TO_MASK(low.z);
+  REAL nearest = (REAL)(9.0f);
+  for (int k = 0; k < 27; ++k) {
+    const int dx = k % 3 - 1, dy = k / 3 % 3 - 1, dz = k / 9 - 1;
+    const UMASK h = lattice_hash(x + dx, y + dy, z + dz);
+    const REAL3 to = real3((float)dx + TO_REAL(AS_MASK(h & 1023u)) * (1.0f / 1023.0f) - f.x,
+                           (float)dy + TO_REAL(AS_MASK(h >> 10 & 1023u)) * (1.0f / 1023.0f) - f.y,
+                           (float)dz + TO_REAL(AS_MASK(h >> 20 & 1023u)) * (1.0f / 1023.0f) - f.z);
+    nearest = real_min(nearest, dot3(to, to));
+  }
+  const REAL seen = real_clamp(2.0f - 2.0f * w, (REAL)(0.0f), (REAL)(1.0f)), mean = (REAL)(0.55f);
+  return fma(seen, real_min(real_sqrt(nearest), (REAL)(1.0f)) - mean, mean);
+}
+
+// Veins: bands across x that noise disturbs (after Perlin 1985, "An Image Synthesizer"; a smoothed triangle
+// wave in place of the sine).
+static inline REAL marble_pattern(REAL3 q, REAL w, u32 octaves, float gain, float turbulence) {
+  const REAL x = fma(octave_noise(q, w, octaves, gain, true), (REAL)(turbulence), q.x);
+  const REAL t = smooth_step(fabs(2.0f * fraction(x) - 1.0f));
+  const REAL seen = real_clamp(2.0f - 2.0f * w, (REAL)(0.0f), (REAL)(1.0f));
+  return fma(seen, t - 0.5f, (REAL)(0.5f));
+}
+
+// Rings about y, light to dark and quickly back.
+static inline REAL wood_pattern(REAL3 q, REAL w, u32 octaves, float gain, float turbulence) {
+  const float late = 0.85f;
+  const REAL r = real_sqrt(fma(q.x, q.x, q.z * q.z));
+  const REAL s = fraction(fma(octave_noise(q, w, octaves, gain, true), (REAL)(turbulence), r));
+  const REAL rising = s * (1.0f / late),
+             t = select(rising * rising, (1.0f - s) / (1.0f - late), MASK_OF(s > late));
+  const REAL seen = real_clamp(2.0f - 2.0f * w, (REAL)(0.0f), (REAL)(1.0f));
+  return fma(seen, t - 0.36f, (REAL)(0.36f));
+}
+
+#endif

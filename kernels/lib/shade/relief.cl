@@ -1,0 +1,154 @@
+// Relief that is not in the geometry: shading normals bent by normal maps (in the tangent space of
+// Mikkelsen 2008, which bakers use) and by heights (Blinn 1978, as a surface gradient: Mikkelsen 2010, "Bump
+// Mapping Unparametrized Surfaces on the GPU"). A surface a lane.
+#ifndef SUNDOG_LIB_RELIEF_CL
+#define SUNDOG_LIB_RELIEF_CL
+#include "lib/shade/maps.cl"
+
+#if HAS_RELIEF
+// A unit direction from 15 and 16 bits on the octahedron (Meyer and others 2010); the top bit is the sign of
+// the frame.
+static inline float4 unpack_tangent(u32 bits) {
+  const float x = (float)(bits & 0xFFFFu) * (2.0f / 65535.0f) - 1.0f,
+              y = (float)(bits >> 16 & 0x7FFFu) * (2.0f / 32767.0f) - 1.0f;
+  const float z = 1.0f - fabs(x) - fabs(y), fold = fmax(-z, 0.0f);
+  const float3 t = (float3)(x - copysign(fold, x), y - copysign(fold, y), z);
+  return (float4)(t * rsqrt(fmax(dot(t, t), 1e-20f)), bits >> 31 ? -1.0f : 1.0f);
+}
+
+// Tangents of the hits of `lanes` on triangles, interpolated, in object space, and their frames' signs.
+static inline void mesh_tangents(const Scene* scene, const SurfaceInteractions* s, MASK lanes, REAL3* tangent,
+                                 REAL* sign) {
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    __global const u32* packed = scene->tangents + 3u * (u32)MASK_LANE(s->prim, i);
+    const float4 t0 = unpack_tangent(packed[0]), t1 = unpack_tangent(packed[1]),
+                 t2 = unpack_tangent(packed[2]);
+    const float b = REAL_LANE(s->b, i), c = REAL_LANE(s->c, i);
+    set3(tangent, i, (1.0f - b - c) * t0.xyz + b * t1.xyz + c * t2.xyz);
+    REAL_LANE(*sign, i) = t0.w;
+  }
+}
+
+// The frames of surfaces: outward shading normal, tangent along u and bitangent along v, in the world, as a
+// normal map's baker had them.
+typedef struct TangentFrames {
+  REAL3 normal, tangent, bitangent;
+} TangentFrames;
+
+static inline TangentFrames tangent_frames(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
+  TangentFrames frame;
+  const REAL3 outward = select3(negate3(s->ns), s->ns, s->entering);
+  const REAL along = dot3(outward, s->at.dpdu);
+  frame.normal = outward;
+  frame.tangent = safe_unit3(along3(s->at.dpdu, -along, outward));
+  const REAL3 up = cross3(outward, frame.tangent);
+  const REAL one = (REAL)(1.0f);
+  frame.bitangent = scale3(up, select(one, -one, MASK_OF(dot3(up, s->at.dpdv) < 0.0f)));
+#if HAS_MESH
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(s->instance, &lanes, &index);
+    __global const Instance* instance = scene->instances + index;
+    if (instance->shape != SHAPE_MESH) continue;
+    REAL3 tangent = frame.tangent;
+    REAL sign = one;
+    mesh_tangents(scene, s, mine, &tangent, &sign);
+    tangent = world_vectors(instance, tangent);
+    // Mirrored instances turn the frame round.
+    const float3 r0 = instance->object_from_world[0].xyz, r1 = instance->object_from_world[1].xyz,
+                 r2 = instance->object_from_world[2].xyz;
+    if (dot(cross(r0, r1), r2) < 0.0f) sign = -sign;
+    frame.tangent = select3(frame.tangent, safe_unit3(tangent), mine);
+    frame.bitangent = select3(frame.bitangent, scale3(cross3(outward, frame.tangent), sign), mine);
+  }
+#endif
+  return frame;
+}
+
+// The normals of `lanes`, all of one material, by its normal map.
+static inline REAL3 mapped_normals(const Scene* scene, __global const MaterialMaps* maps,
+                                   const TexturePoints* at, const TangentFrames* frame, MASK lanes) {
+  const REAL4 value = slot_values(scene, maps, MAP_NORMAL, at, lanes);
+  const REAL scale = (REAL)(2.0f * maps->normal_scale), half_scale = (REAL)(maps->normal_scale);
+  const REAL x = fma(value.x, scale, -half_scale), y = fma(value.y, scale, -half_scale);
+  const REAL z = fma(value.z, (REAL)(2.0f), (REAL)(-1.0f));
+  return add3(add3(scale3(frame->tangent, x), scale3(frame->bitangent, y)), scale3(frame->normal, z));
+}
+
+// The same by its heights, from three of them: here, and a step along each of dpdu and dpdv.
+static inline REAL3 bumped_normals(const Scene* scene, __global const MaterialMaps* maps,
+                                   const SurfaceInteractions* s, const TexturePoints* at, REAL3 normal,
+                                   MASK lanes) {
+  const REAL least = maps->height_texels > 0.0f ? at->uv_length / maps->height_texels : (REAL)(1e-9f);
+  const REAL step = real_max(at->footprint, least);
+  const REAL here = slot_values(scene, maps, MAP_HEIGHT, at, lanes).x;
+  REAL slope[2];
+  for (u32 k = 0; k < 2u; ++k) {
+    const REAL3 along = k == 0u ? s->at.dpdu : s->at.dpdv;
+    const REAL part = step / nonzero(length3(along));
+    TexturePoints there = *at;
+    if (k == 0u)
+      there.u += part;
+    else
+      there.v += part;
+    u32 index;
+    for (MASK left = lanes; any_lane(left);) {
+      const MASK mine = take_alike(at->instance, &left, &index);
+      __global const Instance* instance = scene->instances + index;
+      const REAL3 way = multiply3(object_vectors(instance, along), all3(instance->pattern_scale.xyz));
+      there.p = select3(there.p, along3(at->p, part, way), mine);
+    }
+    slope[k] = (slot_values(scene, maps, MAP_HEIGHT, &there, lanes).x - here) / nonzero(part);
+  }
+  const REAL3 across_u = cross3(s->at.dpdv, normal), across_v = cross3(normal, s->at.dpdu);
+  const REAL area = dot3(normal, cross3(s->at.dpdu, s->at.dpdv));
+  const REAL rise = maps->bump / nonzero(at->scale) + maps->bump_uv * at->uv_length;
+  const REAL height = rise / nonzero(area);
+  return along3(along3(normal, -height * slope[0], across_u), -height * slope[1], across_v);
+}
+
+// Bends the normals of the surfaces of `lanes` that rays of the directions d have met. `bent` receives those
+// that were.
+NEVER_INLINE void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {
+  s->bent = NO_LANES;
+  MASK mapped = NO_LANES;
+  u32 index;
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(s->material, &left, &index);
+    const u32 number = scene->materials[index].maps;
+    __global const MaterialMaps* maps = scene->material_maps + number;
+    if (number != NO_MAPS && (maps->slot[MAP_NORMAL] != NO_TEXTURE || maps->slot[MAP_HEIGHT] != NO_TEXTURE))
+      mapped |= mine;
+  }
+  if (!any_lane(mapped)) return;
+  TexturePoints at;
+  texture_points(scene, s, mapped, &at);
+  const TangentFrames frame = tangent_frames(scene, s, mapped);
+  REAL3 normal = frame.normal;
+  for (MASK left = mapped; any_lane(left);) {
+    const MASK mine = take_alike(s->material, &left, &index);
+    __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
+    if (maps->slot[MAP_NORMAL] != NO_TEXTURE)
+      normal = select3(normal, mapped_normals(scene, maps, &at, &frame, mine), mine);
+    if (maps->slot[MAP_HEIGHT] != NO_TEXTURE)
+      normal = select3(normal, bumped_normals(scene, maps, s, &at, normal, mine), mine);
+  }
+  s->ns = select3(s->ns, facing_normals(safe_unit3(normal), s->ng, s->entering, d), mapped);
+  s->bent = mapped;
+}
+
+// What of light from wi the bent normals of `lanes` return: none from behind the surface, and near its
+// terminator less, smoothly (Chiang and others 2019, "Taming the Shadow Terminator").
+static inline REAL terminator(const SurfaceInteractions* s, REAL3 wi) {
+  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
+  const REAL geometric = dot3(s->ng, wi), shading = dot3(s->ns, wi), between = dot3(s->ng, s->ns);
+  const REAL g = real_clamp(geometric / nonzero(real_max(shading * between, (REAL)(1e-6f))), zero, one);
+  const REAL soft = g * fma(g, 1.0f - g, one);  // -g^3 + g^2 + g
+  return select(one, select(zero, soft, MASK_OF(geometric > 0.0f)), s->bent);
+}
+#else
+static inline void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {}
+#endif
+
+#endif

@@ -1,0 +1,229 @@
+// Values of textures at points of surfaces: each node of a texture in turn (shared/textures.h). A point a
+// lane.
+#ifndef SUNDOG_LIB_TEXTURE_CL
+#define SUNDOG_LIB_TEXTURE_CL
+#include "lib/core/transform.cl"
+#include "lib/shade/parametrize.cl"
+#include "lib/shade/patterns.cl"
+#include "lib/shade/texels.cl"
+
+#if HAS_MAPS
+// What textures know of points of surfaces.
+typedef struct TexturePoints {
+  REAL u, v;       // v up
+  REAL uv_length;  // how long a unit of u and v is: their geometric mean, in the world; 0: unknown
+  REAL3 p, n;      // the point and the normal in the object's own units; n need not be unit
+  REAL scale;      // units of the object on a unit of the world
+  REAL footprint;  // width of what the ray sees of the surface, in the world
+  MASK instance, prim;
+  REAL b, c;  // of a triangle: barycentric coordinates of its second and third corner
+} TexturePoints;
+
+#if TEXTURE_KINDS
+#define HAS_KIND(kind) (TEXTURE_KINDS >> (kind) & 1u)
+#define HAS_MAPPING(mapping) (TEXTURE_MAPPINGS & (1u << (mapping)))
+
+// Where points lie in a node's own coordinates, and units of the node on a unit of the world.
+typedef struct MappedPoints {
+  REAL3 q;
+  REAL density;
+  REAL3 across;  // by axis: how much of the footprint lies along it, which has no depth along the normal
+} MappedPoints;
+
+// u, v and their unit's length of the set `set` for triangles; solids have the first set alone.
+static inline REAL3 coordinates_of_set(const Scene* scene, const TexturePoints* at, u32 set, MASK lanes) {
+  REAL3 coordinates = real3(at->u, at->v, at->uv_length);
+#if EXTRA_UVS && HAS_MESH
+  if (set == 0u) return coordinates;
+  __global const float* uvs = scene->extra_uvs + 2u * (set - 1u);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    if (scene->instances[MASK_LANE(at->instance, i)].shape != SHAPE_MESH) continue;
+    __global const u32* corner = scene->triangles[MASK_LANE(at->prim, i)].vertex;
+    const float2 uv0 = vload2(corner[0] * EXTRA_UVS, uvs), d1 = vload2(corner[1] * EXTRA_UVS, uvs) - uv0,
+                 d2 = vload2(corner[2] * EXTRA_UVS, uvs) - uv0;
+    __global const Vertex* v0 = scene->vertices + corner[0];
+    __global const Vertex* v1 = scene->vertices + corner[1];
+    __global const Vertex* v2 = scene->vertices + corner[2];
+    // Areas of the first set, whose unit's length is known.
+    const float known = fabs((v1->u - v0->u) * (v2->v - v0->v) - (v2->u - v0->u) * (v1->v - v0->v));
+    const float area = fabs(d1.x * d2.y - d2.x * d1.y);
+    const float2 uv = uv0 + REAL_LANE(at->b, i) * d1 + REAL_LANE(at->c, i) * d2;
+    set3(&coordinates, i,
+         (float3)(uv, area > 0.0f ? REAL_LANE(at->uv_length, i) * sqrt(known / area) : 0.0f));
+  }
+#endif
+  return coordinates;
+}
+
+static inline REAL row_times(float4 row, REAL3 p) {
+  return fma((REAL)(row.x), p.x, fma((REAL)(row.y), p.y, fma((REAL)(row.z), p.z, (REAL)(row.w))));
+}
+static inline REAL3 rows_times(__global const TextureNode* node, REAL3 p) {
+  return real3(row_times(node->rows[0], p), row_times(node->rows[1], p), row_times(node->rows[2], p));
+}
+
+// u and v of a mapping as the texture's.
+static inline MappedPoints map_uv(__global const TextureNode* node, REAL u, REAL v, REAL density) {
+  const float4 a = node->uv_rows[0], b = node->uv_rows[1];
+  const MappedPoints mapped = {real3(fma((REAL)(a.x), u, fma((REAL)(a.y), v, (REAL)(a.z))),
+                                     fma((REAL)(b.x), u, fma((REAL)(b.y), v, (REAL)(b.z))), (REAL)(0.0f)),
+                               density * node->scale, all3((float3)(1.0f, 1.0f, 0.0f))};
+  return mapped;
+}
+
+static inline MappedPoints map_points(const Scene* scene, __global const TextureNode* node,
+                                      const TexturePoints* at, MASK lanes) {
+  const u32 mapping = node->mapping & MAPPING_KIND;
+  const REAL zero = (REAL)(0.0f);
+  if (mapping == MAPPING_UV) {
+    const REAL3 set = coordinates_of_set(scene, at, node->mapping >> MAPPING_SET_SHIFT, lanes);
+    return map_uv(node, set.x, set.y, select(zero, 1.0f / nonzero(set.z), MASK_OF(set.z > 0.0f)));
+  }
+  const REAL3 q = rows_times(node, at->p);
+#if HAS_MAPPING(2) || HAS_MAPPING(3)
+  if (mapping == MAPPING_SPHERICAL || mapping == MAPPING_CYLINDRICAL) {
+    const REAL r = radius_about_y(q), u = turns(q.x, q.z);
+    const bool sphere = mapping == MAPPING_SPHERICAL;
+    const REAL v = sphere ? 0.5f + 2.0f * copysign(turns(r, fabs(q.y)), q.y) : q.y;
+    const REAL area = sphere ? 2.0f * M_PI_F * M_PI_F * r * length3(q) : 2.0f * M_PI_F * r;
+    return map_uv(node, u, v, at->scale * real_rsqrt(real_max(area, (REAL)(1e-12f))));
+  }
+#endif
+  // A pattern's placement turns and scales alike along all axes, so that normals go with it as vectors do.
+  const float4 x = node->rows[0], y = node->rows[1], z = node->rows[2];
+  const REAL3 n = unit3(real3(dot3(all3(x.xyz), at->n), dot3(all3(y.xyz), at->n), dot3(all3(z.xyz), at->n)));
+  const REAL3 one = all3((float3)(1.0f)), rest = subtract3(one, multiply3(n, n));
+  const MappedPoints mapped = {q, node->scale * at->scale,
+                               real3(real_sqrt(real_max(rest.x, zero)), real_sqrt(real_max(rest.y, zero)),
+                                     real_sqrt(real_max(rest.z, zero)))};
+  return mapped;
+}
+
+#if TEXEL_FORMATS
+static inline REAL4 mapped_image(const Scene* scene, __global const TextureNode* node,
+                                 const TexturePoints* at, MappedPoints mapped, MASK lanes) {
+  return sample_image(scene, node, mapped.q.x, mapped.q.y, at->footprint * mapped.density, lanes);
+}
+
+#if HAS_MAPPING(4)
+// The image on the six sides of a box, mixed by how far the normal faces them.
+static inline REAL4 image_on_box(const Scene* scene, __global const TextureNode* node,
+                                 const TexturePoints* at, MASK lanes) {
+  const REAL3 q = rows_times(node, at->p), n = unit3(rows_times(node, at->n)), zero = all3((float3)(0.0f));
+  const REAL3 n2 = multiply3(n, n), weight = multiply3(n2, n2);
+  const REAL sum = real_max(weight.x + weight.y + weight.z, (REAL)(1e-12f)), one = (REAL)(1.0f);
+  const REAL u[3] = {-copysign(one, n.x) * q.z, q.x, copysign(one, n.z) * q.x};
+  const REAL v[3] = {q.y, -copysign(one, n.y) * q.z, q.y};
+  const REAL share[3] = {weight.x / sum, weight.y / sum, weight.z / sum};
+  REAL4 mixed = real4(zero.x, zero.x, zero.x, zero.x);
+  for (u32 axis = 0; axis < 3u; ++axis) {
+    const MASK mine = lanes & MASK_OF(share[axis] > 1e-3f);
+    if (!any_lane(mine)) continue;
+    const REAL4 side = mapped_image(scene, node, at, map_uv(node, u[axis], v[axis], at->scale), mine);
+    const REAL s = select(zero.x, share[axis], mine);
+    mixed = real4(fma(s, side.x, mixed.x), fma(s, side.y, mixed.y), fma(s, side.z, mixed.z),
+                  fma(s, side.w, mixed.w));
+  }
+  return mixed;
+}
+#endif
+#endif
+
+// The number that a pattern gives.
+static inline REAL pattern_value(__global const TextureNode* node, MappedPoints mapped, REAL w) {
+  const REAL3 q = mapped.q;
+  const float a = node->parameter[0], b = node->parameter[1], c = node->parameter[2];
+  const u32 kind = node->kind;
+  if (HAS_KIND(2) && kind == TEXTURE_CHECKER) return checker_pattern(q, scale3(mapped.across, w));
+  if (HAS_KIND(3) && kind == TEXTURE_STRIPES) return pulse(q.x, a, w * mapped.across.x);
+  if (HAS_KIND(5) && kind == TEXTURE_BRICK) return brick_pattern(q, scale3(mapped.across, w), a, b);
+  if (HAS_KIND(6) && kind == TEXTURE_NOISE) return 0.5f + 0.5f * octave_noise(q, w, (u32)a, b, c != 0.0f);
+  if (HAS_KIND(7) && kind == TEXTURE_CELLS) return cell_distance(q, w);
+  if (HAS_KIND(8) && kind == TEXTURE_MARBLE) return marble_pattern(q, w, (u32)a, b, c);
+  if (HAS_KIND(9) && kind == TEXTURE_WOOD) return wood_pattern(q, w, (u32)a, b, c);
+  return real_clamp(q.x, (REAL)(0.0f), (REAL)(1.0f));
+}
+
+// What a node's kind gives at points.
+static inline REAL4 node_values(const Scene* scene, __global const TextureNode* node, const TexturePoints* at,
+                                MASK lanes) {
+  const REAL zero = (REAL)(0.0f);
+  if (node->kind == TEXTURE_COLOR) return real4(zero, zero, zero, zero);
+#if TEXEL_FORMATS
+#if HAS_MAPPING(4)
+  if (node->kind == TEXTURE_IMAGE && (node->mapping & MAPPING_KIND) == MAPPING_BOX)
+    return image_on_box(scene, node, at, lanes);
+#endif
+  if (node->kind == TEXTURE_IMAGE)
+    return mapped_image(scene, node, at, map_points(scene, node, at, lanes), lanes);
+#endif
+  const MappedPoints mapped = map_points(scene, node, at, lanes);
+  const REAL t = pattern_value(node, mapped, at->footprint * mapped.density);
+  return real4(t, t, t, t);
+}
+
+// A ramp's colour at t: between the stops on either side of it, beyond the last ones theirs.
+static inline REAL4 ramp_color(const Scene* scene, __global const TextureNode* node, REAL t) {
+  __global const float* stop = scene->texture_values + node->first;
+  REAL3 color = all3((float3)(stop[1], stop[2], stop[3]));
+  for (u32 i = 1; i < node->count; ++i, stop += 4) {
+    const float from = stop[0], width = fmax(stop[4] - from, 1e-9f);
+    const REAL s = real_clamp((t - from) / width, (REAL)(0.0f), (REAL)(1.0f));
+    const float3 a = (float3)(stop[1], stop[2], stop[3]), b = (float3)(stop[5], stop[6], stop[7]);
+    color = select3(color, along3(all3(a), s, all3(b - a)), MASK_OF(t >= from));
+  }
+  return real4(color.x, color.y, color.z, (REAL)(1.0f));
+}
+
+static inline REAL4 one_channel(REAL4 value, u32 channel) {
+  const REAL one = channel == 0u ? value.x : channel == 1u ? value.y : channel == 2u ? value.z : value.w;
+  return real4(one, one, one, one);
+}
+
+static inline REAL4 scale_value(REAL4 value, float4 factor, float4 offset) {
+  return real4(
+      fma(value.x, (REAL)(factor.x), (REAL)(offset.x)), fma(value.y, (REAL)(factor.y), (REAL)(offset.y)),
+      fma(value.z, (REAL)(factor.z), (REAL)(offset.z)), fma(value.w, (REAL)(factor.w), (REAL)(offset.w)));
+}
+
+// A texture's values at the points of `lanes`; `first` is its first node.
+static REAL4 value_of_texture(const Scene* scene, u32 first, const TexturePoints* at, MASK lanes) {
+#if TEXTURE_STACK > 1
+  REAL4 stack[TEXTURE_STACK];
+  u32 depth = 0;
+#endif
+  for (u32 i = first;; ++i) {
+    __global const TextureNode* node = scene->texture_nodes + i;
+    REAL4 value;
+#if TEXTURE_STACK > 1
+    if (node->kind == TEXTURE_RAMP) {
+      value = ramp_color(scene, node, stack[--depth].x);
+    } else if (node->kind == TEXTURE_PRODUCT) {
+      depth -= 2u;
+      const REAL4 a = stack[depth], b = stack[depth + 1u];
+      value = real4(a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w);
+    } else {
+      value = node_values(scene, node, at, lanes);
+    }
+    if (node->flags & TEXTURE_MIXES) {
+      depth -= 2u;
+      value = mix4(stack[depth], stack[depth + 1u], value.x);
+    } else {
+      value = scale_value(value, node->factor, node->offset);
+    }
+#else
+    value = scale_value(node_values(scene, node, at, lanes), node->factor, node->offset);
+#endif
+    if (node->flags & TEXTURE_ONE_CHANNEL)
+      value = one_channel(value, node->flags >> TEXTURE_CHANNEL_SHIFT & 3u);
+    if (node->flags & TEXTURE_LAST) return value;
+#if TEXTURE_STACK > 1
+    stack[depth++] = value;
+#endif
+  }
+}
+#endif
+#endif
+
+#endif

@@ -1,0 +1,38 @@
+// Metalness and roughness (glTF 2.0, appendix B) in the terms of the present model, in one place for both
+// sides. For a base colour b, metalness m, roughness r and the reflectance f of a dielectric seen straight
+// on:
+//   mirror share  k = m (1 - r)^2: only a smooth metal is a mirror
+//   reflection    b k
+//   diffuse       b (1 - k), and a tenth of it ambient
+//   highlight     f (1 - m) + b m, by Blinn with the exponent 2 / r^4 - 2 (Karis 2013: alpha = r^2)
+// The device has metalness and roughness from textures, the host has them as numbers.
+#ifndef SUNDOG_SHARED_METAL_ROUGH_H
+#define SUNDOG_SHARED_METAL_ROUGH_H
+#include "shared/types.h"
+
+#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
+#define SUNDOG_METAL_REAL REAL
+#define SUNDOG_METAL_CLAMP(x, low, high) real_clamp(x, (REAL)(low), (REAL)(high))
+#define SUNDOG_METAL_INLINE static inline
+#else
+#include <algorithm>
+#define SUNDOG_METAL_REAL double
+#define SUNDOG_METAL_CLAMP(x, low, high) std::clamp<double>(x, double(low), double(high))
+#define SUNDOG_METAL_INLINE inline
+namespace sundog {
+#endif
+
+SUNDOG_METAL_INLINE SUNDOG_METAL_REAL metal_mirror(SUNDOG_METAL_REAL metalness, SUNDOG_METAL_REAL roughness) {
+  const SUNDOG_METAL_REAL smooth = 1.0f - roughness;
+  return metalness * smooth * smooth;
+}
+
+SUNDOG_METAL_INLINE SUNDOG_METAL_REAL rough_exponent(SUNDOG_METAL_REAL roughness) {
+  const SUNDOG_METAL_REAL square = roughness * roughness;
+  return SUNDOG_METAL_CLAMP(2.0f / SUNDOG_METAL_CLAMP(square * square, 1e-9f, 1.0f) - 2.0f, 1.0f, 1e5f);
+}
+
+#if !defined(__OPENCL_VERSION__) && !defined(__OPENCL_C_VERSION__)
+}  // namespace sundog
+#endif
+#endif

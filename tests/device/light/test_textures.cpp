@@ -1,0 +1,298 @@
+// Samples of images against double precision, and pictures of surfaces with textures whose values are known.
+#include <base/pixels/image_levels.h>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "catch.h"
+#include "compile/textures.h"
+#include "devices.h"
+#include "render/device/device_scene.h"
+#include "render/device/kernel_config.h"
+#include "scenes.h"
+
+using namespace sundog;
+using glm::dvec4;
+
+namespace {
+
+/// An image of any kind with pixels that differ.
+ImageDescription noise(int width, int height, int channels, StoredImage::Sample sample, bool srgb) {
+  ImageDescription image;
+  image.srgb = srgb;
+  image.pixels.width = width;
+  image.pixels.height = height;
+  image.pixels.channels = channels;
+  image.pixels.sample = sample;
+  image.pixels.data.resize(image.pixels.pixel_count() * image.pixels.pixel_bytes());
+  u32 state = 1;
+  const auto next = [&] { return (state = state * 1664525u + 1013904223u) >> 16; };
+  for (std::size_t i = 0; i < image.pixels.data.size(); ++i)
+    if (sample != StoredImage::Sample::half) image.pixels.data[i] = static_cast<std::uint8_t>(next());
+  if (sample == StoredImage::Sample::half)
+    for (std::size_t i = 0; i + 1 < image.pixels.data.size(); i += 2) {
+      const std::uint16_t bits = half_from_float(static_cast<float>(next()) / 8192);
+      std::memcpy(image.pixels.data.data() + i, &bits, 2);
+    }
+  return image;
+}
+
+/// A scene whose only material has the texture as its diffuse colour, on a plane.
+SceneDescription textured_plane(const ImageDescription& image, TextureDescription texture) {
+  SceneDescription scene = scenes::line_of_sight({0, 5, 0}, {0, 0, 0}, {0, 0, 1});
+  texture.kind = TEXTURE_IMAGE;
+  texture.image = 0;
+  scene.images.push_back(image);
+  scene.textures.push_back(texture);
+  const int material = scenes::add_white(scene);
+  scene.materials[static_cast<std::size_t>(material)].textures.diffuse = 0;
+  scenes::place(scene, PlaneShape{}, material);
+  return scene;
+}
+
+// --- the reference ---
+
+struct Levels {
+  std::vector<StoredImage> all;
+  bool srgb;
+  dvec4 texel(std::size_t level, int x, int y) const {
+    const StoredImage& image = all[level];
+    const std::size_t at =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
+    dvec4 value(1);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(image.channels); ++c) {
+      const std::size_t i = at * static_cast<std::size_t>(image.channels) + c;
+      std::uint16_t word = 0;
+      if (image.sample != StoredImage::Sample::byte) std::memcpy(&word, image.data.data() + 2 * i, 2);
+      const double linear = image.sample == StoredImage::Sample::byte   ? image.data[i] / 255.0
+                            : image.sample == StoredImage::Sample::word ? word / 65535.0
+                                                                        : double(float_from_half(word));
+      const bool encoded = srgb && c < 3 && image.sample == StoredImage::Sample::byte;
+      value[static_cast<int>(c)] = !encoded            ? linear
+                                   : linear <= 0.04045 ? linear / 12.92
+                                                       : std::pow((linear + 0.055) / 1.055, 2.4);
+    }
+    if (image.channels == 1) value = dvec4(value.x, value.x, value.x, 1);
+    return value;
+  }
+};
+
+int wrapped(int i, int n, Wrap mode) {
+  if (mode == Wrap::clamp) return std::clamp(i, 0, n - 1);
+  if (mode == Wrap::repeat) return ((i % n) + n) % n;
+  const int k = ((i % (2 * n)) + 2 * n) % (2 * n);
+  return k < n ? k : 2 * n - 1 - k;
+}
+
+dvec4 sample_one(const Levels& levels, std::size_t level, const TextureDescription& texture, double u,
+                 double v) {
+  const StoredImage& image = levels.all[level];
+  const auto at = [&](int x, int y) {
+    return levels.texel(level, wrapped(x, image.width, texture.wrap[0]),
+                        wrapped(y, image.height, texture.wrap[1]));
+  };
+  const bool nearest = texture.filter == TextureFilter::nearest;
+  const double x = u * image.width - (nearest ? 0 : 0.5), y = (1 - v) * image.height - (nearest ? 0 : 0.5);
+  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  if (nearest) return at(x0, y0);
+  const double s = x - x0, t = y - y0;
+  return glm::mix(glm::mix(at(x0, y0), at(x0 + 1, y0), s), glm::mix(at(x0, y0 + 1), at(x0 + 1, y0 + 1), s),
+                  t);
+}
+
+dvec4 sample(const Levels& levels, const TextureDescription& texture, double u, double v, double footprint) {
+  const double last = static_cast<double>(levels.all.size() - 1);
+  const double level = footprint > 1 ? std::min(std::log2(footprint), last) : 0;
+  if (texture.filter != TextureFilter::trilinear)
+    return sample_one(levels, static_cast<std::size_t>(level + 0.5), texture, u, v);
+  const auto low = static_cast<std::size_t>(level);
+  const dvec4 fine = sample_one(levels, low, texture, u, v);
+  if (level == double(low)) return fine;
+  return glm::mix(fine, sample_one(levels, low + 1, texture, u, v), level - double(low));
+}
+
+// --- the device ---
+
+const char* const sample_kernel = R"(
+#include "lib/shade/texture.cl"
+__kernel void sample(SCENE_PARAMETERS, __global const float4* points, __global float4* out, u32 count) {
+  const Scene scene = SCENE_OF_PARAMETERS;
+  const u32 first = get_global_id(0) * BATCH;
+  if (first >= count) return;
+  const MASK lanes = lanes_of((1u << min((u32)BATCH, count - first)) - 1u);
+  TexturePoints at;
+  at.p = all3((float3)(0.0f));
+  at.uv_length = (REAL)(1.0f);
+  at.instance = NO_LANES;
+  for (u32 i = 0; i < BATCH; ++i) {
+    const float4 point = points[min(first + i, count - 1u)];
+    REAL_LANE(at.u, i) = point.x; REAL_LANE(at.v, i) = point.y; REAL_LANE(at.footprint, i) = point.z;
+  }
+  const REAL4 value = value_of_texture(&scene, 0u, &at, lanes);
+  for (u32 i = 0; i < BATCH && first + i < count; ++i)
+    out[first + i] = (float4)(REAL_LANE(value.x, i), REAL_LANE(value.y, i), REAL_LANE(value.z, i), REAL_LANE(value.w, i));
+}
+)";
+
+/// Points (u, v, footprint in the world's units, where u and v are x and z).
+std::vector<float4> sample_on(Device& device, const CompiledScene& flat, const std::vector<float4>& points) {
+  const DeviceScene tables = upload_scene(device, flat);
+  const KernelConfig config = make_kernel_config(flat, device.info());
+  KernelDefines defines = config.defines;
+  auto kernel =
+      scene_kernel<Buffer<float4>, Buffer<float4>, u32>(build_text(device, sample_kernel, defines), "sample");
+  const auto in = device.upload<float4>(points);
+  const auto out = device.make<float4>(points.size());
+  run_scene_kernel<Buffer<float4>, Buffer<float4>, u32>(device, kernel, {.x = points.size()}, tables, in, out,
+                                                        static_cast<u32>(points.size()));
+  std::vector<float4> values(points.size());
+  device.read(out, std::span<float4>(values));
+  return values;
+}
+
+/// All over the image and beyond its edges, at footprints of 0 to 40 texels.
+std::vector<float4> sample_points(const StoredImage& image) {
+  std::vector<float4> points;
+  const double size = std::sqrt(double(image.width) * image.height);
+  for (int i = 0; i < 200; ++i) {
+    const double u = 2.3 * std::fmod(i * 0.618034, 1) - 0.7, v = 3.1 * std::fmod(i * 0.414214, 1) - 1.2;
+    const double texels = i % 3 == 0 ? 0 : 40.0 * (i % 17) / 17;
+    points.push_back({float(u), float(v), float(texels / size), 0});
+  }
+  return points;
+}
+
+double greatest_difference(const float4& a, const dvec4& b) {
+  return std::max({std::abs(double(a.x) - b.x), std::abs(double(a.y) - b.y), std::abs(double(a.z) - b.z),
+                   std::abs(double(a.w) - b.w)});
+}
+
+void check_samples(Device& device, const ImageDescription& image, const TextureDescription& texture,
+                   u32 page = 0) {
+  CompiledScene flat = compile(textured_plane(image, texture));
+  if (page) cut_into_pages(std::move(flat.texels0), page, flat);
+  Levels levels{{image.pixels}, image.srgb};
+  for (StoredImage& level : smaller_levels(image.pixels, image.srgb)) levels.all.push_back(std::move(level));
+  const std::vector<float4> points = sample_points(image.pixels);
+  const std::vector<float4> found = sample_on(device, flat, points);
+  const double size = std::sqrt(double(image.pixels.width) * image.pixels.height);
+  const double bound = image.pixels.sample == StoredImage::Sample::half ? 1e-3 : 1e-4;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const dvec4 wanted =
+        sample(levels, texture, double(points[i].x), double(points[i].y), double(points[i].z) * size);
+    // A nearest texel, or level, may be the other one where rounding decides.
+    const bool decided = texture.filter == TextureFilter::trilinear || points[i].z == 0;
+    INFO(points[i].x << " " << points[i].y << " " << points[i].z);
+    if (decided) REQUIRE(greatest_difference(found[i], wanted) < bound);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("samples of every kind of image are those in double precision") {
+  using Sample = StoredImage::Sample;
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    for (const Sample kind : {Sample::byte, Sample::word, Sample::half})
+      for (const int channels : {1, 4}) {
+        INFO(static_cast<int>(kind) << " with " << channels << " channels");
+        check_samples(device, noise(13, 7, channels, kind, false), {});
+      }
+    check_samples(device, noise(16, 16, 4, Sample::byte, true), {});
+    check_samples(device, noise(1, 1, 4, Sample::byte, true), {});
+    check_samples(device, noise(1, 33, 1, Sample::byte, true), {});
+  });
+}
+
+TEST_CASE("samples beyond an image's edges repeat, mirror or clamp it, by axis") {
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    const ImageDescription image = noise(9, 6, 4, StoredImage::Sample::byte, false);
+    for (const Wrap u : {Wrap::repeat, Wrap::mirror, Wrap::clamp})
+      for (const TextureFilter filter : {TextureFilter::nearest, TextureFilter::trilinear}) {
+        TextureDescription texture;
+        texture.wrap[0] = u;
+        texture.wrap[1] = u == Wrap::clamp ? Wrap::mirror : Wrap::clamp;
+        texture.filter = filter;
+        check_samples(device, image, texture);
+      }
+  });
+}
+
+TEST_CASE("images cut into pages give the same samples") {
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    check_samples(device, noise(40, 30, 4, StoredImage::Sample::byte, true), {}, TEXEL_ALIGNMENT);
+    check_samples(device, noise(20, 30, 4, StoredImage::Sample::word, false), {}, TEXEL_ALIGNMENT);
+  });
+}
+
+TEST_CASE("a checkerboard far away is its mean, and what a plane shows is the texture at the point") {
+  ImageDescription image;
+  image.pixels.width = image.pixels.height = 64;
+  image.pixels.channels = 1;
+  for (int i = 0; i < 64 * 64; ++i) image.pixels.data.push_back((i / 64 + i) % 2 ? 255 : 0);
+  SceneDescription scene = textured_plane(image, {});
+  scene.materials[0].ambient = dvec3(0), scene.materials[0].diffuse = dvec3(0);
+  scene.materials[0].textures.diffuse = -1;
+  scene.materials[0].textures.emission = 0;
+  scene.materials[0].emission = dvec3(1, 0.5, 0.25);
+  scene.camera.position = {0.3, 2000, 0.1};
+  scene.camera.target = {0.3, 0, 0.1};
+  scene.camera.fov = 2;  // a pixel sees 70 units: 70 repeats of the image
+  on_every_device([&](const DeviceInfo& info) {
+    const dvec3 far = scenes::pixel_on(info, scene);
+    CHECK(far.x == Approx(0.5).epsilon(1e-2));
+    CHECK(far.y == Approx(0.25).epsilon(1e-2));
+    SceneDescription near = scene;
+    near.camera.position.y = 1e-3;
+    near.camera.position.x = near.camera.target.x = (20.5 / 64);  // the middle of texel 20
+    near.camera.position.z = near.camera.target.z = 1 - 11.5 / 64;
+    CHECK(scenes::pixel_on(info, near).x == Approx((11 * 64 / 64 + 20) % 2).margin(2e-3));
+  });
+}
+
+TEST_CASE("an opacity cut off lets rays and light through where the texture says") {
+  // The left half of the disk is there, the right half is not; a floor that glows, and one that is lit,
+  // below.
+  ImageDescription image;
+  image.srgb = false;
+  image.pixels.width = 2;
+  image.pixels.height = 1;
+  image.pixels.channels = 1;
+  image.pixels.data = {255, 0};
+  SceneDescription scene = scenes::line_of_sight({0, 5, 0}, {0, 0, 0}, {0, 0, 1});
+  TextureDescription texture;
+  texture.kind = TEXTURE_IMAGE;
+  texture.image = 0;
+  texture.wrap[0] = texture.wrap[1] = Wrap::clamp;
+  scene.images.push_back(image);
+  scene.textures.push_back(texture);
+  MaterialDescription leaf;
+  leaf.ambient = leaf.diffuse = dvec3(0);
+  leaf.emission = {0, 1, 0};
+  leaf.textures.opacity = 0;
+  leaf.cutoff = 0.5;
+  scene.materials.push_back(leaf);
+  scenes::place(scene, DiskShape{1, 0}, 0, glm::translate(glm::dmat4(1), dvec3(0, 1, 0)));
+  scenes::place(scene, PlaneShape{}, scenes::add_white(scene));
+  LightDescription sun;
+  sun.type = LightType::directional;
+  sun.direction = {0, -1, 0};
+  scene.lights.push_back(sun);
+  on_every_device([&](const DeviceInfo& info) {
+    const auto at = [&](double x, double height) {
+      SceneDescription view = scene;
+      view.camera.position = {x, height, 0};
+      view.camera.target = {x, 0, 0};
+      return scenes::pixel_on(info, view);
+    };
+    CHECK(at(-0.7, 5).y == Approx(1));  // the leaf
+    CHECK(at(-0.7, 5).x == Approx(0));
+    CHECK(at(0.7, 5).x == Approx(1));     // the lit floor through it
+    CHECK(at(-0.7, 0.5).x == Approx(0));  // its shadow
+    CHECK(at(0.7, 0.5).x == Approx(1));   // no shadow
+  });
+}
