@@ -27,7 +27,14 @@ __kernel void draw(__global const Material* materials, __global const Medium* me
   if (i >= count) return;
   const Scene scene = {.materials = materials, .media = media};
   const REAL3 n = real3(0.0f, 0.0f, 1.0f), none = real3(0.0f, 0.0f, 0.0f), wo = real3(-sqrt(1.0f - cosine * cosine), 0.0f, cosine);
-  const Bsdfs bsdf = {n, n, none, all3(materials[0].diffuse.xyz), 0, (int)materials[0].flags, 0, 1};
+  Bsdfs bsdf = {n, n, none, all3(materials[0].diffuse.xyz), 0, (int)materials[0].flags, 0, 1};
+#if HAS_MAPS
+  bsdf.specular = all3(materials[0].specular.xyz);
+  bsdf.reflection = all3(materials[0].reflection.xyz);
+  bsdf.transmission = all3(materials[0].transmission.xyz);
+  bsdf.emission = none;
+  bsdf.exponent = (REAL)(materials[0].specular.w);
+#endif
   const uint2 pixel = (uint2)(7u, 9u);
   const float2 u = sample_2d(pixel, i, 1u);
   const BsdfSamples s = bsdf_sample(&scene, &bsdf, wo, sample_1d(pixel, i, 0u), u.x, u.y, ALL_LANES);
