@@ -168,7 +168,7 @@ ALWAYS_INLINE void walk_node(__global const u32* nodes, const REAL* t_min, const
                          : push_crossed(node, &slabs, from, to, stack, stack_t));
 }
 
-// Puts a walk on the list where its next word belongs; one that has ended goes onto none. No branch, and the
+// Puts a walk on the list where its next word belongs; an ended one joins none. No branch, and the
 // counts stay in registers: a list that is found by its index would be written and read too close together.
 ALWAYS_INLINE void list_walk(Walk* walk, Walk** at_node, u32* node_words, u32* node_count, Walk** at_leaf,
                              u32* leaf_count) {

@@ -84,7 +84,7 @@ TEST_CASE("a frame in passes has a plain frame's bits where every pixel has ever
   });
 }
 
-TEST_CASE("an adaptive frame goes on after an interruption to the same bits") {
+TEST_CASE("an adaptive frame continues after an interruption to the same bits") {
   const SceneDescription scene = adaptive_scene();
   const DeviceInfo& info = test_devices().front();
   const RenderResult whole = scenes::render_on(info, scene);
@@ -129,7 +129,7 @@ TEST_CASE("adaptive and subsampled pictures are near the full ones with fewer sa
   CHECK(sampling_figures(sparse.taken, 0, 2).share_interpolated > 0.05);
 }
 
-TEST_CASE("a frame that its time limit ends is what there is, and goes on from its checkpoint") {
+TEST_CASE("a frame that its time limit ends is saved, and continues from its checkpoint") {
   SceneDescription scene = ball_scene(32768);
   scene.render.sampling.progressive = true;
   const TemporaryFolder folder;

@@ -87,7 +87,7 @@ Mesh degenerate_mesh() {
 }
 
 // On the rim of its triangle, where rounding decides whether a silhouette or an open edge is hit: both
-// answers are right. (That nothing slips through an edge behind which the surface goes on is
+// answers are right. (That nothing slips through an edge behind which the surface continues is
 // test_traverse_watertight's.)
 bool on_rim(float u, float v) { return std::min({u, v, 1 - u - v}) < 1e-4f; }
 

@@ -199,7 +199,7 @@ TEST_CASE("a shadow one pixel wide is followed from where a corner lies in it") 
       CHECK(film.film.sums[at(x, y)].x / film.film.weights[at(x, y)] == Approx(shadow(x, y, 0).value));
 }
 
-TEST_CASE("a frame in passes goes on from its checkpoint, and takes no other's") {
+TEST_CASE("a frame in passes continues from its checkpoint, and takes no other's") {
   const TemporaryFolder folder;
   const auto noisy = [](int x, int y, u32 sample) {
     return MadeUpPixel{float((x * 7 + y * 3 + int(sample) * 5) % 11) / 11, (x / 5) % 3};
