@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compile/bounds.h"
+#include "compile/table.h"
 #include "scene/description.h"
 #include "shared/features.h"
 #include "shared/scene_tables.h"
@@ -35,7 +36,7 @@ struct BvhFigures {
 
 /// The tables of shared/scene_tables.h.
 struct SceneTables {
-#define SUNDOG_TABLE_MEMBER(type, host_type, name, label) std::vector<host_type> name;
+#define SUNDOG_TABLE_MEMBER(type, host_type, name, label) Table<host_type> name;
   SCENE_TABLES(SUNDOG_TABLE_MEMBER)
 #undef SUNDOG_TABLE_MEMBER
 };
@@ -62,8 +63,9 @@ struct CompiledScene : SceneTables {
   BvhFigures figures;
 };
 
-/// Pure: the same description gives the same bytes, whatever the number of threads (figures' times apart).
-/// Throws SceneError for what cannot be compiled (empty image, too many triangles for the index width).
+/// Pure (and put together from parts, see scene_compiler.h): the same description gives the same bytes,
+/// whatever the number of threads (figures' times apart). Throws SceneError for what cannot be compiled
+/// (empty image, too many triangles for the index width).
 CompiledScene compile(const SceneDescription& scene);
 
 }  // namespace sundog

@@ -166,7 +166,7 @@ void add_environment(const SceneDescription& scene, CompiledScene& out) {
   packed.ahead = pack(axes[2]);
   packed.width = picture.width;
   packed.height = picture.height;
-  add_shares(picture, packed, out.environment_shares);
+  add_shares(picture, packed, out.environment_shares.edit());
   out.environments.push_back(packed);
   out.environment = std::move(picture.pixels);
   out.info.sees_environment = e.visible;

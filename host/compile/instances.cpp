@@ -75,6 +75,13 @@ Bounds interval_of(const SdfDescription& field) {
   return box;
 }
 
+/// Of the object's material; 0 without a checker.
+double checker_size(const SceneDescription& scene, const Object& object) {
+  if (object.material < 0) return 0;
+  const MaterialDescription& material = scene.materials[static_cast<std::size_t>(object.material)];
+  return material.checker ? material.checker_size : 0;
+}
+
 /// Turns objects into instances and notes what their materials ask of the kernels.
 class Placer {
  public:
@@ -117,35 +124,12 @@ class Placer {
     const dmat4 scale(glm::dmat3(unit.scale.x, 0, 0, 0, unit.scale.y, 0, 0, 0, unit.scale.z));
     dmat4 local_from_object = object.world_from_object;
     local_from_object[3] -= glm::dvec4(out_.origin, 0);
-    if (!placed.bounded()) local_from_object = nearer_plane(object, local_from_object);
+    if (!placed.bounded()) local_from_object = place_of_plane(scene_, object, out_.origin);
     const dmat4 world_from_unit = set_transform(scene_, object, local_from_object * scale, placed.instance);
     if (!placed.bounded()) return;
     const bool exact = placed.instance.flags & INSTANCE_IDENTITY;
     placed.box = world_bounds(unit, boxes, world_from_unit, exact);
     placed.instance.world_center = sphere_around(placed.box);
-  }
-
-  /// A plane moved along itself, so that the middle of its own space is near: by whole periods of its
-  /// pattern. With textures, which may have any period, it stays.
-  dmat4 nearer_plane(const Object& object, const dmat4& local_from_object) const {
-    if (object.material >= 0 && has_maps(scene_.materials[static_cast<std::size_t>(object.material)]))
-      return local_from_object;
-    const dvec3 here(glm::inverse(local_from_object)[3]);
-    dmat4 result = local_from_object;
-    for (const int axis : {0, 2}) {
-      const dvec3 along(local_from_object[axis]);
-      const double length = glm::length(along), period = 2 * checker_size(object);
-      result[3] +=
-          glm::dvec4(far_part(here[axis] * length, period * length, scene_.camera) / length * along, 0);
-    }
-    return result;
-  }
-
-  /// Of the object's material; 0 without a checker.
-  double checker_size(const Object& object) const {
-    if (object.material < 0) return 0;
-    const MaterialDescription& material = scene_.materials[static_cast<std::size_t>(object.material)];
-    return material.checker ? material.checker_size : 0;
   }
 
   void set_surface(const Object& object, const PlacedMesh* mesh, Instance& instance) {
@@ -179,17 +163,16 @@ class Placer {
 };
 
 /// Whether the camera may be inside a solid with a medium.
-bool may_contain(const Placed& placed, const dvec3& camera) {
-  if (!(placed.instance.flags & INSTANCE_TRANSMITS)) return false;
-  if (!placed.bounded()) {
-    const float4& row = placed.instance.object_from_world[1];
+bool may_contain(const Instance& instance, const Bounds& box, const dvec3& camera) {
+  if (!(instance.flags & INSTANCE_TRANSMITS)) return false;
+  if (instance.shape == SHAPE_PLANE) {
+    const float4& row = instance.object_from_world[1];
     const dvec3 normal(row.x, row.y, row.z);
     return glm::dot(normal, camera) + double(row.w) <=
            1e-6 * (glm::length(normal) * glm::length(camera) + std::abs(double(row.w)));
   }
   for (int axis = 0; axis < 3; ++axis)
-    if (camera[axis] < double(placed.box.lower[axis]) || camera[axis] > double(placed.box.upper[axis]))
-      return false;
+    if (camera[axis] < double(box.lower[axis]) || camera[axis] > double(box.upper[axis])) return false;
   return true;
 }
 
@@ -204,10 +187,11 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
   const WideBvh tree = build_wide_bvh(bounded.size(), fill, settings);
 
   const auto root = static_cast<u32>(out.nodes.size());
+  std::vector<Bvh8Node>& nodes = out.nodes.edit();
   for (Bvh8Node node : tree.nodes) {
     for (u32& child : node.child)
       if (!(child & BVH_LEAF)) child += root;
-    out.nodes.push_back(node);
+    nodes.push_back(node);
   }
   std::vector<Placed> sorted;
   for (const WideBvh::Block& block : tree.blocks) sorted.push_back(bounded[tree.members[block.first]]);
@@ -244,18 +228,25 @@ std::vector<Placed> take_large_solids(std::vector<Placed>& bounded, const Bounds
   return taken;
 }
 
-void find_touching(const SceneDescription& scene, std::vector<Placed>& bounded,
-                   std::vector<Placed>& unbounded, const dvec3& origin, SceneFeatures& features) {
-  std::vector<PlacedBody> bodies;
-  for (std::vector<Placed>* list : {&bounded, &unbounded})
-    for (Placed& placed : *list) bodies.push_back({&placed.instance, placed.box});
-  mark_touching(scene, bodies, origin, features);
-}
-
 }  // namespace
 
-void add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, u32 default_material,
-                   CompiledScene& out) {
+dmat4 place_of_plane(const SceneDescription& scene, const Object& object, const dvec3& origin) {
+  dmat4 result = object.world_from_object;
+  result[3] -= glm::dvec4(origin, 0);
+  if (object.material >= 0 && has_maps(scene.materials[static_cast<std::size_t>(object.material)]))
+    return result;
+  const dmat4 local_from_object = result;
+  const dvec3 here(glm::inverse(local_from_object)[3]);
+  for (const int axis : {0, 2}) {
+    const dvec3 along(local_from_object[axis]);
+    const double length = glm::length(along), period = 2 * checker_size(scene, object);
+    result[3] += glm::dvec4(far_part(here[axis] * length, period * length, scene.camera) / length * along, 0);
+  }
+  return result;
+}
+
+std::vector<Bounds> add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
+                                  u32 default_material, CompiledScene& out) {
   std::vector<Placed> bounded, unbounded, fields;
   u32 mesh_stack = 0;
   Placer placer(scene, meshes, default_material, out);
@@ -268,21 +259,43 @@ void add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>&
     }
     const Placed placed = placer.place(object, static_cast<u32>(i));
     out.features.shapes[placed.instance.shape] = true;
-    out.features.camera_inside |= may_contain(placed, scene.camera.position - out.origin);
     (placed.instance.shape == SHAPE_SDF ? fields : placed.bounded() ? bounded : unbounded).push_back(placed);
   }
-  if (out.features.media) find_touching(scene, bounded, unbounded, out.origin, out.features);
   for (const Placed& placed : bounded) out.figures.box.extend(placed.box);
   out.info.scene_center = bounded.empty() ? float4{} : sphere_around(out.figures.box);
   const std::vector<Placed> large = take_large_solids(bounded, out.figures.box);
   add_scene_bvh(bounded, out, mesh_stack);
-  for (const Placed& placed : bounded) out.instances.push_back(placed.instance);
-  for (const Placed& placed : large) out.instances.push_back(placed.instance);
-  for (const Placed& placed : unbounded) out.instances.push_back(placed.instance);
-  out.info.instance_count = static_cast<u32>(out.instances.size());
-  for (const Placed& placed : fields) out.instances.push_back(placed.instance);
-  out.info.field_end = static_cast<u32>(out.instances.size());
+  std::vector<Instance> instances;
+  std::vector<Bounds> boxes;
+  const auto append = [&](const std::vector<Placed>& list) {
+    for (const Placed& placed : list) {
+      instances.push_back(placed.instance);
+      boxes.push_back(placed.box);
+    }
+  };
+  append(bounded);
+  append(large);
+  append(unbounded);
+  out.info.instance_count = static_cast<u32>(instances.size());
+  append(fields);
+  out.info.field_end = static_cast<u32>(instances.size());
+  out.instances = std::move(instances);
   out.features.unbounded = !unbounded.empty();
+  return boxes;
+}
+
+void find_touching(const SceneDescription& scene, const std::vector<Bounds>& boxes, CompiledScene& out) {
+  std::vector<PlacedBody> bodies;
+  std::vector<Instance>& instances = out.instances.edit();
+  for (std::size_t i = 0; i < out.info.instance_count; ++i) bodies.push_back({&instances[i], boxes[i]});
+  mark_touching(scene, bodies, out.origin, out.features);
+}
+
+bool is_camera_inside(const dvec3& camera, std::span<const Instance> instances,
+                      std::span<const Bounds> boxes) {
+  for (std::size_t i = 0; i < instances.size(); ++i)
+    if (may_contain(instances[i], boxes[i], camera)) return true;
+  return false;
 }
 
 }  // namespace sundog

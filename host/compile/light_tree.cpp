@@ -81,8 +81,9 @@ void add_light_tree(const SceneDescription& scene, CompiledScene& out) {
   for (u32 i = 0; i < out.lights.size(); ++i)
     if (has_extent(out.lights[i])) lamps.push_back(lamp_of(out.lights[i], i));
   if (scene.render.light_samples == 0 || lamps.size() < 2) return;
-  append(lamps, out.light_nodes);
-  std::erase_if(out.light_rays, [&](const LightRay& ray) { return has_extent(out.lights[ray.light]); });
+  append(lamps, out.light_nodes.edit());
+  std::erase_if(out.light_rays.edit(),
+                [&](const LightRay& ray) { return has_extent(out.lights[ray.light]); });
   const auto rays = static_cast<u32>(scene.render.light_samples);
   for (u32 ray = 0; ray < rays; ++ray) out.light_rays.push_back({LIGHT_CHOSEN, ray, rays, 0});
   out.features.light_tree = true;

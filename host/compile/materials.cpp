@@ -182,13 +182,16 @@ Light pack_light(const NamedLight& named, const dvec3& origin) {
 
 }  // namespace
 
+bool lacks_materials(const SceneDescription& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [&](const Object& object) { return lacks_material(scene, object); });
+}
+
 u32 add_materials(const SceneDescription& scene, CompiledScene& out) {
-  const std::vector<u32> media = add_media(scene, out.media);
+  const std::vector<u32> media = add_media(scene, out.media.edit());
   for (const MaterialDescription& material : scene.materials)
     out.materials.push_back(make_material(material, media));
-  if (std::none_of(scene.objects.begin(), scene.objects.end(),
-                   [&](const Object& object) { return lacks_material(scene, object); }))
-    return NO_MATERIAL;
+  if (!lacks_materials(scene)) return NO_MATERIAL;
   out.materials.push_back(make_material(MaterialDescription{}, media));
   return static_cast<u32>(out.materials.size() - 1);
 }

@@ -12,6 +12,9 @@ namespace sundog {
 /// index, or NO_MATERIAL.
 u32 add_materials(const SceneDescription& scene, CompiledScene& out);
 
+/// Whether some object or mesh is without a material.
+bool lacks_materials(const SceneDescription& scene);
+
 /// Fills `out.lights`, whose positions count from `out.origin`, and `out.info.ambient`. Throws SceneError for
 /// a direction of length zero.
 void add_lights(const SceneDescription& scene, CompiledScene& out);

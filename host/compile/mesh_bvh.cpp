@@ -238,21 +238,22 @@ void fill_tables(const Mesh& mesh, const WideBvh& tree, const Rows& first, u32 d
   placed.first_triangle = static_cast<u32>(first.triangles);
   placed.triangle_count = static_cast<u32>(mesh.triangles.size());
   placed.boxes = grandchildren(tree.nodes);
-  const auto triangles = std::span(out.triangles).subspan(first.triangles, mesh.triangles.size());
+  const auto triangles = std::span(out.triangles.edit()).subspan(first.triangles, mesh.triangles.size());
   tbb::parallel_invoke(
       [&] { placed.cost = expected_cost(tree.nodes, 0, [](u32, u32 count) { return double(count); }); },
       [&] { placed.stack = stack_need(tree.nodes, 0); },
       [&] {
-        append_tree(tree, mesh, static_cast<u32>(first.triangles), std::span(out.nodes).subspan(first.nodes),
-                    placed.root, std::span(out.blocks).subspan(first.blocks), static_cast<u32>(first.blocks));
+        append_tree(tree, mesh, static_cast<u32>(first.triangles),
+                    std::span(out.nodes.edit()).subspan(first.nodes), placed.root,
+                    std::span(out.blocks.edit()).subspan(first.blocks), static_cast<u32>(first.blocks));
       },
       [&] {
         fill_vertices(mesh, static_cast<u32>(first.vertices), default_material,
-                      std::span(out.vertices).subspan(first.vertices, vertex_count(mesh)), triangles);
+                      std::span(out.vertices.edit()).subspan(first.vertices, vertex_count(mesh)), triangles);
         placed.materials = distinct_materials(triangles);
       });
-  note_places(std::span(out.blocks).subspan(first.blocks, tree.blocks.size()), static_cast<u32>(first.blocks),
-              out.triangles);
+  note_places(std::span(out.blocks.rows()).subspan(first.blocks, tree.blocks.size()),
+              static_cast<u32>(first.blocks), out.triangles.edit());
 }
 
 double mean_fill(const std::vector<WideBvh>& trees) {

@@ -109,13 +109,13 @@ void fill_tangents(const Mesh& mesh, std::span<u32> packed) {
 
 void add_tangents(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, CompiledScene& out) {
   if (!out.features.relief) return;
-  out.tangents.assign(3 * out.triangles.size(), 0);
+  std::vector<u32> table(3 * out.triangles.size());
   tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) {
     if (!meshes[i].used) return;
-    fill_tangents(scene.meshes[i], std::span(out.tangents)
-                                       .subspan(3 * std::size_t{meshes[i].first_triangle},
-                                                3 * scene.meshes[i].triangles.size()));
+    fill_tangents(scene.meshes[i], std::span(table).subspan(3 * std::size_t{meshes[i].first_triangle},
+                                                            3 * scene.meshes[i].triangles.size()));
   });
+  out.tangents = std::move(table);
 }
 
 }  // namespace sundog

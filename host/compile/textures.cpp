@@ -24,10 +24,10 @@ class TextureCompiler {
   TextureCompiler(const SceneDescription& scene, CompiledScene& out) : scene_(scene), out_(out) {}
 
   void compile() {
-    out_.material_maps.emplace_back();  // number 0 says that there is none
+    out_.material_maps.push_back({});  // number 0 says that there is none
     for (std::size_t i = 0; i < scene_.materials.size(); ++i)
       if (has_maps(scene_.materials[i])) {
-        out_.materials[i].maps = static_cast<u32>(out_.material_maps.size());
+        out_.materials.edit()[i].maps = static_cast<u32>(out_.material_maps.size());
         add_maps(scene_.materials[i]);
       }
     if (out_.material_maps.size() == 1) {
@@ -37,7 +37,8 @@ class TextureCompiler {
     out_.features.maps = true;
     for (std::size_t i = 0; i < SRGB_VALUES; ++i)
       out_.texture_values.push_back(linear_from_srgb(static_cast<float>(i) / (SRGB_VALUES - 1)));
-    out_.texture_values.insert(out_.texture_values.end(), stops_.begin(), stops_.end());
+    std::vector<float>& values = out_.texture_values.edit();
+    values.insert(values.end(), stops_.begin(), stops_.end());
     write_images();
   }
 
@@ -85,7 +86,7 @@ class TextureCompiler {
     const auto first = static_cast<u32>(out_.texture_nodes.size());
     nodes_.emplace(texture, first);
     add_graph(texture, material, 0);
-    out_.texture_nodes.back().flags |= TEXTURE_LAST;
+    out_.texture_nodes.edit().back().flags |= TEXTURE_LAST;
     return first;
   }
 
@@ -157,7 +158,7 @@ class TextureCompiler {
     auto& [first, count] = found->second;
     if (added) {
       first = static_cast<u32>(out_.texel_levels.size());
-      units_ = lay_out_levels(image.pixels, units_, out_.texel_levels);
+      units_ = lay_out_levels(image.pixels, units_, out_.texel_levels.edit());
       count = static_cast<u32>(out_.texel_levels.size()) - first;
     }
     node.first = first;
@@ -214,12 +215,12 @@ void cut_into_pages(std::vector<u32> texels, u32 least_page, CompiledScene& out)
     out.texels0 = std::move(texels);
     return;
   }
-  std::vector<u32>* pages[] = {&out.texels0, &out.texels1, &out.texels2, &out.texels3};
+  Table<u32>* pages[] = {&out.texels0, &out.texels1, &out.texels2, &out.texels3};
   for (std::size_t i = 0; i < TEXEL_PAGES; ++i) {
     const auto at = [&](std::size_t unit) {
       return texels.begin() + static_cast<std::ptrdiff_t>(std::min(unit, units) * unit_words);
     };
-    pages[i]->assign(at(i * page), at((i + 1) * page));
+    *pages[i] = std::vector<u32>(at(i * page), at((i + 1) * page));
   }
 }
 
@@ -231,7 +232,7 @@ void add_further_uvs(const SceneDescription& scene, const std::vector<PlacedMesh
                      CompiledScene& out) {
   const std::size_t sets = out.features.extra_uvs;
   if (sets == 0) return;
-  out.extra_uvs.assign(out.vertices.size() * sets * 2, 0.0f);
+  std::vector<float> table(out.vertices.size() * sets * 2);
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (!meshes[i].used) continue;
     const Mesh& mesh = scene.meshes[i];
@@ -239,7 +240,7 @@ void add_further_uvs(const SceneDescription& scene, const std::vector<PlacedMesh
       const std::vector<glm::vec2>& uvs = mesh.further_uvs[set];
       if (uvs.empty()) continue;
       const auto put = [&](std::size_t vertex, std::size_t from) {
-        float* to = &out.extra_uvs[2 * ((meshes[i].first_vertex + vertex) * sets + set)];
+        float* to = &table[2 * ((meshes[i].first_vertex + vertex) * sets + set)];
         to[0] = uvs[from].x;
         to[1] = uvs[from].y;
       };
@@ -251,6 +252,7 @@ void add_further_uvs(const SceneDescription& scene, const std::vector<PlacedMesh
             put(3 * t + static_cast<std::size_t>(corner), mesh.triangles[t][corner]);
     }
   }
+  out.extra_uvs = std::move(table);
 }
 
 }  // namespace sundog

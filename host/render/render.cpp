@@ -8,9 +8,8 @@
 #include "base/error.h"
 #include "render/device/device_server.h"
 #include "render/film/hash.h"
-#include "render/film/part.h"
-#include "render/film/rows.h"
 #include "render/frame/frame.h"
+#include "render/plan/frame_tiles.h"
 
 namespace sundog {
 namespace {
@@ -34,47 +33,10 @@ void check_shares(const Split& split, const std::vector<ServerPlan>& devices) {
                                devices.size() == 1 ? "" : "s", fmt::join(labels, "; ")));
 }
 
-/// The rows that each list of tiles covers: all of them, or a device's part of a fixed split.
-std::vector<RowRange> row_ranges(const Split& split, int height, const std::vector<ServerPlan>& devices) {
-  if (split.kind == Split::Kind::dynamic) return {{0, height}};
-  std::vector<double> shares = split.shares;
-  if (shares.empty())
-    for (const ServerPlan& device : devices) shares.push_back(device.info.estimate);
-  return divide_rows(height, shares);
-}
-
-/// What is unfinished of a part of the frame within `range`.
-std::vector<Tile> unfinished_rows(const Film& film, const RowRange& range, const PartOfFrame& part) {
-  std::vector<Tile> tiles;
-  for (const RowRange& rows : part_rows(film.height, part)) {
-    const int first = std::max(rows.first, range.first);
-    const int end = std::min(rows.first + rows.count, range.first + range.count);
-    for (const Tile& tile : unfinished_tiles(film, {0, first, film.width, std::max(0, end - first)}))
-      tiles.push_back(tile);
-  }
-  return tiles;
-}
-
-TilePlan plan_tiles(const RenderOptions& options, const Film& film, const std::vector<ServerPlan>& devices) {
-  TilePlan plan;
-  plan.whole = options.tile > 0;
-  plan.exact = !options.split.shares.empty();
-  for (const RowRange& range : row_ranges(options.split, film.height, devices)) {
-    std::vector<Tile> tiles;
-    for (const Tile& open : unfinished_rows(film, range, options.part)) {
-      if (!plan.whole) {
-        tiles.push_back(open);
-        continue;
-      }
-      for (Tile tile : cut_tiles(open.width, open.height, options.tile)) {
-        tile.x += open.x;
-        tile.y += open.y;
-        tiles.push_back(tile);
-      }
-    }
-    plan.lists.emplace_back(std::move(tiles));
-  }
-  return plan;
+std::vector<double> estimates(const std::vector<ServerPlan>& devices) {
+  std::vector<double> result;
+  for (const ServerPlan& device : devices) result.push_back(device.info.estimate);
+  return result;
 }
 
 /// The passes of a frame that has some, with what a checkpoint has of them; the frame's film is the pass's.
@@ -84,7 +46,9 @@ FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devi
   const int width = static_cast<int>(scene->info.width), height = static_cast<int>(scene->info.height);
   passes.plan = {scene->sampling, scene->info.samples, options.noise, !options.aovs.empty()};
   passes.film = GrowingFilm(width, height, !options.aovs.empty() || needs_surfaces(scene->sampling));
-  passes.tiles = [options, devices](const Film& of_pass) { return plan_tiles(options, of_pass, devices); };
+  passes.tiles = [options, shares = estimates(devices)](const Film& of_pass) {
+    return plan_tiles(options, of_pass, shares);
+  };
   if (!options.resume.empty() && std::filesystem::exists(options.resume)) {
     read_growing_checkpoint(options.resume, passes.film, passes.pass, film, key);
     return passes;
@@ -114,7 +78,7 @@ std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerP
   else
     film = begin_film(*scene, options, key);
   std::vector<DeviceSpeed> speeds(devices.size());
-  TilePlan plan = plan_tiles(options, film, devices);
+  TilePlan plan = plan_tiles(options, film, estimates(devices));
   const auto done = static_cast<std::uint64_t>(
       std::count_if(film.done.begin(), film.done.end(), [](auto d) { return d != 0; }));
   for (std::size_t i = 0; i < devices.size(); ++i) {

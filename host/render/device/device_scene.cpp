@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstring>
+#include <utility>
 
 #include "base/error.h"
 #include "render/device/compact_nodes.h"
@@ -13,33 +15,60 @@ namespace {
 
 constexpr std::size_t camera_media_words = 2;
 
-/// Uploads tables, which must fit into one allocation each.
+template <class T>
+bool same_rows(const Table<T>& a, const Table<T>& b) {
+  if (a.shares(b)) return true;
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+/// Writes tables, which must fit into one allocation each, where the device has others.
 class Uploader {
  public:
   explicit Uploader(Device& device, bool compact) : device_(device), compact_(compact) {}
 
   template <class T>
-  Buffer<T> operator()(const char* label, const std::vector<T>& table) {
-    const std::size_t bytes = table.size() * sizeof(T), most = device_.info().max_allocation;
+  void operator()(const char* label, const Table<T>& table, Table<T>& held, Buffer<T>& buffer) {
+    if (!buffer.memory() || !same_rows(table, held)) write(label, std::span<const T>(table.rows()), buffer);
+    held = table;
+  }
+  /// Nodes are of two kinds, so the kernels have them as words.
+  void operator()(const char* label, const Table<Bvh8Node>& nodes, Table<Bvh8Node>& held,
+                  Buffer<u32>& buffer) {
+    if (!buffer.memory() || !same_rows(nodes, held)) {
+      if (compact_)
+        write_words(label, std::span<const CompactNode>(compact_nodes(nodes.rows())), buffer);
+      else
+        write_words(label, std::span<const Bvh8Node>(nodes.rows()), buffer);
+    }
+    held = nodes;
+  }
+  const UploadFigures& figures() const { return figures_; }
+
+ private:
+  /// Into the buffer that is there, where the size is the same.
+  template <class T>
+  void write(const char* label, std::span<const T> table, Buffer<T>& buffer) {
+    const std::size_t bytes = table.size_bytes(), most = device_.info().max_allocation;
     if (most && bytes > most)
       throw DeviceError(
           fmt::format("{}: the scene's {} take {} MiB, more than the {} MiB that one allocation may have",
                       device_.info().label(), label, bytes >> 20, most >> 20));
-    return device_.upload(std::span<const T>(table));
+    if (buffer.memory() && buffer.count == table.size())
+      device_.write(buffer, table);
+    else
+      buffer = {}, buffer = device_.upload(table);
+    figures_.bytes += bytes;
+    figures_.tables += bytes > 0;
   }
-  /// Nodes are of two kinds, so the kernels have them as words.
-  Buffer<u32> operator()(const char* label, const std::vector<Bvh8Node>& nodes) {
-    return compact_ ? as_words(operator()<CompactNode>(label, compact_nodes(nodes)))
-                    : as_words(operator()<Bvh8Node>(label, nodes));
-  }
-
- private:
   template <class T>
-  static Buffer<u32> as_words(const Buffer<T>& table) {
-    return {table.memory, table.count * sizeof(T) / sizeof(u32)};
+  void write_words(const char* label, std::span<const T> table, Buffer<u32>& buffer) {
+    Buffer<T> rows{buffer.memory, buffer.count * sizeof(u32) / sizeof(T)};
+    write(label, table, rows);
+    buffer = {rows.memory, rows.count * sizeof(T) / sizeof(u32)};
   }
   Device& device_;
   bool compact_;
+  UploadFigures figures_;
 };
 
 }  // namespace
@@ -48,17 +77,29 @@ std::size_t scene_bytes(const CompiledScene& scene) {
   return sizeof(SceneInfo) + table_bytes(scene) + camera_media_words * sizeof(u32);
 }
 
-DeviceScene upload_scene(Device& device, const CompiledScene& scene) {
+UploadFigures update_scene(Device& device, const CompiledScene& scene, DeviceScene& held) {
   const DeviceInfo& info = device.info();
   if (info.global_memory && scene_bytes(scene) > info.global_memory)
     throw DeviceError(fmt::format("{}: the scene takes {} MiB, more than the device's {} MiB", info.label(),
                                   scene_bytes(scene) >> 20, info.global_memory >> 20));
-  Uploader upload(device, traces_compact(scene, info));
-  DeviceScene result;
-  result.info = device.upload(std::span<const SceneInfo>(&scene.info, 1));
-#define SUNDOG_UPLOAD_TABLE(type, host_type, name, label) result.name = upload(label, scene.name);
+  const bool compact = traces_compact(scene, info);
+  if (compact != std::exchange(held.compact, compact)) held.nodes = {};
+  Uploader upload(device, compact);
+  if (!held.info.memory())
+    held.info = device.upload(std::span<const SceneInfo>(&scene.info, 1));
+  else if (std::memcmp(&held.held_info, &scene.info, sizeof scene.info) != 0)
+    device.write(held.info, std::span<const SceneInfo>(&scene.info, 1));
+  held.held_info = scene.info;
+#define SUNDOG_UPLOAD_TABLE(type, host_type, name, label) \
+  upload(label, scene.name, held.held.name, held.name);
   SCENE_TABLES(SUNDOG_UPLOAD_TABLE)
 #undef SUNDOG_UPLOAD_TABLE
+  return upload.figures();
+}
+
+DeviceScene upload_scene(Device& device, const CompiledScene& scene) {
+  DeviceScene result;
+  update_scene(device, scene, result);
   constexpr std::array<u32, camera_media_words> outside{};
   result.camera_media = device.upload(std::span<const u32>(outside));
   return result;

@@ -12,6 +12,15 @@ struct DeviceScene {
   SCENE_TABLES(SUNDOG_TABLE_BUFFER)
 #undef SUNDOG_TABLE_BUFFER
   Buffer<u32> camera_media;  // the MediaStack at the camera (kernels/lib/path/media.cl), low word first
+
+  SceneTables held;       // the rows that are there
+  SceneInfo held_info{};  // the same of `info`
+  bool compact = false;   // `nodes` are CompactNodes
+};
+
+/// What was written to a device.
+struct UploadFigures {
+  std::uint64_t tables = 0, bytes = 0;
 };
 
 /// Bytes that upload_scene will take.
@@ -19,6 +28,10 @@ std::size_t scene_bytes(const CompiledScene& scene);
 
 /// Throws DeviceError when the device cannot hold the scene. camera_media is empty.
 DeviceScene upload_scene(Device& device, const CompiledScene& scene);
+
+/// Brings what a device holds to another scene: writes only the tables that differ. camera_media stays. After
+/// an exception the tables are of no use. Throws as upload_scene() does.
+UploadFigures update_scene(Device& device, const CompiledScene& scene, DeviceScene& held);
 
 #define SUNDOG_TABLE_TYPE(type, host_type, name, label) , Buffer<type>
 #define SUNDOG_TABLE_ARGUMENT(type, host_type, name, label) , scene.name

@@ -5,6 +5,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <utility>
+
 namespace sundog {
 namespace {
 
@@ -18,6 +20,9 @@ void add(ServerFigures& sum, const ServerFigures& more) {
     total.local_y = times.local_y;
   }
   sum.readback_seconds += more.readback_seconds;
+  sum.tables_uploaded += more.tables_uploaded;
+  sum.bytes_uploaded += more.bytes_uploaded;
+  sum.kernels_built += more.kernels_built;
   sum.notes.insert(sum.notes.end(), more.notes.begin(), more.notes.end());
 }
 
@@ -25,13 +30,28 @@ void add(ServerFigures& sum, const ServerFigures& more) {
 
 DeviceServer::DeviceServer(DeviceInfo info, std::shared_ptr<const CompiledScene> scene,
                            const RenderOptions& options)
-    : info_(std::move(info)), scene_(std::move(scene)), options_(options) {}
+    : info_(std::move(info)), scene_(std::move(scene)), options_(&options) {}
+
+void DeviceServer::show(std::shared_ptr<const CompiledScene> scene, const RenderOptions& options) {
+  scene_ = std::move(scene);
+  options_ = &options;
+  other_scene_ = true;
+  closed_ = {};
+  readback_before_ = renderer_ ? renderer_->readback_seconds() : 0;
+  if (device_) device_->forget_times();
+}
 
 RenderTimes DeviceServer::open() {
-  close();
   RenderTimes times;
-  device_ = options_.pool ? options_.pool->take(info_) : std::make_unique<Device>(info_);
-  renderer_.emplace(*device_, *scene_, options_, times, watch_);
+  if (std::exchange(other_scene_, false) && works_) {
+    works_ = false;
+    renderer_->change_scene(*scene_, *options_, times);
+  } else {
+    close();
+    readback_before_ = 0;
+    device_ = options_->pool ? options_->pool->take(info_) : std::make_unique<Device>(info_);
+    renderer_.emplace(*device_, *scene_, *options_, times, watch_);
+  }
   works_ = true;
   return times;
 }
@@ -47,14 +67,17 @@ TileResult DeviceServer::render(const TileRequest& request, const StopFlags& fla
 
 ServerFigures DeviceServer::figures() const {
   ServerFigures sum = closed_;
-  if (renderer_) add(sum, {device_->times(), renderer_->readback_seconds(), renderer_->notes()});
+  if (!renderer_) return sum;
+  const KernelUpdate& made = renderer_->update();
+  add(sum, {device_->times(), renderer_->readback_seconds() - readback_before_, renderer_->notes(),
+            made.uploads.tables, made.uploads.bytes, made.built});
   return sum;
 }
 
 void DeviceServer::close() {
   closed_ = figures();
   renderer_.reset();
-  if (device_ && works_ && options_.pool) options_.pool->give_back(std::move(device_));
+  if (device_ && works_ && options_->pool) options_->pool->give_back(std::move(device_));
   device_.reset();
   works_ = false;
 }

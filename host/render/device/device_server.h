@@ -9,10 +9,14 @@
 
 namespace sundog {
 
-class DeviceServer : public TileServer {
+class DeviceServer : public SceneServer {
  public:
   /// `options` must outlive it. Opens nothing yet.
   DeviceServer(DeviceInfo info, std::shared_ptr<const CompiledScene> scene, const RenderOptions& options);
+
+  void show(std::shared_ptr<const CompiledScene> scene, const RenderOptions& options) override;
+  void prepare_surfaces() override { renderer_->prepare_surfaces(); }
+  bool is_open() const override { return works_ && !other_scene_; }
 
   const DeviceInfo& info() const override { return info_; }
   RenderTimes open() override;
@@ -27,12 +31,14 @@ class DeviceServer : public TileServer {
  private:
   DeviceInfo info_;
   std::shared_ptr<const CompiledScene> scene_;
-  const RenderOptions& options_;
+  const RenderOptions* options_;
   LaunchWatch watch_;
   std::unique_ptr<Device> device_;
   std::optional<TileRenderer> renderer_;
-  bool works_ = false;    // nothing has failed since it was opened: fit for the pool
-  ServerFigures closed_;  // of what was opened before
+  bool works_ = false;          // nothing has failed since it was opened: fit for the pool, or another scene
+  bool other_scene_ = false;    // open() may keep what suits it
+  double readback_before_ = 0;  // of scenes before
+  ServerFigures closed_;        // of what was opened before
 };
 
 }  // namespace sundog

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "base/clock.h"
 #include "base/error.h"
@@ -19,10 +21,12 @@ void check_work_group(const DeviceInfo& device, std::size_t most, const WorkGrou
                     device.label(), group.x * group.y, most));
 }
 
-Program build(Device& device, const char* entry, FrameKernels& kernels, RenderTimes& times) {
+Program build(Device& device, const std::string& entry, FrameKernels& kernels, RenderTimes& times,
+              unsigned* built = nullptr) {
   BuildReport report;
   Program program = device.build(entry, kernels.config.defines, &report, kernels.config.generated);
   times.cached = times.cached && report.cached;
+  if (built) *built += !report.cached;
   if (!report.note.empty()) kernels.notes.push_back("no kernel cache: " + report.note);
   return program;
 }
@@ -33,40 +37,94 @@ void limit_group(std::size_t limit, std::size_t& most) {
 }
 
 void find_camera_media(Device& device, FrameKernels& kernels) {
-  auto kernel = scene_kernel<Buffer<u32>>(
-      device.build("entry/camera_media.cl", kernels.config.defines, nullptr, kernels.config.generated),
-      "find_camera_media");
-  run_scene_kernel<Buffer<u32>>(device, kernel, {1, 1, 1, 1}, kernels.tables, kernels.tables.camera_media);
+  if (!kernels.find_media.kernel())
+    kernels.find_media = scene_kernel<Buffer<u32>>(
+        device.build("entry/camera_media.cl", kernels.config.defines, nullptr, kernels.config.generated),
+        "find_camera_media");
+  run_scene_kernel<Buffer<u32>>(device, kernels.find_media, {1, 1, 1, 1}, kernels.tables,
+                                kernels.tables.camera_media);
   device.finish();
+}
+
+void build_integrator(Device& device, const Integrator& integrator, FrameKernels& kernels, RenderTimes& times,
+                      KernelUpdate& update) {
+  kernels.integrator =
+      scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
+          build(device, integrator.entry, kernels, times, &update.built), integrator.kernel);
+  kernels.entry = integrator.entry;
+  kernels.first_surfaces = {};
+  kernels.find_media = {};
+  limit_group(device.limits(kernels.integrator).work_group, kernels.most_group);
+  update.changed = true;
+}
+
+bool same_kernels(const KernelConfig& a, const KernelConfig& b) {
+  return a.defines == b.defines && a.generated == b.generated;
+}
+
+/// The kernels for the scene: what is there, or other ones.
+void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning, const WorkGroup& asked,
+                   bool aovs, FrameKernels& kernels, RenderTimes& times, KernelUpdate& update) {
+  const Integrator& integrator = *find_integrator(scene.integrator);
+  KernelConfig config = make_kernel_config(scene, device.info(), tuning);
+  const bool same = kernels.integrator.kernel() && kernels.entry == integrator.entry &&
+                    same_kernels(kernels.config, config);
+  if (!same) {
+    kernels.config = std::move(config);
+    kernels.most_group = greatest_work_group(kernels.config, device.info());
+    check_work_group(device.info(), kernels.most_group, asked);
+    build_integrator(device, integrator, kernels, times, update);
+  }
+  if (aovs) add_first_surfaces(device, kernels, times);
+  check_work_group(device.info(), kernels.most_group, asked);
+}
+
+/// The media that the camera is in, none where it is in none.
+void renew_camera_media(Device& device, const CompiledScene& scene, FrameKernels& kernels) {
+  if (find_integrator(scene.integrator)->needs_camera_media && scene.features.camera_inside) {
+    find_camera_media(device, kernels);
+    kernels.camera_inside = true;
+  } else if (std::exchange(kernels.camera_inside, false)) {
+    constexpr std::array<u32, 2> outside{};
+    device.write(kernels.tables.camera_media, std::span<const u32>(outside));
+  }
 }
 
 }  // namespace
 
+void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& times) {
+  if (kernels.first_surfaces.kernel()) return;
+  kernels.first_surfaces =
+      scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>(
+          build(device, "entry/aov.cl", kernels, times), "first_surfaces");
+  limit_group(device.limits(kernels.first_surfaces).work_group, kernels.most_group);
+}
+
+KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,
+                                  const WorkGroup& asked, bool aovs, FrameKernels& kernels,
+                                  RenderTimes& times) {
+  KernelUpdate update;
+  const Stopwatch building;
+  times.cached = true;
+  renew_kernels(device, scene, tuning, asked, aovs, kernels, times, update);
+  times.build_kernels = building.seconds();
+  const Stopwatch uploading;
+  if (kernels.tables.info.memory())
+    update.uploads = update_scene(device, scene, kernels.tables);
+  else {
+    kernels.tables = upload_scene(device, scene);
+    update.uploads = {0, table_bytes(scene)};
+    for_each_table(scene, [&](const char*, const auto& table) { update.uploads.tables += !table.empty(); });
+  }
+  times.upload = uploading.seconds();
+  renew_camera_media(device, scene, kernels);
+  return update;
+}
+
 FrameKernels build_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,
                                  const WorkGroup& asked, bool aovs, RenderTimes& times) {
   FrameKernels kernels;
-  kernels.config = make_kernel_config(scene, device.info(), tuning);
-  kernels.most_group = greatest_work_group(kernels.config, device.info());
-  check_work_group(device.info(), kernels.most_group, asked);
-  const Stopwatch building;
-  times.cached = true;
-  const Integrator& integrator = *find_integrator(scene.integrator);
-  kernels.integrator =
-      scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
-          build(device, integrator.entry, kernels, times), integrator.kernel);
-  limit_group(device.limits(kernels.integrator).work_group, kernels.most_group);
-  if (aovs) {
-    kernels.first_surfaces =
-        scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>(
-            build(device, "entry/aov.cl", kernels, times), "first_surfaces");
-    limit_group(device.limits(kernels.first_surfaces).work_group, kernels.most_group);
-  }
-  check_work_group(device.info(), kernels.most_group, asked);
-  times.build_kernels = building.seconds();
-  const Stopwatch uploading;
-  kernels.tables = upload_scene(device, scene);
-  times.upload = uploading.seconds();
-  if (integrator.needs_camera_media && scene.features.camera_inside) find_camera_media(device, kernels);
+  update_frame_kernels(device, scene, tuning, asked, aovs, kernels, times);
   return kernels;
 }
 

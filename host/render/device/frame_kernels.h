@@ -16,9 +16,12 @@ struct FrameKernels {
   DeviceScene tables;
   SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch> integrator;
   SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>
-      first_surfaces;              // only with AOVs
-  std::size_t most_group = 0;      // work-items that a group of theirs may have; 0: not known
-  std::vector<std::string> notes;  // why a cache could not be used
+      first_surfaces;                   // only with AOVs
+  SceneKernel<Buffer<u32>> find_media;  // only where the camera has been inside a solid
+  std::string entry;                    // of the integrator
+  bool camera_inside = false;           // tables.camera_media are not those of the outside
+  std::size_t most_group = 0;           // work-items that a group of theirs may have; 0: not known
+  std::vector<std::string> notes;       // why a cache could not be used
 };
 
 /// Builds the integrator's kernel, with `aovs` that of the AOVs too, uploads the scene and finds out which
@@ -26,5 +29,21 @@ struct FrameKernels {
 /// cannot be had.
 FrameKernels build_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,
                                  const WorkGroup& asked, bool aovs, RenderTimes& times);
+
+/// What an update has made.
+struct KernelUpdate {
+  UploadFigures uploads;
+  unsigned built = 0;    // programs, by the driver's compiler
+  bool changed = false;  // other kernels than before
+};
+
+/// Brings `kernels`, which build_frame_kernels() made on this device, to another scene: builds only what
+/// other definitions want, writes only the tables that differ. After an exception they are of no use.
+KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,
+                                  const WorkGroup& asked, bool aovs, FrameKernels& kernels,
+                                  RenderTimes& times);
+
+/// Builds the kernel of the AOVs where it is missing.
+void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& times);
 
 }  // namespace sundog

@@ -68,6 +68,11 @@ LaunchSize LaunchSizer::group_items(std::size_t columns, std::size_t rows) const
   return within_limits({items, 1, wanted, 1});
 }
 
+void LaunchSizer::calm() {
+  next_size_ = std::max<std::size_t>(next_size_ / 4, 1);
+  sample_seconds_ = 0;
+}
+
 void LaunchSizer::begin(const Tile& tile, unsigned samples) {
   tile_ = tile;
   samples_ = samples;

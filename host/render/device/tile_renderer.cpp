@@ -28,6 +28,10 @@ LaunchLimits limits_of(const DeviceInfo& device, const FrameKernels& kernels) {
           kernels.most_group};
 }
 
+bool makes_aovs(const CompiledScene& scene, const RenderOptions& options) {
+  return !options.aovs.empty() || needs_surfaces(scene.sampling);
+}
+
 /// What a failed launch may be answered with; nothing when smaller launches would not help.
 std::optional<LaunchFailure> failure_of(const DeviceError& error) {
   if (dynamic_cast<const LoopsCutShort*>(&error)) return LaunchFailure::loops_cut_short;
@@ -41,13 +45,36 @@ std::optional<LaunchFailure> failure_of(const DeviceError& error) {
 TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options,
                            RenderTimes& times, LaunchWatch& watch)
     : device_(device),
-      options_(options),
+      options_(&options),
       samples_(scene.info.samples),
-      kernels_(build_frame_kernels(device, scene, tuning_of(options, device.info()), options.work_group,
-                                   !options.aovs.empty() || needs_surfaces(scene.sampling), times)),
-      sizer_(limits_of(device.info(), kernels_), options.work_group, tuning_of(options, device.info()),
-             !scene.sdf_fields.empty()),
+      tuning_(tuning_of(options, device.info())),
+      asked_(options.work_group),
+      update_(
+          update_frame_kernels(device, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times)),
+      sizer_(limits_of(device.info(), kernels_), asked_, tuning_, !scene.sdf_fields.empty()),
       watch_(watch) {}
+
+void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions& options,
+                                RenderTimes& times) {
+  const Tuning tuning = tuning_of(options, device_.info());
+  const bool same_launches = options.work_group == asked_ && tuning == tuning_;
+  options_ = &options;
+  tuning_ = tuning;
+  asked_ = options.work_group;
+  samples_ = scene.info.samples;
+  kernels_.notes.clear();
+  update_ =
+      update_frame_kernels(device_, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times);
+  if (update_.changed || !same_launches)
+    sizer_ = LaunchSizer(limits_of(device_.info(), kernels_), asked_, tuning_, !scene.sdf_fields.empty());
+  else
+    sizer_.calm();
+}
+
+void TileRenderer::prepare_surfaces() {
+  RenderTimes times;
+  add_first_surfaces(device_, kernels_, times);
+}
 
 void TileRenderer::launch_samples(const TileRequest& request, const StopFlags& flags) {
   while (!flags.set()) {

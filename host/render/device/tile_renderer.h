@@ -19,6 +19,13 @@ class TileRenderer {
   TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options, RenderTimes& times,
                LaunchWatch& watch);
 
+  /// Draws another scene from now on: keeps the kernels and tables that suit it, and builds and uploads the
+  /// others. `options` must outlive it. After an exception it is of no use. Throws as the constructor does.
+  void change_scene(const CompiledScene& scene, const RenderOptions& options, RenderTimes& times);
+
+  /// Builds the kernel of the AOVs where it is missing, for requests of passes that ask for surfaces.
+  void prepare_surfaces();
+
   /// Renders what is asked for of a tile in launches of bounded time. Where the device runs out of memory or
   /// resources, once more in launches of half the size, and so on; where its driver ended the kernel's loops
   /// early, in launches of half the samples, at last in work-groups of one; where a work-group is too large
@@ -31,6 +38,8 @@ class TileRenderer {
     return render(request, flags);
   }
 
+  /// What the constructor or the last change_scene() has built and uploaded.
+  const KernelUpdate& update() const { return update_; }
   /// Most work-items that a group of its kernels may have; 0: not known.
   std::size_t greatest_group() const { return sizer_.most_group(); }
   double readback_seconds() const { return readback_seconds_; }
@@ -47,13 +56,16 @@ class TileRenderer {
     return request.in_pass ? request.sample_count : samples_;
   }
   bool wants_aovs(const TileRequest& request) const {
-    return request.in_pass ? request.surfaces : !options_.aovs.empty();
+    return request.in_pass ? request.surfaces : !options_->aovs.empty();
   }
 
   Device& device_;
-  const RenderOptions& options_;
+  const RenderOptions* options_;
   unsigned samples_;
+  Tuning tuning_;
+  WorkGroup asked_;
   FrameKernels kernels_;
+  KernelUpdate update_;
   LaunchSizer sizer_;
   LaunchWatch& watch_;
   bool aovs_launched_ = false;

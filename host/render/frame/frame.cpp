@@ -126,6 +126,18 @@ void keep_checkpoint(Frame& frame) {
   }
 }
 
+void take_figures(Frame& frame, std::size_t i) {
+  const ServerFigures figures = frame.servers[i].server->figures();
+  const std::lock_guard lock(frame.mutex);
+  DeviceReport& report = frame.servers[i].report;
+  report.kernels = figures.kernels;
+  report.notes = figures.notes;
+  report.tables_uploaded = figures.tables_uploaded;
+  report.bytes_uploaded = figures.bytes_uploaded;
+  report.kernels_built = figures.kernels_built;
+  frame.readback = std::max(frame.readback, figures.readback_seconds);
+}
+
 /// Puts a tile, or the finished rows of one, into the film.
 void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
   const std::lock_guard lock(frame.mutex);
@@ -173,8 +185,10 @@ void make_tile(Frame& frame, std::size_t i, const TileJob& job) {
 /// Takes tiles until there are none, the frame is stopped, or the server has failed too often (which throws).
 void work(Frame& frame, std::size_t i) {
   while (const std::optional<TileJob> job = frame.queue.take(i)) {
+    if (frame.between_tiles) frame.between_tiles(i);
     try {
       make_tile(frame, i, *job);
+      if (frame.live) take_figures(frame, i);
     } catch (const DeviceError& error) {
       const bool too_large = is_out_of_resources(error.status) && pixel_count(job->tile) > least_pixels;
       if (too_large) frame.queue.halve(i, job->tile);
@@ -205,44 +219,11 @@ void begin_work(Frame& frame, std::size_t i, const RenderTimes& times) {
   frame.servers[i].phase = Phase::working;
 }
 
-void take_figures(Frame& frame, std::size_t i) {
-  const ServerFigures figures = frame.servers[i].server->figures();
-  const std::lock_guard lock(frame.mutex);
-  frame.servers[i].report.kernels = figures.kernels;
-  frame.servers[i].report.notes = figures.notes;
-  frame.readback = std::max(frame.readback, figures.readback_seconds);
-}
-
-/// The server is out: what it held goes to others; without any other, the frame ends.
-void retire(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error) {
-  frame.queue.retire(i);
-  const std::lock_guard lock(frame.mutex);
-  Frame::Server& server = frame.servers[i];
-  if (server.failed) return;
-  server.failed = server.report.retired = true;
-  if (server.report.messages.empty() || server.report.messages.back() != why)
-    server.report.messages.push_back(why);
-  frame.last_error = std::move(error);
-  if (std::ranges::all_of(frame.servers, &Frame::Server::failed)) frame.queue.close();
-}
-
 void serve(const std::shared_ptr<Frame>& frame, std::size_t i) {
-  TileServer& server = *frame->servers[i].server;
-  try {
-    be_nice(*frame, i);
-    if (frame->queue.wait_until_needed(i)) {
-      const RenderTimes times = open(*frame, i);
-      begin_work(*frame, i, times);
-      frame->queue.ready(i);
-      work(*frame, i);
-    }
-  } catch (const std::exception& error) {
-    retire(*frame, i, error.what(), std::current_exception());
-  }
+  serve_frame(*frame, i);
   set_phase(*frame, i, Phase::closing);
-  take_figures(*frame, i);
   try {
-    server.close();
+    frame->servers[i].server->close();
   } catch (const std::exception&) {
     // It is let go of as well as can be; the frame has what it made.
   }
@@ -261,7 +242,7 @@ void watch(Frame& frame) {
       if (seconds <= 0) continue;
       const std::string why = fmt::format("{}: a launch has not come back for {:.0f} s: the driver hangs",
                                           frame.servers[i].server->info().label(), seconds);
-      retire(frame, i, why, std::make_exception_ptr(DeviceError(why)));
+      retire_server(frame, i, why, std::make_exception_ptr(DeviceError(why)));
     }
   }
 }
@@ -286,17 +267,87 @@ void wait_for_threads(Frame& frame, bool stopped) {
 
 unsigned threads_left_behind() { return left_behind; }
 
+void count_left_behind(int threads) { left_behind += static_cast<unsigned>(threads); }
+
+void retire_server(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error) {
+  frame.queue.retire(i);
+  const std::lock_guard lock(frame.mutex);
+  Frame::Server& server = frame.servers[i];
+  if (server.failed) return;
+  server.failed = server.report.retired = true;
+  if (server.report.messages.empty() || server.report.messages.back() != why)
+    server.report.messages.push_back(why);
+  frame.last_error = std::move(error);
+  if (std::ranges::all_of(frame.servers, &Frame::Server::failed)) frame.queue.close();
+}
+
+void serve_frame(Frame& frame, std::size_t i) {
+  try {
+    be_nice(frame, i);
+    if (frame.queue.wait_until_needed(i)) {
+      const RenderTimes times = open(frame, i);
+      begin_work(frame, i, times);
+      frame.queue.ready(i);
+      work(frame, i);
+    }
+  } catch (const std::exception& error) {
+    retire_server(frame, i, error.what(), std::current_exception());
+  }
+  take_figures(frame, i);
+}
+
+namespace {
+
+std::size_t pixels_of(const Frame& frame) { return frame.passes->film.taken.size(); }
+
+/// A coarse pass is complete: its picture may be looked at. Returns the block of the next one; 0: none.
+int take_coarse(Frame& frame) {
+  FramePasses& passes = *frame.passes;
+  const Film& whole = passes.film.film;
+  passes.coarse.take(passes.pass, frame.film, whole.width, whole.height, passes.coarse_block);
+  ++passes.coarse_passes;
+  const double blocks = static_cast<double>(passes.coarse.colors.size());
+  passes.pixel_seconds = passes.since_pass.seconds() / blocks;
+  return next_block(passes.coarse_block, passes.pixel_seconds, pixels_of(frame));
+}
+
+/// The pass that comes after the one that is complete.
+std::optional<Pass> following_pass(Frame& frame) {
+  FramePasses& passes = *frame.passes;
+  if (passes.coarse_block == 0) {
+    if (passes.film.stage == 0)
+      passes.pixel_seconds = passes.since_pass.seconds() / static_cast<double>(pixels_of(frame));
+    add_pass(passes.film, passes.pass, frame.film, true);
+  } else {
+    passes.coarse_block = take_coarse(frame);
+    const Film& whole = passes.film.film;
+    if (passes.coarse_block > 0) return coarse_pass(whole.width, whole.height, passes.coarse_block);
+  }
+  return next_pass(passes.film, passes.plan);
+}
+
+}  // namespace
+
+void begin_coarse(Frame& frame, int block) {
+  FramePasses& passes = *frame.passes;
+  const Film& whole = passes.film.film;
+  passes.coarse_block = block;
+  passes.pass =
+      block > 0 ? coarse_pass(whole.width, whole.height, block) : *next_pass(passes.film, passes.plan);
+  frame.film = Film(passes.pass.width, passes.pass.height, passes.pass.surfaces);
+}
+
 void plan_next_pass(Frame& frame) {
   const auto all_done = [&] { return std::ranges::count(frame.film.done, 0) == 0; };
   while (frame.passes && frame.queue.waits_for_more() && all_done()) {
-    FramePasses& passes = *frame.passes;
-    add_pass(passes.film, passes.pass, frame.film, true);
+    std::optional<Pass> next = following_pass(frame);
     frame.film = Film();
     frame.pixels_done = 0;
     frame.pixels_kept = ~std::uint64_t{0};
-    std::optional<Pass> next = next_pass(passes.film, passes.plan);
     if (!next) return frame.queue.no_more();
+    FramePasses& passes = *frame.passes;
     passes.pass = std::move(*next);
+    passes.since_pass = Stopwatch();
     frame.film = Film(passes.pass.width, passes.pass.height, passes.pass.surfaces);
     frame.queue.refill(passes.tiles(frame.film));
   }
@@ -309,7 +360,8 @@ GrowingFilm film_so_far(const Frame& frame) {
     return film;
   }
   film = frame.passes->film;
-  if (!frame.film.done.empty()) add_pass(film, frame.passes->pass, frame.film, false);
+  if (!frame.film.done.empty() && frame.passes->coarse_block == 0)
+    add_pass(film, frame.passes->pass, frame.film, false);
   if (frame.passes->plan.settings.subsample) interpolate_rest(film);
   return film;
 }

@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "render/frame/tile_server.h"
+#include "render/plan/coarse.h"
 #include "render/plan/passes.h"
 #include "render/plan/tile_queue.h"
 
@@ -23,10 +24,17 @@ struct FramePasses {
   Pass pass;
   SamplingPlan plan;
   std::function<TilePlan(const Film&)> tiles;  // of a pass
+  // Of a frame that somebody waits for:
+  CoarsePicture coarse;        // what is complete
+  int coarse_block = 0;        // the pass in hand is of such blocks; 0: it is one of the frame's own
+  unsigned coarse_passes = 0;  // that are complete
+  Stopwatch since_pass;        // the one in hand began
+  double pixel_seconds =
+      0;  // a sample's of a pixel, by the last pass over coarse or all pixels; 0: not known
 };
 
 /// What the threads share. It lives until the last of them is gone, which may be after the frame's end.
-struct Frame {
+struct Frame : std::enable_shared_from_this<Frame> {
   Frame(RenderOptions options_, Film film_, TilePlan plan, std::vector<DeviceSpeed> speeds)
       : options(std::move(options_)), film(std::move(film_)), queue(std::move(plan), std::move(speeds)) {}
 
@@ -53,8 +61,10 @@ struct Frame {
   std::uint64_t pixels_done = 0, pixels_kept = 0;  // the latter are in the checkpoint
   std::uint64_t key = 0;                           // the checkpoint's
   Stopwatch clock, since_checkpoint, since_picture;
-  bool over = false;     // the result is being gathered: nothing more goes in
-  bool limited = false;  // the time limit ended it
+  std::function<void(std::size_t)> between_tiles;  // called by each server's thread, with its index
+  bool live = false;                               // the servers' figures are kept up to date
+  bool over = false;                               // the result is being gathered: nothing more goes in
+  bool limited = false;                            // the time limit ended it
   std::atomic<bool> stop{false};
 };
 
@@ -66,6 +76,19 @@ inline const std::filesystem::path& checkpoint_path(const RenderOptions& options
 /// Plans the next pass when all pixels of the one in hand are done; without another the frame is complete.
 /// The caller holds the frame's mutex, or is alone with it.
 void plan_next_pass(Frame& frame);
+
+/// Puts the passes of a frame that somebody waits for behind coarse ones, from `block` on (0: none).
+void begin_coarse(Frame& frame, int block);
+
+/// Takes part with server i until the frame is over: opens it, makes tiles, notes what it did. A server that
+/// fails too often is retired. What it throws is kept in the frame.
+void serve_frame(Frame& frame, std::size_t i);
+
+/// Takes a server out of the frame: what it holds goes to others; without any other, the frame ends.
+void retire_server(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error);
+
+/// Counts threads that are left behind in drivers; may be negative.
+void count_left_behind(int threads);
 
 /// What there is of the picture: of a frame in passes with what is done of the one in hand.
 GrowingFilm film_so_far(const Frame& frame);

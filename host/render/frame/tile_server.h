@@ -2,9 +2,11 @@
 #pragma once
 #include <atomic>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "compile/compiled_scene.h"
 #include "render/film/film.h"
 #include "render/values/options.h"
 #include "render/values/report.h"
@@ -46,6 +48,8 @@ struct ServerFigures {
   std::map<std::string, KernelTimes> kernels;
   double readback_seconds = 0;
   std::vector<std::string> notes;  // what did not stop it: smaller launches, a cache that could not be used
+  std::uint64_t tables_uploaded = 0, bytes_uploaded = 0;
+  std::uint64_t kernels_built = 0;  // programs, by the driver's compiler
 };
 
 /// Used by one thread, overdue() and compiles() by any.
@@ -71,6 +75,18 @@ class TileServer {
   virtual unsigned failures_allowed() const { return 3; }
   /// Which cores it runs on (DeviceSpeed::processor).
   virtual int processor() const { return info().type == "cpu" ? 0 : -1; }
+};
+
+/// A server that stays open from one scene to the next.
+class SceneServer : public TileServer {
+ public:
+  /// From the next open() on: another scene, for which it keeps what suits it. Its figures begin anew.
+  /// `options` must outlive their use.
+  virtual void show(std::shared_ptr<const CompiledScene> scene, const RenderOptions& options) = 0;
+  /// Makes it, while it is open, ready for requests that ask for surfaces. Throws BuildError.
+  virtual void prepare_surfaces() = 0;
+  /// It was opened, and nothing has failed since.
+  virtual bool is_open() const = 0;
 };
 
 }  // namespace sundog

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "compile/scene_compiler.h"
 #include "render/values/options.h"
 #include "render/values/report.h"
 #include "scene/description.h"
@@ -59,8 +60,7 @@ struct DeviceActivity {
 
 /// What an edit cost, for this generation. A camera's edit has no BVH and no geometry here.
 struct EditWork {
-  std::uint64_t bvhs_built = 0;  // of meshes, and over instances
-  std::uint64_t fields_compiled = 0, texels_written = 0;
+  CompileWork compiled;                                   // parts of the scene that were made, not kept
   std::uint64_t tables_uploaded = 0, bytes_uploaded = 0;  // on all devices
   std::uint64_t kernels_built = 0;                        // by a driver's compiler
 };
@@ -104,11 +104,15 @@ struct Picked {
   double depth = 0;              // along the view; infinite where nothing is
 };
 
+class SceneServer;
+
 class RenderSession {
  public:
   /// Opens nothing yet: a device is opened by its own thread at the first start(). Throws DeviceError without
   /// any.
-  explicit RenderSession(std::vector<DeviceInfo> devices);
+  explicit RenderSession(const std::vector<DeviceInfo>& devices);
+  /// The same of other servers than this process's devices.
+  explicit RenderSession(std::vector<std::shared_ptr<SceneServer>> servers);
   /// Ends what is in hand: waits for launches (about 50 ms), not for a driver that hangs or compiles.
   ~RenderSession();
   RenderSession(const RenderSession&) = delete;
@@ -124,7 +128,7 @@ class RenderSession {
 
   /// From the next start() on. Devices that stay keep their kernels and tables. Throws DeviceError without
   /// any.
-  void use_devices(std::vector<DeviceInfo> devices);
+  void use_devices(const std::vector<DeviceInfo>& devices);
 
   /// With `with_picture` false it has none, and takes microseconds.
   Snapshot snapshot(bool with_picture = true) const;

@@ -29,6 +29,8 @@ struct DeviceReport {
   std::vector<std::string> notes;     // what it could live with
   std::map<std::string, KernelTimes> kernels;
   bool kernels_cached = false;
+  std::uint64_t tables_uploaded = 0, bytes_uploaded = 0;
+  std::uint64_t kernels_built = 0;  // programs, by the driver's compiler
 };
 
 /// Wall seconds on the frame's clock; what overlaps is charged once.

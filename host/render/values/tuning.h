@@ -13,6 +13,7 @@ struct Tuning {
   unsigned packet_least = 0;        // rays below which a packet is traced ray by ray
   double launch_ms = 0;             // the length of a launch: how many rays are in flight
   double tile_ms = 0;               // the length of a tile: how many pixels are made between two transfers
+  friend bool operator==(const Tuning&, const Tuning&) = default;
 };
 
 }  // namespace sundog

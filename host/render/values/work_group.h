@@ -8,6 +8,7 @@ namespace sundog {
 struct WorkGroup {
   enum class Kind { automatic, driver, fixed } kind = Kind::automatic;
   std::size_t x = 64, y = 1;
+  friend bool operator==(const WorkGroup&, const WorkGroup&) = default;
 };
 
 }  // namespace sundog

@@ -29,7 +29,7 @@ const std::map<std::string, Names> allowed = {
 /// The folders of a layer in their order: each includes only itself and those before it. Files of the layer's
 /// own folder come after all of them.
 const std::map<std::string, std::vector<std::string>> folders = {
-    {"host/render", {"values", "film", "plan", "frame", "device", "remote"}},
+    {"host/render", {"values", "film", "plan", "frame", "device", "remote", "session"}},
     {"host/bench", {"plain", "report", "rays", "frames", "tune"}},
     {"host/app", {"process", "options", "job", "render", "bench", "commands"}},
     {"kernels/lib", {"core", "sdf", "trace", "path", "shade", "light", "whitted"}},

@@ -1,0 +1,233 @@
+// See content_key.h. Each struct is taken apart by a structured binding, which names all its members: one
+// that is added does not build until it is put into the key here, or left out on purpose.
+#include "compile/parts/content_key.h"
+
+#include <bit>
+#include <cstring>
+
+namespace sundog {
+namespace {
+
+constexpr std::uint64_t odd_a = 0x9E3779B97F4A7C15u, odd_b = 0xC2B2AE3D27D4EB4Fu;
+
+/// Numbers without gaps between them, as one piece of memory.
+template <class T>
+void add_rows(KeyMaker& key, const std::vector<T>& rows) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  key.add(rows.size()).bytes(rows.data(), rows.size() * sizeof(T));
+}
+
+template <class T>
+void add_optional(KeyMaker& key, const std::optional<T>& value) {
+  key.add(value.has_value());
+  if (value) key.add(*value);
+}
+
+void add(KeyMaker& key, const FormulaParameter& parameter) {
+  const auto& [name, value, minimum, maximum, whole, meaning, old_name] = parameter;
+  key.add(name).add_each(value.size(), whole);  // limits are checked when a scene is read
+  (void)minimum, (void)maximum, (void)meaning, (void)old_name;
+}
+
+void add(KeyMaker& key, const FormulaDefinition& formula) {
+  const auto& [name, title, source, kind, quaternion, start, map, distance, estimate, derivative, normalize,
+               parameters, iterations, bailout, inside_radius, inside_safety, safety, exceptions, bounds,
+               old_name, smooth] = formula;
+  key.add(name).add(source).add_each(kind, quaternion).add(start).add(map).add(distance);
+  key.add_each(estimate, derivative, normalize, parameters.size());
+  for (const FormulaParameter& parameter : parameters) {
+    add(key, parameter);
+    add_rows(key, parameter.value);
+  }
+  key.add_each(iterations, bailout, inside_radius, inside_safety, safety, exceptions, smooth);
+  (void)title, (void)bounds, (void)old_name;
+}
+
+void add(KeyMaker& key, const FormulaField& field) {
+  const auto& [steps, iterations, bailout, safety] = field;
+  key.add(steps.size());
+  for (const FormulaStep& step : steps) {
+    const auto& [definition, values, times] = step;
+    add(key, definition);
+    add_rows(key, values);
+    key.add(times);
+  }
+  key.add_each(iterations, bailout, safety);
+}
+
+void add(KeyMaker& key, const StoredImage& image) {
+  const auto& [width, height, channels, sample, exponent, data] = image;
+  key.add_each(width, height, channels, sample);
+  add_optional(key, exponent);
+  add_rows(key, data);
+}
+
+// Members of each solid.
+void add(KeyMaker&, const PlaneShape&) {}
+void add(KeyMaker& key, const MeshShape& s) { key.add(s.mesh); }
+void add(KeyMaker& key, const FieldShape& s) { key.add(s.field); }
+void add(KeyMaker& key, const SphereShape& s) {
+  const auto& [radius] = s;
+  key.add(radius);
+}
+void add(KeyMaker& key, const BoxShape& s) {
+  const auto& [half] = s;
+  key.add(half);
+}
+void add(KeyMaker& key, const CylinderShape& s) {
+  const auto& [radius, half_height, capped] = s;
+  key.add_each(radius, half_height, capped);
+}
+void add(KeyMaker& key, const ConeShape& s) {
+  const auto& [bottom_radius, top_radius, half_height, capped] = s;
+  key.add_each(bottom_radius, top_radius, half_height, capped);
+}
+void add(KeyMaker& key, const DiskShape& s) {
+  const auto& [radius, inner_radius] = s;
+  key.add_each(radius, inner_radius);
+}
+void add(KeyMaker& key, const TorusShape& s) {
+  const auto& [major_radius, minor_radius] = s;
+  key.add_each(major_radius, minor_radius);
+}
+void add(KeyMaker& key, const RoundBoxShape& s) {
+  const auto& [half, radius] = s;
+  key.add_each(half, radius);
+}
+
+}  // namespace
+
+KeyMaker& KeyMaker::bytes(const void* data, std::size_t count) {
+  const char* at = static_cast<const char*>(data);
+  count_ += count;
+  for (std::size_t left = count; left > 0;) {
+    std::uint64_t word = 0;
+    const std::size_t taken = left < sizeof word ? left : sizeof word;
+    std::memcpy(&word, at, taken);
+    a_ = std::rotl(a_ ^ (word * odd_b), 29) * odd_a;
+    b_ = std::rotl(b_ + word, 31) * odd_b ^ a_ >> 32;
+    at += taken;
+    left -= taken;
+  }
+  return *this;
+}
+
+KeyMaker& KeyMaker::add(std::string_view text) { return add(text.size()).bytes(text.data(), text.size()); }
+
+ContentKey KeyMaker::key() const {
+  const auto finish = [](std::uint64_t state) {
+    state = (state ^ state >> 32) * odd_b;
+    return state ^ state >> 29;
+  };
+  return {finish(a_ ^ count_), finish(b_ + count_)};
+}
+
+KeyMaker& KeyMaker::add(const Camera& camera) {
+  const auto& [position, target, up, fov, near, far, lens, moves_to] = camera;
+  add_each(position, target, up, fov, near, far);
+  const auto& [radius, focus, blades, rotate] = lens;
+  add_each(radius, blades, rotate);
+  add_optional(*this, focus);
+  add(moves_to.has_value());
+  if (moves_to) add_each(moves_to->position, moves_to->target);
+  return *this;
+}
+
+KeyMaker& KeyMaker::add(const LightDescription& light) {
+  const auto& [type, color, intensity, position, direction, inner_angle, outer_angle, falloff, size, up,
+               radius, angle, samples, visible] = light;
+  return add_each(type, color, intensity, position, direction, inner_angle, outer_angle, falloff, size, up,
+                  radius, angle, samples, visible);
+}
+
+KeyMaker& KeyMaker::add(const EnvironmentDescription& environment) {
+  const auto& [type, color, intensity, up, rotate, samples, visible, picture, bottom, top, sun_altitude,
+               sun_azimuth, sun_size, turbidity, ground] = environment;
+  add_each(type, color, intensity, up, rotate, samples, visible, bottom, top, sun_altitude, sun_azimuth,
+           sun_size, turbidity, ground, picture.width, picture.height, picture.channels);
+  add_rows(*this, picture.data);
+  return *this;
+}
+
+KeyMaker& KeyMaker::add(const MediumDescription& medium) {
+  const auto& [name, ior, absorption, priority] = medium;
+  (void)name;
+  return add_each(ior, absorption, priority);
+}
+
+KeyMaker& KeyMaker::add(const ImageDescription& image) {
+  const auto& [name, file, place, encoded, file_width, file_height, pixels, srgb] = image;
+  (void)name, (void)file, (void)place, (void)encoded, (void)file_width, (void)file_height;
+  sundog::add(*this, pixels);
+  return add(srgb);
+}
+
+KeyMaker& KeyMaker::add(const TextureDescription& texture) {
+  const auto& [name, kind, of, image, wrap, filter, channel, mapping, uv_set, uv, placement, parameter, stops,
+               factor, offset] = texture;
+  (void)name;
+  add_each(kind, of[0], of[1], image, wrap[0], wrap[1], filter, channel, mapping, uv_set, uv, placement,
+           factor, offset);
+  bytes(parameter, sizeof parameter);
+  add(stops.size());
+  for (const auto& [at, color] : stops) add_each(at, color);
+  return *this;
+}
+
+KeyMaker& KeyMaker::add(const MaterialDescription& material) {
+  const auto& [name, type, ambient, diffuse, specular, exponent, blinn, emission, reflection, transmission,
+               roughness, medium, shadow_opaque, checker, checker_ambient, checker_diffuse, checker_size,
+               vertex_color, opacity, cutoff, one_sided, textures, metal_rough, normal_scale, bump, bump_uv,
+               occlusion] = material;
+  (void)name;
+  add_each(type, ambient, diffuse, specular, exponent, blinn, emission, reflection, transmission, roughness,
+           medium, shadow_opaque, checker, checker_ambient, checker_diffuse, checker_size, vertex_color,
+           opacity, cutoff, one_sided, normal_scale, bump, bump_uv, occlusion, metal_rough.has_value());
+  static_assert(sizeof textures % sizeof(int) == 0);
+  bytes(&textures, sizeof textures);
+  if (!metal_rough) return *this;
+  const auto& [base, metalness, rough, reflectance] = *metal_rough;
+  return add_each(base, metalness, rough, reflectance);
+}
+
+KeyMaker& KeyMaker::add(const Mesh& mesh) {
+  const auto& [name, positions, normals, uvs, further_uvs, colors, triangles, materials,
+               source_vertex_count] = mesh;
+  (void)name, (void)source_vertex_count;
+  add_rows(*this, positions);
+  add_rows(*this, normals);
+  add_rows(*this, uvs);
+  add(further_uvs.size());
+  for (const auto& set : further_uvs) add_rows(*this, set);
+  add_rows(*this, colors);
+  add_rows(*this, triangles);
+  add_rows(*this, materials);
+  return *this;
+}
+
+KeyMaker& KeyMaker::add(const Shape& shape) {
+  add(shape.index());
+  std::visit([this](const auto& solid) { sundog::add(*this, solid); }, shape);
+  return *this;
+}
+
+KeyMaker& KeyMaker::add(const SdfNode& node) {
+  const auto& [kind, formula, smooth, offset, rotation, scale, period, count, amount, code, children] = node;
+  sundog::add(*this, formula);
+  add_each(kind, smooth, offset, rotation, scale, period, count, amount).add(code);
+  return add_all(children);
+}
+
+KeyMaker& KeyMaker::add(const SdfDescription& field) {
+  const auto& [name, root, lower, upper, sphere, detail, least, greatest, step_limit, coloring, occlusion,
+               soft_shadow, glow, glow_width] = field;
+  (void)name;
+  add(root).add_each(lower, upper, least, greatest, step_limit, occlusion, soft_shadow, glow, glow_width);
+  add_optional(*this, sphere);
+  add_optional(*this, detail);
+  const auto& [by, palette, scale, color_offset] = coloring;
+  add_rows(*this, palette);
+  return add_each(by, scale, color_offset);
+}
+
+}  // namespace sundog

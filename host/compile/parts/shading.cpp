@@ -1,0 +1,60 @@
+// Parts that shading reads: lights with the environment, and surfaces.
+#include <algorithm>
+#include <cmath>
+
+#include "compile/environment.h"
+#include "compile/light_tree.h"
+#include "compile/materials.h"
+#include "compile/parts/parts.h"
+#include "compile/textures.h"
+
+namespace sundog {
+namespace {
+
+bool absorbs(const Medium& medium) {
+  const float4& a = medium.absorption;
+  return a.x != 0 || a.y != 0 || a.z != 0;
+}
+
+/// As highlight() of kernels/lib/shade/bsdf.cl tells them.
+bool has_fractional_exponent(const Material& material) {
+  const float exponent = material.specular.w;
+  return exponent != std::floor(exponent) || exponent > GREATEST_WHOLE_EXPONENT;
+}
+
+}  // namespace
+
+ContentKey lights_key(const SceneDescription& scene, const dvec3& origin) {
+  KeyMaker key;
+  key.add(origin).add_all(scene.lights).add(scene.environment).add(scene.render.light_samples);
+  return key.add(scene.fog.color).add(scene.fog.density).key();
+}
+
+Part make_lights(const SceneDescription& scene, const dvec3& origin) {
+  Part part;
+  part.made.origin = origin;
+  add_lights(scene, part.made);
+  add_environment(scene, part.made);
+  add_light_tree(scene, part.made);
+  add_fog(scene, part.made);
+  return part;
+}
+
+ContentKey surfaces_key(const SceneDescription& scene) {
+  KeyMaker key;
+  key.add_all(scene.media).add_all(scene.images).add_all(scene.textures).add_all(scene.materials);
+  return key.add(lacks_materials(scene)).key();
+}
+
+SurfacesPart make_surfaces(const SceneDescription& scene) {
+  SurfacesPart part;
+  CompiledScene& made = part.made;
+  part.default_material = add_materials(scene, made);
+  add_textures(scene, made);
+  made.features.media = absorbs(made.media[0]);
+  made.features.absorption = std::ranges::any_of(made.media, absorbs);
+  made.features.fractional_exponents = std::ranges::any_of(made.materials, has_fractional_exponent);
+  return part;
+}
+
+}  // namespace sundog

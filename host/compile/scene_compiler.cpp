@@ -1,0 +1,204 @@
+// See scene_compiler.h.
+#include "compile/scene_compiler.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/error.h"
+#include "compile/camera.h"
+#include "compile/filter.h"
+#include "compile/instances.h"
+#include "compile/lobe_energy.h"
+#include "compile/local_origin.h"
+#include "compile/parts/parts.h"
+#include "scene/integrators.h"
+
+namespace sundog {
+namespace {
+
+/// Indices that the loaders promise; a scene made by hand may break them.
+void check_objects(const SceneDescription& scene) {
+  const auto fits = [](int index, std::size_t size) { return index < static_cast<int>(size); };
+  for (const Object& object : scene.objects) {
+    const auto* shape = std::get_if<MeshShape>(&object.shape);
+    if (shape && (shape->mesh < 0 || !fits(shape->mesh, scene.meshes.size())))
+      throw SceneError(scene.file.string(), object.place,
+                       "object \"" + object.name + "\" places a mesh that does not exist");
+    const auto* field = std::get_if<FieldShape>(&object.shape);
+    if (field && (field->field < 0 || !fits(field->field, scene.fields.size())))
+      throw SceneError(scene.file.string(), object.place,
+                       "object \"" + object.name + "\" places a field that does not exist");
+    if (!fits(object.material, scene.materials.size()))
+      throw SceneError(scene.file.string(), object.place,
+                       "object \"" + object.name + "\" names a material that does not exist");
+  }
+  for (const MaterialDescription& material : scene.materials)
+    if (!fits(material.medium, scene.media.size()))
+      throw SceneError(scene.file.string(), "",
+                       "material \"" + material.name + "\" names a medium that does not exist");
+}
+
+void check_integrator(const SceneDescription& scene) {
+  if (!find_integrator(scene.render.integrator))
+    throw SceneError(scene.file.string(), "/render/integrator",
+                     fmt::format("wanted one of {}, found \"{}\"", fmt::join(integrator_names, ", "),
+                                 scene.render.integrator));
+}
+
+/// Samples that more are added to come of a sequence.
+u32 sampler_of(const RenderSettings& settings) {
+  const bool grows = settings.sampling.threshold > 0 || settings.sampling.progressive;
+  return grows && settings.sampler == SAMPLER_AUTO ? SAMPLER_SOBOL : settings.sampler;
+}
+
+void set_view(const SceneDescription& scene, CompiledScene& out) {
+  set_camera(scene, out.origin, out.info);
+  out.features.lens = scene.camera.lens.radius > 0;
+  out.features.camera_motion = scene.camera.moves_to.has_value();
+  out.sampling = scene.render.sampling;
+  out.features.sampler = sampler_of(scene.render);
+  out.filter = filter_table(scene.render);
+  out.features.filter = !out.filter.empty();
+}
+
+void set_counts(CompiledScene& out) {
+  out.info.light_count = static_cast<u32>(out.light_rays.size());
+  out.info.table_lights = static_cast<u32>(out.lights.size());
+  out.info.material_count = static_cast<u32>(out.materials.size());
+  out.info.medium_count = static_cast<u32>(out.media.size());
+  out.info.camera_inside = out.features.camera_inside ? 1 : 0;
+}
+
+void set_figures(CompiledScene& out) {
+  BvhFigures& figures = out.figures;
+  figures.nodes = out.nodes.size();
+  figures.blocks = out.blocks.size();
+  figures.triangles = out.triangles.size();
+  figures.instances = out.instances.size();
+  figures.bytes = sizeof(SceneInfo) + table_bytes(out);
+}
+
+/// The same for all scenes.
+const Table<float>& lobe_energies() {
+  static const Table<float> energies(make_lobe_energy());
+  return energies;
+}
+
+}  // namespace
+
+void take_part(const CompiledScene& part, CompiledScene& out) {
+#define SUNDOG_TAKE_TABLE(type, host_type, name, label) \
+  if (!part.name.empty()) out.name = part.name;
+  SCENE_TABLES(SUNDOG_TAKE_TABLE)
+#undef SUNDOG_TAKE_TABLE
+#define SUNDOG_TAKE_FEATURE(type, definition, name) \
+  out.features.name = static_cast<type>(out.features.name | part.features.name);
+  SCENE_FEATURES(SUNDOG_TAKE_FEATURE)
+#undef SUNDOG_TAKE_FEATURE
+  for (std::size_t i = 0; i < part.features.shapes.size(); ++i)
+    out.features.shapes[i] |= part.features.shapes[i];
+  out.features.unbounded |= part.features.unbounded;
+  out.features.bvh_stack = std::max(out.features.bvh_stack, part.features.bvh_stack);
+}
+
+struct SceneCompiler::Parts {
+  Part lights;
+  SurfacesPart surfaces;
+  MeshesPart meshes;
+  Part mapping;
+  InstancesPart instances;
+  Part touching;
+  Part fields;
+
+  /// The numbers that parts have found.
+  void set_numbers(CompiledScene& out) const {
+    out.info.ambient = lights.made.info.ambient;
+    out.info.fog = lights.made.info.fog;
+    out.info.sees_environment = lights.made.info.sees_environment;
+    out.info.texel_page = surfaces.made.info.texel_page;
+    out.info.tlas_root = instances.made.info.tlas_root;
+    out.info.bounded_count = instances.made.info.bounded_count;
+    out.info.scene_center = instances.made.info.scene_center;
+    out.info.instance_count = instances.made.info.instance_count;
+    out.info.field_end = instances.made.info.field_end;
+    out.figures.mean_block_fill = meshes.made.figures.mean_block_fill;
+    out.figures.sah_cost = instances.made.figures.sah_cost;
+    out.figures.box = instances.made.figures.box;
+  }
+};
+
+SceneCompiler::SceneCompiler() : parts_(std::make_unique<Parts>()) {}
+SceneCompiler::~SceneCompiler() = default;
+SceneCompiler::SceneCompiler(SceneCompiler&&) noexcept = default;
+SceneCompiler& SceneCompiler::operator=(SceneCompiler&&) noexcept = default;
+
+namespace {
+
+/// Makes the part anew unless its key is that of what is there. Returns whether it was made.
+template <class P, class Make>
+bool renew(P& part, const ContentKey& key, const Make& make) {
+  if (part.key == key) return false;
+  P made = make();
+  made.key = key;
+  part = std::move(made);
+  return true;
+}
+
+}  // namespace
+
+CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
+  const auto start = std::chrono::steady_clock::now();
+  CompiledScene out;
+  out.integrator = scene.render.integrator;
+  out.tracer = scene.render.tracer;
+  check_objects(scene);
+  check_integrator(scene);
+  const std::vector<FieldView> views = views_of(scene);
+  out.origin = std::ranges::any_of(views, is_deep) ? scene.camera.position : local_origin(scene);
+  set_view(scene, out);
+
+  Parts& p = *parts_;
+  work_.lights +=
+      renew(p.lights, lights_key(scene, out.origin), [&] { return make_lights(scene, out.origin); });
+  work_.surfaces += renew(p.surfaces, surfaces_key(scene), [&] { return make_surfaces(scene); });
+  const bool new_meshes =
+      renew(p.meshes, meshes_key(scene, p.surfaces), [&] { return make_meshes(scene, p.surfaces); });
+  work_.meshes += new_meshes;
+  if (new_meshes)
+    work_.bvhs += static_cast<std::uint64_t>(std::ranges::count(p.meshes.placed, true, &PlacedMesh::used));
+  renew(p.mapping, mapping_key(p.meshes, p.surfaces),
+        [&] { return make_mapping(scene, p.meshes, p.surfaces); });
+  const bool new_instances = renew(p.instances, instances_key(scene, p.meshes, p.surfaces, out.origin),
+                                   [&] { return make_instances(scene, p.meshes, p.surfaces, out.origin); });
+  work_.instances += new_instances;
+  work_.bvhs += new_instances;
+  take_part(p.lights.made, out);
+  take_part(p.surfaces.made, out);
+  take_part(p.meshes.made, out);
+  take_part(p.mapping.made, out);
+  take_part(p.instances.made, out);
+  parts_->set_numbers(out);
+  if (out.features.media) {
+    renew(p.touching, touching_key(scene, p.instances, out.origin),
+          [&] { return make_touching(scene, p.instances, out.origin); });
+    out.features.touching = p.touching.made.features.touching;
+    out.instances = p.touching.made.instances;
+  }
+  const ContentKey placed = out.features.media ? p.touching.key : p.instances.key;
+  work_.fields += renew(p.fields, fields_key(scene, views, placed, out.origin),
+                        [&] { return make_fields(scene, views, out); });
+  take_part(p.fields.made, out);
+  out.field_source = p.fields.made.field_source;
+  out.features.camera_inside = is_camera_inside(scene.camera.position - out.origin,
+                                                p.instances.made.instances.rows(), p.instances.boxes);
+  if (out.features.rough) out.lobe_energy = lobe_energies();
+  set_counts(out);
+  set_figures(out);
+  out.figures.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+}  // namespace sundog

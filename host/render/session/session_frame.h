@@ -1,0 +1,51 @@
+// One generation of a session: its scene, the frame that is being made of it, and what is known of it.
+// Internal to the session.
+#pragma once
+#include <memory>
+
+#include "compile/scene_compiler.h"
+#include "render/frame/frame.h"
+#include "render/session/render_session.h"
+
+namespace sundog {
+
+/// The scene and the frame do not change who they are; the rest is for the session's mutex.
+struct SessionFrame {
+  Generation generation = 0;
+  std::shared_ptr<const SceneDescription> scene;
+  std::shared_ptr<const CompiledScene> flat;
+  std::shared_ptr<Frame> frame;
+  Stopwatch clock;  // since start()
+  SessionTimes times;
+  CompileWork compiled;  // for this generation
+};
+
+/// What a frame is begun with.
+struct FrameOrder {
+  std::shared_ptr<const CompiledScene> scene;
+  SessionSettings settings;
+  std::vector<std::shared_ptr<SceneServer>> servers;
+  double pixel_seconds = 0;  // of a pixel's sample, by the generation before; 0: not known
+};
+
+/// A frame in passes: coarse ones, then those of the scene, or over its samples. Opens nothing.
+std::shared_ptr<Frame> make_session_frame(const FrameOrder& order,
+                                          std::function<void(const RenderProgress&)> on_progress);
+
+/// How far a frame is. The caller holds its mutex.
+struct FrameProgress {
+  unsigned pass = 0, samples = 0, block = 1;
+  bool whole = false;  // there is a picture of all of it
+  bool full = false;   // each pixel has a sample of its own, or is interpolated
+  bool settled = false;
+  double fraction = 0;
+};
+FrameProgress progress_of(const Frame& frame, unsigned wanted_samples);
+
+/// The picture so far; to the bit that of the film when it is settled. The caller holds the frame's mutex.
+Image picture_of(const Frame& frame);
+
+/// What the frame's servers do and did. The caller holds its mutex.
+std::vector<DeviceActivity> activity_of(const Frame& frame, bool over);
+
+}  // namespace sundog

@@ -1,0 +1,144 @@
+// Sessions on devices: after any edits the settled picture has the bits of a cold render; a camera's edit
+// uploads no geometry; a pick shows what the AOVs show.
+#include "render/session/render_session.h"
+
+#include <functional>
+
+#include "catch.h"
+#include "devices.h"
+#include "same_bits.h"
+#include "scene/load.h"
+#include "scenes.h"
+#include "test_meshes.h"
+
+using namespace sundog;
+
+namespace {
+
+using Scene = std::shared_ptr<const SceneDescription>;
+
+SceneDescription shipped(const std::string& name) {
+  SceneDescription scene = load_scene(std::string(SUNDOG_SOURCE_DIR) + "/scenes/" + name + ".json");
+  scene.image.width = 37;
+  scene.image.height = 26;
+  scene.render.samples = std::min(scene.render.samples, 3);
+  scene.render.max_depth = std::min(scene.render.max_depth, 5);
+  return scene;
+}
+
+void check_settled(RenderSession& session, const SceneDescription& scene, const DeviceInfo& device) {
+  session.start(std::make_shared<const SceneDescription>(scene));
+  session.wait();
+  const Snapshot snapshot = session.snapshot();
+  INFO(snapshot.error);
+  REQUIRE(snapshot.state == SessionState::settled);
+  CHECK(snapshot.shown == snapshot.generation);
+  CHECK(same_bits(*snapshot.picture, scenes::render_on(device, scene).image));
+}
+
+SceneDescription mesh_scene() {
+  SceneDescription scene = scene_of(bumpy_sphere(8));
+  scene.image.width = 30;
+  scene.image.height = 22;
+  scene.render.samples = 2;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("after edits the settled picture has the bits of a cold render") {
+  on_every_device([](const DeviceInfo& device) {
+    RenderSession session(std::vector<DeviceInfo>{device});
+    SceneDescription scene = shipped("spheres");
+    check_settled(session, scene, device);
+    scene.camera.position += dvec3(0.2, 0.1, 0);
+    check_settled(session, scene, device);
+    scene.materials[0].diffuse = dvec3(0.1, 0.5, 0.2);
+    check_settled(session, scene, device);
+    scene.lights.back().intensity *= 0.5;
+    scene.objects.back().world_from_object[3].y += 0.2;
+    check_settled(session, scene, device);
+    scene.render.sampling.threshold = 0.05;
+    scene.render.samples = 8;
+    check_settled(session, scene, device);
+    scene.render.sampling.threshold = 0;
+    scene.render.sampling.subsample = true;
+    scene.render.samples = 2;
+    check_settled(session, scene, device);
+  });
+}
+
+TEST_CASE("a session goes from one scene to another, of other kernels, and back") {
+  const DeviceInfo& device = test_devices().front();
+  RenderSession session(std::vector<DeviceInfo>{device});
+  SceneDescription fractal = shipped("mandelbulb");
+  check_settled(session, mesh_scene(), device);
+  check_settled(session, fractal, device);
+  check_settled(session, shipped("hollow_ice_exact"), device);
+  fractal.fields[0].root.formula.steps[0].values[0] += 1;
+  check_settled(session, fractal, device);
+  fractal.camera.position *= 0.9;
+  check_settled(session, fractal, device);
+  check_settled(session, mesh_scene(), device);
+}
+
+TEST_CASE("several devices settle on the picture of several devices' bits") {
+  const std::vector<DeviceInfo>& devices = test_devices();
+  if (devices.size() < 2) return;
+  // Each pixel has the bits of one of the devices: which one is a matter of speed.
+  RenderSession session(devices);
+  const SceneDescription scene = mesh_scene();
+  session.start(std::make_shared<const SceneDescription>(scene));
+  session.wait();
+  const Snapshot snapshot = session.snapshot();
+  REQUIRE(snapshot.state == SessionState::settled);
+  std::vector<Image> single;
+  for (const DeviceInfo& device : devices) single.push_back(scenes::render_on(device, scene).image);
+  const std::size_t pixels = snapshot.picture->data.size() / 4;
+  for (std::size_t p = 0; p < pixels; ++p)
+    REQUIRE(std::ranges::any_of(single, [&](const Image& image) {
+      return std::equal(&image.data[4 * p], &image.data[4 * p] + 4, &snapshot.picture->data[4 * p]);
+    }));
+}
+
+TEST_CASE("a camera's edit builds no tree and uploads no geometry") {
+  const DeviceInfo& device = test_devices().front();
+  RenderSession session(std::vector<DeviceInfo>{device});
+  SceneDescription scene = mesh_scene();
+  check_settled(session, scene, device);
+  CHECK(session.snapshot().work.compiled.bvhs == 2);
+  CHECK(session.snapshot().work.bytes_uploaded > 0);
+  scene.camera.position += dvec3(0.1, 0, 0);
+  check_settled(session, scene, device);
+  const EditWork camera = session.snapshot().work;
+  CHECK(camera.compiled == CompileWork{});
+  CHECK(camera.bytes_uploaded == 0);
+  CHECK(camera.kernels_built == 0);
+  scene.materials.back().diffuse = dvec3(0.3);
+  check_settled(session, scene, device);
+  const EditWork color = session.snapshot().work;
+  CHECK(color.compiled.bvhs == 0);
+  CHECK(color.tables_uploaded == 1);
+  CHECK(color.bytes_uploaded <= 1024);
+}
+
+TEST_CASE("a pick shows what the first surface is") {
+  const DeviceInfo& device = test_devices().front();
+  RenderSession session(std::vector<DeviceInfo>{device});
+  const SceneDescription scene = shipped("spheres");
+  session.start(std::make_shared<const SceneDescription>(scene));
+  session.wait();
+  RenderOptions options;
+  options.aovs = {"object", "material", "depth", "normal", "position"};
+  const RenderResult whole = scenes::render_on(device, scene, options);
+  for (const auto [x, y] : {std::pair{18, 13}, std::pair{2, 24}, std::pair{18, 0}}) {
+    INFO(x << ", " << y);
+    const std::optional<Picked> picked = session.pick(x, y);
+    REQUIRE(picked);
+    CHECK(picked->object == static_cast<int>(whole.aovs.at("object").pixel(x, y)[0]));
+    CHECK(picked->material == static_cast<int>(whole.aovs.at("material").pixel(x, y)[0]));
+    CHECK(picked->depth == whole.aovs.at("depth").pixel(x, y)[0]);
+    CHECK(picked->normal.y == whole.aovs.at("normal").pixel(x, y)[1]);
+    CHECK(picked->position.x == whole.aovs.at("position").pixel(x, y)[0]);
+  }
+}
