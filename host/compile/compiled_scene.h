@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compile/bounds.h"
-#include "compile/table.h"
+#include "compile/shared_table.h"
 #include "scene/description.h"
 #include "shared/features.h"
 #include "shared/scene_tables.h"
@@ -36,7 +36,7 @@ struct BvhFigures {
 
 /// The tables of shared/scene_tables.h.
 struct SceneTables {
-#define SUNDOG_TABLE_MEMBER(type, host_type, name, label) Table<host_type> name;
+#define SUNDOG_TABLE_MEMBER(type, host_type, name, label) SharedTable<host_type> name;
   SCENE_TABLES(SUNDOG_TABLE_MEMBER)
 #undef SUNDOG_TABLE_MEMBER
 };

@@ -82,8 +82,8 @@ void set_figures(CompiledScene& out) {
 }
 
 /// The same for all scenes.
-const Table<float>& lobe_energies() {
-  static const Table<float> energies(make_lobe_energy());
+const SharedTable<float>& lobe_energies() {
+  static const SharedTable<float> energies(make_lobe_energy());
   return energies;
 }
 
@@ -105,13 +105,13 @@ void take_part(const CompiledScene& part, CompiledScene& out) {
 }
 
 struct SceneCompiler::Parts {
-  Part lights;
+  ScenePart lights;
   SurfacesPart surfaces;
   MeshesPart meshes;
-  Part mapping;
+  ScenePart mapping;
   InstancesPart instances;
-  Part touching;
-  Part fields;
+  ScenePart touching;
+  ScenePart fields;
 
   /// The numbers that parts have found.
   void set_numbers(CompiledScene& out) const {

@@ -215,7 +215,7 @@ void cut_into_pages(std::vector<u32> texels, u32 least_page, CompiledScene& out)
     out.texels0 = std::move(texels);
     return;
   }
-  Table<u32>* pages[] = {&out.texels0, &out.texels1, &out.texels2, &out.texels3};
+  SharedTable<u32>* pages[] = {&out.texels0, &out.texels1, &out.texels2, &out.texels3};
   for (std::size_t i = 0; i < TEXEL_PAGES; ++i) {
     const auto at = [&](std::size_t unit) {
       return texels.begin() + static_cast<std::ptrdiff_t>(std::min(unit, units) * unit_words);

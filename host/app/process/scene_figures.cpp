@@ -40,7 +40,7 @@ std::size_t placed_triangles(const SceneDescription& scene) {
 }
 
 template <class T>
-std::size_t bytes_of(const std::vector<T>& table) {
+std::size_t bytes_of(const SharedTable<T>& table) {
   return table.size() * sizeof(T);
 }
 

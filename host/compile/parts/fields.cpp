@@ -75,9 +75,9 @@ ContentKey fields_key(const SceneDescription& scene, const std::vector<FieldView
   return key.key();
 }
 
-Part make_fields(const SceneDescription& scene, const std::vector<FieldView>& views,
-                 const CompiledScene& instances) {
-  Part part;
+ScenePart make_fields(const SceneDescription& scene, const std::vector<FieldView>& views,
+                      const CompiledScene& instances) {
+  ScenePart part;
   CompiledFields fields;
   try {
     if (any_deep(views)) {

@@ -41,12 +41,13 @@ ContentKey mapping_key(const MeshesPart& meshes, const SurfacesPart& surfaces) {
   return KeyMaker().add(meshes.key).add(features.extra_uvs).add(features.relief).key();
 }
 
-Part make_mapping(const SceneDescription& scene, const MeshesPart& meshes, const SurfacesPart& surfaces) {
+ScenePart make_mapping(const SceneDescription& scene, const MeshesPart& meshes,
+                       const SurfacesPart& surfaces) {
   CompiledScene all = meshes.made;
   all.features = surfaces.made.features;
   add_further_uvs(scene, meshes.placed, all);
   add_tangents(scene, meshes.placed, all);
-  Part part;
+  ScenePart part;
   part.made.extra_uvs = all.extra_uvs;
   part.made.tangents = all.tangents;
   return part;
@@ -82,8 +83,8 @@ ContentKey touching_key(const SceneDescription& scene, const InstancesPart& inst
   return KeyMaker().add(instances.key).add(std::max({camera.x, camera.y, camera.z})).key();
 }
 
-Part make_touching(const SceneDescription& scene, const InstancesPart& instances, const dvec3& origin) {
-  Part part;
+ScenePart make_touching(const SceneDescription& scene, const InstancesPart& instances, const dvec3& origin) {
+  ScenePart part;
   part.made.info = instances.made.info;
   part.made.instances = instances.made.instances;
   part.made.origin = origin;

@@ -8,25 +8,25 @@
 namespace sundog {
 
 /// The tables, features and numbers of one part in a scene that has nothing else (but what it reads).
-struct Part {
+struct ScenePart {
   ContentKey key;
   CompiledScene made;
 };
 
-struct SurfacesPart : Part {
+struct SurfacesPart : ScenePart {
   u32 default_material = NO_MATERIAL;
 };
 
-struct MeshesPart : Part {
+struct MeshesPart : ScenePart {
   std::vector<PlacedMesh> placed;
 };
 
-struct InstancesPart : Part {
+struct InstancesPart : ScenePart {
   std::vector<Bounds> boxes;  // of each instance
 };
 
 ContentKey lights_key(const SceneDescription& scene, const dvec3& origin);
-Part make_lights(const SceneDescription& scene, const dvec3& origin);
+ScenePart make_lights(const SceneDescription& scene, const dvec3& origin);
 
 ContentKey surfaces_key(const SceneDescription& scene);
 SurfacesPart make_surfaces(const SceneDescription& scene);
@@ -36,7 +36,7 @@ MeshesPart make_meshes(const SceneDescription& scene, const SurfacesPart& surfac
 
 /// What textures want of the meshes: further coordinates and tangents.
 ContentKey mapping_key(const MeshesPart& meshes, const SurfacesPart& surfaces);
-Part make_mapping(const SceneDescription& scene, const MeshesPart& meshes, const SurfacesPart& surfaces);
+ScenePart make_mapping(const SceneDescription& scene, const MeshesPart& meshes, const SurfacesPart& surfaces);
 
 ContentKey instances_key(const SceneDescription& scene, const MeshesPart& meshes,
                          const SurfacesPart& surfaces, const dvec3& origin);
@@ -45,7 +45,7 @@ InstancesPart make_instances(const SceneDescription& scene, const MeshesPart& me
 
 /// Which instances lie on others; how near that is follows from the camera's place too.
 ContentKey touching_key(const SceneDescription& scene, const InstancesPart& instances, const dvec3& origin);
-Part make_touching(const SceneDescription& scene, const InstancesPart& instances, const dvec3& origin);
+ScenePart make_touching(const SceneDescription& scene, const InstancesPart& instances, const dvec3& origin);
 
 /// The fields' views, an object each that is one.
 std::vector<FieldView> views_of(const SceneDescription& scene);
@@ -54,8 +54,8 @@ std::vector<FieldView> views_of(const SceneDescription& scene);
 ContentKey fields_key(const SceneDescription& scene, const std::vector<FieldView>& views,
                       const ContentKey& instances, const dvec3& origin);
 /// In a deep view each placed field is one of its own: `instances` are given their numbers.
-Part make_fields(const SceneDescription& scene, const std::vector<FieldView>& views,
-                 const CompiledScene& instances);
+ScenePart make_fields(const SceneDescription& scene, const std::vector<FieldView>& views,
+                      const CompiledScene& instances);
 
 /// Puts what a part has into the whole: its tables, and its features beside those that are there.
 void take_part(const CompiledScene& part, CompiledScene& out);

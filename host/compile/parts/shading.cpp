@@ -30,8 +30,8 @@ ContentKey lights_key(const SceneDescription& scene, const dvec3& origin) {
   return key.add(scene.fog.color).add(scene.fog.density).key();
 }
 
-Part make_lights(const SceneDescription& scene, const dvec3& origin) {
-  Part part;
+ScenePart make_lights(const SceneDescription& scene, const dvec3& origin) {
+  ScenePart part;
   part.made.origin = origin;
   add_lights(scene, part.made);
   add_environment(scene, part.made);

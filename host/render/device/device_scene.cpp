@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t camera_media_words = 2;
 
 template <class T>
-bool same_rows(const Table<T>& a, const Table<T>& b) {
+bool same_rows(const SharedTable<T>& a, const SharedTable<T>& b) {
   if (a.shares(b)) return true;
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
@@ -27,12 +27,12 @@ class Uploader {
   explicit Uploader(Device& device, bool compact) : device_(device), compact_(compact) {}
 
   template <class T>
-  void operator()(const char* label, const Table<T>& table, Table<T>& held, Buffer<T>& buffer) {
+  void operator()(const char* label, const SharedTable<T>& table, SharedTable<T>& held, Buffer<T>& buffer) {
     if (!buffer.memory() || !same_rows(table, held)) write(label, std::span<const T>(table.rows()), buffer);
     held = table;
   }
   /// Nodes are of two kinds, so the kernels have them as words.
-  void operator()(const char* label, const Table<Bvh8Node>& nodes, Table<Bvh8Node>& held,
+  void operator()(const char* label, const SharedTable<Bvh8Node>& nodes, SharedTable<Bvh8Node>& held,
                   Buffer<u32>& buffer) {
     if (!buffer.memory() || !same_rows(nodes, held)) {
       if (compact_)

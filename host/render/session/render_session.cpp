@@ -351,7 +351,7 @@ void RenderSession::State::serve_pick(std::unique_lock<std::mutex>& lock, Worker
 
 /// Called by a worker that has put a tile into the frame, whose mutex it holds.
 void RenderSession::State::note_progress(const std::shared_ptr<SessionFrame>& mine) {
-  const FrameProgress progress = progress_of(*mine->frame, mine->flat->info.samples);
+  const FrameProgress progress = progress_of(*mine->frame);
   const std::lock_guard lock(mutex);
   if (mine != current || mine->generation != newest || is_at_rest(state)) return;
   const double now = mine->clock.seconds();
@@ -487,15 +487,15 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
       snapshot.work.kernels_built += server.report.kernels_built;
     }
     if (current->generation == snapshot.generation)
-      snapshot.fraction = progress_of(frame, current->flat->info.samples).fraction;
+      snapshot.fraction = samples_of(frame, current->flat->info.samples).fraction;
   }
   if (!shown) return snapshot;
   const Frame& frame = *shown->frame;
   const std::lock_guard lock(shown->frame->mutex);
-  const FrameProgress progress = progress_of(frame, shown->flat->info.samples);
+  const FrameProgress progress = progress_of(frame);
   snapshot.shown = shown->generation;
   snapshot.pass = progress.pass;
-  snapshot.samples = progress.samples;
+  snapshot.samples = samples_of(frame, shown->flat->info.samples).least;
   snapshot.wanted_samples = shown->flat->info.samples;
   snapshot.block = progress.block;
   snapshot.counts = frame.counts;

@@ -109,7 +109,7 @@ std::shared_ptr<Frame> make_session_frame(const FrameOrder& order,
   return frame;
 }
 
-FrameProgress progress_of(const Frame& frame, unsigned wanted_samples) {
+FrameProgress progress_of(const Frame& frame) {
   const FramePasses& passes = *frame.passes;
   FrameProgress progress;
   progress.pass = passes.coarse_passes + passes.film.stage;
@@ -117,20 +117,23 @@ FrameProgress progress_of(const Frame& frame, unsigned wanted_samples) {
   progress.full = passes.film.stage > 0;
   progress.whole = progress.full || passes.coarse.block > 0;
   progress.block = progress.full || passes.coarse.block == 0 ? 1 : passes.coarse.block;
-  progress.fraction = 1;
-  if (progress.settled) {
-    progress.samples = wanted_samples;
-    return progress;
-  }
-  if (progress.full && !passes.film.taken.empty())
-    progress.samples = *std::ranges::min_element(passes.film.taken);
-  double taken = 0;
-  for (const u32 samples : passes.film.taken) taken += samples;
-  if (passes.coarse_block == 0 && !frame.film.done.empty())
-    taken += static_cast<double>(frame.pixels_done) * passes.pass.sample_count;
-  progress.fraction =
-      std::min(0.999, taken / (static_cast<double>(passes.film.taken.size()) * std::max(1u, wanted_samples)));
   return progress;
+}
+
+FrameSamples samples_of(const Frame& frame, unsigned wanted) {
+  if (frame.queue.complete()) return {wanted, 1};
+  const FramePasses& passes = *frame.passes;
+  const std::vector<u32>& taken = passes.film.taken;
+  double all = 0;
+  u32 least = ~0u;
+  for (const u32 samples : taken) {
+    all += samples;
+    least = std::min(least, samples);
+  }
+  if (passes.coarse_block == 0) all += static_cast<double>(frame.pixels_done) * passes.pass.sample_count;
+  constexpr double most = 0.999;  // 1 is settled
+  const double wanted_in_all = static_cast<double>(taken.size()) * std::max(1u, wanted);
+  return {passes.film.stage > 0 ? least : 0, std::min(most, all / wanted_in_all)};
 }
 
 Image picture_of(const Frame& frame) {

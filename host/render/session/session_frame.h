@@ -34,13 +34,19 @@ std::shared_ptr<Frame> make_session_frame(const FrameOrder& order,
 
 /// How far a frame is. The caller holds its mutex.
 struct FrameProgress {
-  unsigned pass = 0, samples = 0, block = 1;
+  unsigned pass = 0, block = 1;
   bool whole = false;  // there is a picture of all of it
   bool full = false;   // each pixel has a sample of its own, or is interpolated
   bool settled = false;
+};
+FrameProgress progress_of(const Frame& frame);
+
+/// The samples that each pixel has at least, and the share of all that are wanted.
+struct FrameSamples {
+  unsigned least = 0;
   double fraction = 0;
 };
-FrameProgress progress_of(const Frame& frame, unsigned wanted_samples);
+FrameSamples samples_of(const Frame& frame, unsigned wanted);
 
 /// The picture so far; to the bit that of the film when it is settled. The caller holds the frame's mutex.
 Image picture_of(const Frame& frame);

@@ -1,5 +1,5 @@
-// Table: a vector that copies share until one of them is changed. So a scene that differs from another in one
-// part has the other parts' tables for nothing, and a device sees which it holds already.
+// SharedTable: a vector that copies share until one of them is changed. So a scene that differs from another
+// in one part has the other parts' tables for nothing, and a device sees which it holds already.
 #pragma once
 #include <cstddef>
 #include <initializer_list>
@@ -11,14 +11,14 @@
 namespace sundog {
 
 template <class T>
-class Table {
+class SharedTable {
  public:
   using value_type = T;
   using const_iterator = typename std::vector<T>::const_iterator;
 
-  Table() = default;
-  Table(std::initializer_list<T> rows) : Table(std::vector<T>(rows)) {}
-  Table(std::vector<T> rows) : rows_(std::make_shared<std::vector<T>>(std::move(rows))) {}
+  SharedTable() = default;
+  SharedTable(std::initializer_list<T> rows) : SharedTable(std::vector<T>(rows)) {}
+  SharedTable(std::vector<T> rows) : rows_(std::make_shared<std::vector<T>>(std::move(rows))) {}
 
   const std::vector<T>& rows() const {
     static const std::vector<T> none;
@@ -49,7 +49,7 @@ class Table {
   void clear() { rows_.reset(); }
 
   /// Whether both have the same rows in memory: then they are equal.
-  bool shares(const Table& other) const { return rows_ == other.rows_; }
+  bool shares(const SharedTable& other) const { return rows_ == other.rows_; }
 
  private:
   std::shared_ptr<std::vector<T>> rows_;
