@@ -65,7 +65,7 @@ std::vector<Edit> edits() {
 
 double quantile(std::vector<double> values, double share) {
   std::ranges::sort(values);
-  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  const auto at = static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)));
   return values[at];
 }
 

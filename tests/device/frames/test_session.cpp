@@ -131,7 +131,7 @@ TEST_CASE("a pick shows what the first surface is") {
   RenderOptions options;
   options.aovs = {"object", "material", "depth", "normal", "position"};
   const RenderResult whole = scenes::render_on(device, scene, options);
-  for (const auto [x, y] : {std::pair{18, 13}, std::pair{2, 24}, std::pair{18, 0}}) {
+  for (const auto& [x, y] : {std::pair{18, 13}, std::pair{2, 24}, std::pair{18, 0}}) {
     INFO(x << ", " << y);
     const std::optional<Picked> picked = session.pick(x, y);
     REQUIRE(picked);

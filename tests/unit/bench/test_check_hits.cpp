@@ -116,7 +116,7 @@ TEST_CASE("rounding does not excuse a plain tracer that is wrong itself") {
   /// Sees no spheres, as a tracer to which someone forgot to add them.
   struct Faulty : plain::HitFinder {
     explicit Faulty(CompiledScene scene) : rest(std::move(scene)) {
-      for (Instance& instance : rest.instances)
+      for (Instance& instance : rest.instances.edit())
         if (instance.shape == SHAPE_SPHERE) instance.object_from_world[0].w += 1e6f;
     }
     bool closest(const plain::Ray& ray, plain::Hit& hit) const override {

@@ -86,7 +86,8 @@ std::vector<Edit> edits() {
         if (!s.materials.empty()) s.materials[one_of(r, s.materials.size())].diffuse = dvec3(number(r));
       },
       [](auto& s, auto& r) {
-        if (!s.materials.empty()) s.materials[one_of(r, s.materials.size())].reflection = dvec3(one_of(r, 2));
+        if (!s.materials.empty())
+          s.materials[one_of(r, s.materials.size())].reflection = dvec3(double(one_of(r, 2)));
       },
       [](auto& s, auto& r) {
         if (!s.materials.empty()) s.materials[one_of(r, s.materials.size())].roughness = number(r);
