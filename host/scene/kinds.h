@@ -38,13 +38,13 @@ inline constexpr auto filter_names = [] {
 struct LightTypeFacts {
   std::string_view name;  // in scene files and figures
   LightType type;
-  bool placed;  // it has a position
-  bool aimed;   // it has a direction
-  bool extent;  // it has an extent, and no falloff
+  bool placed = false;  // it has a position
+  bool aimed = false;   // it has a direction
+  bool extent = false;  // it has an extent, and no falloff
 };
 
 /// By LightType.
-inline constexpr std::array light_types = {LightTypeFacts{"ambient", LightType::ambient, false, false, false},
+inline constexpr std::array light_types = {LightTypeFacts{.name = "ambient", .type = LightType::ambient},
 #define SUNDOG_LIGHT_FACTS(constant, name, placed, aimed, extent) \
   LightTypeFacts{#name, LightType::name, placed, aimed, extent},
                                            LIGHTS(SUNDOG_LIGHT_FACTS)

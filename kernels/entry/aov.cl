@@ -13,9 +13,7 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
                                       u32 pixel_count, u32 listed, u32 first) {
   u32 counts[COUNTERS];
   for (u32 k = 0; k < COUNTERS; ++k) counts[k] = 0;
-#if HAS_SDF
-  counts[COUNT_MARCH_LEFT] = MARCH_WORK;
-#endif
+  start_marching(counts);
   const MediaStack stack = (MediaStack)camera_media[1] << 32 | camera_media[0];
   MASK lanes = lanes_of((1u << min((u32)BATCH, pixel_count - first)) - 1u);
   REAL x = (REAL)(0.0f), y = (REAL)(0.0f);

@@ -28,6 +28,11 @@ static inline float cross_faces(const Scene* scene, const SceneRays* rays, const
   enter_all(scene, met, &changes, entered);
   return touching.end;
 }
+#else
+static inline float cross_faces(const Scene* scene, const SceneRays* rays, const Hits* hits,
+                                MediaStack* entered, MediaStack* holding) {
+  return REAL_LANE(hits->t, 0);
+}
 #endif
 
 // The work of the kernel below.
@@ -39,30 +44,22 @@ NEVER_INLINE void follow_line_outside(const Scene* scene, __global u32* restrict
   line.d = renormalized3(all3(d));
   line.t_min = (REAL)(0.0f);
   line.t_max = (REAL)(INFINITY);
-#if HAS_CONES
-  line.spread = (REAL)(0.0f);
-#endif
+  start_cones(scene->info, &line);
   SceneRays rays = scene_rays(&line, 0);  // one ray, in lane 0
   const MASK lane = lanes_of(1u);
   u32 counts[COUNTERS];  // marching counts, which nobody asks for here
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
-#if HAS_SDF
-  counts[COUNT_MARCH_LEFT] = MARCH_WORK;
-#endif
+  start_marching(counts);
   MediaStack entered = 0, holding = 0;
   for (u32 i = 0; i < 4096u; ++i) {
     Hits hits;
-    nearest_hits(scene, &rays, lane, false, false, &hits, counts);
+    nearest_hits(scene, &rays, lane, false, &hits, counts);
     if (MASK_LANE(hits.instance, 0) == (int)NO_INSTANCE) break;
     const Faces faces = hit_faces(scene, rays.d, &hits, lane);
-#if HAS_TOUCHING
-    if (any_lane(may_touch(scene->instances, &hits, lane))) {
-      REAL_LANE(hits.t, 0) = cross_faces(scene, &rays, &hits, &entered, &holding);
-      continue_behind(scene->info, &rays, &hits, faces.entering, lane);
-      continue;
-    }
-#endif
+    const MASK touching = may_touch(scene->instances, &hits, lane);
+    if (any_lane(touching)) REAL_LANE(hits.t, 0) = cross_faces(scene, &rays, &hits, &entered, &holding);
     continue_behind(scene->info, &rays, &hits, faces.entering, lane);
+    if (any_lane(touching)) continue;
     __global const Material* material = scene->materials + MASK_LANE(faces.material, 0);
     if (!(material->flags & MATERIAL_TRANSMITS) || (material->flags & MATERIAL_THIN)) continue;
     if (MASK_LANE(faces.entering, 0))

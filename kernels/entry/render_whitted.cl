@@ -13,13 +13,11 @@
 // the eight or thirty-two that a device runs together have ray trees that are alike; in a launch of two
 // dimensions the group has its own shape.
 static inline uint2 lane_pixel(const Launch* launch, u32 item, u32 lane) {
-#if BATCH == 1
-  if (launch->blocks) {
+  if (BATCH == 1 && launch->blocks) {
     const u32 columns = (launch->width + 7u) / 8u, block = item / 32u;
     return (uint2)(block % columns * 8u + (item >> 1 & 4u) + (item & 3u),
                    block / columns * 4u + (item >> 3 & 2u) + (item >> 2 & 1u));
   }
-#endif
   const u32 columns = (launch->width + TILE_W - 1u) / TILE_W;
   return (uint2)(item % columns * TILE_W + lane % TILE_W, item / columns * TILE_H + lane / TILE_W);
 }
@@ -88,9 +86,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
   for (u32 sample = launch->first_sample; sample < launch->first_sample + launch->sample_count; ++sample) {
     float4 radiance[BATCH];
     for (u32 lane = 0; lane < BATCH; ++lane) radiance[lane] = (float4)(0.0f);
-#if HAS_SDF
-    counts[COUNT_MARCH_LEFT] = MARCH_WORK;
-#endif
+    start_marching(counts);
     SceneRays rays;
     float signs[BATCH];
     TileSamples tile;

@@ -82,7 +82,7 @@ void glass_children(const CompiledScene& scene, const std::vector<Ray>& rays, co
 
 RaySet glass_rays(const CompiledScene& scene, std::vector<Ray> rays, std::vector<Hit> hits,
                   const TraceFunction& trace) {
-  RaySet set{"glass", false, false, {}};
+  RaySet set{.kind = "glass"};
   for (int surface = 0; surface < 5; ++surface) {
     std::vector<Ray> reflected, refracted;
     glass_children(scene, rays, hits, false, reflected, refracted);
@@ -104,8 +104,8 @@ void shuffle(std::vector<Ray>& rays) {
 std::vector<RaySet> secondary_rays(const CompiledScene& scene, const Viewpoint& view, const RaySet& primary,
                                    const TraceFunction& trace, bool glass) {
   const std::vector<Hit> hits = trace(primary.rays);
-  RaySet shadow{"shadow", true, true, {}}, bounce{"bounce", false, false, {}},
-      shuffled{"shuffled", false, false, {}}, reflection{"reflection", false, false, {}};
+  RaySet shadow{.kind = "shadow", .any = true, .coherent = true}, bounce{.kind = "bounce"},
+      shuffled{.kind = "shuffled"}, reflection{.kind = "reflection"};
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const auto s = surface_at(scene, primary.rays[i], hits[i]);
     if (!s) continue;
@@ -180,7 +180,7 @@ Viewpoint framing_viewpoint(const CompiledScene& scene, const vec3& from, const 
 
 RaySet primary_rays(const Viewpoint& view, unsigned size) {
   const unsigned tiles = (size + tile - 1) / tile, width = tiles * tile;
-  RaySet set{"primary", false, true, {}};
+  RaySet set{.kind = "primary", .coherent = true};
   set.rays.reserve(std::size_t(width) * width);
   const unsigned blocks = tile / block;
   for (unsigned i = 0; i < width * width; ++i) {  // i counts pixels, in a block, in a tile, in the image

@@ -17,7 +17,7 @@ struct RaySet {
   std::string kind;
   bool any = false;       // only whether there is a hit matters
   bool coherent = false;  // 16 in a row run close together
-  std::vector<Ray> rays;
+  std::vector<Ray> rays = {};
 };
 
 /// Finds the nearest hits of rays: the tracer that makes the secondary rays' origins.

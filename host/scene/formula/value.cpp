@@ -149,17 +149,13 @@ Value Values::multiply(const Value& a, const Value& b) {
 
 Value Values::quaternion_product(const Value& a, const Value& b) {
   Value r = result(ValueType::quat, {&a, &b});
-  const auto sum = [&](NodeId p, NodeId q, NodeId s, NodeId t, bool m1, bool m2, bool m3) {
-    NodeId total = p;
-    total = m1 ? g.sub(total, q) : g.add(total, q);
-    total = m2 ? g.sub(total, s) : g.add(total, s);
-    return m3 ? g.sub(total, t) : g.add(total, t);
-  };
   const auto m = [&](NodeId p, NodeId q) { return g.mul(p, q); };
-  r.part[0] = sum(m(a.x(), b.x()), m(a.y(), b.y()), m(a.z(), b.z()), m(a.w(), b.w()), true, true, true);
-  r.part[1] = sum(m(a.x(), b.y()), m(a.y(), b.x()), m(a.z(), b.w()), m(a.w(), b.z()), false, false, true);
-  r.part[2] = sum(m(a.x(), b.z()), m(a.z(), b.x()), m(a.w(), b.y()), m(a.y(), b.w()), false, false, true);
-  r.part[3] = sum(m(a.x(), b.w()), m(a.w(), b.x()), m(a.y(), b.z()), m(a.z(), b.y()), false, false, true);
+  // p + q + s - t
+  const auto part = [&](NodeId p, NodeId q, NodeId s, NodeId t) { return g.sub(g.add(g.add(p, q), s), t); };
+  r.part[0] = g.sub(g.sub(g.sub(m(a.x(), b.x()), m(a.y(), b.y())), m(a.z(), b.z())), m(a.w(), b.w()));
+  r.part[1] = part(m(a.x(), b.y()), m(a.y(), b.x()), m(a.z(), b.w()), m(a.w(), b.z()));
+  r.part[2] = part(m(a.x(), b.z()), m(a.z(), b.x()), m(a.w(), b.y()), m(a.y(), b.w()));
+  r.part[3] = part(m(a.x(), b.w()), m(a.w(), b.x()), m(a.y(), b.z()), m(a.z(), b.y()));
   r.tight = a.tight && b.tight;
   if (!r.varies || !r.tight) return r;
   const NodeId left = a.varies ? g.mul(length(b).x(), a.slope) : g.constant(0);

@@ -49,7 +49,7 @@ class EarClipper {
  public:
   explicit EarClipper(const std::vector<dvec2>& points) : points_(points), ring_(points.size()) {
     const auto n = static_cast<unsigned>(points.size());
-    for (unsigned i = 0; i < n; ++i) ring_[i] = {(i + n - 1) % n, (i + 1) % n, false, false};
+    for (unsigned i = 0; i < n; ++i) ring_[i] = {.before = (i + n - 1) % n, .after = (i + 1) % n};
     for (unsigned i = 0; i < n; ++i) ring_[i].reflex = turn(i) <= 0;
     for (unsigned i = 0; i < n; ++i)
       if (ring_[i].reflex) reflex_.push_back(i);
@@ -75,7 +75,7 @@ class EarClipper {
  private:
   struct Corner {
     unsigned before, after;
-    bool ear, reflex;
+    bool ear = false, reflex = false;
   };
 
   double turn(unsigned i) const {

@@ -91,6 +91,43 @@ static inline void pass_touching(const Scene* scene, const SceneRays* rays, Hits
     set_media(behind, i, seen.behind);
   }
 }
+#else
+static inline void pass_touching(const Scene* scene, const SceneRays* rays, Hits* hits, Faces* faces,
+                                 SceneRays* behind, MASK lanes) {}
+#endif
+
+#if HAS_MEDIA
+// The lanes of `passing`, of `waiting` those that pass their surfaces, in the media behind these, which
+// `behind` has for those of `touching`; `there` becomes the current ones. `light` is what the media before
+// leave of it. Returns the lanes whose surfaces change the light.
+static inline MASK change_media(const Scene* scene, SceneRays* rays, const Hits* hits, const Faces* faces,
+                                const SceneRays* behind, MASK touching, MASK waiting, MASK passing, MASK here,
+                                MASK* there, REAL3* light) {
+  const MASK interface = passing & MASK_OF((faces->flags & (int)MATERIAL_THIN) == 0);
+  for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    MediaStack stack = get_media(rays, i);
+    if (MASK_LANE(touching, i))
+      stack = get_media(behind, i);
+    else
+      cross_boundary(&stack, (u32)MASK_LANE(faces->medium, i), MASK_LANE(faces->entering, i));
+    set_media(rays, i, stack);
+    MASK_LANE(*there, i) = (int)current_medium(scene->media, stack);
+  }
+  rays->media_low = select(rays->media_low, behind->media_low, touching & passing);
+  rays->media_high = select(rays->media_high, behind->media_high, touching & passing);
+  const MASK changes = interface & MASK_OF(*there != here), missed = waiting & ~hit_anything(hits);
+  const REAL3 kept = absorb(scene->media, here, hits->t - rays->since, missed | changes);
+  *light = multiply3(*light, kept);
+  rays->since = select(rays->since, hits->t, changes);
+  return (passing & ~interface) | changes;
+}
+#else
+static inline MASK change_media(const Scene* scene, SceneRays* rays, const Hits* hits, const Faces* faces,
+                                const SceneRays* behind, MASK touching, MASK waiting, MASK passing, MASK here,
+                                MASK* there, REAL3* light) {
+  return passing;
+}
 #endif
 
 // The lanes of `waiting` at their next hits. Returns those that continue to the light, with the rest of it in
@@ -101,69 +138,57 @@ static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits,
   Faces faces = hit_faces(scene, rays->d, hits, hit);
   const int kind = (int)(MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE);
   MASK passing = hit & MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
-#if HAS_TOUCHING
   SceneRays behind = *rays;
   const MASK touching = may_touch(scene->instances, hits, passing);
   pass_touching(scene, rays, hits, &faces, &behind, touching);
   passing &= MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
-#endif
   *light = select3(*light, all3((float3)(0.0f)), hit & ~passing);
-  MASK through = passing;
-#if HAS_MEDIA
-  const MASK interface = passing & MASK_OF((faces.flags & (int)MATERIAL_THIN) == 0);
   MASK there = here;
-  for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
-    MediaStack stack = get_media(rays, i);
-#if HAS_TOUCHING
-    if (MASK_LANE(touching, i))
-      stack = get_media(&behind, i);
-    else
-#endif
-      cross_boundary(&stack, (u32)MASK_LANE(faces.medium, i), MASK_LANE(faces.entering, i));
-    set_media(rays, i, stack);
-    MASK_LANE(there, i) = (int)current_medium(scene->media, stack);
-  }
-#if HAS_TOUCHING
-  rays->media_low = select(rays->media_low, behind.media_low, touching & passing);
-  rays->media_high = select(rays->media_high, behind.media_high, touching & passing);
-#endif
-  const MASK changes = interface & MASK_OF(there != here);
-  const REAL3 kept = absorb(scene->media, here, hits->t - rays->since, (waiting & ~hit) | changes);
-  *light = multiply3(*light, kept);
-  rays->since = select(rays->since, hits->t, changes);
-  through = (passing & ~interface) | changes;
-#else
-  const MASK there = here;
-#endif
+  const MASK through =
+      change_media(scene, rays, hits, &faces, &behind, touching, waiting, passing, here, &there, light);
   if (!any_lane(passing)) return NO_LANES;
   filter_light(scene, rays, hits, &faces, here, there, through, light);
   continue_behind(scene->info, rays, hits, faces.entering, passing);
   return passing & MASK_OF(greatest3(*light) > 0.0f);
 }
-#endif
 
 // The shadow rays of `lanes` at what they met: what reaches the lights is added to the pixels. Returns those
 // that continue.
 static inline MASK reach_filters(const Scene* scene, SceneRays* rays, PathStates* paths, Hits* hits,
                                  MASK lanes, float4* radiance, u32* counts) {
-#if HAS_SHADOW_FILTERS
   const MASK passing = pass_filters(scene, rays, hits, lanes, &paths->throughput);
   const MASK too_many = passing & MASK_OF(rays->crossings >= MAX_FILTERS);
   counts[COUNT_SHADOW_LIMIT] += lane_count(too_many);
   add_to_pixels(paths->throughput, paths->pixel, lanes & ~passing, radiance);
   return passing & ~too_many;
+}
+
+// What the shadow rays of `lanes` meet.
+static inline Hits shadow_hits(const Scene* scene, SceneRays* rays, MASK lanes, bool coherent, u32* counts) {
+  Hits hits;
+  nearest_to_light(scene, rays, lanes, coherent, &hits, counts);
+  return hits;
+}
 #else
+static inline MASK reach_filters(const Scene* scene, SceneRays* rays, PathStates* paths, Hits* hits,
+                                 MASK lanes, float4* radiance, u32* counts) {
   const MASK arriving = lanes & ~hit_anything(hits);
   REAL3 light = paths->throughput;
-#if HAS_MEDIA
-  light = multiply3(light,
-                    absorb(scene->media, current_media(scene->media, rays, arriving), rays->t_max, arriving));
-#endif
+  if (HAS_MEDIA) {
+    const MASK here = current_media(scene->media, rays, arriving);
+    light = multiply3(light, absorb(scene->media, here, rays->t_max, arriving));
+  }
   add_to_pixels(light, paths->pixel, arriving, radiance);
   return NO_LANES;
-#endif
 }
+
+static inline Hits shadow_hits(const Scene* scene, SceneRays* rays, MASK lanes, bool coherent, u32* counts) {
+  Hits hits = no_hits(rays->t_max);
+  const MASK occluded = any_hits(scene, rays, lanes, coherent, counts);
+  hits.instance = select(hits.instance, NO_LANES, occluded);
+  return hits;
+}
+#endif
 
 #if BATCH > 1
 // Takes the newest shadow rays, at most `most`, to the light or to their next filters, where those that pass
@@ -173,14 +198,7 @@ NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 mo
   SceneRays rays;
   PathStates paths;
   const MASK lanes = pop_shadows(stack, most, &rays, &paths);
-  Hits hits;
-#if HAS_SHADOW_FILTERS
-  nearest_hits(scene, &rays, lanes, coherent, true, &hits, counts);
-#else
-  hits = no_hits(rays.t_max);
-  const MASK occluded = any_hits(scene, &rays, lanes, coherent, counts);
-  hits.instance = select(hits.instance, NO_LANES, occluded);
-#endif
+  Hits hits = shadow_hits(scene, &rays, lanes, coherent, counts);
   const MASK passing = reach_filters(scene, &rays, &paths, &hits, lanes, radiance, counts);
   push_shadows(stack, &rays, &paths, passing);
 }

@@ -21,11 +21,13 @@ static inline float pixel_spread(__global const SceneInfo* restrict info) {
 
 // The cones of camera rays. The samples of a pixel share it, but each sees more than its part, or little
 // would be filtered.
-static inline void start_cones(__global const SceneInfo* restrict info, Rays* rays) {
 #if HAS_CONES
+static inline void start_cones(__global const SceneInfo* restrict info, Rays* rays) {
   rays->spread = (REAL)(pixel_spread(info) * fmax(rsqrt((float)info->samples), 0.125f));
-#endif
 }
+#else
+static inline void start_cones(__global const SceneInfo* restrict info, Rays* rays) {}
+#endif
 
 static inline Rays camera_rays(__global const SceneInfo* restrict info, REAL x, REAL y) {
   Rays rays;

@@ -5,17 +5,26 @@
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
 #include "lib/path/scene_ray.cl"
-#include "lib/sdf/surface.cl"
+
+// The wanted parts of a hit: all; all, on the way to a light, so that fields with soft shadows are left to
+// soft_shadows(); only its instance, on such a way.
+#define MARCH_TO_SEE 0u
+#define MARCH_TO_LIGHT 1u
+#define MARCH_TO_BLOCK 2u
 
 #if HAS_SDF
+#include "lib/sdf/surface.cl"
+
 // A point as marching counts it: in the field's space, in deep views from the place of the world's origin.
-static inline REAL3 field_points(__global const Instance* instance, REAL3 p) {
 #ifdef SDF_DEEP
+static inline REAL3 field_points(__global const Instance* instance, REAL3 p) {
   return object_vectors(instance, p);
-#else
-  return object_points(instance, p);
-#endif
 }
+#else
+static inline REAL3 field_points(__global const Instance* instance, REAL3 p) {
+  return object_points(instance, p);
+}
+#endif
 
 // The search for the nearest hit among the fields: the batch's rays, and the hit so far.
 typedef struct FieldSearch {
@@ -32,6 +41,25 @@ typedef struct FieldSearch {
 #endif
 } FieldSearch;
 
+// The light of fields that glow, which rays gather as they pass.
+#if HAS_GLOW
+static inline void start_glow(FieldSearch* search) { search->glow = all3((float3)(0.0f)); }
+static inline void gather_glow(__global const SdfField* restrict field, const MarchHits* hits,
+                               FieldSearch* search) {
+  if (field->glow.w <= 0.0f) return;
+  const REAL passed = select(exp(hits->nearest * (-1.0f / field->glow.w)), (REAL)(0.0f), hits->hit);
+  search->glow = along3(search->glow, passed, all3(field->glow.xyz));
+}
+static inline void add_glow(SceneRays* rays, const FieldSearch* search, MASK lanes) {
+  rays->glow = select3(rays->glow, add3(rays->glow, search->glow), lanes);
+}
+#else
+static inline void start_glow(FieldSearch* search) {}
+static inline void gather_glow(__global const SdfField* restrict field, const MarchHits* hits,
+                               FieldSearch* search) {}
+static inline void add_glow(SceneRays* rays, const FieldSearch* search, MASK lanes) {}
+#endif
+
 static inline FieldSearch start_search(const SceneRays* rays, REAL t_best, MASK active) {
   FieldSearch search;
   search.o = rays->o;
@@ -45,9 +73,7 @@ static inline FieldSearch start_search(const SceneRays* rays, REAL t_best, MASK 
   search.inside = NO_LANES;
   search.cut = NO_LANES;
   search.threshold = (REAL)(0.0f);
-#if HAS_GLOW
-  search.glow = all3((float3)(0.0f));
-#endif
+  start_glow(&search);
   return search;
 }
 
@@ -57,6 +83,27 @@ static inline MASK starts_within(__global const SdfField* restrict field, const 
   return MASK_OF(p.x >= field->lower.x) & MASK_OF(p.x <= field->upper.x) & MASK_OF(p.y >= field->lower.y) &
          MASK_OF(p.y <= field->upper.y) & MASK_OF(p.z >= field->lower.z) & MASK_OF(p.z <= field->upper.z);
 }
+
+// The lanes whose rays start inside the field.
+#if SDF_TWO_SIDED
+static inline MASK start_inside(const Scene* scene, u32 index, const FieldSearch* search,
+                                const MarchRays* rays) {
+  const u32 field = scene->instances[index].root;
+  MASK inside = rays->leaving & MASK_OF((search->from & 1) != 0);
+  // A ray that starts elsewhere asks the field itself.
+  const MASK ask = rays->active & ~rays->leaving & starts_within(scene->sdf_fields + field, rays);
+  if (any_lane(ask)) {
+    const REAL3 start = along3(rays->origin, rays->t_min, rays->direction);
+    inside |= ask & MASK_OF(sdf_signed(field, start, ask, scene->sdf_parameters) < 0.0f);
+  }
+  return inside;
+}
+#else
+static inline MASK start_inside(const Scene* scene, u32 index, const FieldSearch* search,
+                                const MarchRays* rays) {
+  return NO_LANES;
+}
+#endif
 
 // The rays in the field's own space, and on which side of its surface they start.
 static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided, const FieldSearch* search) {
@@ -71,17 +118,7 @@ static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided
   rays.active = search->active;
   rays.leaving = MASK_OF((search->from | 1) == (int)(index * 2u + 1u));
   rays.inside = NO_LANES;
-#if SDF_TWO_SIDED
-  if (two_sided) {
-    rays.inside = rays.leaving & MASK_OF((search->from & 1) != 0);
-    // A ray that starts elsewhere asks the field itself.
-    const MASK ask = rays.active & ~rays.leaving & starts_within(scene->sdf_fields + instance->root, &rays);
-    if (any_lane(ask)) {
-      const REAL3 start = along3(rays.origin, rays.t_min, rays.direction);
-      rays.inside |= ask & MASK_OF(sdf_signed(instance->root, start, ask, scene->sdf_parameters) < 0.0f);
-    }
-  }
-#endif
+  if (two_sided) rays.inside = start_inside(scene, index, search, &rays);
   return rays;
 }
 
@@ -116,13 +153,7 @@ static inline void march_field(const Scene* scene, u32 index, FieldSearch* searc
   search->winner = select(search->winner, (MASK)((int)index), nearer);
   search->inside = select(search->inside, rays.inside, nearer);
   search->cut = select(search->cut, hits.cut, nearer);
-#if HAS_GLOW
-  if (field->glow.w > 0.0f) {
-    const REAL passed = select(exp(hits.nearest * (-1.0f / field->glow.w)), (REAL)(0.0f), hits.hit);
-    search->glow = along3(search->glow, passed,
-                          real3((REAL)(field->glow.x), (REAL)(field->glow.y), (REAL)(field->glow.z)));
-  }
-#endif
+  gather_glow(field, &hits, search);
   u32 most = 0;
   for (u32 i = 0; i < LANES; ++i) {
     most = max(most, (u32)MASK_LANE(hits.steps, i));
@@ -155,12 +186,6 @@ static inline void shade_lanes(const Scene* scene, u32 index, const FieldSearch*
   hits->prim = select(hits->prim, NO_LANES, mine);
 }
 
-// The wanted parts of a hit: all; all, on the way to a light, so that fields with soft shadows are left to
-// soft_shadows(); only its instance, on such a way.
-#define MARCH_TO_SEE 0u
-#define MARCH_TO_LIGHT 1u
-#define MARCH_TO_BLOCK 2u
-
 // Takes `hits`, which holds the nearest ones so far, to a field's where that is nearer, for the lanes of
 // `active`. Adds to the rays' glow.
 NEVER_INLINE void march_fields(const Scene* scene, SceneRays* rays, MASK active, u32 purpose, Hits* hits,
@@ -176,10 +201,14 @@ NEVER_INLINE void march_fields(const Scene* scene, SceneRays* rays, MASK active,
   }
   for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index)
     shade_lanes(scene, index, &search, hits);
-#if HAS_GLOW
-  if (!to_light) rays->glow = select3(rays->glow, add3(rays->glow, search.glow), active);
-#endif
+  if (!to_light) add_glow(rays, &search, active);
 }
 
+// A sample's marches are paid from here.
+static inline void start_marching(u32* counts) { counts[COUNT_MARCH_LEFT] = MARCH_WORK; }
+#else
+static inline void march_fields(const Scene* scene, SceneRays* rays, MASK active, u32 purpose, Hits* hits,
+                                u32* counts) {}
+static inline void start_marching(u32* counts) {}
 #endif
 #endif

@@ -26,18 +26,34 @@ typedef struct CameraSamples {
   u32 sample;
 } CameraSamples;
 
-static inline void set_camera_sample(CameraSamples* samples, u32 lane, uint2 pixel) {
+// The pinhole camera at one time, before lens and motion; `along` is of length 1 along the view.
+typedef struct CameraPlaces {
+  REAL3 position, along, dx, dy;
+} CameraPlaces;
+
+#if HAS_CAMERA_MOTION
+static inline void set_time(CameraSamples* samples, u32 lane, uint2 pixel) {
+  REAL_LANE(samples->time, lane) = sample_1d(pixel, samples->sample, DIMENSION_TIME);
+}
+static inline void move_camera(__global const SceneInfo* restrict info, const CameraSamples* samples,
+                               CameraPlaces* camera) {
+  camera->position = along3(camera->position, samples->time, all3(info->moved_position.xyz));
+  camera->along = along3(camera->along, samples->time, all3(info->moved_corner.xyz));
+  camera->dx = along3(camera->dx, samples->time, all3(info->moved_dx.xyz));
+  camera->dy = along3(camera->dy, samples->time, all3(info->moved_dy.xyz));
+}
+#else
+static inline void set_time(CameraSamples* samples, u32 lane, uint2 pixel) {}
+static inline void move_camera(__global const SceneInfo* restrict info, const CameraSamples* samples,
+                               CameraPlaces* camera) {}
+#endif
+
 #if HAS_LENS
+static inline void set_lens_place(CameraSamples* samples, u32 lane, uint2 pixel) {
   const float2 u = sample_2d(pixel, samples->sample, DIMENSION_LENS);
   REAL_LANE(samples->lens_x, lane) = u.x;
   REAL_LANE(samples->lens_y, lane) = u.y;
-#endif
-#if HAS_CAMERA_MOTION
-  REAL_LANE(samples->time, lane) = sample_1d(pixel, samples->sample, DIMENSION_TIME);
-#endif
 }
-
-#if HAS_LENS
 // What the lens adds to the origin, by its two numbers.
 static inline REAL3 lens_offset(__global const SceneInfo* restrict info, REAL u_x, REAL u_y) {
   REAL x, y;
@@ -47,37 +63,41 @@ static inline REAL3 lens_offset(__global const SceneInfo* restrict info, REAL u_
     place_in_disk(u_x, u_y, &x, &y);
   return add3(scale3(all3(info->lens_x.xyz), x), scale3(all3(info->lens_y.xyz), y));
 }
+static inline void pass_lens(__global const SceneInfo* restrict info, const CameraSamples* samples,
+                             CameraPlaces* camera) {
+  const REAL3 offset = lens_offset(info, samples->lens_x, samples->lens_y);
+  camera->position = add3(camera->position, offset);
+  camera->along =
+      along3(camera->along, (REAL)(-1.0f / info->lens_x.w), offset);  // still through what is sharp
+}
+#else
+static inline void set_lens_place(CameraSamples* samples, u32 lane, uint2 pixel) {}
+static inline void pass_lens(__global const SceneInfo* restrict info, const CameraSamples* samples,
+                             CameraPlaces* camera) {}
 #endif
+
+static inline void set_camera_sample(CameraSamples* samples, u32 lane, uint2 pixel) {
+  set_lens_place(samples, lane, pixel);
+  set_time(samples, lane, pixel);
+}
 
 // The rays through the places (x, y) of the image.
 static inline Rays sampled_camera_rays(__global const SceneInfo* restrict info, REAL x, REAL y,
                                        const CameraSamples* samples) {
-#if HAS_LENS || HAS_CAMERA_MOTION
-  REAL3 position = all3(info->camera_position.xyz), along = all3(info->camera_corner.xyz);
-  REAL3 dx = all3(info->camera_dx.xyz), dy = all3(info->camera_dy.xyz);
-#if HAS_CAMERA_MOTION
-  position = along3(position, samples->time, all3(info->moved_position.xyz));
-  along = along3(along, samples->time, all3(info->moved_corner.xyz));
-  dx = along3(dx, samples->time, all3(info->moved_dx.xyz));
-  dy = along3(dy, samples->time, all3(info->moved_dy.xyz));
-#endif
-  along = along3(along3(along, x, dx), y, dy);
-#if HAS_LENS
-  const REAL3 offset = lens_offset(info, samples->lens_x, samples->lens_y);
-  position = add3(position, offset);
-  along = along3(along, (REAL)(-1.0f / info->lens_x.w), offset);  // still through what is sharp
-#endif
-  const REAL depth_to_t = length3(along);
+  if (!HAS_LENS && !HAS_CAMERA_MOTION) return camera_rays(info, x, y);
+  CameraPlaces camera = {all3(info->camera_position.xyz), all3(info->camera_corner.xyz),
+                         all3(info->camera_dx.xyz), all3(info->camera_dy.xyz)};
+  move_camera(info, samples, &camera);
+  camera.along = along3(along3(camera.along, x, camera.dx), y, camera.dy);
+  pass_lens(info, samples, &camera);
+  const REAL depth_to_t = length3(camera.along);
   Rays rays;
-  rays.o = position;
-  rays.d = scale3(along, 1.0f / depth_to_t);
+  rays.o = camera.position;
+  rays.d = scale3(camera.along, 1.0f / depth_to_t);
   rays.t_min = info->camera_forward.w * depth_to_t;
   rays.t_max = info->background_bottom.w * depth_to_t;
   start_cones(info, &rays);
   return rays;
-#else
-  return camera_rays(info, x, y);
-#endif
 }
 
 #endif

@@ -45,9 +45,8 @@ static inline bool cross_boundary(MediaStack* stack, u32 medium, bool entering) 
 // Beer-Lambert: the part of light that passes `distance` in the medium of each lane of `lanes`, 1 elsewhere.
 static inline REAL3 absorb(__global const Medium* restrict media, MASK medium, REAL distance, MASK lanes) {
   REAL3 kept = all3((float3)(1.0f));
-#if HAS_ABSORPTION
   u32 index;
-  while (any_lane(lanes)) {
+  while (HAS_ABSORPTION && any_lane(lanes)) {
     const MASK mine = take_alike(medium, &lanes, &index);
     const float3 a = media[index].absorption.xyz;
     // A colour that is not absorbed keeps its bits, over infinite distances too.
@@ -55,7 +54,6 @@ static inline REAL3 absorb(__global const Medium* restrict media, MASK medium, R
     if (a.y != 0.0f) kept.y = select(kept.y, real_exp(-a.y * distance), mine);
     if (a.z != 0.0f) kept.z = select(kept.z, real_exp(-a.z * distance), mine);
   }
-#endif
   return kept;
 }
 
@@ -73,11 +71,8 @@ static inline REAL refraction_index(__global const Medium* restrict media, MASK 
 // Index of refraction behind the interfaces of `lanes` over that before them, 1 elsewhere.
 static inline REAL relative_index(__global const Medium* restrict media, MASK before, MASK after,
                                   MASK lanes) {
-#if HAS_MEDIA
+  if (!HAS_MEDIA) return (REAL)(1.0f);
   return refraction_index(media, after, lanes) / refraction_index(media, before, lanes);
-#else
-  return (REAL)(1.0f);
-#endif
 }
 
 #endif

@@ -4,33 +4,33 @@
 #define SUNDOG_LIB_NEAREST_CL
 #include "lib/core/config.h"
 #include "lib/core/tables.h"
+#include "lib/path/fields.cl"
 #include "lib/path/scene_ray.cl"
 #include "lib/trace/traverse.cl"
 
-#if HAS_SDF
-#include "lib/path/fields.cl"
-#endif
-
-// The hits of the lanes of `active`; elsewhere nothing is hit. `to_light`: of shadow rays.
-static inline void nearest_hits(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
-                                bool to_light, Hits* hits, u32* counts) {
+// The hits of the lanes of `active`; elsewhere nothing is hit. `coherent`: the rays run close together.
+static inline void nearest_hits(const Scene* scene, SceneRays* rays, MASK active, bool coherent, Hits* hits,
+                                u32* counts) {
   trace_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, active, coherent, hits);
-#if HAS_SDF
-  march_fields(scene, rays, active, to_light ? MARCH_TO_LIGHT : MARCH_TO_SEE, hits, counts);
-#endif
+  march_fields(scene, rays, active, MARCH_TO_SEE, hits, counts);
+}
+
+// The same for shadow rays.
+static inline void nearest_to_light(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
+                                    Hits* hits, u32* counts) {
+  trace_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, active, coherent, hits);
+  march_fields(scene, rays, active, MARCH_TO_LIGHT, hits, counts);
 }
 
 // The lanes of `active` that hit anything.
 static inline MASK any_hits(const Scene* scene, SceneRays* rays, MASK active, bool coherent, u32* counts) {
   MASK occluded = occluded_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, active, coherent);
-#if HAS_SDF
   const MASK open = active & ~occluded;
-  if (any_lane(open)) {
+  if (HAS_SDF && any_lane(open)) {
     Hits hits = no_hits(rays->t_max);
     march_fields(scene, rays, open, MARCH_TO_BLOCK, &hits, counts);
     occluded |= open & hit_anything(&hits);
   }
-#endif
   return occluded;
 }
 
@@ -40,13 +40,12 @@ static inline MASK any_hits(const Scene* scene, SceneRays* rays, MASK active, bo
 static inline void next_hits(const Scene* scene, SceneRays* rays, MASK active, bool to_light, Hits* hits,
                              u32* counts) {
   const bool any = to_light && !HAS_SHADOW_FILTERS;
-  find_hits(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, active, false, any, hits);
+  find_hits(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, active, any ? TRACE_ANY : TRACE_NEAREST,
+            hits);
   finish_triangles(scene, false, hits);
-#if HAS_SDF
   const u32 purpose = any ? MARCH_TO_BLOCK : to_light ? MARCH_TO_LIGHT : MARCH_TO_SEE;
   if (any) active &= ~hit_anything(hits);
-  if (any_lane(active)) march_fields(scene, rays, active, purpose, hits, counts);
-#endif
+  if (HAS_SDF && any_lane(active)) march_fields(scene, rays, active, purpose, hits, counts);
 }
 #endif
 

@@ -12,14 +12,14 @@ typedef struct TileSamples {
   u32 sample;
 } TileSamples;
 
-static inline void set_tile_pixel(TileSamples* tile, u32 lane, uint2 pixel) {
 #if HAS_RANDOM
+static inline void set_tile_pixel(TileSamples* tile, u32 lane, uint2 pixel) {
   tile->x[lane] = pixel.x;
   tile->y[lane] = pixel.y;
-#endif
 }
 
-#if HAS_RANDOM
+static inline void start_branches(PathStates* paths) { paths->branch = NO_LANES; }
+
 // Place in the ray tree of a child of `branch` (0: the camera's ray) by the number of its kind: what it adds
 // to dimensions, so that surfaces of one depth differ.
 static inline MASK child_branch(MASK branch, u32 kind) {
@@ -45,6 +45,9 @@ NEVER_INLINE void bounce_numbers(const TileSamples* tile, const PathStates* path
     REAL_LANE(*u_y, i) = u.y;
   }
 }
+#else
+static inline void set_tile_pixel(TileSamples* tile, u32 lane, uint2 pixel) {}
+static inline void start_branches(PathStates* paths) {}
 #endif
 
 #endif

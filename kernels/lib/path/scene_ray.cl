@@ -32,11 +32,63 @@ typedef struct SceneRays {
 #endif
 } SceneRays;
 
-static inline void forget_glow(SceneRays* rays) {
-#if HAS_GLOW
-  rays->glow = all3((float3)(0.0f));
+// What rays carry in some scenes only, from their start and past surfaces; without the feature nothing.
+#if HAS_MEDIA
+static inline void start_in_medium(SceneRays* rays) { rays->since = (REAL)(0.0f); }
+#else
+static inline void start_in_medium(SceneRays* rays) {}
 #endif
+
+#if RAYS_CROSS
+static inline void forget_crossings(SceneRays* rays) { rays->crossings = NO_LANES; }
+static inline void count_crossings(SceneRays* rays, MASK lanes) { rays->crossings -= lanes; }
+#else
+static inline void forget_crossings(SceneRays* rays) {}
+static inline void count_crossings(SceneRays* rays, MASK lanes) {}
+#endif
+
+#if HAS_SDF
+static inline void start_off_fields(SceneRays* rays) {
+  rays->from = (MASK)(FROM_NOWHERE);
+  rays->footprint = (REAL)(0.0f);
 }
+static inline void widen_footprints(__global const SceneInfo* restrict info, SceneRays* rays, REAL t,
+                                    MASK lanes) {
+  rays->footprint = select(rays->footprint, fma(t, (REAL)(pixel_spread(info)), rays->footprint), lanes);
+}
+// Records which field, and which side of it, each ray in `lanes` restarts from.
+static inline void start_on_hits(__global const SceneInfo* restrict info, SceneRays* rays, const Hits* hits,
+                                 MASK inside, MASK lanes) {
+  const MASK on_field = MASK_OF(hits->instance >= (int)info->instance_count);
+  const MASK from = select((MASK)(FROM_NOWHERE), hits->instance * 2 - inside, on_field);
+  rays->from = select(rays->from, from, lanes);
+}
+#else
+static inline void start_off_fields(SceneRays* rays) {}
+static inline void widen_footprints(__global const SceneInfo* restrict info, SceneRays* rays, REAL t,
+                                    MASK lanes) {}
+static inline void start_on_hits(__global const SceneInfo* restrict info, SceneRays* rays, const Hits* hits,
+                                 MASK inside, MASK lanes) {}
+#endif
+
+#if HAS_CONES
+static inline void start_camera_cones(SceneRays* rays, const Rays* camera) {
+  rays->cone_width = (REAL)(0.0f);
+  rays->cone_spread = camera->spread;
+}
+static inline void widen_cones(SceneRays* rays, REAL t, MASK lanes) {
+  rays->cone_width = select(rays->cone_width, fma(t, rays->cone_spread, rays->cone_width), lanes);
+}
+#else
+static inline void start_camera_cones(SceneRays* rays, const Rays* camera) {}
+static inline void widen_cones(SceneRays* rays, REAL t, MASK lanes) {}
+#endif
+
+#if HAS_GLOW
+static inline void forget_glow(SceneRays* rays) { rays->glow = all3((float3)(0.0f)); }
+#else
+static inline void forget_glow(SceneRays* rays) {}
+#endif
 
 static inline SceneRays scene_rays(const Rays* camera, MediaStack media) {
   SceneRays rays;
@@ -46,20 +98,10 @@ static inline SceneRays scene_rays(const Rays* camera, MediaStack media) {
   rays.t_max = camera->t_max;
   rays.media_low = (MASK)((int)media);
   rays.media_high = (MASK)((int)(media >> 32));
-#if HAS_MEDIA
-  rays.since = (REAL)(0.0f);
-#endif
-#if RAYS_CROSS
-  rays.crossings = NO_LANES;
-#endif
-#if HAS_SDF
-  rays.from = (MASK)(FROM_NOWHERE);
-  rays.footprint = (REAL)(0.0f);
-#endif
-#if HAS_CONES
-  rays.cone_width = (REAL)(0.0f);
-  rays.cone_spread = camera->spread;
-#endif
+  start_in_medium(&rays);
+  forget_crossings(&rays);
+  start_off_fields(&rays);
+  start_camera_cones(&rays, camera);
   forget_glow(&rays);
   return rays;
 }
@@ -83,32 +125,15 @@ static inline MASK current_media(__global const Medium* restrict media, const Sc
   return current;
 }
 
-// Records which field, and which side of it, each ray in `lanes` restarts from.
-static inline void start_on_hits(__global const SceneInfo* restrict info, SceneRays* rays, const Hits* hits,
-                                 MASK inside, MASK lanes) {
-#if HAS_SDF
-  const MASK on_field = MASK_OF(hits->instance >= (int)info->instance_count);
-  const MASK from = select((MASK)(FROM_NOWHERE), hits->instance * 2 - inside, on_field);
-  rays->from = select(rays->from, from, lanes);
-#endif
-}
-
-// The same for new rays, whose origins are the hits; `rays` are still the ones that hit.
+// New rays, whose origins are the hits of `rays`, restart from the sides `inside`; `rays` are still the ones
+// that hit.
 static inline void start_on_surfaces(__global const SceneInfo* restrict info, SceneRays* rays,
                                      const Hits* hits, MASK inside, MASK lanes) {
-#if HAS_SDF
-  rays->footprint = select(rays->footprint, fma(hits->t, (REAL)(pixel_spread(info)), rays->footprint), lanes);
-#endif
-#if HAS_CONES
-  rays->cone_width = select(rays->cone_width, fma(hits->t, rays->cone_spread, rays->cone_width), lanes);
-#endif
+  widen_footprints(info, rays, hits->t, lanes);
+  widen_cones(rays, hits->t, lanes);
   forget_glow(rays);
-#if HAS_MEDIA
-  rays->since = (REAL)(0.0f);
-#endif
-#if RAYS_CROSS
-  rays->crossings = NO_LANES;
-#endif
+  start_in_medium(rays);
+  forget_crossings(rays);
   start_on_hits(info, rays, hits, inside, lanes);
 }
 
@@ -116,9 +141,7 @@ static inline void start_on_surfaces(__global const SceneInfo* restrict info, Sc
 static inline void continue_behind(__global const SceneInfo* restrict info, SceneRays* rays, const Hits* hits,
                                    MASK entering, MASK lanes) {
   rays->t_min = select(rays->t_min, hits->t, lanes);
-#if RAYS_CROSS
-  rays->crossings -= lanes;
-#endif
+  count_crossings(rays, lanes);
   start_on_hits(info, rays, hits, entering, lanes);
 }
 

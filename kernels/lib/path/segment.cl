@@ -21,6 +21,28 @@ typedef struct Encounters {
 #endif
 } Encounters;
 
+#if HAS_TOUCHING
+static inline void set_behind(Encounters* met, u32 i, MediaStack stack) {
+  MASK_LANE(met->behind_low, i) = (int)stack;
+  MASK_LANE(met->behind_high, i) = (int)(stack >> 32);
+}
+// The lanes of `lanes` have met nothing that changes the media `low` and `high`.
+static inline void stay_in_media(Encounters* met, MASK low, MASK high, MASK lanes) {
+  met->behind_low = select(met->behind_low, low, lanes);
+  met->behind_high = select(met->behind_high, high, lanes);
+  met->apart = select(met->apart, (REAL)(0.0f), lanes);
+}
+static inline void forget_behind(Encounters* met) {
+  met->behind_low = NO_LANES;
+  met->behind_high = NO_LANES;
+  met->apart = (REAL)(0.0f);
+}
+#else
+static inline void set_behind(Encounters* met, u32 i, MediaStack stack) {}
+static inline void stay_in_media(Encounters* met, MASK low, MASK high, MASK lanes) {}
+static inline void forget_behind(Encounters* met) {}
+#endif
+
 #if HAS_MEDIA
 // Lane i at an interface behind which the media are `crossed`. There is nothing to see where both sides are
 // one medium, nor where a clear material parts media of equal index; then the ray's stack becomes the one
@@ -29,10 +51,7 @@ static inline bool cross_if_unseen(__global const Medium* restrict media, SceneR
                                    u32 i, MediaStack crossed) {
   const u32 before = (u32)MASK_LANE(met->before, i), after = current_medium(media, crossed);
   MASK_LANE(met->after, i) = (int)after;
-#if HAS_TOUCHING
-  MASK_LANE(met->behind_low, i) = (int)crossed;
-  MASK_LANE(met->behind_high, i) = (int)(crossed >> 32);
-#endif
+  set_behind(met, i, crossed);
   const bool clear = (u32)MASK_LANE(met->face.flags, i) & MATERIAL_CLEAR;
   const bool unseen = after == before || (clear && media[after].absorption.w == media[before].absorption.w);
   if (!unseen || MASK_LANE(rays->crossings, i) >= MAX_CROSSINGS) return false;
@@ -62,8 +81,7 @@ static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounter
     float apart;
     const float end = meet_touching(scene, rays, i, MATERIAL_TRANSMITS, &met->hit, &met->face, &seen, &apart);
     REAL_LANE(met->apart, i) = apart;
-    MASK_LANE(met->behind_low, i) = (int)seen.behind;
-    MASK_LANE(met->behind_high, i) = (int)(seen.behind >> 32);
+    set_behind(met, i, seen.behind);
     counts[COUNT_MEDIA_STACK_OVERFLOW] += seen.overflows;
     counts[COUNT_STRAY_EXIT] += seen.strays;
     if (((u32)MASK_LANE(met->face.flags, i) & INTERFACE) != MATERIAL_TRANSMITS) continue;
@@ -72,6 +90,11 @@ static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounter
     REAL_LANE(met->hit.t, i) = end;
   }
   return unseen;
+}
+#else
+static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounters* met, MASK lanes,
+                                  u32* counts) {
+  return NO_LANES;
 }
 #endif
 
@@ -89,17 +112,11 @@ static inline MASK cross_unseen(const Scene* scene, SceneRays* rays, Encounters*
   met->face.material = select(met->face.material, faces.material, hit);
   met->face.flags = select(met->face.flags, faces.flags, hit);
   met->face.medium = select(met->face.medium, faces.medium, hit);
-  MASK interface = hit & MASK_OF((faces.flags & (int)INTERFACE) == (int)MATERIAL_TRANSMITS);
-  MASK unseen = NO_LANES;
-#if HAS_TOUCHING
-  met->behind_low = select(met->behind_low, rays->media_low, waiting);
-  met->behind_high = select(met->behind_high, rays->media_high, waiting);
-  met->apart = select(met->apart, (REAL)(0.0f), waiting);
+  stay_in_media(met, rays->media_low, rays->media_high, waiting);
   const MASK touching =
       may_touch(scene->instances, &met->hit, hit & MASK_OF((faces.flags & (int)MATERIAL_TRANSMITS) != 0));
-  interface &= ~touching;
-  unseen |= cross_touching(scene, rays, met, touching, counts);
-#endif
+  const MASK interface = hit & ~touching & MASK_OF((faces.flags & (int)INTERFACE) == (int)MATERIAL_TRANSMITS);
+  MASK unseen = cross_touching(scene, rays, met, touching, counts);
   for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     if (cross_if_unseen(scene->media, rays, met, i, media_behind(rays, met, i, counts)))
@@ -114,7 +131,6 @@ static inline MASK cross_unseen(const Scene* scene, SceneRays* rays, Encounters*
   }
   return unseen;
 }
-#endif
 
 // The lanes of `active` at the interfaces met->hit. Returns those that cannot see them: their rays are then
 // what holds behind. The media of the others are those just before the surface. Crossed interfaces do not
@@ -124,28 +140,33 @@ static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK ac
   met->absorbed = all3((float3)(1.0f));
   met->before = NO_LANES;
   met->after = NO_LANES;
-#if HAS_MEDIA
   met->face.outward = all3((float3)(0.0f));
   met->face.entering = NO_LANES;
   met->face.material = NO_LANES;
   met->face.flags = NO_LANES;
   met->face.medium = NO_LANES;
-#if HAS_TOUCHING
-  met->behind_low = NO_LANES;
-  met->behind_high = NO_LANES;
-  met->apart = (REAL)(0.0f);
-#endif
+  forget_behind(met);
   return cross_unseen(scene, rays, met, active, counts);
+}
 #else
+static inline MASK cross_unseen(const Scene* scene, SceneRays* rays, Encounters* met, MASK waiting,
+                                u32* counts) {
+  return NO_LANES;
+}
+static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK active, Encounters* met,
+                                    u32* counts) {
+  met->absorbed = all3((float3)(1.0f));
+  met->before = NO_LANES;
+  met->after = NO_LANES;
   met->face = hit_faces(scene, rays->d, &met->hit, active & hit_anything(&met->hit));
   return NO_LANES;
-#endif
 }
+#endif
 
 // Takes the lanes of `active` in (t_min, t_max] there. `coherent`: the rays run close together.
 static inline MASK next_interfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
                                    Encounters* met, u32* counts) {
-  nearest_hits(scene, rays, active, coherent, false, &met->hit, counts);
+  nearest_hits(scene, rays, active, coherent, &met->hit, counts);
   return reach_interfaces(scene, rays, active, met, counts);
 }
 
@@ -153,32 +174,27 @@ static inline MASK next_interfaces(const Scene* scene, SceneRays* rays, MASK act
 static inline void next_surfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
                                  Encounters* met, u32* counts) {
   MASK waiting = next_interfaces(scene, rays, active, coherent, met, counts);
-  while (any_lane(waiting)) {
-#if HAS_MEDIA
+  while (HAS_MEDIA && any_lane(waiting)) {
     Hits hits;
-    nearest_hits(scene, rays, waiting, false, false, &hits, counts);
+    nearest_hits(scene, rays, waiting, false, &hits, counts);
     met->hit = select_hits(&met->hit, &hits, waiting);
     waiting = cross_unseen(scene, rays, met, waiting, counts);
-#endif
   }
 }
 
-// How far off the surface further rays start, where faces that touch may be apart.
-static inline REAL offset_beyond(const Encounters* met, REAL offset) {
+// offset_beyond(): how far off the surface further rays start, where faces that touch may be apart.
+// enter_behind(): the children of `lanes`, copies of `rays`, are in the media behind what those have met;
+// thin surfaces change none.
 #if HAS_TOUCHING
-  return real_max(offset, met->apart);
-#else
-  return offset;
-#endif
-}
-
-// The children of `lanes`, copies of `rays`, are in the media behind what those have met; thin surfaces
-// change none.
+static inline REAL offset_beyond(const Encounters* met, REAL offset) { return real_max(offset, met->apart); }
 static inline void enter_behind(const Encounters* met, const SceneRays* rays, MASK lanes, SceneRays* child) {
-#if HAS_TOUCHING
   child->media_low = select(child->media_low, met->behind_low, lanes);
   child->media_high = select(child->media_high, met->behind_high, lanes);
-#elif HAS_MEDIA
+}
+#else
+static inline REAL offset_beyond(const Encounters* met, REAL offset) { return offset; }
+static inline void enter_behind(const Encounters* met, const SceneRays* rays, MASK lanes, SceneRays* child) {
+  if (!HAS_MEDIA) return;
   const MASK bends = lanes & MASK_OF((met->face.flags & (int)MATERIAL_THIN) == 0);
   for (u32 bits = lane_bits(bends); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
@@ -186,7 +202,7 @@ static inline void enter_behind(const Encounters* met, const SceneRays* rays, MA
     cross_boundary(&crossed, (u32)MASK_LANE(met->face.medium, i), MASK_LANE(met->face.entering, i));
     set_media(child, i, crossed);
   }
-#endif
 }
+#endif
 
 #endif

@@ -5,10 +5,10 @@
 #ifndef SUNDOG_LIB_TOUCHING_CL
 #define SUNDOG_LIB_TOUCHING_CL
 #include "lib/core/config.h"
-#if HAS_TOUCHING
 #include "lib/path/faces.cl"
 #include "lib/path/media.cl"
 #include "lib/path/scene_ray.cl"
+#if HAS_TOUCHING
 #include "lib/trace/stretch.cl"
 
 static inline float greatest_component(float3 a) { return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z))); }
@@ -30,11 +30,9 @@ static inline float3 outward_of(__global const Instance* restrict instances, con
 static inline float rounding_of(const Scene* scene, const Hit* hit, float3 outward, float least) {
   __global const Instance* instance = scene->instances + hit->instance;
   float size = greatest_component(instance->world_center.xyz) + instance->world_center.w;
-#if HAS_MESH
-  if (instance->shape == SHAPE_MESH)
+  if (HAS_MESH && instance->shape == SHAPE_MESH)
     size = scene->triangles[hit->prim].extent * greatest_component(normal_of(hit)) /
            fmax(greatest_component(outward), FLT_MIN);
-#endif
   return fmax(least, size * 0x1p-21f);
 }
 
@@ -287,6 +285,10 @@ static inline MASK may_touch(__global const Instance* restrict instances, const 
     if (instances[index].touch > 0.0f) found |= mine;
   }
   return found;
+}
+#else
+static inline MASK may_touch(__global const Instance* restrict instances, const Hits* hits, MASK lanes) {
+  return NO_LANES;
 }
 #endif
 

@@ -28,21 +28,6 @@ static inline REAL triangle_curvatures(const Scene* scene, const SurfaceInteract
   return curvature;
 }
 
-// Of unit shapes, at points p of object space: the mean of the two principal curvatures.
-static inline REAL solid_curvatures(__global const Instance* instance, REAL3 p, MASK part) {
-  const MASK side = MASK_OF(part == 0);
-  const REAL zero = (REAL)(0.0f);
-  if (HAS_SPHERE && instance->shape == SHAPE_SPHERE) return (REAL)(1.0f);
-  if ((HAS_CYLINDER && instance->shape == SHAPE_CYLINDER) || (HAS_CONE && instance->shape == SHAPE_CONE))
-    return select(zero, 0.5f / nonzero(radius_about_y(p)), side);
-  if (HAS_TORUS && instance->shape == SHAPE_TORUS) {
-    const float minor = instance->parameters.x;
-    const REAL radius = radius_about_y(p);
-    return 0.5f * (1.0f / minor + (radius - 1.0f) / (minor * nonzero(radius)));
-  }
-  return zero;
-}
-
 // Seen from the rays: above 0 where surfaces bulge towards them. In the world.
 static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
   REAL curvature = (REAL)(0.0f);
@@ -53,13 +38,10 @@ static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, 
     const float4 scale = instance->pattern_scale;
     const float size =
         cbrt(scale.x * scale.y * scale.z) / scale.w;  // of a unit of object space, in the world
-#if HAS_MESH
-    const REAL own = instance->shape == SHAPE_MESH
-                         ? triangle_curvatures(scene, s, mine)
-                         : solid_curvatures(instance, object_points(instance, s->p), s->prim);
-#else
-    const REAL own = solid_curvatures(instance, object_points(instance, s->p), s->prim);
-#endif
+    const REAL own =
+        HAS_MESH && instance->shape == SHAPE_MESH
+            ? triangle_curvatures(scene, s, mine)
+            : solid_curvatures(instance->shape, instance->parameters, object_points(instance, s->p), s->prim);
     curvature = select(curvature, own * (1.0f / size), mine);
   }
   return select(-curvature, curvature, s->entering);

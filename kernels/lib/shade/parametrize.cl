@@ -13,6 +13,7 @@
 #define SUNDOG_LIB_PARAMETRIZE_CL
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
+#include "lib/solids/solids.cl"
 #include "lib/trace/hits.cl"
 
 #if HAS_UV
@@ -22,131 +23,21 @@ typedef struct Coordinates {
   REAL length;  // how long a unit of u and v is, in the world: their geometric mean; 0 where it is not known
 } Coordinates;
 
-// The same in object space, without the length.
-typedef struct SurfacePoints {
-  REAL u, v;
-  REAL3 dpdu, dpdv;
-} SurfacePoints;
-
 // Directions at right angles to n.
 static inline REAL3 any_tangents(REAL3 n) {
   const REAL zero = (REAL)(0.0f);
   return select3(real3(zero, n.z, -n.y), real3(-n.z, zero, n.x), MASK_OF(fabs(n.x) > fabs(n.y)));
 }
 
-// The angle of (x, y) in turns, [0, 1): an odd polynomial on Chebyshev's nodes (error 1e-8 turns) of the
-// lesser coordinate over the greater one, which has the same bits on every device.
-static inline REAL turns(REAL x, REAL y) {
-  const REAL ax = fabs(x), ay = fabs(y), most = real_max(ax, ay);
-  const REAL t = real_min(ax, ay) / select(most, (REAL)(1.0f), MASK_OF(most == 0.0f)), z = t * t;
-  REAL p = fma(z, (REAL)(0.0027662835f), (REAL)(-0.0157312491f));
-  p = fma(z, p, (REAL)(0.0421376236f));
-  p = fma(z, p, (REAL)(-0.0745685483f));
-  p = fma(z, p, (REAL)(0.106183706f));
-  p = fma(z, p, (REAL)(-0.141977978f));
-  p = fma(z, p, (REAL)(0.19991872f));
-  p = fma(z, p, (REAL)(-0.333330367f));
-  p = fma(z, p, (REAL)(0.999999982f));
-  REAL turn = p * t * (0.5f / M_PI_F);
-  turn = select(turn, 0.25f - turn, MASK_OF(ay > ax));
-  turn = select(turn, 0.5f - turn, MASK_OF(x < 0.0f));
-  return select(turn, real_min(1.0f - turn, (REAL)(0x1.fffffep-1f)), MASK_OF(y < 0.0f));
-}
-static inline REAL3 round_tangents(REAL3 p) {
-  return scale3(real3(-p.z, (REAL)(0.0f), p.x), (REAL)(2.0f * M_PI_F));
-}
-static inline REAL radius_about_y(REAL3 p) { return real_sqrt(fma(p.x, p.x, p.z * p.z)); }
-
-// The directions away from the y axis, unit; at the axis any.
-static inline REAL3 away_from_axis(REAL3 p, REAL r) {
-  const MASK off = MASK_OF(r > 0.0f);
-  const REAL inverse = 1.0f / select((REAL)(1.0f), r, off);
-  return real3(select((REAL)(1.0f), p.x * inverse, off), (REAL)(0.0f),
-               select((REAL)(0.0f), p.z * inverse, off));
+static inline REAL3 cross3(REAL3 a, REAL3 b) {
+  return real3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-static inline SurfacePoints on_sphere(REAL3 p) {
-  const REAL r = radius_about_y(p), zero = (REAL)(0.0f);
-  SurfacePoints at;
-  at.u = turns(p.x, p.z);
-  at.v = 0.5f + 2.0f * copysign(turns(r, fabs(p.y)), p.y);
-  at.dpdu = round_tangents(p);
-  at.dpdv = scale3(along3(real3(zero, r, zero), -p.y, away_from_axis(p, r)), (REAL)(M_PI_F));
-  return at;
-}
-
-// A cylinder or cone; `growth`: of the radius with the height.
-static inline SurfacePoints on_tube(REAL3 p, float growth) {
-  const REAL3 up = all3((float3)(0.0f, 1.0f, 0.0f));
-  SurfacePoints at;
-  at.u = turns(p.x, p.z);
-  at.v = 0.5f + 0.5f * p.y;
-  at.dpdu = round_tangents(p);
-  at.dpdv = scale3(along3(up, (REAL)(growth), away_from_axis(p, radius_about_y(p))), (REAL)(2.0f));
-  return at;
-}
-
-static inline SurfacePoints on_disk(REAL3 p) {
-  const SurfacePoints at = {0.5f + 0.5f * p.x, 0.5f + 0.5f * p.z, all3((float3)(2.0f, 0.0f, 0.0f)),
-                            all3((float3)(0.0f, 0.0f, 2.0f))};
-  return at;
-}
-
-static inline SurfacePoints on_plane(REAL3 p) {
-  const SurfacePoints at = {p.x, p.z, all3((float3)(1.0f, 0.0f, 0.0f)), all3((float3)(0.0f, 0.0f, 1.0f))};
-  return at;
-}
-
-static inline SurfacePoints on_torus(REAL3 p) {
-  const REAL r = radius_about_y(p), zero = (REAL)(0.0f);
-  SurfacePoints at;
-  at.u = turns(p.x, p.z);
-  at.v = turns(r - 1.0f, p.y);
-  at.dpdu = round_tangents(p);
-  at.dpdv = scale3(along3(real3(zero, r - 1.0f, zero), -p.y, away_from_axis(p, r)), (REAL)(2.0f * M_PI_F));
-  return at;
-}
-
-// A box with these half sizes; the face is the one that p is nearest to.
-static inline SurfacePoints on_box(REAL3 p, float3 half_size) {
-  const REAL3 q = real3(p.x / half_size.x, p.y / half_size.y, p.z / half_size.z);
-  const REAL3 size = real3(fabs(q.x), fabs(q.y), fabs(q.z));
-  const REAL zero = (REAL)(0.0f), a = (REAL)(2.0f * half_size.x), b = (REAL)(2.0f * half_size.y),
-             c = (REAL)(2.0f * half_size.z);
-  const MASK top = MASK_OF(size.y >= size.x) & MASK_OF(size.y >= size.z);
-  const MASK side = ~top & MASK_OF(size.x >= size.z);
-  SurfacePoints at;
-  at.u = 0.5f + 0.5f * select(select(copysign(q.x, q.x * q.z), -copysign(q.z, q.z * q.x), side), q.x, top);
-  at.v = 0.5f + 0.5f * select(q.y, -copysign(q.z, q.z * q.y), top);
-  at.dpdu = select3(select3(real3(copysign(a, q.z), zero, zero), real3(zero, zero, copysign(c, -q.x)), side),
-                    real3(a, zero, zero), top);
-  at.dpdv = select3(real3(zero, b, zero), real3(zero, zero, copysign(c, -q.y)), top);
-  return at;
-}
-
-static inline SurfacePoints select_points(SurfacePoints a, SurfacePoints b, MASK m) {
-  const SurfacePoints at = {select(a.u, b.u, m), select(a.v, b.v, m), select3(a.dpdu, b.dpdu, m),
-                            select3(a.dpdv, b.dpdv, m)};
-  return at;
-}
-
-// Points p of a solid, in object space, on its `part`s, where the normal is n.
-static inline SurfacePoints on_solid(u32 shape, float4 parameters, REAL3 p, REAL3 n, MASK part) {
-  const MASK cap = MASK_OF(part != 0);
-  if (HAS_SPHERE && shape == SHAPE_SPHERE) return on_sphere(p);
-  if (HAS_PLANE && shape == SHAPE_PLANE) return on_plane(p);
-  if (HAS_BOX && shape == SHAPE_BOX) return on_box(p, (float3)(1.0f));
-  if (HAS_CYLINDER && shape == SHAPE_CYLINDER) return select_points(on_tube(p, 0.0f), on_disk(p), cap);
-  if (HAS_CONE && shape == SHAPE_CONE)
-    return select_points(on_tube(p, 0.5f * (parameters.y - parameters.x)), on_disk(p), cap);
-  if (HAS_DISK && shape == SHAPE_DISK) return on_disk(p);
-  if (HAS_TORUS && shape == SHAPE_TORUS) return on_torus(p);
-  if (HAS_ROUNDBOX && shape == SHAPE_ROUNDBOX) return on_box(p, parameters.xyz);
+// Of surfaces without coordinates, whose normals are n.
+static inline SurfacePoints points_without_place(REAL3 n) {
   const REAL3 tangent = any_tangents(n);
-  const SurfacePoints nowhere = {(REAL)(0.0f), (REAL)(0.0f), tangent,
-                                 real3(n.y * tangent.z - n.z * tangent.y, n.z * tangent.x - n.x * tangent.z,
-                                       n.x * tangent.y - n.y * tangent.x)};
-  return nowhere;
+  const SurfacePoints points = {(REAL)(0.0f), (REAL)(0.0f), tangent, cross3(n, tangent)};
+  return points;
 }
 
 static inline float3 corner_of(__global const TriangleBlock* block, u32 corner, u32 lane) {
@@ -176,10 +67,6 @@ static inline void on_triangles(const Scene* scene, const Hits* hits, MASK lanes
   }
 }
 
-static inline REAL3 cross3(REAL3 a, REAL3 b) {
-  return real3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-}
-
 // Vectors of object space in world space: by the inverse of object_from_world's linear part.
 static inline REAL3 world_vectors(__global const Instance* instance, REAL3 a) {
   const float3 r0 = instance->object_from_world[0].xyz, r1 = instance->object_from_world[1].xyz,
@@ -200,11 +87,9 @@ NEVER_INLINE void find_coordinates(const Scene* scene, const Hits* hits, const R
   while (any_lane(lanes)) {
     const MASK mine = take_alike(hits->instance, &lanes, &index);
     __global const Instance* instance = scene->instances + index;
-    SurfacePoints points =
-        on_solid(instance->shape, instance->parameters, object_points(instance, *p), hits->ng, hits->prim);
-#if HAS_MESH
-    if (instance->shape == SHAPE_MESH) on_triangles(scene, hits, mine, &points);
-#endif
+    SurfacePoints points = points_without_place(hits->ng);
+    points_on_solid(instance->shape, instance->parameters, object_points(instance, *p), hits->prim, &points);
+    if (HAS_MESH && instance->shape == SHAPE_MESH) on_triangles(scene, hits, mine, &points);
     const REAL3 dpdu = world_vectors(instance, points.dpdu), dpdv = world_vectors(instance, points.dpdv);
     at->u = select(at->u, points.u, mine);
     at->v = select(at->v, points.v, mine);

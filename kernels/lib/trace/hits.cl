@@ -4,7 +4,7 @@
 #include "lib/core/config.h"
 #include "lib/core/lanes.h"
 #include "lib/core/transform.cl"
-#include "lib/trace/solids.cl"
+#include "lib/solids/solids.cl"
 
 // The members of Hit; `instance` is -1 (NO_INSTANCE) where nothing was hit, and t then the ray's t_max.
 typedef struct Hits {

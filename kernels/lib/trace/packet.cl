@@ -24,9 +24,8 @@ static inline void packet_in_solid(const Scene* scene, const PacketRays* rays, P
 // The rays of `active` against an instance; world space.
 NEVER_INLINE void packet_in_instance(const Scene* scene, const PacketRays* rays, PacketHits* hits, u32 active,
                                      u32 index, bool any) {
-#if HAS_MESH
   __global const Instance* instance = scene->instances + index;
-  if (instance->shape == SHAPE_MESH) {
+  if (HAS_MESH && instance->shape == SHAPE_MESH) {
     if (popcount(active) <= PACKET_LEAST) {
       walk_lanes(scene, rays, hits, active, BVH_LEAF | index, NO_INSTANCE, any);
       return;
@@ -48,7 +47,6 @@ NEVER_INLINE void packet_in_instance(const Scene* scene, const PacketRays* rays,
       walk_lanes(scene, rays, hits, active, BVH_LEAF | index, NO_INSTANCE, any);
     return;
   }
-#endif
   packet_in_solid(scene, rays, hits, active, index, any);
 }
 

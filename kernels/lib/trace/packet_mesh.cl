@@ -3,7 +3,7 @@
 #ifndef SUNDOG_LIB_PACKET_MESH_CL
 #define SUNDOG_LIB_PACKET_MESH_CL
 #include "lib/core/config.h"
-#if PACKETS && HAS_MESH
+#if PACKETS
 #include "lib/core/tables.h"
 #include "lib/trace/packet_alone.cl"
 #include "lib/trace/packet_nodes.cl"

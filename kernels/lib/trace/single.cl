@@ -20,7 +20,6 @@ static inline void trace_solid(__global const Instance* restrict instances, u32 
   if ((u32)MASK_LANE(hits.instance, 0) == index) *hit = get_hit(&hits, 0);
 }
 
-#if HAS_MESH
 // Nearest hit in one mesh BVH, or with `any` whichever comes first; o, d in object space. Uses the stack from
 // `stack` on. A hit's prim is left as finish_triangle wants it.
 static inline void trace_mesh(const Scene* scene, u32 root, const SlabRay* slab_ray,
@@ -58,14 +57,12 @@ static inline void trace_mesh(const Scene* scene, u32 root, const SlabRay* slab_
   }
   *found = hit;
 }
-#endif
 
 // One instance in (t_min, hit->t]; world-space ray.
 static inline void trace_instance(const Scene* scene, u32 index, float3 o, float3 d, float t_min, bool any,
                                   u32* stack, float* stack_t, Hit* hit) {
-#if HAS_MESH
   __global const Instance* instance = scene->instances + index;
-  if (instance->shape == SHAPE_MESH) {
+  if (HAS_MESH && instance->shape == SHAPE_MESH) {
     float3 oo = o, dd = d;
     if (!(instance->flags & INSTANCE_IDENTITY)) {
       oo = object_point(instance, o);
@@ -76,7 +73,6 @@ static inline void trace_instance(const Scene* scene, u32 index, float3 o, float
     trace_mesh(scene, instance->root, &slabs, &shear, t_min, index, any, stack, stack_t, hit);
     return;
   }
-#endif
   trace_solid(scene->instances, index, o, d, t_min, hit);
 }
 

@@ -29,7 +29,6 @@ static inline void note_hit(Stretch* stretch, const Hit* hit) {
   if (stretch->count < MOST_TOUCHING) stretch->hits[stretch->count++] = *hit;
 }
 
-#if HAS_SOLID
 // Whether the stretch may meet the ball around the instance, if it has one.
 static inline bool comes_near(__global const Instance* restrict instance, const Stretch* stretch) {
   const float4 ball = instance->world_center;
@@ -72,9 +71,7 @@ static inline void note_solid(__global const Instance* restrict instances, u32 i
   }
   note_exit(instances, index, stretch, last);
 }
-#endif
 
-#if HAS_BVH
 // Pushes the children of a node that the stretch crosses. Returns the stack's new top.
 static inline u32 push_all_crossed(__global const u32* nodes, u32 word, const SlabRay* slabs,
                                    const Stretch* stretch, u32* stack, u32 top) {
@@ -85,9 +82,7 @@ static inline u32 push_all_crossed(__global const u32* nodes, u32 word, const Sl
     stack[top++] = child_word(node, lowest_bit(bits));
   return top;
 }
-#endif
 
-#if HAS_MESH
 static inline void note_triangle(__global const TriangleBlock* restrict blocks, u32 place, float t, float u,
                                  float v, u32 instance, Stretch* stretch) {
   Hit hit;
@@ -100,9 +95,9 @@ static inline void note_triangle(__global const TriangleBlock* restrict blocks, 
   note_hit(stretch, &hit);
 }
 
+#if WIDE_VECTORS
 static inline void note_block(__global const TriangleBlock* restrict blocks, u32 index, const ShearRay* shear,
                               u32 instance, Stretch* stretch) {
-#if WIDE_VECTORS
   const BlockTest test = test_block(blocks + index, shear, stretch->from, stretch->to);
   if (!test.lanes) return;
   float t[8], u[8], v[8];
@@ -113,14 +108,17 @@ static inline void note_block(__global const TriangleBlock* restrict blocks, u32
     const u32 i = lowest_bit(bits);
     note_triangle(blocks, index * 8u + i, t[i], u[i], v[i], instance, stretch);
   }
+}
 #else
+static inline void note_block(__global const TriangleBlock* restrict blocks, u32 index, const ShearRay* shear,
+                              u32 instance, Stretch* stretch) {
   for (u32 i = 0; i < 8u && blocks[index].prim[i] != NO_PRIM; ++i) {
     float t, u, v;
     if (hits_triangle(blocks[index].v0_x + i, shear, stretch->from, stretch->to, &t, &u, &v))
       note_triangle(blocks, index * 8u + i, t, u, v, instance, stretch);
   }
-#endif
 }
+#endif
 
 static inline void note_mesh(const Scene* scene, u32 index, Stretch* stretch, u32* stack) {
   __global const Instance* instance = scene->instances + index;
@@ -143,9 +141,7 @@ static inline void note_mesh(const Scene* scene, u32 index, Stretch* stretch, u3
       top = push_all_crossed(scene->nodes, word, &slabs, stretch, stack, top);
   }
 }
-#endif
 
-#if HAS_BVH
 static inline void note_bounded(const Scene* scene, Stretch* stretch) {
   u32 stack[BVH_STACK + 1];
   u32 top = 0;
@@ -160,32 +156,20 @@ static inline void note_bounded(const Scene* scene, Stretch* stretch) {
     }
     const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
     for (u32 i = first; i <= last; ++i) {
-#if HAS_MESH
-      if (scene->instances[i].shape == SHAPE_MESH) {
+      if (HAS_MESH && scene->instances[i].shape == SHAPE_MESH)
         note_mesh(scene, i, stretch, stack + top);
-        continue;
-      }
-#endif
-#if HAS_SOLID
-      note_solid(scene->instances, i, stretch);
-#endif
+      else if (HAS_SOLID)
+        note_solid(scene->instances, i, stretch);
     }
   }
 }
-#endif
 
 NEVER_INLINE void note_all(const Scene* scene, Stretch* stretch) {
   stretch->count = 0;
-#if HAS_BVH
-  note_bounded(scene, stretch);
-  const u32 first = scene->info->bounded_count;
-#else
-  const u32 first = 0;
-#endif
-#if HAS_SOLID
-  for (u32 i = first; i < scene->info->instance_count; ++i)
+  if (HAS_BVH) note_bounded(scene, stretch);
+  const u32 first = HAS_BVH ? scene->info->bounded_count : 0u;
+  for (u32 i = first; HAS_SOLID && i < scene->info->instance_count; ++i)
     if (comes_near(scene->instances + i, stretch)) note_solid(scene->instances, i, stretch);
-#endif
 }
 #endif
 

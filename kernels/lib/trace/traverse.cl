@@ -10,6 +10,11 @@
 #include "lib/trace/single.cl"
 #include "lib/trace/walk.cl"
 
+// How rays are traced.
+#define TRACE_NEAREST 0u   // to the nearest hit
+#define TRACE_ANY 1u       // to any hit
+#define TRACE_COHERENT 2u  // they run close together
+
 // Where there are no meshes, up to so many solids are tried one after another for all rays of a batch, which
 // is quicker than taking each ray through the BVH. A packet goes through the BVH whenever there is one.
 #ifndef FEW_SOLIDS
@@ -47,10 +52,56 @@ NEVER_INLINE bool make_packet(const REAL3* o, const REAL3* d, const REAL* t_min,
 }
 #endif
 
-#if HAS_BVH
-// The bounded instances for the lanes of `active`.
+// trace_packet(): the lanes of `active` as a packet; false: they do not go as one. trace_alone(): each lane
+// of `active` by itself. A `lone_mesh` is the only bounded instance.
+#if PACKETS
+static inline bool trace_packet(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
+                                MASK active, bool lone_mesh, bool any, Hits* hits) {
+  PacketRays rays;
+  PacketHits packet;
+  const REAL t = hits->t;
+  if (lane_count(active) <= PACKET_LEAST || !make_packet(o, d, t_min, active, hits, &rays, &packet))
+    return false;
+  if (lone_mesh)
+    packet_in_mesh(scene, &rays, &packet, scene->instances->root, 0u, any);
+  else
+    packet_in_scene(scene, &rays, &packet, any);
+  hits->t = select(t, hits->t, active);
+  return true;
+}
+#else
+static inline bool trace_packet(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
+                                MASK active, bool lone_mesh, bool any, Hits* hits) {
+  return false;
+}
+#endif
+
+#if WALKS_IN_TURN
+static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
+                               MASK active, bool lone_mesh, bool any, Hits* hits) {
+  const WalkRays walkers = {o, d, t_min, hits};
+  const u32 bits = lane_bits(active);
+  if (lone_mesh)
+    walk_rays(scene, &walkers, bits, scene->instances->root, 0u, any);
+  else
+    walk_rays(scene, &walkers, bits, scene->info->bounded_count == 1u ? BVH_LEAF : scene->info->tlas_root,
+              NO_INSTANCE, any);
+}
+#else
+static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
+                               MASK active, bool lone_mesh, bool any, Hits* hits) {
+  for (u32 bits = lane_bits(active); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    Hit hit = get_hit(hits, i);
+    trace_instances(scene, get3(o, i), get3(d, i), REAL_LANE(*t_min, i), any, &hit);
+    set_hit(hits, i, &hit);
+  }
+}
+#endif
+
+// The bounded instances for the lanes of `active`. `way`: TRACE_* bits.
 static inline void trace_bounded_batch(const Scene* scene, const REAL3* world_o, const REAL3* world_d,
-                                       const REAL* t_min, MASK active, bool coherent, bool any, Hits* hits) {
+                                       const REAL* t_min, MASK active, u32 way, Hits* hits) {
   REAL3 o = *world_o, d = *world_d;
   // A mesh alone needs no scene BVH, and takes all rays into its space at once.
   const bool lone_mesh =
@@ -59,81 +110,43 @@ static inline void trace_bounded_batch(const Scene* scene, const REAL3* world_o,
     o = object_points(scene->instances, o);
     d = object_vectors(scene->instances, d);
   }
-#if PACKETS
-  PacketRays rays;
-  PacketHits packet;
-  const REAL t = hits->t;
-  if (coherent && lane_count(active) > PACKET_LEAST &&
-      make_packet(&o, &d, t_min, active, hits, &rays, &packet)) {
-#if HAS_MESH
-    if (lone_mesh)
-      packet_in_mesh(scene, &rays, &packet, scene->instances->root, 0u, any);
-    else
-#endif
-      packet_in_scene(scene, &rays, &packet, any);
-    hits->t = select(t, hits->t, active);
-    return;
-  }
-#endif
-#if WALKS_IN_TURN
-  const WalkRays walkers = {&o, &d, t_min, hits};
-  const u32 bits = lane_bits(active);
-  if (lone_mesh)
-    walk_rays(scene, &walkers, bits, scene->instances->root, 0u, any);
-  else
-    walk_rays(scene, &walkers, bits, scene->info->bounded_count == 1u ? BVH_LEAF : scene->info->tlas_root,
-              NO_INSTANCE, any);
-#else
-  for (u32 bits = lane_bits(active); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
-    Hit hit = get_hit(hits, i);
-    trace_instances(scene, get3(&o, i), get3(&d, i), REAL_LANE(*t_min, i), any, &hit);
-    set_hit(hits, i, &hit);
-  }
-#endif
+  const bool any = way & TRACE_ANY;
+  if ((way & TRACE_COHERENT) && trace_packet(scene, &o, &d, t_min, active, lone_mesh, any, hits)) return;
+  trace_alone(scene, &o, &d, t_min, active, lone_mesh, any, hits);
 }
-#endif
 
-// The nearest hits of the lanes of `active` in (t_min, t_max], or with `any` some hits. `coherent`: the rays
-// run close together.
+// Whether a batch goes through the BVH; else all solids are tried.
+static inline bool goes_in_tree(const Scene* scene, bool coherent) {
+  if (HAS_MESH) return scene->info->bounded_count > 0u;
+  return HAS_BVH && ((PACKETS && coherent) || scene->info->bounded_count > FEW_SOLIDS);
+}
+
+// The hits of the lanes of `active` in (t_min, t_max]. `way`: TRACE_* bits.
 static inline void find_hits(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                             REAL t_max, MASK active, bool coherent, bool any, Hits* hits) {
+                             REAL t_max, MASK active, u32 way, Hits* hits) {
   *hits = no_hits(t_max);
-#if HAS_TRACED
+  if (!HAS_TRACED) return;
   active &= traceable(o, d, *t_min, t_max);
-#if !HAS_BVH
-  const bool in_tree = false;
-#elif HAS_MESH
-  const bool in_tree = scene->info->bounded_count > 0u;
-#elif PACKETS
-  const bool in_tree = coherent || scene->info->bounded_count > FEW_SOLIDS;
-#else
-  const bool in_tree = scene->info->bounded_count > FEW_SOLIDS;
-#endif
-#if HAS_SOLID
+  const bool in_tree = goes_in_tree(scene, way & TRACE_COHERENT);
   const u32 first = in_tree ? scene->info->bounded_count : 0u;
-  if (first < scene->info->instance_count)
-    hit_solids(scene->instances, first, scene->info->instance_count, o, d, t_min, active, any, hits);
-#endif
-#if HAS_BVH
-  if (any) active &= ~hit_anything(hits);
-  if (in_tree && any_lane(active)) trace_bounded_batch(scene, o, d, t_min, active, coherent, any, hits);
-#endif
-#endif
+  if (HAS_SOLID && first < scene->info->instance_count)
+    hit_solids(scene->instances, first, scene->info->instance_count, o, d, t_min, active, way & TRACE_ANY,
+               hits);
+  if (!HAS_BVH) return;
+  if (way & TRACE_ANY) active &= ~hit_anything(hits);
+  if (in_tree && any_lane(active)) trace_bounded_batch(scene, o, d, t_min, active, way, hits);
 }
 
 // Indices and geometric normals of the triangles among the hits. `coherent`: several rays meet the same one.
 static inline void finish_triangles(const Scene* scene, bool coherent, Hits* hits) {
-#if HAS_MESH
+  if (!HAS_MESH) return;
   const MASK places = hits->prim;
   u32 bits = lane_bits(hit_anything(hits));
   while (bits) {
     const u32 i = lowest_bit(bits);
     bits &= bits - 1u;
     const int instance = MASK_LANE(hits->instance, i), place = MASK_LANE(places, i);
-#if HAS_SOLID
-    if (scene->instances[instance].shape != SHAPE_MESH) continue;
-#endif
+    if (HAS_SOLID && scene->instances[instance].shape != SHAPE_MESH) continue;
     Hit hit;
     hit.prim = (u32)place;
     finish_triangle(scene->blocks, &hit);
@@ -148,13 +161,12 @@ static inline void finish_triangles(const Scene* scene, bool coherent, Hits* hit
       set3(&hits->ng, i, ng);
     }
   }
-#endif
 }
 
 // The nearest hits of the lanes of `active` in (t_min, t_max].
 static inline void trace_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
                                REAL t_max, MASK active, bool coherent, Hits* hits) {
-  find_hits(scene, o, d, t_min, t_max, active, coherent, false, hits);
+  find_hits(scene, o, d, t_min, t_max, active, coherent ? TRACE_COHERENT : TRACE_NEAREST, hits);
   finish_triangles(scene, coherent, hits);
 }
 
@@ -162,7 +174,7 @@ static inline void trace_batch(const Scene* scene, const REAL3* o, const REAL3* 
 static inline MASK occluded_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
                                   REAL t_max, MASK active, bool coherent) {
   Hits hits;
-  find_hits(scene, o, d, t_min, t_max, active, coherent, true, &hits);
+  find_hits(scene, o, d, t_min, t_max, active, TRACE_ANY | (coherent ? TRACE_COHERENT : 0u), &hits);
   return active & hit_anything(&hits);
 }
 

@@ -124,17 +124,15 @@ ALWAYS_INLINE void walk_block(__global const TriangleBlock* blocks, const REAL* 
 // The next word of a walk, a leaf.
 ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const PreparedRays* world, Walk* walk,
                             u32 word, bool any) {
-#if HAS_MESH
-  if (word == WALK_BACK) {
+  if (HAS_MESH && word == WALK_BACK) {
     leave_mesh(walk, world);
     if (!any) drop_behind(walk, 1u, REAL_LANE(rays->hits->t, walk->ray));
     return 0u;
   }
-  if (walk->instance != NO_INSTANCE) {
+  if (HAS_MESH && walk->instance != NO_INSTANCE) {
     walk_block(scene->blocks, rays->t_min, rays->hits, walk, word);
     return 0u;
   }
-#endif
   // The first of the leaf's scene->instances; the others wait.
   const u32 index = word & BVH_FIRST_MASK;
   if (word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK) push_word(walk, word - (1u << BVH_LEAF_SHIFT) + 1u);

@@ -51,9 +51,7 @@ NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, Scen
 static inline void trace_whitted(const Scene* scene, const TileSamples* tile, SceneRays* rays, MASK lanes,
                                  RayStack* stack, float4* radiance, u32* counts) {
   PathStates paths;
-#if HAS_RANDOM
-  paths.branch = NO_LANES;
-#endif
+  start_branches(&paths);
   paths.throughput = all3((float3)(1.0f));
   paths.depth = (MASK)(1);
   for (u32 i = 0; i < BATCH; ++i) MASK_LANE(paths.pixel, i) = (int)i;

@@ -50,9 +50,7 @@ static inline void trace_whitted(const Scene* scene, const TileSamples* tile, Sc
   paths.throughput = all3((float3)(1.0f));
   paths.pixel = NO_LANES;
   paths.depth = (MASK)(1);
-#if HAS_RANDOM
-  paths.branch = NO_LANES;
-#endif
+  start_branches(&paths);
   stack->count = 0;
   while (any_lane(lanes)) {
     lanes = follow_ray(scene, tile, rays, &paths, stack, radiance, counts);

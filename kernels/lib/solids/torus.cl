@@ -4,8 +4,9 @@
 #define SUNDOG_LIB_TORUS_CL
 #include "lib/core/config.h"
 #include "lib/core/quartic.cl"
+#include "lib/solids/spans.cl"
+#include "lib/solids/surface_points.cl"
 
-#if HAS_TORUS
 typedef struct TorusHit {
   float t;
   float3 ng;
@@ -52,6 +53,34 @@ NEVER_INLINE bool closest_in_one_torus(float r, float3 o, float3 d, float t_min,
   }
   return found;
 }
-#endif
+
+static inline void closest_in_torus(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
+                                    SolidHits* hits) {
+  for (u32 bits = lane_bits(active); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    TorusHit hit;
+    hit.t = REAL_LANE(hits->t, i);
+    if (!closest_in_one_torus(parameters.x, get3(&o, i), get3(&d, i), REAL_LANE(t_min, i), &hit)) continue;
+    REAL_LANE(hits->t, i) = hit.t;
+    set3(&hits->ng, i, hit.ng);
+    MASK_LANE(hits->part, i) = 0;
+    MASK_LANE(hits->found, i) = -1;
+  }
+}
+
+static inline SurfacePoints points_on_torus(float4 parameters, REAL3 p, MASK part) {
+  const REAL r = radius_about_y(p), zero = (REAL)(0.0f);
+  SurfacePoints at;
+  at.u = turns(p.x, p.z);
+  at.v = turns(r - 1.0f, p.y);
+  at.dpdu = round_tangents(p);
+  at.dpdv = scale3(along3(real3(zero, r - 1.0f, zero), -p.y, away_from_axis(p, r)), (REAL)(2.0f * M_PI_F));
+  return at;
+}
+
+static inline REAL curvature_of_torus(float4 parameters, REAL3 p, MASK part) {
+  const REAL radius = radius_about_y(p);
+  return 0.5f * (1.0f / parameters.x + (radius - 1.0f) / (parameters.x * nonzero(radius)));
+}
 
 #endif

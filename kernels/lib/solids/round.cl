@@ -1,0 +1,141 @@
+// The sphere, and what lies in planes or goes round the y axis: for each solid where a ray meets it, the
+// coordinates of a point p on it and the mean of the two principal curvatures there (shared/shapes.h).
+#ifndef SUNDOG_LIB_ROUND_CL
+#define SUNDOG_LIB_ROUND_CL
+#include "lib/solids/spans.cl"
+#include "lib/solids/surface_points.cl"
+
+static inline void closest_in_sphere(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
+                                     SolidHits* hits) {
+  const Span span = round_span(o, d, 1.0f);
+  const REAL t = select(span.leave, span.enter, MASK_OF(span.enter > t_min));
+  offer(t, along3(o, t, d), NO_LANES, active & span.crosses, t_min, hits);
+}
+
+static inline SurfacePoints points_on_sphere(float4 parameters, REAL3 p, MASK part) {
+  const REAL r = radius_about_y(p), zero = (REAL)(0.0f);
+  SurfacePoints at;
+  at.u = turns(p.x, p.z);
+  at.v = 0.5f + 2.0f * copysign(turns(r, fabs(p.y)), p.y);
+  at.dpdu = round_tangents(p);
+  at.dpdv = scale3(along3(real3(zero, r, zero), -p.y, away_from_axis(p, r)), (REAL)(M_PI_F));
+  return at;
+}
+
+static inline REAL curvature_of_sphere(float4 parameters, REAL3 p, MASK part) { return (REAL)(1.0f); }
+
+static inline void closest_in_plane(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
+                                    SolidHits* hits) {
+  offer(-o.y / d.y, up_or_down((REAL)(1.0f)), NO_LANES, active & MASK_OF(d.y != 0.0f), t_min, hits);
+}
+
+static inline SurfacePoints points_on_plane(float4 parameters, REAL3 p, MASK part) {
+  const SurfacePoints at = {p.x, p.z, all3((float3)(1.0f, 0.0f, 0.0f)), all3((float3)(0.0f, 0.0f, 1.0f))};
+  return at;
+}
+
+static inline REAL curvature_of_plane(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+
+// A ring in the plane y = height, inner <= radius <= outer, normal towards `side` of y.
+static inline void offer_ring(REAL3 o, REAL3 d, float height, float inner, float outer, float side, int part,
+                              REAL t_min, MASK active, SolidHits* hits) {
+  const REAL t = (height - o.y) / d.y;
+  const REAL x = fma(t, d.x, o.x), z = fma(t, d.z, o.z);
+  const REAL r2 = fma(x, x, z * z);
+  const MASK within = MASK_OF(d.y != 0.0f) & MASK_OF(r2 <= outer * outer) & MASK_OF(r2 >= inner * inner);
+  offer(t, up_or_down((REAL)(side)), (MASK)(part), active & within, t_min, hits);
+}
+
+static inline void closest_in_disk(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
+                                   SolidHits* hits) {
+  offer_ring(o, d, 0.0f, parameters.x, 1.0f, 1.0f, 0, t_min, active, hits);
+}
+
+// Of the square round a unit disk.
+static inline SurfacePoints points_in_plane(REAL3 p) {
+  const SurfacePoints at = {0.5f + 0.5f * p.x, 0.5f + 0.5f * p.z, all3((float3)(2.0f, 0.0f, 0.0f)),
+                            all3((float3)(0.0f, 0.0f, 2.0f))};
+  return at;
+}
+
+static inline SurfacePoints points_on_disk(float4 parameters, REAL3 p, MASK part) {
+  return points_in_plane(p);
+}
+static inline REAL curvature_of_disk(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+
+// A cylinder or cone; `growth`: of the radius with the height.
+static inline SurfacePoints on_tube(REAL3 p, float growth) {
+  const REAL3 up = all3((float3)(0.0f, 1.0f, 0.0f));
+  SurfacePoints at;
+  at.u = turns(p.x, p.z);
+  at.v = 0.5f + 0.5f * p.y;
+  at.dpdu = round_tangents(p);
+  at.dpdv = scale3(along3(up, (REAL)(growth), away_from_axis(p, radius_about_y(p))), (REAL)(2.0f));
+  return at;
+}
+
+// Of the side of a cylinder or cone; caps are flat.
+static inline REAL tube_curvature(REAL3 p, MASK part) {
+  return select((REAL)(0.0f), 0.5f / nonzero(radius_about_y(p)), MASK_OF(part == 0));
+}
+
+static inline void closest_in_cylinder(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
+                                       SolidHits* hits) {
+  const REAL zero = (REAL)(0.0f);
+  const Span span = round_span(real3(o.x, zero, o.z), real3(d.x, zero, d.z), 1.0f);
+  for (u32 i = 0; i < 2u; ++i) {
+    const REAL t = i ? span.leave : span.enter;
+    const REAL3 p = along3(o, t, d);
+    offer(t, real3(p.x, zero, p.z), NO_LANES, active & span.crosses & MASK_OF(fabs(p.y) <= 1.0f), t_min,
+          hits);
+  }
+  if (parameters.x != 0.0f) {
+    offer_ring(o, d, 1.0f, 0.0f, 1.0f, 1.0f, 1, t_min, active, hits);
+    offer_ring(o, d, -1.0f, 0.0f, 1.0f, -1.0f, 2, t_min, active, hits);
+  }
+}
+
+static inline SurfacePoints points_on_cylinder(float4 parameters, REAL3 p, MASK part) {
+  return select_points(on_tube(p, 0.0f), points_in_plane(p), MASK_OF(part != 0));
+}
+static inline REAL curvature_of_cylinder(float4 parameters, REAL3 p, MASK part) {
+  return tube_curvature(p, part);
+}
+
+// The side: x^2 + z^2 = (m + k y)^2 with the mean radius m and slope k, |y| <= 1.
+static inline void closest_in_cone(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
+                                   SolidHits* hits) {
+  const float m = 0.5f * (parameters.x + parameters.y), k = 0.5f * (parameters.y - parameters.x);
+  // Measured from the point of the ray nearest to the origin, the coefficients keep their digits.
+  const REAL shift = -dot3(o, d) / dot3(d, d);
+  const REAL3 s = along3(o, shift, d);
+  const REAL ro = fma((REAL)(k), s.y, (REAL)(m)), rd = k * d.y;
+  const REAL a = fma(d.x, d.x, fma(d.z, d.z, -(rd * rd)));
+  const REAL b = fma(s.x, d.x, fma(s.z, d.z, -(ro * rd)));
+  const REAL c = fma(s.x, s.x, fma(s.z, s.z, -(ro * ro)));
+  const REAL discriminant = fma(b, b, -(a * c));
+  const MASK real = active & MASK_OF(discriminant >= 0.0f);
+  const REAL q = -(b + copysign(real_sqrt(discriminant), b));
+  const REAL t0 = select((REAL)(0.0f), c / q, MASK_OF(q != 0.0f)), t1 = select(t0, q / a, MASK_OF(a != 0.0f));
+  for (u32 i = 0; i < 2u; ++i) {
+    const REAL t = i ? t1 : t0;
+    const REAL3 p = along3(s, t, d);
+    const REAL r = fma((REAL)(k), p.y, (REAL)(m));
+    offer(t + shift, real3(p.x, -k * r, p.z), NO_LANES,
+          real & MASK_OF(fabs(p.y) <= 1.0f) & MASK_OF(r >= 0.0f), t_min, hits);
+  }
+  if (parameters.z != 0.0f) {
+    offer_ring(o, d, 1.0f, 0.0f, parameters.y, 1.0f, 1, t_min, active, hits);
+    offer_ring(o, d, -1.0f, 0.0f, parameters.x, -1.0f, 2, t_min, active, hits);
+  }
+}
+
+static inline SurfacePoints points_on_cone(float4 parameters, REAL3 p, MASK part) {
+  return select_points(on_tube(p, 0.5f * (parameters.y - parameters.x)), points_in_plane(p),
+                       MASK_OF(part != 0));
+}
+static inline REAL curvature_of_cone(float4 parameters, REAL3 p, MASK part) {
+  return tube_curvature(p, part);
+}
+
+#endif

@@ -1,0 +1,44 @@
+// The exact solids in object space, a ray or a point a lane. Each row of shared/shapes.h has three functions
+// here: closest_in_NAME() offers hits, nearest t in (t_min, t_max] with the outward normal (directions need
+// not be unit length); points_on_NAME() gives coordinates, curvature_of_NAME() the mean curvature of a point.
+#ifndef SUNDOG_LIB_SOLIDS_CL
+#define SUNDOG_LIB_SOLIDS_CL
+#include "lib/solids/boxes.cl"
+#include "lib/solids/round.cl"
+#include "lib/solids/torus.cl"
+#include "shared/bvh.h"
+
+// The nearest hits of the lanes of `active` in (t_min, hits->t]; sets `found`, and the rest where there is
+// one.
+ALWAYS_INLINE void closest_in_solid(u32 shape, float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
+                                    SolidHits* hits) {
+#define CLOSEST(constant, type, name)                                             \
+  case SHAPE_##constant:                                                          \
+    if (HAS_##constant) closest_in_##name(parameters, o, d, t_min, active, hits); \
+    break;
+  switch (shape) {
+    SOLIDS(CLOSEST)
+    default:
+      break;
+  }
+#undef CLOSEST
+}
+
+// The coordinates of points p on the `part`s of a solid; `at` stays where the shape is none.
+static inline void points_on_solid(u32 shape, float4 parameters, REAL3 p, MASK part, SurfacePoints* at) {
+#define POINTS(constant, type, name) \
+  if (HAS_##constant && shape == SHAPE_##constant) *at = points_on_##name(parameters, p, part);
+  SOLIDS(POINTS)
+#undef POINTS
+}
+
+// Of unit shapes, at points p: the mean of the two principal curvatures.
+static inline REAL solid_curvatures(u32 shape, float4 parameters, REAL3 p, MASK part) {
+#define CURVATURES(constant, type, name) \
+  if (HAS_##constant && shape == SHAPE_##constant) return curvature_of_##name(parameters, p, part);
+  SOLIDS(CURVATURES)
+#undef CURVATURES
+  return (REAL)(0.0f);
+}
+
+#endif

@@ -1,0 +1,47 @@
+// Where lines enter and leave things, and the nearest hit so far on a solid, a ray a lane.
+#ifndef SUNDOG_LIB_SPANS_CL
+#define SUNDOG_LIB_SPANS_CL
+#include "lib/core/config.h"
+#include "lib/core/lanes.h"
+
+typedef struct SolidHits {
+  REAL t;     // of the hit, else t_max
+  REAL3 ng;   // outward, not normalised
+  MASK part;  // face or part of the solid
+  MASK found;
+} SolidHits;
+
+// Takes t as the hit where it is the nearest so far.
+static inline void offer(REAL t, REAL3 ng, MASK part, MASK valid, REAL t_min, SolidHits* hits) {
+  const MASK nearer = valid & MASK_OF(t > t_min) & MASK_OF(t <= hits->t);
+  hits->t = select(hits->t, t, nearer);
+  hits->ng = select3(hits->ng, ng, nearer);
+  hits->part = select(hits->part, part, nearer);
+  hits->found |= nearer;
+}
+
+static inline REAL3 up_or_down(REAL side) { return real3((REAL)(0.0f), side, (REAL)(0.0f)); }
+
+// Where a line enters and leaves something.
+typedef struct Span {
+  REAL enter, leave;
+  MASK crosses;
+} Span;
+
+// |o + t d| = r in the space of the given vectors (2-D when a component is zero in both), robust where the
+// origin is far off (Haines et al. 2019, Ray Tracing Gems, chapter 7).
+static inline Span round_span(REAL3 o, REAL3 d, float r) {
+  const REAL a = dot3(d, d), inverse = 1.0f / a, b = -dot3(o, d);
+  const REAL3 nearest = along3(o, b * inverse, d);
+  const REAL remaining = r * r - dot3(nearest, nearest);
+  Span span;
+  span.crosses = MASK_OF(a > 0.0f) & MASK_OF(remaining >= 0.0f);
+  const REAL c = dot3(o, o) - r * r;
+  const REAL q = b + copysign(real_sqrt(a * remaining), b);
+  const REAL t0 = select((REAL)(0.0f), c / q, MASK_OF(q != 0.0f)), t1 = q * inverse;
+  span.enter = real_min(t0, t1);
+  span.leave = real_max(t0, t1);
+  return span;
+}
+
+#endif
