@@ -84,7 +84,7 @@ static inline void set_camera_sample(CameraSamples* samples, u32 lane, uint2 pix
 // The rays through the places (x, y) of the image.
 static inline Rays sampled_camera_rays(__global const SceneInfo* restrict info, REAL x, REAL y,
                                        const CameraSamples* samples) {
-  if (!HAS_LENS && !HAS_CAMERA_MOTION) return camera_rays(info, x, y);
+  if (!(HAS_LENS | HAS_CAMERA_MOTION)) return camera_rays(info, x, y);
   CameraPlaces camera = {all3(info->camera_position.xyz), all3(info->camera_corner.xyz),
                          all3(info->camera_dx.xyz), all3(info->camera_dy.xyz)};
   move_camera(info, samples, &camera);
