@@ -80,7 +80,8 @@ const char* const chart_kernel = R"(
 __kernel void locate(__global const float4* points, __global float* out, u32 shape, u32 part, float4 parameters, u32 count) {
   const u32 i = get_global_id(0);
   if (i >= count) return;
-  const SurfacePoints at = on_solid(shape, parameters, all3(points[i].xyz), all3((float3)(0.0f, 1.0f, 0.0f)), (int)part);
+  SurfacePoints at;
+  points_on_solid(shape, parameters, all3(points[i].xyz), (int)part, &at);
   __global float* to = out + 5u * i;
   to[0] = at.u; to[1] = at.v; to[2] = at.dpdu.x; to[3] = at.dpdu.y; to[4] = at.dpdu.z;
 }
