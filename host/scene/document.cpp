@@ -1,0 +1,76 @@
+// See document.h. The parts that a viewer changes most, often sixty times a second, are read by themselves.
+#include "scene/document.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "scene/json/parse.h"
+#include "scene/json/value.h"
+#include "scene/model.h"
+#include "scene/model_scene.h"
+#include "scene/read/parts.h"
+#include "scene/read/scene_reader.h"
+
+namespace sundog {
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+constexpr std::array view_keys = {"camera", "image", "render"};
+
+bool same_but_view(const json& before, const json& after) {
+  if (!before.is_object() || !after.is_object()) return false;
+  const auto is_view = [](const std::string& key) { return std::ranges::count(view_keys, key) > 0; };
+  for (const auto& [key, value] : before.items())
+    if (!is_view(key) && (!after.contains(key) || after[key] != value)) return false;
+  for (const auto& [key, value] : after.items())
+    if (!is_view(key) && !before.contains(key)) return false;
+  return true;
+}
+
+bool has_place(const json& document) {
+  return document.contains("camera") && document["camera"].is_object() &&
+         document["camera"].contains("position");
+}
+
+}  // namespace
+
+json read_scene_document(const fs::path& path, const LoadOptions& options) {
+  require_readable(path, path, "");
+  if (is_model_file(path))
+    return make_model_scene(path, load_model(path, {.outside_files = options.outside_files}));
+  if (path.extension() != ".json")
+    throw SceneError(path.string(), "", "wanted a scene (.json) or a model, found another extension");
+  return read_json_file(path);
+}
+
+SceneDescription load_scene_document(const json& document, const fs::path& file, const LoadOptions& options) {
+  std::vector<std::string> warnings;
+  const JsonContext context{.file = file,
+                            .native_code = options.native_code,
+                            .warnings = &warnings,
+                            .outside_files = options.outside_files};
+  SceneDescription scene = read_scene(JsonValue(document, context));
+  scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
+  return scene;
+}
+
+std::shared_ptr<const SceneDescription> change_view(const SceneDescription& scene, const json& before,
+                                                    const json& after) {
+  if (!has_place(after) || !same_but_view(before, after)) return nullptr;
+  const JsonContext context{.file = scene.file};
+  const auto section = [&](const char* key) {
+    return JsonValue(after[key], context, std::string("/") + key);
+  };
+  auto changed = std::make_shared<SceneDescription>(scene);
+  bool placed = false;
+  changed->camera = read_camera(section("camera"), placed);
+  changed->image = after.contains("image") ? read_image(section("image")) : ImageSettings{};
+  changed->render = after.contains("render") ? read_render(section("render")) : RenderSettings{};
+  return changed;
+}
+
+}  // namespace sundog

@@ -1,0 +1,28 @@
+// A scene as the JSON document that people edit: read from a file, changed in memory, turned into a
+// SceneDescription again.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+
+#include "scene/load.h"
+
+namespace sundog {
+
+/// The document that load_scene() reads: a scene file's own, or the one that is made up around a model.
+/// Throws SceneError.
+nlohmann::json read_scene_document(const std::filesystem::path& path, const LoadOptions& options = {});
+
+/// The scene of a document. `file` (it need not be there) stands for it in messages, and names of files count
+/// from its folder. Throws SceneError.
+SceneDescription load_scene_document(const nlohmann::json& document, const std::filesystem::path& file,
+                                     const LoadOptions& options = {});
+
+/// The scene of `after`, where that differs from `before` (whose scene is `scene`) in nothing but the camera,
+/// the size and background, and the render settings: no file is read again and no formula tried out. Null
+/// where more differs, or where the camera has no place of its own. Throws SceneError.
+std::shared_ptr<const SceneDescription> change_view(const SceneDescription& scene,
+                                                    const nlohmann::json& before,
+                                                    const nlohmann::json& after);
+
+}  // namespace sundog

@@ -1,0 +1,100 @@
+// Scenes as documents that are changed in memory: the same scene as from the file, and the short way for the
+// view alone.
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/image_io.h"
+#include "base/pixels/preview.h"
+#include "base/pixels/stored_image.h"
+#include "catch.h"
+#include "compile/compiled_scene.h"
+#include "render/film/hash.h"
+#include "scene/document.h"
+#include "temporary_folder.h"
+
+using namespace sundog;
+using nlohmann::json;
+
+namespace {
+
+const std::filesystem::path scenes = std::filesystem::path(SUNDOG_SOURCE_DIR) / "scenes";
+
+std::uint64_t hash_of(const SceneDescription& scene) { return hash_scene(compile(scene)); }
+
+}  // namespace
+
+TEST_CASE("a scene's document is the scene of its file") {
+  for (const char* name : {"mandelbulb.json", "spheres.json", "nested_glass.json"}) {
+    INFO(name);
+    const json document = read_scene_document(scenes / name);
+    CHECK(hash_of(load_scene_document(document, scenes / name)) == hash_of(load_scene(scenes / name)));
+  }
+}
+
+TEST_CASE("a model's document is the scene that is made up around it") {
+  const TemporaryFolder folder;
+  const auto model = folder.write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const json document = read_scene_document(model);
+  CHECK(hash_of(load_scene_document(document, model)) == hash_of(load_scene(model)));
+  CHECK_THROWS_AS(read_scene_document(folder.write("text.txt", "x")), SceneError);
+  CHECK_THROWS_AS(read_scene_document(folder / "none.json"), SceneError);
+}
+
+TEST_CASE("a change of the view alone gives the scene that reading everything gives") {
+  const auto file = scenes / "spheres.json";
+  const json before = read_scene_document(file);
+  const SceneDescription scene = load_scene_document(before, file);
+  json after = before;
+  after["camera"]["position"] = {2, 1, -5};
+  after["camera"]["lens"] = {{"radius", 0.1}};
+  after["image"]["width"] = 64;
+  after["render"] = {{"samples", 9}, {"filter", "tent"}};
+  const auto changed = change_view(scene, before, after);
+  REQUIRE(changed);
+  CHECK(hash_of(*changed) == hash_of(load_scene_document(after, file)));
+  after.erase("image");
+  after.erase("render");
+  const auto shorter = change_view(scene, before, after);
+  REQUIRE(shorter);
+  CHECK(hash_of(*shorter) == hash_of(load_scene_document(after, file)));
+}
+
+TEST_CASE("more than the view is not taken for the view") {
+  const auto file = scenes / "spheres.json";
+  const json before = read_scene_document(file);
+  const SceneDescription scene = load_scene_document(before, file);
+  json light = before, removed = before, added = before, unplaced = before;
+  light["lights"][1]["intensity"] = 3;
+  removed.erase("lights");
+  added["world"] = json::object();
+  unplaced["camera"] = {{"fov", 30}};
+  for (const json& after : {light, removed, added, unplaced}) CHECK_FALSE(change_view(scene, before, after));
+  json wrong = before;
+  wrong["camera"]["fov"] = 200;
+  try {
+    change_view(scene, before, wrong);
+    FAIL("an angle of 200 degrees was taken");
+  } catch (const SceneError& error) {
+    CHECK(error.place == "/camera/fov");
+  }
+}
+
+TEST_CASE("a preview has the picture's size and nearly its colours") {
+  Image image(40, 24, 4);
+  for (int y = 0; y < 24; ++y)
+    for (int x = 0; x < 40; ++x) {
+      image.pixel(x, y)[0] = static_cast<float>(x) / 40;
+      image.pixel(x, y)[1] = 2;  // brighter than white
+      image.pixel(x, y)[2] = y < 12 ? -1.0f : std::numeric_limits<float>::quiet_NaN();
+    }
+  const StoredImage stored = decode_jpeg(encode_preview(image, 95));
+  REQUIRE(stored.width == 40);
+  REQUIRE(stored.height == 24);
+  for (const int x : {0, 20, 39}) {
+    const std::size_t at = static_cast<std::size_t>(stored.channels * (12 * 40 + x));
+    const float red = srgb_from_linear(static_cast<float>(x) / 40) * 255;
+    CHECK(std::abs(static_cast<float>(stored.data[at]) - red) < 12);
+    CHECK(stored.data[at + 1] > 240);
+    CHECK(stored.data[at + 2] < 16);
+  }
+}
