@@ -7,7 +7,7 @@ root=$(readlink -f -- "${BASH_SOURCE[0]}")
 root=${root%/*}
 sundog=$root/build/release/sundog
 stamp=$root/build/release/built-program  # younger than every source: there is nothing to do
-sources=("$root"/{host,kernels,cmake,CMakeLists.txt,CMakePresets.json})
+sources=("$root"/{host,kernels,cmake,third_party,CMakeLists.txt,CMakePresets.json})
 
 if [[ ! -x $sundog || ! -e $stamp || -n $(find "${sources[@]}" -newer "$stamp" -print -quit) ]]; then
   "$root/cmake/prepare.sh" program >&2

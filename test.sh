@@ -4,7 +4,7 @@ set -eu
 root=$(readlink -f -- "${BASH_SOURCE[0]}")
 root=${root%/*}
 stamp=$root/build/release/built-tests  # younger than every source: there is nothing to do
-sources=("$root"/{host,kernels,cmake,tests,bench,CMakeLists.txt,CMakePresets.json})
+sources=("$root"/{host,kernels,cmake,third_party,tests,bench,CMakeLists.txt,CMakePresets.json})
 
 if [[ ! -e $stamp || -n $(find "${sources[@]}" -newer "$stamp" -print -quit) ]]; then
   "$root/cmake/prepare.sh" packages
@@ -16,5 +16,6 @@ cd "$root"
 left_out() { echo "sundog: no $1 here: the tests $2 are left out" >&2; }
 [[ -e build/release/sundog_mpi.so ]] || left_out "Open MPI (libopenmpi-dev, openmpi-bin)" "of mpirun"
 [[ -e build/release/embree_rays ]] || left_out "Embree (libembree-dev)" "that compare with it"
+command -v chromedriver >/dev/null || left_out "chromedriver (chromium-driver)" "of the viewer in a browser"
 command -v oclgrind >/dev/null || left_out "Oclgrind" "of memory accesses"
 exec ctest --preset release --parallel "$(nproc)" "$@"

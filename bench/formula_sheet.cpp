@@ -28,6 +28,7 @@ namespace {
 struct Sheet {
   std::string out, device = "cpu";
   int size = 200, columns = 8, samples = 9;
+  bool names = true;
 };
 
 constexpr int label_height = 22;
@@ -162,14 +163,14 @@ void make(const Sheet& sheet) {
   fs::create_directories(folder);
   const int count = static_cast<int>(formula_list().size()),
             rows = (count + sheet.columns - 1) / sheet.columns;
-  const int row_height = sheet.size + label_height;
+  const int row_height = sheet.size + (sheet.names ? label_height : 0);
   Image all(sheet.columns * sheet.size, rows * row_height, 3);
   std::fill(all.data.begin(), all.data.end(), dark);
   for (int i = 0; i < count; ++i) {
     const FormulaDefinition& d = formula_list()[static_cast<std::size_t>(i)];
     const int left = i % sheet.columns * sheet.size, top = i / sheet.columns * row_height;
     copy_into(all, picture_of(d, sheet, folder), left, top);
-    write_label(all, d.name, left, top + sheet.size, sheet.size);
+    if (sheet.names) write_label(all, d.name, left, top + sheet.size, sheet.size);
     fmt::print("{} of {}: {}\n", i + 1, count, d.name);
     std::fflush(stdout);
   }
@@ -187,7 +188,10 @@ int main(int argc, char** argv) {
   app.add_option("--size", sheet.size, "pixels a side of each surface (default 200)")->range(64, 2048);
   app.add_option("--columns", sheet.columns, "surfaces in a row (default 8)")->range(1, 32);
   app.add_option("--samples", sheet.samples, "samples a pixel (default 9)")->range(1, 4096);
+  bool bare = false;
+  app.add_flag("--no-names", bare, "the surfaces alone, without their names");
   app.parse_or_exit(argc, argv);
+  sheet.names = !bare;
   try {
     make(sheet);
     return 0;

@@ -9,8 +9,10 @@ build=$root/build/release
 # The build cannot do without these. PoCL is among them, so that the first picture needs no GPU.
 needed=(g++ cmake ninja-build ocl-icd-opencl-dev opencl-clhpp-headers pocl-opencl-icd libglm-dev libstb-dev
   libopenexr-dev libspng-dev libturbojpeg0-dev libwebp-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtbb-dev zlib1g-dev catch2)
-# The tests compare with these where they are; Open MPI is what `mpirun sundog` needs.
-peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin)
+# Debian 12 has Boost 1.81 beside an older one.
+if grep -qs '^12' /etc/debian_version; then needed+=(libboost1.81-dev); else needed+=(libboost-dev); fi
+# The tests compare with these where they are; Open MPI is what `mpirun sundog` needs; a browser opens the viewer's page.
+peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin chromium chromium-driver)
 # Of one version, so that every machine finds the same: tests/check_format.sh, tests/tidy.sh.
 checkers=(clang-format-19 clang-tidy-19)
 

@@ -10,4 +10,5 @@ for scene in "$root"/scenes/*.json; do
 done
 if [ -x "$root/build/release/bench/formula_sheet" ]; then
   "$root/build/release/bench/formula_sheet" --size 180 -o "$root/docs/pictures/formulas.png"
+  "$root/build/release/bench/formula_sheet" --size 96 --no-names -o "$root/host/app/serve/page/surfaces.jpg"  # the viewer's list
 fi

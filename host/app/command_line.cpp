@@ -17,6 +17,7 @@
 #include "app/options/commands.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
+#include "app/serve/serve_command.h"
 #include "base/error.h"
 #include "base/image_io.h"
 #include "base/names.h"
@@ -254,6 +255,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_tune(arguments, chosen);
   add_merge(arguments, chosen);
   add_gallery(arguments, chosen);
+  add_serve(arguments, chosen);
   add_bench(arguments, chosen);
   const CommandWords words = words_of(root);
   if (argc < 2) return ShowText{fmt::format(short_help, fmt::join(command_names(words), ", ")), exit_usage};

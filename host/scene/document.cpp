@@ -36,12 +36,17 @@ bool has_place(const json& document) {
          document["camera"].contains("position");
 }
 
+json model_document(const fs::path& path, const LoadOptions& options) {
+  json document = make_model_scene(path, load_model(path, {.outside_files = options.outside_files}));
+  take_ground_above(document, document["camera"]["position"][1].get<double>());
+  return document;
+}
+
 }  // namespace
 
 json read_scene_document(const fs::path& path, const LoadOptions& options) {
   require_readable(path, path, "");
-  if (is_model_file(path))
-    return make_model_scene(path, load_model(path, {.outside_files = options.outside_files}));
+  if (is_model_file(path)) return model_document(path, options);
   if (path.extension() != ".json")
     throw SceneError(path.string(), "", "wanted a scene (.json) or a model, found another extension");
   return read_json_file(path);

@@ -48,7 +48,9 @@ ordered_json formula_json(const FormulaDefinition& d) {
   return row;
 }
 
-std::string list_json() {
+}  // namespace
+
+std::string formulas_json() {
   ordered_json all = {{"schema", 1},
                       {"formulas", ordered_json::array()},
                       {"operations", ordered_json::array()},
@@ -61,8 +63,6 @@ std::string list_json() {
   return all.dump(2) + "\n";
 }
 
-}  // namespace
-
 void add_formulas(Arguments& root, Command& chosen) {
   Arguments* app =
       root.add_subcommand("formulas", "List the fractals and solids that are marched, with their parameters");
@@ -70,7 +70,7 @@ void add_formulas(Arguments& root, Command& chosen) {
   app->add_flag("--json", *json, "as JSON");
   app->callback([json, &chosen] {
     chosen = RunLater{[json] {
-      fmt::print("{}", *json ? list_json() : formula_list_text());
+      fmt::print("{}", *json ? formulas_json() : formula_list_text());
       return static_cast<int>(exit_done);
     }};
   });

@@ -7,6 +7,9 @@ namespace sundog {
 
 class Arguments;
 
+/// The list as an object of schema 1.
+std::string formulas_json();
+
 /// Declares the command: prints the list as text, or with --json as an object of schema 1.
 void add_formulas(Arguments& root, Command& chosen);
 

@@ -149,6 +149,10 @@ TEST_CASE("the contact sheet and the README have as many surfaces as the list") 
   const std::size_t rows = (count + 7) / 8;
   CHECK(sheet.width == 8 * 180);
   CHECK(sheet.height == static_cast<int>(rows) * (180 + 22));
+  const Image thumbnails =
+      read_image(root / "host/app/serve/page/surfaces.jpg");  // of the viewer, by the same script
+  CHECK(thumbnails.width == 8 * 96);
+  CHECK(thumbnails.height == static_cast<int>(rows) * 96);
 }
 
 TEST_CASE("hand-written pages have at most 150 lines") {

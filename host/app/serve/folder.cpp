@@ -1,0 +1,71 @@
+#include "app/serve/folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "scene/model.h"
+
+namespace sundog {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t most_files = 2000, most_entries = 50'000;
+constexpr int most_depth = 6;
+
+bool is_scene(const fs::path& file) {
+  return is_model_file(file) || (file.extension() == ".json" && file.filename() != "scene.schema.json");
+}
+
+bool is_below(const fs::path& folder, const fs::path& file) {
+  const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
+  return end == folder.end() && rest != file.end();
+}
+
+}  // namespace
+
+std::vector<std::string> list_scenes(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code failed;
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, failed), end;
+  for (std::size_t seen = 0; !failed && entry != end && seen < most_entries && names.size() < most_files;
+       ++seen) {
+    const std::string name = entry->path().filename().string();
+    const bool hidden = name.starts_with(".") || name == "build" || name == "node_modules";
+    if (entry->is_directory(failed)) {
+      if (hidden || entry.depth() >= most_depth) entry.disable_recursion_pending();
+    } else if (!hidden && entry->is_regular_file(failed) && is_scene(entry->path())) {
+      names.push_back(entry->path().lexically_relative(folder).string());
+    }
+    entry.increment(failed);
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+fs::path file_below(const fs::path& folder, const std::string& name) {
+  std::error_code failed;
+  const fs::path root = fs::canonical(folder, failed);
+  if (failed) throw UsageError(fmt::format("{}: {}", folder.string(), failed.message()));
+  const fs::path file = fs::canonical(root / name, failed);
+  // One message for what is outside and what is not there: a page learns nothing of files elsewhere.
+  if (failed || !is_below(root, file) || !fs::is_regular_file(file, failed))
+    throw UsageError(
+        fmt::format("{}: there is no such file below the folder that sundog was started in", name));
+  if (!is_scene(file))
+    throw UsageError(
+        fmt::format("{}: wanted a scene (.json) or a model (.gltf, .glb, .obj, .ply, .stl, .nff)", name));
+  return file;
+}
+
+std::string safe_file_name(const std::string& name) {
+  std::string safe;
+  for (const char c : fs::path(name).filename().string())
+    safe += (std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.') ? c : '_';
+  if (safe.size() > 100) safe.resize(100);
+  return safe.empty() || safe[0] == '.' ? "scene" + safe : safe;
+}
+
+}  // namespace sundog

@@ -1,0 +1,20 @@
+// The folder that the viewer was started in: the scenes and models below it, and no file outside.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace sundog {
+
+/// Scenes and models below `folder`, as paths from it, sorted; hidden folders and build folders left out, at
+/// most 2000, at most six folders deep.
+std::vector<std::string> list_scenes(const std::filesystem::path& folder);
+
+/// The file that `name`, a path from `folder`, means. Throws UsageError where it leads outside (by "..", as
+/// an absolute path, through a link), is no file, or is no scene or model.
+std::filesystem::path file_below(const std::filesystem::path& folder, const std::string& name);
+
+/// A name for a new file: letters, digits, "-", "_" and "." of `name`, never empty, never hidden.
+std::string safe_file_name(const std::string& name);
+
+}  // namespace sundog

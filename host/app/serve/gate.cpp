@@ -1,0 +1,96 @@
+#include "app/serve/gate.h"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+
+#include <algorithm>
+#include <array>
+
+#include "base/error.h"
+
+namespace sundog {
+
+const std::string* RequestHead::header(std::string_view name) const {
+  const auto found = headers.find(name);
+  return found == headers.end() ? nullptr : &found->second;
+}
+
+std::string random_token() {
+  std::array<unsigned char, 16> bytes{};
+  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    throw IoError("serve: the system gives no random bytes for the token");
+  std::string token;
+  for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
+  return token;
+}
+
+Gate make_gate(int port, std::string token, const std::vector<std::string>& further) {
+  Gate gate{std::move(token), {}, {}};
+  for (const char* name : {"127.0.0.1", "localhost", "[::1]"})
+    gate.hosts.push_back(fmt::format("{}:{}", name, port));
+  gate.hosts.insert(gate.hosts.end(), further.begin(), further.end());
+  for (const std::string& host : gate.hosts) gate.origins.push_back("http://" + host);
+  for (const std::string& host : further) gate.origins.push_back("https://" + host);
+  return gate;
+}
+
+bool equal_in_constant_time(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  unsigned difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+  return difference == 0;
+}
+
+Refusal check_request(const Gate& gate, const RequestHead& head) {
+  const std::string* host = head.header("host");
+  if (!host || head.repeated_host || std::ranges::count(gate.hosts, *host) == 0)
+    return {421,
+            "this server does not answer to that Host; a tunnel with another port wants --host NAME:PORT"};
+  const std::string* origin = head.header("origin");
+  if (origin && std::ranges::count(gate.origins, *origin) == 0)
+    return {403, "requests from other pages are refused"};
+  const bool api = head.path.starts_with("/api/");
+  if (head.method != "GET" && !(api && head.method == "POST")) return {405, "this method is not taken here"};
+  const std::string* token = head.header(token_header);
+  if (api && !(token && equal_in_constant_time(*token, gate.token)))
+    return {401, "the token is missing or wrong: open the URL that `sundog serve` has printed"};
+  return {};
+}
+
+namespace {
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+std::string percent_decoded(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%' && i + 2 < text.size() && hex_digit(text[i + 1]) >= 0 && hex_digit(text[i + 2]) >= 0) {
+      out += static_cast<char>(16 * hex_digit(text[i + 1]) + hex_digit(text[i + 2]));
+      i += 2;
+    } else {
+      out += text[i] == '+' ? ' ' : text[i];
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string query_value(std::string_view query, std::string_view key) {
+  while (!query.empty()) {
+    const std::string_view part = query.substr(0, query.find('&'));
+    query.remove_prefix(std::min(query.size(), part.size() + 1));
+    const std::size_t equals = part.find('=');
+    if (part.substr(0, equals) == key)
+      return equals == std::string_view::npos ? "" : percent_decoded(part.substr(equals + 1));
+  }
+  return "";
+}
+
+}  // namespace sundog

@@ -1,0 +1,52 @@
+// What a request must bring before the viewer's server looks at it further: a name of this server as its
+// Host, a page of this server as its Origin, the token, a method without effects where it asks for none.
+// Pure: no socket, no clock.
+#pragma once
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sundog {
+
+/// A request before its body is read. Header names are in lower case; one that came twice is in `repeated`.
+struct RequestHead {
+  std::string method, path;  // the path without its query
+  std::string query;
+  std::map<std::string, std::string, std::less<>> headers;
+  bool repeated_host = false;
+  const std::string* header(std::string_view name) const;
+};
+
+/// Fixed when the server starts. `Host` and `Origin` are each compared with these lists, never with each
+/// other: where a foreign name is made to lead to this machine (DNS rebinding), the two are equal.
+struct Gate {
+  std::string token;
+  std::vector<std::string> hosts;    // "127.0.0.1:8123"
+  std::vector<std::string> origins;  // "http://127.0.0.1:8123"
+};
+
+inline constexpr std::string_view token_header = "x-sundog-token";
+
+/// 128 bits from the system's source, as 32 hexadecimal digits. Throws IoError.
+std::string random_token();
+
+/// The gate of a server at this port, which browsers reach by loopback names and by `further` ("name:port",
+/// as through a tunnel).
+Gate make_gate(int port, std::string token, const std::vector<std::string>& further);
+
+/// In a time that does not depend on where they differ.
+bool equal_in_constant_time(std::string_view a, std::string_view b);
+
+struct Refusal {
+  int status = 0;  // of HTTP; 0: the request may pass
+  std::string reason;
+};
+
+/// Checks everything but a socket's token, which is its first message.
+Refusal check_request(const Gate& gate, const RequestHead& head);
+
+/// The value of `key` in a query such as "format=png&x=1", with %XX decoded; empty: none.
+std::string query_value(std::string_view query, std::string_view key);
+
+}  // namespace sundog

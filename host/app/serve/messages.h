@@ -1,0 +1,32 @@
+// What the viewer tells its pages, as JSON text.
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "app/serve/scene_document.h"
+#include "render/session/render_session.h"
+
+namespace sundog {
+
+/// Text of a message; what is not UTF-8 (a driver's words) is replaced.
+std::string message_text(const nlohmann::json& message);
+
+/// All devices, with which of them draw.
+nlohmann::json devices_message(const std::vector<DeviceInfo>& all, const std::vector<DeviceInfo>& picked);
+
+/// The whole document, and what was made of it.
+nlohmann::json scene_message(const SceneDocument& document);
+
+/// What the picture shows that the document may leave open: the camera's place, the objects in their order,
+/// the intervals of fields.
+nlohmann::json resolved_json(const SceneDescription& scene);
+
+nlohmann::json status_message(const Snapshot& now);
+
+nlohmann::json picked_message(const Picked& picked, const SceneDescription& scene);
+
+/// "0:1", as --device takes it.
+std::string device_spec(const DeviceInfo& device);
+
+}  // namespace sundog

@@ -1,0 +1,131 @@
+// In and out: scenes below the server's folder, files dropped on the page, the scene and the picture as files, the command line, a link.
+import {html, Dialog, Button, useEffect, useState} from './ui.js';
+import {store} from './store.js';
+
+function save(blob, name) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+const stem = () => (store.state.file || 'scene').replace(/\.[^.]*$/, '');
+const tell = (error) => store.notice(error.message);
+
+export async function saveScene() {
+  try {
+    save(await (await store.link.call('scene')).blob(), stem() + '.json');
+  } catch (error) {
+    tell(error);
+  }
+}
+
+/** Waits until the picture rests, then saves it. */
+export async function savePicture(format) {
+  for (let tries = 0; tries < 600; ++tries) {
+    try {
+      return save(await (await store.link.call('picture?format=' + format)).blob(), `${stem()}.${format}`);
+    } catch (error) {
+      if (error.status !== 409) return tell(error);
+      if (tries === 0) store.notice('The picture is saved when it is finished.');
+      await new Promise((resolve) => setTimeout(resolve, 500));
+    }
+  }
+}
+
+async function copy(text, what) {
+  try {
+    await navigator.clipboard.writeText(text);
+    store.notice(what + ' copied.');
+  } catch {
+    store.update({copyable: {what, text}});
+  }
+}
+export async function copyCommand() {
+  try {
+    await copy((await (await store.link.call('command')).text()).trim(), 'Command line');
+  } catch (error) {
+    tell(error);
+  }
+}
+
+const squeeze = async (text) => {
+  const packed = await new Response(new Blob([text]).stream().pipeThrough(new CompressionStream('deflate-raw'))).arrayBuffer();
+  return btoa(Array.from(new Uint8Array(packed), (c) => String.fromCharCode(c)).join('')).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '');
+};
+const unsqueeze = async (text) => {
+  const bytes = Uint8Array.from(atob(text.replace(/-/g, '+').replace(/_/g, '/')), (c) => c.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'))).text();
+};
+
+/** The whole scene in the link's fragment, which no server sees. */
+export async function copyLink() {
+  const scene = await squeeze(JSON.stringify(store.state.document));
+  await copy(`${location.origin}/#token=${store.link.token}&name=${encodeURIComponent(store.state.file)}&scene=${scene}`, 'Link');
+}
+
+async function upload(text, name) {
+  try {
+    await store.link.call('scene?name=' + encodeURIComponent(name), {method: 'POST', body: text});
+  } catch (error) {
+    store.update({error: {at: '', reason: error.message}});
+  }
+}
+
+/** A link's scene takes the place of the server's, once: then the address forgets it. */
+export async function openLink() {
+  const parts = new URLSearchParams(location.hash.slice(1)), scene = parts.get('scene');
+  if (parts.get('token')) history.replaceState(null, '', '#token=' + parts.get('token'));
+  if (!scene) return;
+  try {
+    await upload(await unsqueeze(scene), parts.get('name') || 'link.json');
+  } catch {
+    store.notice('The link is damaged: its scene cannot be read.');
+  }
+}
+
+export async function openFile(file) {
+  if (!file.name.endsWith('.json')) return store.notice('Drop a scene (.json); models are opened from the folder that sundog was started in.');
+  await upload(await file.text(), file.name);
+}
+
+export function OpenDialog({onClose}) {
+  const [files, setFiles] = useState(null);
+  const [wanted, want] = useState('');
+  useEffect(() => {
+    store.link.json('files').then(setFiles, tell);
+  }, []);
+  const open = (file) => {
+    store.say('open', {file});
+    onClose();
+  };
+  const shown = (files ?? []).filter((f) => f.toLowerCase().includes(wanted.toLowerCase()));
+  return html`<${Dialog} title="Open" onClose=${onClose}>
+    <input type="search" class="filter" aria-label="Find a file" placeholder="Find a scene or model" value=${wanted} onInput=${(e) => want(e.target.value)} />
+    <ul class="files">${shown.map((f) => html`<li key=${f}><button type="button" onClick=${() => open(f)}>${f}</button></li>`)}</ul>
+    ${files && shown.length === 0 && html`<p class="hint">No scene or model like that below the folder that sundog was started in.</p>`}
+    <label class="button">Open a file of this computer<input type="file" accept=".json" class="hidden" onChange=${(e) => {
+      if (e.target.files[0]) openFile(e.target.files[0]);
+      onClose();
+    }} /></label>
+  </${Dialog}>`;
+}
+
+export function CopyDialog({copyable}) {
+  return html`<${Dialog} title=${copyable.what} onClose=${() => store.update({copyable: null})}>
+    <p>The browser does not let the page copy by itself. Select the text and copy it:</p>
+    <textarea class="copyable" readonly rows="6" aria-label=${copyable.what} onFocus=${(e) => e.target.select()}>${copyable.text}</textarea></${Dialog}>`;
+}
+
+export function SaveMenu() {
+  const [open, setOpen] = useState(false);
+  const items = [['Scene (.json)', saveScene], ['Picture (.png)', () => savePicture('png')], ['Picture (.exr)', () => savePicture('exr')],
+    ['Copy the command line', copyCommand], ['Copy a link to this state', copyLink]];
+  return html`<div class="menu" onKeyDown=${(e) => e.key === 'Escape' && setOpen(false)} onFocusOut=${(e) => !e.currentTarget.contains(e.relatedTarget) && setOpen(false)}>
+    <button type="button" class="button" aria-haspopup="menu" aria-expanded=${open} onClick=${() => setOpen(!open)}>Save</button>
+    ${open && html`<ul role="menu">${items.map(([name, act]) => html`<li role="none"><button type="button" role="menuitem" onClick=${() => {
+      setOpen(false);
+      act();
+    }}>${name}</button></li>`)}</ul>`}
+  </div>`;
+}

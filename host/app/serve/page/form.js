@@ -1,0 +1,131 @@
+// A form for any part of the scene, made from its schema: objects become groups, alternatives a choice, lists rows.
+import {html, Group, Button, useStore} from './ui.js';
+import {store} from './store.js';
+import {join} from './pointer.js';
+import {resolve, variants, fits, sample, words, unitOf, nameOf} from './schema.js';
+import {BooleanField, ChoiceField, CodeField, ColorField, NumberField, Row, TextField, VectorField} from './fields.js';
+
+const isColor = (s) => ['color', 'share_color', 'light_color'].includes(s.kind);
+const isVector = (s) => s.type === 'array' && s.minItems === s.maxItems && s.minItems <= 4 && ['number', 'integer'].includes(resolve(s.items).type);
+const names = {
+  material_name: () => Object.keys(store.state.document.materials ?? {}),
+  formula_name: () => store.state.formulas.map((f) => f.name),
+};
+/** Keys by which a schema refers to a table of the document, by what their descriptions say. */
+const tableOf = (description = '') => /^The name of (?:the|a) (medium|mesh|field|material)\b/.exec(description)?.[1];
+const tables = {medium: 'media', mesh: 'meshes', field: 'fields', material: 'materials'};
+
+/** One value at `at`. `schema` may be a reference; `required` values have no reset. */
+export function Field({schema, at, value, label, required}) {
+  const s = resolve(schema);
+  const common = {
+    label, at, value, help: s.description, fallback: s.default,
+    onSet: (next, gesture) => store.set(at, next, gesture),
+    onReset: required ? undefined : () => store.set(at, undefined),
+  };
+  const table = tables[tableOf(s.description)];
+  if (names[s.kind]) return html`<${ChoiceField} ...${common} choices=${names[s.kind]()} />`;
+  if (table) return html`<${ChoiceField} ...${common} choices=${['', ...Object.keys(store.state.document[table] ?? {})]} onSet=${(v) => store.set(at, v || undefined)} />`;
+  if (s.kind === 'formula_text') return html`<${CodeField} ...${common} />`;
+  if (isColor(s)) return html`<${ColorField} ...${common} />`;
+  if (isVector(s)) return html`<${VectorField} ...${common} names=${['x', 'y', 'z', 'w'].slice(0, s.minItems)} />`;
+  if (s.type === 'number' || s.type === 'integer')
+    return html`<${NumberField} ...${common} min=${s.minimum ?? s.exclusiveMinimum} max=${s.maximum ?? s.exclusiveMaximum} whole=${s.type === 'integer'} unit=${unitOf(s.description)} />`;
+  if (s.type === 'boolean') return html`<${BooleanField} ...${common} />`;
+  if (s.enum) return html`<${ChoiceField} ...${common} choices=${s.enum} />`;
+  if (s.anyOf) return html`<${Alternatives} ...${common} schema=${s} required=${required} />`;
+  if (s.type === 'array') return html`<${List} ...${common} schema=${s} />`;
+  if (s.type === 'string') return html`<${TextField} ...${common} />`;
+  return html`<${Part} ...${common} schema=${schema} required=${required} />`;
+}
+
+const altName = (schema) => {
+  const s = resolve(schema);
+  if (isColor(s)) return 'colour';
+  if (s.type === 'number' || s.kind === 'coefficient' || s.kind === 'share') return 'number';
+  if (s.kind) return words(s.kind.replace(/_(or|name).*/, '')).toLowerCase();
+  return s.type === 'array' ? 'vector' : s.type ?? 'value';
+};
+
+/** A value of one of several kinds: a choice of the kind, and the value's own widget. */
+function Alternatives({schema, at, value, label, help, fallback, required, onReset}) {
+  const options = schema.anyOf.flatMap((one) => (resolve(one).anyOf ? resolve(one).anyOf : [one]));
+  const given = value ?? fallback;
+  const chosen = given === undefined ? -1 : options.findIndex((one) => fits(one, given));
+  const kinds = options.map(altName);
+  const pick = (event) => {
+    const index = Number(event.target.value);
+    store.set(at, index < 0 ? undefined : sample(options[index]));
+  };
+  return html`<div class="alternatives">
+    <${Row} label=${label} help=${help} at=${at} isSet=${value !== undefined} onReset=${required ? undefined : onReset}>
+      <select aria-label=${label + ', kind'} value=${chosen} onChange=${pick}>
+        ${!required && html`<option value="-1">default</option>`}${kinds.map((kind, i) => html`<option value=${i}>${kind}</option>`)}</select>
+    </${Row}>
+    ${chosen >= 0 && html`<div class="indent"><${Field} schema=${options[chosen]} at=${at} value=${given} label=${words(kinds[chosen])} required=${true} /></div>`}
+  </div>`;
+}
+
+function List({schema, at, value, label, help}) {
+  const items = value ?? [];
+  return html`<${Group} title=${`${label} (${items.length})`} id=${at} open=${items.length < 8}>
+    ${items.map((item, i) => html`<div class="item"><div><${Field} schema=${schema.items} at=${join(at, i)} value=${item} label=${`${i + 1}`} required=${true} /></div>
+      <${Button} kind="small" label="✕" title=${`Remove ${label} ${i + 1}`} disabled=${items.length <= (schema.minItems ?? 0)} onClick=${() => store.set(join(at, i), undefined)} /></div>`)}
+    <${Button} kind="small" label="Add" title=${help} onClick=${() => store.set(at, [...items, items.length ? items[items.length - 1] : sample(schema.items)])} />
+  </${Group}>`;
+}
+
+/** An object of the scene as a group; one that is missing can be added. */
+function Part({schema, at, value, label, help, required, onReset}) {
+  const s = resolve(schema);
+  if (value === undefined)
+    return html`<${Row} label=${label} help=${help} at=${at}><${Button} kind="small" label="Add" title=${help} onClick=${() => store.set(at, sample(schema))} /></${Row}>`;
+  if (s.properties || variants(schema)) {
+    const remove = !required && html`<${Button} kind="small" label="Remove" title=${'Remove ' + label} onClick=${onReset} />`;
+    return html`<${Group} title=${label} id=${at} actions=${remove}><${Fields} schema=${schema} at=${at} value=${value} /></${Group}>`;
+  }
+  return html`<${Json} at=${at} value=${value} label=${label} help=${help} onReset=${onReset} />`;
+}
+
+/** What no widget is made for: its text. */
+function Json({at, value, label, help, onReset}) {
+  const send = (event) => {
+    try {
+      store.set(at, JSON.parse(event.target.value));
+    } catch (error) {
+      store.update({error: {at, reason: error.message}});
+    }
+  };
+  return html`<${Row} label=${label} help=${help} at=${at} isSet onReset=${onReset} wide><textarea aria-label=${label} rows="3" spellcheck="false" onChange=${send}>${JSON.stringify(value)}</textarea></${Row}>`;
+}
+
+/** All keys of an object; `only` and `without` choose among them. An object with a "type" shows the keys of its type. */
+export function Fields({schema, at, value, only, without = [], defaults = {}}) {
+  const types = variants(schema);
+  const s = types ? types[value?.type] ?? {} : resolve(schema);
+  const required = s.required ?? [];
+  const keys = Object.keys(s.properties ?? {}).filter((key) => (!only || only.includes(key)) && !without.includes(key) && key !== '$schema');
+  const setType = (type) => {
+    const kept = Object.fromEntries(Object.entries(value).filter(([key]) => key in (types[type].properties ?? {})));
+    store.set(at, {...sample(types[type]), ...kept, type});
+  };
+  return html`<div class="fields">
+    ${types && !without.includes('type') && html`<${ChoiceField} label="Type" at=${at + '/type'} value=${value?.type} choices=${Object.keys(types)} onSet=${setType} />`}
+    ${keys.filter((key) => !(types && key === 'type')).map((key) => html`<${Field} key=${at + key} schema=${key in defaults ? {...s.properties[key], default: defaults[key]} : s.properties[key]} at=${join(at, key)} value=${value?.[key]}
+      label=${words(key)} required=${required.includes(key)} />`)}
+  </div>`;
+}
+
+/** A table of named things (materials, media...): each a group, with buttons to add and remove. */
+export function Table({name, schema, title, open}) {
+  const table = useStore(store, (st) => st.document?.[name]) ?? {};
+  const add = () => {
+    let next = title.toLowerCase();
+    for (let i = 2; next in table; ++i) next = `${title.toLowerCase()} ${i}`;
+    store.set(join('/' + name, next), sample(schema));
+  };
+  return html`${Object.entries(table).map(([key, value]) => html`<${Group} key=${key} title=${key} id=${name + '/' + key} open=${open === key}
+      actions=${html`<${Button} kind="small" label="Remove" title=${`Remove ${key}`} onClick=${() => store.set(join('/' + name, key), undefined)} />`}>
+    <${Fields} schema=${schema} at=${join('/' + name, key)} value=${value} /></${Group}>`)}
+    <${Button} kind="small" label=${'Add ' + title.toLowerCase()} onClick=${add} />`;
+}

@@ -1,0 +1,66 @@
+// The line to the server: calls over HTTP with the token in a header, messages and pictures over a socket whose first message is
+// the token. It comes back by itself when the server does.
+function tokenOfAddress() {
+  const found = new URLSearchParams(location.hash.slice(1)).get('token');
+  try {
+    if (found) sessionStorage.setItem('sundog-token', found);
+    return found ?? sessionStorage.getItem('sundog-token') ?? '';
+  } catch {
+    return found ?? '';
+  }
+}
+
+export class Link {
+  token = tokenOfAddress();
+  wait = 300;
+
+  constructor(on) {
+    this.on = on;
+  }
+
+  async call(path, options = {}) {
+    const answer = await fetch('/api/' + path, {...options, headers: {'X-Sundog-Token': this.token}});
+    if (answer.ok) return answer;
+    throw Object.assign(new Error((await answer.text()).trim()), {status: answer.status});
+  }
+  async json(path) {
+    return (await this.call(path)).json();
+  }
+
+  start() {
+    const socket = new WebSocket(`ws://${location.host}/ws`);
+    socket.binaryType = 'arraybuffer';
+    this.socket = socket;
+    socket.onopen = () => socket.send(this.token);
+    socket.onmessage = (event) => {
+      if (typeof event.data !== 'string') return this.takePicture(event.data);
+      const message = JSON.parse(event.data);
+      if (message.is === 'welcome') {
+        this.wait = 300;
+        this.on.open();
+      }
+      this.on.message(message);
+    };
+    socket.onclose = (event) => {
+      if (event.code === 1008) return this.on.closed('token');
+      this.on.closed('no');
+      setTimeout(() => this.start(), this.wait);
+      this.wait = Math.min(3000, this.wait * 1.5);
+    };
+  }
+  send(message) {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+
+  /** Bytes: length of the header, the header as JSON, an image file. The next one is sent when this one is on the screen. */
+  async takePicture(bytes) {
+    const length = new DataView(bytes).getUint32(0, true);
+    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));
+    const blob = new Blob([new Uint8Array(bytes, 4 + length)], {type: header.settled ? 'image/png' : 'image/jpeg'});
+    try {
+      await this.on.picture(header, blob);
+    } finally {
+      if (this.socket?.readyState === WebSocket.OPEN) this.socket.send('ack');
+    }
+  }
+}

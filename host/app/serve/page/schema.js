@@ -1,0 +1,76 @@
+// Reading the scene's JSON Schema for the panels: references, variants by "type" or by what fits, defaults, and small valid values.
+import {store} from './store.js';
+
+const defs = () => store.state.schema.$defs;
+export const nameOf = (schema) => schema?.$ref?.replace('#/$defs/', '');
+
+/** The schema with its references followed; what stands beside a reference wins. */
+export function resolve(schema) {
+  let out = schema ?? {};
+  for (let i = 0; out.$ref && i < 10; ++i) {
+    const {$ref, ...rest} = out;
+    out = {...defs()[nameOf({$ref})], ...rest, kind: out.kind ?? nameOf({$ref})};
+  }
+  return out;
+}
+export const definition = (name) => resolve({$ref: '#/$defs/' + name});
+
+/** The variants of a schema whose objects differ by their "type": {sphere: schema, ...}; null for others. */
+export function variants(schema) {
+  const s = resolve(schema);
+  if (!s.allOf?.[0]?.if) return null;
+  return Object.fromEntries(s.allOf.map((one) => [one.if.properties.type.const, resolve(one.then)]));
+}
+
+/** Whether a value may be meant for a schema: its JSON type, its required keys, whether its keys are known. */
+export function fits(schema, value) {
+  const s = resolve(schema);
+  if (s.anyOf) return s.anyOf.some((one) => fits(one, value));
+  if (s.enum) return s.enum.includes(value);
+  if ('const' in s) return s.const === value;
+  if (s.type === 'number' || s.type === 'integer') return typeof value === 'number';
+  if (s.type === 'array') return Array.isArray(value) && value.length >= (s.minItems ?? 0) && value.length <= (s.maxItems ?? 1e9) &&
+    (!s.items || value.every((item) => fits(s.items, item)));
+  if (s.type === 'object' || s.properties)
+    return value !== null && typeof value === 'object' && !Array.isArray(value) &&
+      (s.required ?? []).every((key) => key in value) &&
+      (s.additionalProperties !== false || Object.keys(value).every((key) => key in (s.properties ?? {})));
+  return !s.type || typeof value === s.type;
+}
+
+/** A small value that the schema takes: its default, or the least of each part. */
+export function sample(schema, depth = 0) {
+  const s = resolve(schema);
+  if ('default' in s) return s.default;
+  if ('const' in s) return s.const;
+  if (s.enum) return s.enum[0];
+  const named = {color: [0.8, 0.8, 0.8], share_color: [0.8, 0.8, 0.8], vec3: [0, 0, 0], length: 1,
+    interval: {min: [-1.5, -1.5, -1.5], max: [1.5, 1.5, 1.5]}, material_name: Object.keys(store.state.document?.materials ?? {})[0] ?? '',
+    formula_name: 'mandelbulb', texture_name: {texture: Object.keys(store.state.document?.textures ?? {})[0] ?? ''}}[s.kind];
+  if (named !== undefined) return named;
+  const types = variants(schema);
+  if (types) {
+    const type = Object.keys(types)[0];
+    return {type, ...sample(types[type], depth + 1)};
+  }
+  if (s.anyOf) return sample(s.anyOf[0], depth + 1);
+  if (s.type === 'number' || s.type === 'integer') return Math.max(s.minimum ?? s.exclusiveMinimum ?? 0, -1e9) > 0 ? s.minimum ?? 2 * s.exclusiveMinimum : Math.min(1, s.maximum ?? 1);
+  if (s.type === 'boolean') return false;
+  if (s.type === 'string') return 'name';
+  if (s.type === 'array') return depth > 6 ? [] : Array.from({length: s.minItems ?? 0}, () => sample(s.items, depth + 1));
+  if (s.oneOf?.[0]?.required) return Object.fromEntries(s.oneOf[0].required.map((key) => [key, sample(s.properties[key], depth + 1)]));
+  const out = {};
+  if (depth < 6) for (const key of s.required ?? []) if (s.properties?.[key]) out[key] = sample(s.properties[key], depth + 1);
+  return out;
+}
+
+/** "light_samples" as a person writes it. */
+export const words = (key) => String(key).replace(/_/g, ' ').replace(/^./, (c) => c.toUpperCase());
+
+/** Degrees, pixels, MiB: what the description says of its unit. */
+export function unitOf(description = '') {
+  if (/\bdegrees?\b/i.test(description)) return '°';
+  if (/\bin pixels\b/i.test(description)) return 'px';
+  if (/\bMiB\b/.test(description)) return 'MiB';
+  return '';
+}

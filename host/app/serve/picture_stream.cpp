@@ -1,0 +1,113 @@
+#include "app/serve/picture_stream.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "app/serve/messages.h"
+#include "base/clock.h"
+#include "base/image_io.h"
+#include "base/pixels/preview.h"
+
+namespace sundog {
+namespace {
+
+constexpr double status_seconds = 0.1;    // between two status messages while figures change
+constexpr double picture_seconds = 0.03;  // between two pictures
+constexpr double idle_seconds = 0.25;     // without a change
+constexpr int quality_full = 90, quality_coarse = 82;
+
+/// Colours without coverage, as `sundog render` keeps them in a PNG.
+Image opaque(const Image& image) {
+  Image out(image.width, image.height, 3);
+  const auto channels = static_cast<std::size_t>(image.channels);
+  for (std::size_t i = 0; i < out.data.size() / 3; ++i)
+    for (std::size_t c = 0; c < 3; ++c) out.data[3 * i + c] = image.data[channels * i + c];
+  return out;
+}
+
+}  // namespace
+
+std::string picture_message(const Snapshot& now, std::uint64_t version) {
+  const bool settled = now.state == SessionState::settled && now.shown == now.generation;
+  const Image& image = *now.picture;
+  const nlohmann::json header = {{"generation", now.shown}, {"version", version},    {"width", image.width},
+                                 {"height", image.height},  {"settled", settled},    {"block", now.block},
+                                 {"samples", now.samples},  {"seconds", now.seconds}};
+  const std::string text = header.dump();
+  std::string bytes;
+  for (unsigned shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(text.size() >> shift & 255);
+  bytes += text;
+  bytes += settled ? encode_image(opaque(image), "picture.png")
+                   : encode_preview(image, now.block > 1 ? quality_coarse : quality_full);
+  return bytes;
+}
+
+PictureStream::PictureStream(WebServer& server, RenderSession& session,
+                             std::function<std::uint64_t(Generation)> version_of)
+    : server_(server), session_(session), version_of_(std::move(version_of)), thread_([this] { run(); }) {}
+
+PictureStream::~PictureStream() {
+  stop_ = true;
+  thread_.join();
+}
+
+void PictureStream::greet(ClientId client) {
+  const std::lock_guard lock(mutex_);
+  if (!last_status_.empty()) server_.send(client, last_status_);
+  if (last_) server_.show(client, last_);
+}
+
+void PictureStream::tell_status(const Snapshot& now) {
+  std::string text = message_text(status_message(now));
+  const std::lock_guard lock(mutex_);
+  if (text == last_status_) return;
+  last_status_ = std::move(text);
+  server_.send_to_all(last_status_);
+}
+
+/// Whether there is no newer picture left to send.
+bool PictureStream::send_picture() {
+  if (server_.ready_clients() == 0) return false;
+  const Snapshot now = session_.snapshot();
+  if (!now.picture) return true;
+  const std::uint64_t version = version_of_(now.shown);
+  const bool settled = now.state == SessionState::settled && now.shown == now.generation;
+  if (now.picture == shown_ && settled == shown_settled_ && version == shown_version_) return true;
+  auto bytes = std::make_shared<const std::string>(picture_message(now, version));
+  shown_ = now.picture, shown_settled_ = settled, shown_version_ = version;
+  const std::lock_guard lock(mutex_);
+  last_ = bytes;
+  server_.show_to_all(std::move(bytes));
+  return true;
+}
+
+void PictureStream::run() {
+  std::uint64_t revision = 0;
+  double status_at = -1, picture_at = -1;
+  bool all_sent = true, told = true;
+  const Stopwatch clock;
+  while (!stop_) {
+    const bool waits = server_.clients() > 0 && !(all_sent && told);
+    const bool changed = session_.wait_for_change(revision, waits ? picture_seconds : idle_seconds);
+    if (!changed && all_sent && told) continue;
+    const Snapshot now = session_.snapshot(false);
+    revision = now.revision;
+    const bool ended = now.state >= SessionState::settled;
+    told = ended || clock.seconds() - status_at >= status_seconds;
+    if (told) tell_status(now), status_at = clock.seconds();
+    all_sent = ended || clock.seconds() - picture_at >= picture_seconds;
+    if (all_sent) {
+      all_sent = send_picture();
+      picture_at = clock.seconds();
+    }
+    // Changes come faster than pictures are made: the rest of the time is the renderer's.
+    const double spare = picture_seconds - (clock.seconds() - picture_at);
+    if (!ended && spare > 0)
+      std::this_thread::sleep_for(std::chrono::duration<double>(std::min(spare, 0.01)));
+  }
+}
+
+}  // namespace sundog

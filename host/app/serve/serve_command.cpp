@@ -1,0 +1,95 @@
+#include "app/serve/serve_command.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "app/options/option_helpers.h"
+#include "app/options/option_values.h"
+#include "app/options/pick_devices.h"
+#include "app/process/exit_status.h"
+#include "app/process/warnings.h"
+#include "app/serve/studio.h"
+#include "base/error.h"
+
+namespace sundog {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ServeOptions {
+  std::string scene, port;
+  std::vector<std::string> devices, hosts;
+};
+
+/// What is shown where no scene is named.
+constexpr const char* first_scene = R"({
+  "camera": {"position": [1.5, 1.05, -2.6], "target": [0, -0.02, 0], "fov": 44},
+  "image": {"width": 640, "height": 640, "background": {"bottom": [0.01, 0.012, 0.02], "top": [0.11, 0.14, 0.2]}},
+  "render": {"max_depth": 3},
+  "lights": [
+    {"type": "ambient", "intensity": 0.75},
+    {"type": "directional", "direction": [-0.9, -1, 0.75], "color": [1, 0.93, 0.82], "intensity": 1.1},
+    {"type": "point", "position": [-4, 1, -2], "color": [0.55, 0.7, 1], "intensity": 0.35}
+  ],
+  "materials": {
+    "surface": {"color": [1, 1, 1], "ambient": 0.3, "diffuse": 0.9, "specular": {"coefficient": 0.25, "exponent": 40}}
+  },
+  "objects": [
+    {"type": "fractal", "formula": "mandelbulb", "material": "surface", "detail": 0.75, "occlusion": 0.25,
+     "coloring": {"by": "point", "scale": 1.15, "offset": 0.05,
+       "palette": [[0.62, 0.16, 0.05], [0.85, 0.5, 0.16], [0.9, 0.83, 0.6], [0.16, 0.32, 0.46], [0.07, 0.1, 0.22]]}}
+  ]
+})";
+
+SceneDocument first_document(const ServeOptions& options) {
+  SceneDocument document;
+  if (options.scene.empty())
+    document.replace(nlohmann::json::parse(first_scene), fs::current_path() / "untitled.json");
+  else
+    document.open(fs::absolute(options.scene));
+  return document;
+}
+
+int serve(const ServeOptions& options) {
+  SceneDocument document = first_document(options);
+  print_warnings(document.scene()->warnings);
+  StudioSetup setup{fs::current_path(), enumerate_devices(), {}};
+  setup.picked =
+      pick_devices(setup.devices, options.devices.empty() ? devices_of_environment() : options.devices);
+  WebServer server(options.port.empty() ? 0 : parse_number("--port", options.port, 0, 65535), {});
+  const Gate gate = make_gate(server.port(), random_token(), options.hosts);
+  Studio studio(server, std::move(setup), std::move(document));
+  fmt::print("http://127.0.0.1:{}/#token={}\n", server.port(), gate.token);
+  std::fflush(stdout);
+  server.run(gate, studio.handlers());
+  return exit_done;
+}
+
+void check_host(const std::string& host) {
+  const std::size_t colon = host.rfind(':');
+  if (colon == std::string::npos || colon == 0 || colon + 1 == host.size() ||
+      host.find_first_not_of("0123456789", colon + 1) != std::string::npos ||
+      host.find('/') != std::string::npos)
+    throw UsageError(fmt::format("--host {}: wanted NAME:PORT as the browser's address line has it", host));
+}
+
+}  // namespace
+
+void add_serve(Arguments& root, Command& chosen) {
+  const auto options = std::make_shared<ServeOptions>();
+  Arguments* app = root.add_subcommand("serve", "Show a scene in a browser, to explore and change it live");
+  value(app, "SCENE", "FILE", options->scene, "a .json scene or a model; without it a Mandelbulb");
+  value(app, "--port", "N", options->port, "port on the loopback address (default: any that is free)");
+  values(app, "--device", "SPEC", options->devices, device_help);
+  values(
+      app, "--host", "NAME:PORT", options->hosts,
+      "a further name and port by which browsers reach this server, as through a tunnel with another port");
+  app->callback([options, &chosen] {
+    for (const std::string& host : options->hosts) check_host(host);
+    chosen = RunLater{[options] { return serve(*options); }};
+  });
+}
+
+}  // namespace sundog

@@ -1,0 +1,215 @@
+#include "app/serve/studio.h"
+
+#include <fmt/format.h>
+
+#include "app/options/option_values.h"
+#include "app/options/pick_devices.h"
+#include "app/serve/folder.h"
+#include "app/serve/messages.h"
+#include "base/error.h"
+#include "render/device/tuning.h"
+#include "scene/json/parse.h"
+
+namespace sundog {
+using nlohmann::json;
+
+namespace {
+
+/// What a page sends is of no file.
+constexpr const char* page_file = "the page";
+
+std::string text_of(const json& message, const char* key) {
+  const auto found = message.find(key);
+  return found != message.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+std::vector<Change> changes_of(const json& message) {
+  constexpr std::size_t most_changes = 200;
+  const auto list = message.find("changes");
+  if (list == message.end() || !list->is_array() || list->empty() || list->size() > most_changes)
+    throw UsageError("wanted 1 to 200 changes");
+  std::vector<Change> changes;
+  for (const json& one : *list) {
+    if (!one.is_object() || text_of(one, "at").empty())
+      throw UsageError("wanted changes with \"at\" and \"value\"");
+    Change change{text_of(one, "at"), {}};
+    if (one.contains("value")) change.value = one["value"];
+    changes.push_back(std::move(change));
+  }
+  return changes;
+}
+
+}  // namespace
+
+Studio::Studio(WebServer& server, StudioSetup setup, SceneDocument document)
+    : server_(server),
+      setup_(std::move(setup)),
+      document_(std::move(document)),
+      session_(setup_.picked),
+      stream_(server, session_, [this](Generation generation) { return version_of(generation); }) {
+  begin_drawing();
+}
+
+/// No new work, then what the threads use.
+Studio::~Studio() {
+  edits_.stop();
+  session_.cancel();
+  asks_.stop();
+}
+
+WebHandlers Studio::handlers() {
+  WebHandlers all;
+  all.message = [this](ClientId client, std::string text) {
+    if (!edits_.post([this, client, text = std::move(text)] { take_message(client, text); }))
+      server_.send(client, message_text({{"is", "refused"}, {"reason", "too much is waiting"}}));
+  };
+  all.opened = [this](ClientId client) {
+    edits_.post([this, client] {
+      server_.send(client,
+                   message_text({{"is", "welcome"}, {"client", client}, {"version", SUNDOG_VERSION}}));
+      server_.send(client, message_text(devices_message(setup_.devices, setup_.picked)));
+      server_.send(client, message_text(scene_message(document_)));
+      stream_.greet(client);
+    });
+  };
+  all.closed = [](ClientId) {};
+  all.ready = [](ClientId) {};
+  all.answer = [this](WebRequest request, std::function<void(WebAnswer)> reply) {
+    const bool slow = request.path == "/api/picture";
+    const bool taken =
+        (slow ? asks_ : edits_).post([this, request = std::move(request), reply] { reply(answer(request)); });
+    if (!taken) reply({503, "text/plain; charset=utf-8", "too much is waiting\n", ""});
+  };
+  return all;
+}
+
+std::uint64_t Studio::version_of(Generation generation) {
+  const std::lock_guard lock(mutex_);
+  const auto found = versions_.find(generation);
+  return found == versions_.end() ? 0 : found->second;
+}
+
+void Studio::begin_drawing() {
+  const std::lock_guard lock(mutex_);
+  drawn_ = document_.scene();
+  const Generation generation = session_.start(drawn_, settings_);
+  versions_[generation] = document_.version();
+  constexpr std::size_t most_versions = 1000;
+  if (versions_.size() > most_versions) versions_.erase(versions_.begin());
+}
+
+void Studio::tell_scene() { server_.send_to_all(message_text(scene_message(document_))); }
+
+void Studio::refuse(ClientId client, const json& message, const std::string& place,
+                    const std::string& reason) {
+  json answer = {{"is", "refused"}, {"at", place}, {"reason", reason}};
+  if (message.is_object() && message.contains("id")) answer["id"] = message["id"];
+  server_.send(client, message_text(answer));
+}
+
+void Studio::take_message(ClientId client, const std::string& text) {
+  json message;
+  try {
+    message = parse_json(text, page_file);
+    if (!message.is_object()) throw UsageError("wanted an object");
+    dispatch(client, message);
+  } catch (const SceneError& error) {
+    refuse(client, message, error.place, error.reason);
+  } catch (const BuildError& error) {
+    refuse(client, message, "", std::string(error.what()) + "\n" + error.log);
+  } catch (const std::exception& error) {
+    refuse(client, message, "", error.what());
+  }
+}
+
+void Studio::dispatch(ClientId client, const json& message) {
+  const std::string what = text_of(message, "do");
+  if (what == "edit") return edit(client, message);
+  if (what == "undo") return step(true);
+  if (what == "redo") return step(false);
+  if (what == "pick") return pick(client, message);
+  if (what == "devices") return use_devices(message);
+  if (what == "options") return set_options(message);
+  if (what == "scene") return server_.send(client, message_text(scene_message(document_)));
+  if (what == "stop") return session_.cancel();
+  if (what == "draw") return begin_drawing();
+  if (what == "open") {
+    document_.open(file_below(setup_.folder, text_of(message, "file")));
+    begin_drawing();
+    return tell_scene();
+  }
+  throw UsageError(fmt::format("\"{}\" is nothing that this server does", what));
+}
+
+void Studio::edit(ClientId client, const json& message) {
+  const std::vector<Change> changes = changes_of(message);
+  document_.apply(changes, text_of(message, "gesture"));
+  begin_drawing();
+  server_.send_to_all(message_text({{"is", "changed"},
+                                    {"version", document_.version()},
+                                    {"client", client},
+                                    {"id", message.value("id", json(nullptr))},
+                                    {"changes", message["changes"]},
+                                    {"can_undo", document_.can_undo()},
+                                    {"can_redo", document_.can_redo()},
+                                    {"resolved", resolved_json(*document_.scene())}}));
+}
+
+void Studio::step(bool back) {
+  if (!(back ? document_.undo() : document_.redo())) return;
+  begin_drawing();
+  tell_scene();
+}
+
+void Studio::use_devices(const json& message) {
+  std::vector<std::string> specs;
+  if (const auto list = message.find("specs"); list != message.end() && list->is_array())
+    for (const json& spec : *list)
+      if (spec.is_string()) specs.push_back(spec);
+  if (specs.empty()) throw UsageError("at least one device has to draw");
+  std::vector<DeviceInfo> picked = select_devices(setup_.devices, specs);
+  session_.use_devices(picked);
+  setup_.picked = std::move(picked);
+  begin_drawing();
+  server_.send_to_all(message_text(devices_message(setup_.devices, setup_.picked)));
+}
+
+void Studio::set_options(const json& message) {
+  SessionSettings settings = settings_;
+  if (const std::string split = text_of(message, "split"); !split.empty()) {
+    settings.split = parse_split(split);
+    if (!settings.split.shares.empty() && settings.split.shares.size() != setup_.picked.size())
+      throw UsageError(
+          fmt::format("split {}: wanted a share for each of {} devices", split, setup_.picked.size()));
+    split_ = split;
+  }
+  if (const std::string group = text_of(message, "work_group"); !group.empty()) {
+    settings.work_group = parse_work_group(group);
+    work_group_ = group;
+  }
+  if (const auto coarse = message.find("coarse"); coarse != message.end() && coarse->is_boolean())
+    settings.coarse = *coarse;
+  settings_ = settings;
+  begin_drawing();
+  server_.send_to_all(message_text(
+      {{"is", "options"}, {"split", split_}, {"work_group", work_group_}, {"coarse", settings_.coarse}}));
+}
+
+void Studio::pick(ClientId client, const json& message) {
+  const int x = message.at("x").get<int>(), y = message.at("y").get<int>();
+  const json id = message.value("id", json(nullptr));
+  asks_.post([this, client, x, y, id] {
+    json answer = {{"is", "picked"}, {"object", nullptr}};
+    try {
+      const std::optional<Picked> picked = session_.pick(x, y);
+      const std::lock_guard lock(mutex_);
+      if (picked) answer = picked_message(*picked, *drawn_);
+    } catch (const std::exception& error) {
+      answer["error"] = error.what();
+    }
+    answer["id"] = id;
+    server_.send(client, message_text(answer));
+  });
+}
+
+}  // namespace sundog

@@ -1,0 +1,67 @@
+// The viewer between its pages and the renderer: one scene that all pages see and change, one render session,
+// messages in and out. Pages' messages are done one after the other on a thread of their own; what waits for
+// a device or encodes a file has another.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "app/serve/picture_stream.h"
+#include "app/serve/scene_document.h"
+#include "app/serve/web_server.h"
+#include "app/serve/work_queue.h"
+#include "render/session/render_session.h"
+
+namespace sundog {
+
+struct StudioSetup {
+  std::filesystem::path folder;  // whose scenes may be opened
+  std::vector<DeviceInfo> devices, picked;
+};
+
+class Studio {
+ public:
+  /// `document` holds a scene. Begins to draw it.
+  Studio(WebServer& server, StudioSetup setup, SceneDocument document);
+  ~Studio();
+  Studio(const Studio&) = delete;
+  Studio& operator=(const Studio&) = delete;
+
+  WebHandlers handlers();
+
+ private:
+  friend class StudioCalls;
+  void begin_drawing();
+  void take_message(ClientId client, const std::string& text);
+  void dispatch(ClientId client, const nlohmann::json& message);
+  void edit(ClientId client, const nlohmann::json& message);
+  void step(bool back);
+  void use_devices(const nlohmann::json& message);
+  void set_options(const nlohmann::json& message);
+  void pick(ClientId client, const nlohmann::json& message);
+  void tell_scene();
+  void refuse(ClientId client, const nlohmann::json& message, const std::string& place,
+              const std::string& reason);
+  WebAnswer answer(const WebRequest& request);  // what reads or changes the document
+  WebAnswer open_upload(const WebRequest& request);
+  WebAnswer picture(const std::string& format);  // on the second thread
+  std::uint64_t version_of(Generation generation);
+  std::string command_line() const;
+
+  WebServer& server_;
+  StudioSetup setup_;
+  SceneDocument document_;
+  RenderSession session_;
+  SessionSettings settings_;
+  std::string split_ = "dynamic", work_group_ = "auto";
+  std::mutex mutex_;  // for what the threads share: versions_, drawn_
+  std::map<Generation, std::uint64_t> versions_;
+  std::shared_ptr<const SceneDescription> drawn_;
+  PictureStream stream_;
+  WorkQueue edits_, asks_;  // last: their threads use all others
+};
+
+}  // namespace sundog

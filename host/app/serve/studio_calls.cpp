@@ -1,0 +1,106 @@
+// What a page asks the studio over HTTP: the schema and the lists that its panels are made of, files that go
+// out, scenes that come in. Each call has the token in its header; only POST changes anything.
+#include <fmt/format.h>
+
+#include "app/commands/formulas_command.h"
+#include "app/serve/folder.h"
+#include "app/serve/messages.h"
+#include "app/serve/page_files.h"
+#include "app/serve/studio.h"
+#include "base/error.h"
+#include "base/image_io.h"
+#include "scene/json/parse.h"
+
+namespace sundog {
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+constexpr const char* json_type = "application/json; charset=utf-8";
+
+WebAnswer plain(int status, std::string text) {
+  return {status, "text/plain; charset=utf-8", std::move(text) + "\n", ""};
+}
+
+WebAnswer json_answer(const json& value) { return {200, json_type, message_text(value), ""}; }
+
+/// Image of a settled frame as `sundog render` writes it: without coverage where that would look like holes.
+Image for_format(const Image& image, const std::string& format) {
+  if (format == "exr" || image.channels == 3) return image;
+  Image out(image.width, image.height, 3);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) std::copy_n(image.pixel(x, y), 3, out.pixel(x, y));
+  return out;
+}
+
+std::string quoted(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+}  // namespace
+
+WebAnswer Studio::answer(const WebRequest& request) {
+  try {
+    if (!request.path.starts_with("/api/")) return page_answer(request.path);
+    const std::string call = request.method + " " + request.path.substr(5);
+    if (call == "GET schema") return {200, json_type, scene_schema(), ""};
+    if (call == "GET formulas") return {200, json_type, formulas_json(), ""};
+    if (call == "GET files") return json_answer(list_scenes(setup_.folder));
+    if (call == "GET command") return plain(200, command_line());
+    if (call == "GET scene")
+      return {200, json_type, document_.now().dump(2) + "\n", document_.file().stem().string() + ".json"};
+    if (call == "GET picture") return picture(query_value(request.query, "format"));
+    if (call == "POST scene") return open_upload(request);
+    return plain(404, "there is nothing here");
+  } catch (const SceneError& error) {
+    return plain(422, error.what());
+  } catch (const UsageError& error) {
+    return plain(422, error.what());
+  } catch (const std::exception& error) {
+    return plain(500, error.what());
+  }
+}
+
+/// A scene that was dropped on the page, or that a link carries. Files that it names count from the folder of
+/// the scene before.
+WebAnswer Studio::open_upload(const WebRequest& request) {
+  const std::string name = safe_file_name(query_value(request.query, "name"));
+  const fs::path file = document_.file().parent_path() / name;
+  document_.replace(parse_json(request.body, name), file);
+  begin_drawing();
+  tell_scene();
+  return plain(200, "opened");
+}
+
+WebAnswer Studio::picture(const std::string& format) {
+  if (format != "png" && format != "exr") return plain(400, "wanted format=png or format=exr");
+  const Snapshot now = session_.snapshot();
+  if (now.state != SessionState::settled || !now.picture)
+    return plain(409, "the picture is not finished yet");
+  const std::string name = "picture." + format;
+  return {200, format == "png" ? "image/png" : "image/x-exr",
+          encode_image(for_format(*now.picture, format), name), name};
+}
+
+std::string Studio::command_line() const {
+  const std::string file = document_.file().string();
+  std::error_code ignored;
+  std::string text = "sundog render ";
+  const auto settings = settings_between(document_.opened(), document_.now(), document_.file());
+  if (settings && fs::exists(document_.file(), ignored))
+    text += quoted(file);
+  else
+    text += quoted(document_.file().stem().string() + ".json");  // the page says: save the scene first
+  text += " -o picture.png";
+  for (const DeviceInfo& device : setup_.picked) text += " --device " + quoted(device_spec(device));
+  if (split_ != "dynamic") text += " --split " + quoted(split_);
+  if (work_group_ != "auto") text += " --work-group " + quoted(work_group_);
+  if (settings)
+    for (const std::string& setting : *settings) text += " --set " + quoted(setting);
+  return text;
+}
+
+}  // namespace sundog

@@ -1,0 +1,139 @@
+// One connection that speaks HTTP: each request passes the gate before its body is read.
+#pragma once
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <optional>
+
+#include "app/serve/web_socket.h"
+
+namespace sundog {
+
+inline constexpr const char* security_policy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
+    "base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'";
+
+inline RequestHead head_of(const http::request<http::string_body>& request) {
+  RequestHead head;
+  head.method = std::string(request.method_string());
+  const std::string target(request.target());
+  const std::size_t mark = target.find('?');
+  head.path = target.substr(0, mark);
+  if (mark != std::string::npos) head.query = target.substr(mark + 1);
+  for (const auto& field : request) {
+    std::string name(field.name_string());
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const bool added = head.headers.emplace(name, std::string(field.value())).second;
+    if (!added && (name == "host" || name == "origin" || name == token_header)) head.repeated_host = true;
+  }
+  return head;
+}
+
+/// A connection that speaks HTTP, one request after the other, until one of them makes it a socket.
+class WebConnection : public std::enable_shared_from_this<WebConnection> {
+ public:
+  WebConnection(WebState& server, tcp::socket&& socket)
+      : server_(server), counted_(server.connections), stream_(std::move(socket)) {}
+
+  void read_head() {
+    parser_.emplace();
+    parser_->header_limit(static_cast<std::uint32_t>(server_.limits.header_bytes));
+    parser_->body_limit(server_.limits.body_bytes);
+    stream_.expires_after(std::chrono::seconds(server_.limits.header_seconds));
+    http::async_read_header(stream_, buffer_, *parser_,
+                            [self = shared_from_this()](NetError error, std::size_t) {
+                              if (error == http::error::body_limit)
+                                return self->refuse({413, "the body is too large"});
+                              if (error == http::error::header_limit)
+                                return self->refuse({431, "the head is too large"});
+                              if (error == http::error::end_of_stream || error == beast::error::timeout)
+                                return;
+                              if (error) return self->refuse({400, "this is not HTTP"});
+                              self->check_head();
+                            });
+  }
+
+  /// Answers and closes: what is left of the request is not read.
+  void refuse(const Refusal& refusal) {
+    write({refusal.status, "text/plain; charset=utf-8", refusal.reason + "\n", ""}, false);
+  }
+
+ private:
+  void check_head() {
+    const auto& request = parser_->get();
+    const RequestHead head = head_of(request);
+    if (const Refusal refusal = check_request(server_.gate, head); refusal.status) return refuse(refusal);
+    if (head.path == "/ws") {
+      if (!websocket::is_upgrade(request)) return refuse({426, "wanted a WebSocket"});
+      if (server_.upgraded >= server_.limits.sockets) return refuse({503, "too many pages are open"});
+      stream_.expires_never();
+      return std::make_shared<WebSocket>(server_, stream_.release_socket())->accept(parser_->release());
+    }
+    stream_.expires_after(std::chrono::seconds(server_.limits.body_seconds));
+    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](NetError error, std::size_t) {
+      if (error == http::error::body_limit) return self->refuse({413, "the body is too large"});
+      if (!error) self->hand_over();
+    });
+  }
+
+  void hand_over() {
+    auto request = parser_->release();
+    WebRequest one;
+    static_cast<RequestHead&>(one) = head_of(request);
+    one.body = std::move(request.body());
+    stream_.expires_never();  // the handlers may take their time
+    server_.handlers.answer(std::move(one), [self = shared_from_this(),
+                                             keep = request.keep_alive()](WebAnswer answer) {
+      asio::post(self->server_.io, [self, keep, answer = std::move(answer)] { self->write(answer, keep); });
+    });
+  }
+
+  void write(const WebAnswer& answer, bool keep) {
+    response_ = {static_cast<http::status>(answer.status), 11};
+    response_.set(http::field::content_type, answer.type);
+    response_.set(http::field::cache_control, "no-store");
+    response_.set("Content-Security-Policy", security_policy);
+    response_.set("X-Content-Type-Options", "nosniff");
+    response_.set("Referrer-Policy", "no-referrer");
+    response_.set("Cross-Origin-Resource-Policy", "same-origin");
+    response_.set("Cross-Origin-Opener-Policy", "same-origin");
+    if (!answer.file_name.empty())
+      response_.set(http::field::content_disposition,
+                    fmt::format("attachment; filename=\"{}\"", answer.file_name));
+    response_.keep_alive(keep);
+    response_.body() = answer.body;
+    response_.prepare_payload();
+    stream_.expires_after(std::chrono::seconds(server_.limits.body_seconds));
+    http::async_write(stream_, response_, [self = shared_from_this(), keep](NetError error, std::size_t) {
+      if (error) return;
+      if (keep) return self->read_head();
+      NetError ignored;
+      self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+      self->drain();
+    });
+  }
+
+  /// A connection that is closed with unread bytes is reset, and the other side may lose the answer: some
+  /// more are read.
+  void drain() {
+    stream_.expires_after(std::chrono::seconds(2));
+    stream_.async_read_some(asio::buffer(scrap_),
+                            [self = shared_from_this()](NetError error, std::size_t bytes) {
+                              if (error || (self->drained_ += bytes) > (std::size_t{4} << 20)) return;
+                              self->drain();
+                            });
+  }
+
+  WebState& server_;
+  Counted counted_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_{64 << 10};
+  std::optional<http::request_parser<http::string_body>> parser_;
+  http::response<http::string_body> response_;
+  std::array<char, 4096> scrap_{};
+  std::size_t drained_ = 0;
+};
+
+}  // namespace sundog

@@ -1,0 +1,56 @@
+// What a WebServer's connections share. This header and its two neighbours (web_socket.h, web_connection.h)
+// are included by web_server.cpp alone, which so is the one source that reads Boost.
+#pragma once
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <map>
+#include <memory>
+
+#include "app/serve/web_server.h"
+
+namespace sundog {
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using tcp = asio::ip::tcp;
+using NetError = beast::error_code;
+using SharedText = std::shared_ptr<const std::string>;
+
+class WebSocket;
+
+struct WebState {
+  WebLimits limits;
+  std::size_t connections = 0,
+              upgraded = 0;  // before `io`, whose end is that of the connections that count themselves
+  asio::io_context io{1};
+  tcp::acceptor acceptor{io};
+  asio::steady_timer pause{io};
+  Gate gate;
+  WebHandlers handlers;
+  std::map<ClientId, std::shared_ptr<WebSocket>> sockets;
+  ClientId last_id = 0;
+  std::atomic<int> ready = 0, greeted = 0;
+
+  void accept_next();
+};
+
+/// Counts while it lives.
+class Counted {
+ public:
+  explicit Counted(std::size_t& count) : count_(count) { ++count_; }
+  ~Counted() { --count_; }
+  Counted(const Counted&) = delete;
+  Counted& operator=(const Counted&) = delete;
+
+ private:
+  std::size_t& count_;
+};
+
+}  // namespace sundog

@@ -1,0 +1,239 @@
+// The viewer's server against requests that no page of its own makes: by plain sockets.
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "catch.h"
+#include "http_client.h"
+#include "run_command.h"
+#include "served.h"
+
+using nlohmann::json;
+
+namespace {
+
+/// One server for all cases: each asks it something else.
+Served& served() {
+  static Served one;
+  return one;
+}
+
+HttpReply get(const std::string& path, const std::string& more = "") {
+  return http(served().port, http_request(served().port, "GET", path, more));
+}
+
+HttpReply post(const std::string& path, const std::string& body) {
+  return http(served().port, http_request(served().port, "POST", path, served().with_token(), body));
+}
+
+/// A socket that has said its token.
+WebSocketClient greeted() {
+  WebSocketClient socket(served().port);
+  socket.send(served().token);
+  return socket;
+}
+
+json ask(WebSocketClient& socket, const json& message, const std::string& answer) {
+  socket.send(message.dump());
+  const auto text = socket.receive_with("\"is\":\"" + answer + "\"");
+  REQUIRE(text.has_value());
+  return json::parse(*text);
+}
+
+}  // namespace
+
+TEST_CASE("serve prints a loopback address with a token in its fragment") {
+  CHECK(served().url.starts_with("http://127.0.0.1:"));
+  CHECK(served().token.size() == 32);
+  CHECK(served().token.find_first_not_of("0123456789abcdef") == std::string::npos);
+  const Served another;
+  CHECK(another.token != served().token);
+}
+
+TEST_CASE("the page comes without a token, and with a policy that lets it load from here alone") {
+  const HttpReply page = get("/");
+  CHECK(page.status == 200);
+  CHECK(page.head.find("Content-Security-Policy: default-src 'none'; script-src 'self';") !=
+        std::string::npos);
+  CHECK(page.head.find("frame-ancestors 'none'") != std::string::npos);
+  CHECK(page.body.find("http://") == std::string::npos);
+  CHECK(get("/vendor/hooks.module.js").body.find("\"preact\"") == std::string::npos);
+  CHECK(get("/surfaces.jpg").status == 200);
+}
+
+TEST_CASE("calls want the token in their header, not in the address") {
+  for (const char* call : {"/api/scene", "/api/schema", "/api/formulas", "/api/files", "/api/command",
+                           "/api/picture?format=png"}) {
+    INFO(call);
+    CHECK(get(call).status == 401);
+    CHECK(get(call, "X-Sundog-Token: 0123456789abcdef0123456789abcdef\r\n").status == 401);
+    CHECK(get(std::string(call) + (std::string(call).find('?') == std::string::npos ? "?" : "&") +
+              "token=" + served().token)
+              .status == 401);
+    CHECK(get(call, "Cookie: token=" + served().token + "\r\n").status == 401);
+  }
+  CHECK(get("/api/scene", served().with_token()).status == 200);
+}
+
+TEST_CASE("another Host is refused, with the token too: DNS rebinding") {
+  const std::string port = std::to_string(served().port);
+  for (const std::string& host :
+       std::vector<std::string>{"evil.example", "evil.example:" + port, "127.0.0.1", "127.0.0.1:1",
+                                "127.0.0.1:" + port + ".evil.example"}) {
+    INFO(host);
+    const std::string same = "Host: " + host + "\r\nOrigin: http://" + host + "\r\n" + served().with_token();
+    CHECK(http(served().port, "GET /api/scene HTTP/1.1\r\n" + same + "\r\n").status == 421);
+    CHECK(http(served().port, "GET / HTTP/1.1\r\nHost: " + host + "\r\n\r\n").status == 421);
+  }
+  CHECK(http(served().port, "GET / HTTP/1.1\r\n\r\n").status == 421);
+  CHECK(get("/", "Host: evil.example\r\n").status == 421);  // a second one
+  CHECK(http(served().port, "GET / HTTP/1.1\r\nHost: localhost:" + port + "\r\n\r\n").status == 200);
+}
+
+TEST_CASE("another Origin is refused") {
+  for (const char* origin : {"http://evil.example", "null", "https://127.0.0.1", "http://127.0.0.1:1"}) {
+    INFO(origin);
+    CHECK(get("/api/scene", served().with_token() + "Origin: " + origin + "\r\n").status == 403);
+    CHECK(WebSocketClient(served().port, origin).status() == 403);
+  }
+  CHECK(WebSocketClient(served().port, "http://127.0.0.1:" + std::to_string(served().port)).status() == 101);
+}
+
+TEST_CASE("a GET changes nothing, and other methods are not taken") {
+  CHECK(get("/api/scene?do=undo", served().with_token()).status == 200);
+  for (const char* method : {"PUT", "DELETE", "OPTIONS", "PATCH"})
+    CHECK(http(served().port, http_request(served().port, method, "/api/scene", served().with_token()))
+              .status == 405);
+  CHECK(http(served().port, http_request(served().port, "POST", "/", served().with_token(), "{}")).status ==
+        405);
+}
+
+TEST_CASE("a socket's first message is the token; without it nothing is said") {
+  WebSocketClient wrong(served().port);
+  REQUIRE(wrong.status() == 101);
+  wrong.send("0123456789abcdef0123456789abcdef");
+  CHECK(!wrong.receive().has_value());
+  CHECK(wrong.close_code() == 1008);
+  WebSocketClient large(served().port);
+  large.send(std::string(5000, 'x'));  // more than a token
+  CHECK(!large.receive().has_value());
+  CHECK(greeted().receive_with("\"is\":\"scene\"").has_value());
+}
+
+TEST_CASE("paths lead to the page's files alone") {
+  for (const char* path :
+       {"/../scene.json", "/..%2fscene.json", "/%2e%2e/scene.json", "/etc/passwd", "//etc/passwd",
+        "/scene.json", "/scene.schema.json", "/vendor/../../scene.json", "scene.schema.json"}) {
+    INFO(path);
+    CHECK(get(path).status != 200);
+  }
+}
+
+TEST_CASE("scenes are opened below the folder alone") {
+  const auto outside = TemporaryFolder();
+  const std::string secret = outside.write("secret.json", viewer_scene).string();
+  std::filesystem::create_symlink(secret, served().folder / "link.json");
+  WebSocketClient socket = greeted();
+  for (const std::string& file :
+       {std::string("../secret.json"), secret, std::string("/etc/passwd"), std::string("sub/../../x.json"),
+        std::string("link.json"), std::string("missing.json"), std::string("sub"), std::string("")}) {
+    INFO(file);
+    const json answer = ask(socket, {{"do", "open"}, {"file", file}}, "refused");
+    CHECK(answer["reason"].get<std::string>().find("below the folder") != std::string::npos);
+  }
+  const json listed = json::parse(get("/api/files", served().with_token()).body);
+  CHECK(std::ranges::count(listed, json("sub/other.json")) == 1);
+  CHECK(ask(socket, {{"do", "open"}, {"file", "sub/other.json"}}, "scene")["file"] == "other.json");
+  CHECK(ask(socket, {{"do", "open"}, {"file", "scene.json"}}, "scene")["file"] == "scene.json");
+}
+
+TEST_CASE("a page's scene may neither carry native code nor name files outside its folder") {
+  const json native = {{"type", "native"}, {"code", "return length(p) - 1;"}, {"material", "red"}};
+  WebSocketClient socket = greeted();
+  const auto refusal = [&](const json& object) {
+    const json change = {{"at", "/objects/-"}, {"value", object}};
+    return ask(socket, {{"do", "edit"}, {"id", 1}, {"changes", {change}}}, "refused")["reason"]
+        .get<std::string>();
+  };
+  CHECK(refusal(native).find("native") != std::string::npos);
+  CHECK(refusal({{"type", "model"}, {"file", "../../etc/passwd.obj"}}).find("folder") != std::string::npos);
+  CHECK(refusal({{"type", "model"}, {"file", "/etc/passwd"}}).find("folder") != std::string::npos);
+  json scene = json::parse(viewer_scene);
+  scene["objects"].push_back(native);
+  const HttpReply upload = post("/api/scene?name=x.json", scene.dump());
+  CHECK(upload.status == 422);
+  CHECK(upload.body.find("native") != std::string::npos);
+  CHECK(json::parse(get("/api/scene", served().with_token()).body)["objects"].size() == 2);
+}
+
+TEST_CASE("bodies, heads and messages are bounded") {
+  const std::string huge = "Content-Length: 900000000\r\n";
+  CHECK(http(served().port, "POST /api/scene HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(served().port) +
+                                "\r\n" + served().with_token() + huge + "\r\n")
+            .status == 413);
+  CHECK(get("/", "X-Long: " + std::string(100'000, 'a') + "\r\n").status == 431);
+  CHECK(http(served().port, "not http at all\r\n\r\n").status == 400);
+  WebSocketClient socket = greeted();
+  REQUIRE(socket.receive_with("\"is\":\"scene\"").has_value());
+  socket.send("{\"do\":\"" + std::string(9'000'000, 'x') + "\"}");
+  CHECK(!socket.receive_with("never said").has_value());
+  CHECK(get("/").status == 200);
+}
+
+TEST_CASE("messages that come too fast close their socket, and no other") {
+  WebSocketClient other = greeted(), fast = greeted();
+  for (int i = 0; i < 2000; ++i) fast.send("{}");
+  CHECK(!fast.receive_with("never said").has_value());
+  CHECK(fast.close_code() == 1008);
+  CHECK(ask(other, {{"do", "scene"}}, "scene")["file"] == "scene.json");
+}
+
+TEST_CASE("odd messages are refused in words") {
+  WebSocketClient socket = greeted();
+  for (const char* text :
+       {"{", "[]", "7", "{\"do\":5}", "{\"do\":\"format the disk\"}", "{\"do\":\"edit\"}",
+        "{\"do\":\"edit\",\"changes\":[{}]}",
+        "{\"do\":\"edit\",\"changes\":[{\"at\":\"camera\",\"value\":1}]}",
+        "{\"do\":\"edit\",\"changes\":[{\"at\":\"/objects/99999999\",\"value\":1}]}",
+        "{\"do\":\"edit\",\"changes\":[{\"at\":\"/camera/fov\",\"value\":1e999}]}", "{\"do\":\"pick\"}",
+        "{\"do\":\"devices\",\"specs\":[\"no such\"]}", "{\"do\":\"options\",\"split\":\"1,2,3,4,5,6,7\"}"}) {
+    INFO(text);
+    socket.send(text);
+    const auto answer = socket.receive_with("\"is\":\"refused\"");
+    REQUIRE(answer.has_value());
+    CHECK(json::parse(*answer)["reason"].get<std::string>().size() > 5);
+  }
+}
+
+TEST_CASE("a client that stops reading, and one that never sends, hold up nobody") {
+  WebSocketClient asleep(served().port, "", true);
+  asleep.send(served().token);
+  const TcpClient silent(served().port);
+  const TcpClient slow(served().port);
+  slow.send("GET / HTTP/1.1\r\nHost: ");
+  WebSocketClient awake = greeted();
+  for (int i = 0; i < 200; ++i) ask(awake, {{"do", "scene"}}, "scene");
+  for (int i = 0; i < 5; ++i) {
+    const json change = {{"at", "/camera/fov"}, {"value", 40 + i}};
+    CHECK(ask(awake, {{"do", "edit"}, {"id", i}, {"changes", {change}}}, "changed")["id"] == i);
+  }
+  CHECK(get("/").status == 200);
+}
+
+TEST_CASE("--host adds a name for a tunnel; --port and --host are checked") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", viewer_scene);
+  BackgroundProgram program({SUNDOG_BINARY, "serve", "scene.json", "--host", "far.example:9000"},
+                            folder.path());
+  const std::string url = program.line_with("http://");
+  const int port = std::stoi(url.substr(url.find(':', 7) + 1));
+  CHECK(http(port, "GET / HTTP/1.1\r\nHost: far.example:9000\r\nOrigin: http://far.example:9000\r\n\r\n")
+            .status == 200);
+  CHECK(http(port, "GET / HTTP/1.1\r\nHost: far.example:9001\r\n\r\n").status == 421);
+  CHECK(run_sundog({"serve", "--port", "70000"}).status == 2);
+  CHECK(run_sundog({"serve", "--host", "nonsense"}).status == 2);
+  const CommandResult taken =
+      run_sundog({"serve", (folder / "scene.json").string(), "--port", std::to_string(port)});
+  CHECK(taken.status == 1);
+  CHECK(taken.err.find("--port") != std::string::npos);
+  CHECK(run_sundog({"serve", (folder / "none.json").string()}).status == 3);
+}

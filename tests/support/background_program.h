@@ -1,0 +1,28 @@
+// A program that runs beside a test, which reads its output line by line and ends it.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+class BackgroundProgram {
+ public:
+  /// Starts it; its stderr is the test's own. `environment` comes on top of the test's.
+  BackgroundProgram(const std::vector<std::string>& arguments, const std::filesystem::path& folder = {},
+                    const std::map<std::string, std::string>& environment = {});
+  /// Ends it by SIGTERM, after five seconds by SIGKILL.
+  ~BackgroundProgram();
+  BackgroundProgram(const BackgroundProgram&) = delete;
+  BackgroundProgram& operator=(const BackgroundProgram&) = delete;
+
+  /// The first line of its output that contains `part`. Throws std::runtime_error when it ends, or `seconds`
+  /// pass, without one.
+  std::string line_with(const std::string& part, double seconds = 30);
+  bool runs() const;
+  void end();
+
+ private:
+  int out_ = -1;
+  int child_ = -1;
+  std::string text_;
+};

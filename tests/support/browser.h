@@ -1,0 +1,54 @@
+// A real browser without a window, driven over the WebDriver protocol (chromedriver).
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "background_program.h"
+#include "temporary_folder.h"
+
+/// Bytes as a script's argument.
+std::string to_base64(const std::string& bytes);
+
+class Browser {
+ public:
+  /// Starts chromedriver and Chromium. Throws std::runtime_error that names the packages where they are
+  /// missing.
+  Browser(int width, int height);
+  ~Browser();
+  Browser(const Browser&) = delete;
+  Browser& operator=(const Browser&) = delete;
+
+  void open(const std::string& url) { command("POST", "/url", {{"url", url}}); }
+  void reload() { command("POST", "/refresh", nlohmann::json::object()); }
+  void resize(int width, int height);
+  /// Runs the body of an async function in the page; its value. What it throws becomes std::runtime_error.
+  nlohmann::json run(const std::string& script, const nlohmann::json& arguments = nlohmann::json::array());
+  /// Waits until the script's value is true.
+  void wait_until(const std::string& script, double seconds = 30);
+  /// Moves the mouse over the page, in its pixels: down at the first point, up at the last; one point is a
+  /// click.
+  void drag(const std::vector<std::pair<int, int>>& points, const std::string& modifier = "");
+  void double_click(int x, int y);
+  /// Types keys at what has the focus; "\uE00C" and the like are WebDriver's special keys.
+  void keys(const std::vector<std::string>& keys);
+  /// Opens another tab and goes there; tabs are counted from 0.
+  void open_tab(const std::string& url);
+  void use_tab(std::size_t index);
+  /// A PNG of what is seen.
+  std::string screenshot();
+  /// Errors that the page has logged so far.
+  std::vector<std::string> errors();
+  /// Where downloads go.
+  const TemporaryFolder& downloads() const { return downloads_; }
+
+ private:
+  nlohmann::json command(const std::string& method, const std::string& path,
+                         const nlohmann::json& body = nullptr);
+  void perform(const nlohmann::json& actions);
+
+  TemporaryFolder profile_, downloads_;
+  BackgroundProgram driver_;
+  int port_ = 0;
+  std::string session_;
+};
