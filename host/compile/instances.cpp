@@ -133,6 +133,7 @@ class Placer {
   }
 
   void set_surface(const Object& object, const PlacedMesh* mesh, Instance& instance) {
+    instance.light = NO_LIGHT;
     instance.material = object.material >= 0 ? static_cast<u32>(object.material) : NO_MATERIAL;
     if (mesh && object.material < 0) {
       for (const u32 material : mesh->materials) use(material, instance);

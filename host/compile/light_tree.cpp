@@ -6,6 +6,8 @@
 #include <numbers>
 #include <span>
 
+#include "scene/integrators.h"
+
 namespace sundog {
 namespace {
 
@@ -18,7 +20,10 @@ struct Lamp {
 
 glm::vec3 xyz(const float4& v) { return {v.x, v.y, v.z}; }
 
-bool has_extent(const Light& light) { return light.kind >= LIGHT_RECTANGLE && light.kind < LIGHT_KINDS; }
+bool has_extent(const Light& light) {
+  if (light.kind == LIGHT_TRIANGLE) return light.direction.w > 0 && light.color != float4{};
+  return light.kind >= LIGHT_RECTANGLE && light.kind < LIGHT_KINDS;
+}
 
 Lamp lamp_of(const Light& light, u32 index) {
   const glm::vec3 p = xyz(light.position), u = glm::abs(xyz(light.edge_u)), v = glm::abs(xyz(light.edge_v));
@@ -27,6 +32,11 @@ Lamp lamp_of(const Light& light, u32 index) {
   switch (light.kind) {
     case LIGHT_SPHERE:
       return {p - radius, p + radius, luminance * 4 * std::numbers::pi_v<float> * radius * radius, index};
+    case LIGHT_TRIANGLE: {
+      const glm::vec3 a = xyz(light.edge_u), b = xyz(light.edge_v), none(0);
+      return {p + glm::min(none, glm::min(a, b)), p + glm::max(none, glm::max(a, b)),
+              luminance * light.direction.w, index};
+    }
     case LIGHT_DISK:
       return {p - u - v, p + u + v, luminance * light.direction.w, index};
     default: {
@@ -80,11 +90,18 @@ void add_light_tree(const SceneDescription& scene, CompiledScene& out) {
   std::vector<Lamp> lamps;
   for (u32 i = 0; i < out.lights.size(); ++i)
     if (has_extent(out.lights[i])) lamps.push_back(lamp_of(out.lights[i], i));
-  if (scene.render.light_samples == 0 || lamps.size() < 2) return;
+  const bool triangles =
+      std::ranges::any_of(out.lights, [](const Light& light) { return light.kind == LIGHT_TRIANGLE; });
+  const bool chooses = scene.render.light_samples > 0 || traces_paths(scene.render.integrator) || triangles;
+  if (!chooses || lamps.empty() || (lamps.size() == 1 && !triangles)) return;
   append(lamps, out.light_nodes.edit());
+  std::vector<u32> leaves(out.lights.size());
+  for (u32 node = 0; node < out.light_nodes.size(); ++node)
+    if (const u32 next = out.light_nodes[node].next; next & LIGHT_LEAF) leaves[next & ~LIGHT_LEAF] = node;
+  out.light_leaves = std::move(leaves);
   std::erase_if(out.light_rays.edit(),
                 [&](const LightRay& ray) { return has_extent(out.lights[ray.light]); });
-  const auto rays = static_cast<u32>(scene.render.light_samples);
+  const auto rays = static_cast<u32>(std::max(scene.render.light_samples, 1));
   for (u32 ray = 0; ray < rays; ++ray) out.light_rays.push_back({LIGHT_CHOSEN, ray, rays, 0});
   out.features.light_tree = true;
 }

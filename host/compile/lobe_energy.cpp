@@ -1,7 +1,10 @@
 // See lobe_energy.h.
 #include "compile/lobe_energy.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <numbers>
@@ -27,28 +30,74 @@ dvec3 visible_normal(const dvec3& wo, double alpha, double u, double v) {
   return glm::normalize(dvec3(alpha * h.x, alpha * h.y, std::max(h.z, 1e-6)));
 }
 
-double energy(double cosine, double alpha) {
-  constexpr int steps = 24;
+constexpr int steps = 24;
+
+double cosine_of(u32 column) { return std::max(double(column) / (LOBE_STEPS - 1), 0.01); }
+
+/// Light that comes from the cosine `from` and the part of it that is sent on.
+struct Sent {
+  double from, part;
+};
+
+/// A white lobe's light by visible normals, each with the same weight.
+std::vector<Sent> sent_to(double cosine, double alpha) {
   const dvec3 wo(std::sqrt(1 - cosine * cosine), 0, cosine);
   const double lambda_o = smith_lambda(cosine, alpha);
-  double sum = 0;
+  std::vector<Sent> sent;
   for (int i = 0; i < steps; ++i)
     for (int j = 0; j < steps; ++j) {
       const dvec3 h = visible_normal(wo, alpha, (i + 0.5) / steps, (j + 0.5) / steps);
       const double out = (2 * glm::dot(wo, h) * h - wo).z;
-      if (out > 0) sum += (1 + lambda_o) / (1 + lambda_o + smith_lambda(out, alpha));
+      if (out > 0) sent.push_back({out, (1 + lambda_o) / (1 + lambda_o + smith_lambda(out, alpha))});
     }
+  return sent;
+}
+
+double energy(double cosine, double alpha) {
+  double sum = 0;
+  for (const Sent& one : sent_to(cosine, alpha)) sum += one.part;
   return sum / (steps * steps);
+}
+
+using Row = std::array<double, LOBE_STEPS>;
+
+double gain_at(const Row& gains, double cosine) {
+  const double x = cosine * (LOBE_STEPS - 1);
+  const auto left = std::min(static_cast<std::size_t>(x), std::size_t{LOBE_STEPS - 2});
+  return std::lerp(gains[left], gains[left + 1], x - double(left));
+}
+
+Row gains_of(double alpha) {
+  std::array<std::vector<Sent>, LOBE_STEPS> sent;
+  for (u32 column = 0; column < LOBE_STEPS; ++column) sent[column] = sent_to(cosine_of(column), alpha);
+  Row gains;
+  gains.fill(1);
+  for (int round = 0; round < 12; ++round) {
+    Row next;
+    for (u32 column = 0; column < LOBE_STEPS; ++column) {
+      double sum = 0;
+      for (const Sent& one : sent[column]) sum += one.part * gain_at(gains, one.from);
+      next[column] = std::sqrt(gains[column] * (steps * steps) / sum);
+    }
+    gains = next;
+  }
+  return gains;
 }
 
 }  // namespace
 
-std::vector<float> make_lobe_energy() {
+std::vector<float> make_lobe_energy(bool gains) {
   std::vector<float> table;
+  const auto alpha_of = [](u32 row) { return double(row) / (LOBE_STEPS - 1); };
   for (u32 row = 0; row < LOBE_STEPS; ++row)
     for (u32 column = 0; column < LOBE_STEPS; ++column)
-      table.push_back(static_cast<float>(
-          energy(std::max(double(column) / (LOBE_STEPS - 1), 0.01), double(row) / (LOBE_STEPS - 1))));
+      table.push_back(static_cast<float>(energy(cosine_of(column), alpha_of(row))));
+  if (!gains) return table;
+  table.resize(2 * table.size());
+  tbb::parallel_for(0u, LOBE_STEPS, [&](u32 row) {
+    const Row of_row = gains_of(alpha_of(row));
+    std::copy(of_row.begin(), of_row.end(), table.begin() + LOBE_GAINS + row * LOBE_STEPS);
+  });
   return table;
 }
 

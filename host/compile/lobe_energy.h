@@ -5,7 +5,11 @@
 namespace sundog {
 
 /// LOBE_STEPS times LOBE_STEPS values for white GGX facets: row by the distribution's width alpha, column by
-/// the cosine between the normal and the viewer, both from 0 to 1. By quadrature over visible normals.
-std::vector<float> make_lobe_energy();
+/// the cosine between the normal and the viewer, both from 0 to 1. By quadrature over visible normals. With
+/// `gains` as many values more: factors g(alpha, cosine) such that the BSDF times g of both its directions
+/// returns all light of a white surrounding. Being the same function for both directions it stays reciprocal,
+/// which a division by the energy of one is not. They are found as Sinkhorn and Knopp (1967) scale a
+/// symmetric matrix.
+std::vector<float> make_lobe_energy(bool gains);
 
 }  // namespace sundog

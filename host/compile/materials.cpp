@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "compile/pack.h"
 #include "compile/textures.h"
+#include "scene/integrators.h"
 #include "scene/kinds.h"
 #include "scene/lamps.h"
 
@@ -50,10 +51,21 @@ std::vector<u32> add_media(const SceneDescription& scene, std::vector<Medium>& m
   return index_of;
 }
 
+/// Whether light is bent where some media of the scene meet.
+bool bends_light(const std::vector<Medium>& media) {
+  return std::ranges::any_of(media, [&](const Medium& m) { return m.absorption.w != media[0].absorption.w; });
+}
+
+/// Whether shadow rays stop at a material. Paths find by themselves what lights send through bending
+/// interfaces, and shadow rays that went straight through these would find it a second time.
+bool stops_shadows(const SceneDescription& scene, const MaterialDescription& material, bool bends) {
+  const bool by_path = traces_paths(scene.render.integrator) && bends && material.medium >= 0;
+  return material.shadow_opaque || (by_path && !material.shadow_filter);
+}
+
 u32 material_flags(const MaterialDescription& material) {
   u32 flags = 0;
   if (material.blinn) flags |= MATERIAL_BLINN;
-  if (material.shadow_opaque) flags |= MATERIAL_SHADOW_OPAQUE;
   if (material.checker) flags |= MATERIAL_CHECKER;
   if (!is_zero(material.transmission) || material.opacity < 1 || material.textures.opacity >= 0)
     flags |= MATERIAL_TRANSMITS;
@@ -177,6 +189,7 @@ Light pack_light(const NamedLight& named, const dvec3& origin) {
       break;
   }
   if (facts_of(light.type).extent) pack_extent(named, origin, packed);
+  packed.position.w = facts_of(light.type).extent && !light.visible ? 1.0f : 0.0f;
   return packed;
 }
 
@@ -189,8 +202,12 @@ bool lacks_materials(const SceneDescription& scene) {
 
 u32 add_materials(const SceneDescription& scene, CompiledScene& out) {
   const std::vector<u32> media = add_media(scene, out.media.edit());
-  for (const MaterialDescription& material : scene.materials)
-    out.materials.push_back(make_material(material, media));
+  const bool bends = bends_light(out.media);
+  for (const MaterialDescription& material : scene.materials) {
+    Material packed = make_material(material, media);
+    if (stops_shadows(scene, material, bends)) packed.flags |= MATERIAL_SHADOW_OPAQUE;
+    out.materials.push_back(packed);
+  }
   if (!lacks_materials(scene)) return NO_MATERIAL;
   out.materials.push_back(make_material(MaterialDescription{}, media));
   return static_cast<u32>(out.materials.size() - 1);

@@ -11,8 +11,10 @@
 #include "compile/camera.h"
 #include "compile/filter.h"
 #include "compile/instances.h"
+#include "compile/light_tree.h"
 #include "compile/lobe_energy.h"
 #include "compile/local_origin.h"
+#include "compile/mesh_lights.h"
 #include "compile/parts/parts.h"
 #include "scene/integrators.h"
 
@@ -62,6 +64,8 @@ void set_view(const SceneDescription& scene, CompiledScene& out) {
   out.features.sampler = sampler_of(scene.render);
   out.filter = filter_table(scene.render);
   out.features.filter = !out.filter.empty();
+  out.info.roulette_depth = static_cast<u32>(scene.render.roulette);
+  out.info.light_strategy = scene.render.light_strategy;
 }
 
 void set_counts(CompiledScene& out) {
@@ -81,10 +85,20 @@ void set_figures(CompiledScene& out) {
   figures.bytes = sizeof(SceneInfo) + table_bytes(out);
 }
 
-/// The same for all scenes.
-const SharedTable<float>& lobe_energies() {
-  static const SharedTable<float> energies(make_lobe_energy());
-  return energies;
+/// The same for all scenes; path tracing has gains too.
+const SharedTable<float>& lobe_energies(bool gains) {
+  static const SharedTable<float> energies(make_lobe_energy(false));
+  if (!gains) return energies;
+  static const SharedTable<float> with_gains(make_lobe_energy(true));
+  return with_gains;
+}
+
+/// The lights as surfaces choose them, once it is known what shines.
+void finish_lights(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, CompiledScene& out) {
+  add_mesh_lights(scene, meshes, out);
+  add_light_tree(scene, out);
+  if (traces_paths(out.integrator))
+    std::erase_if(out.light_rays.edit(), [](const LightRay& ray) { return ray.ray > 0; });
 }
 
 }  // namespace
@@ -194,7 +208,8 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   out.field_source = p.fields.made.field_source;
   out.features.camera_inside = is_camera_inside(scene.camera.position - out.origin,
                                                 p.instances.made.instances.rows(), p.instances.boxes);
-  if (out.features.rough) out.lobe_energy = lobe_energies();
+  finish_lights(scene, p.meshes.placed, out);
+  if (out.features.rough) out.lobe_energy = lobe_energies(traces_paths(out.integrator));
   set_counts(out);
   set_figures(out);
   out.figures.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -15,6 +15,7 @@
 #include "scene/texture_description.h"
 #include "shared/lights.h"
 #include "shared/sampler.h"
+#include "shared/scene.h"
 #include "shared/shapes.h"
 
 namespace sundog {
@@ -73,7 +74,9 @@ struct RenderSettings {
       0;                 // rays to lights with an extent that each surface chooses, 0..1024; 0: to each light
   double cutoff = 1e-3;  // throughput below which a ray ends, [0, 1]
   std::string integrator = "whitted";
-  u32 sampler = SAMPLER_AUTO;  // a SAMPLER_* constant
+  int roulette = 5;                   // path: ray from which on paths end by chance, 1..65; 65: none
+  u32 light_strategy = STRATEGY_MIS;  // path: a STRATEGY_* constant
+  u32 sampler = SAMPLER_AUTO;         // a SAMPLER_* constant
   Filter filter = Filter::box;
   double filter_radius = 0;  // in pixels; 0: the filter's own
   Sampling sampling;
@@ -146,6 +149,7 @@ struct MaterialDescription {
   double roughness = 0;  // of reflection and transmission, [0, 1]; the GGX distribution's alpha is its square
   int medium = -1;       // index into media of the inside; -1: thin, transmits straight through
   bool shadow_opaque = false;
+  bool shadow_filter = false;  // path tracing: shadow rays go straight through an interface that bends light
   bool checker = false;
   dvec3 checker_ambient{0}, checker_diffuse{0};  // ka and kd in odd cells: colour times coefficient
   double checker_size = 1;                       // edge of a cell, object space
@@ -242,6 +246,7 @@ struct Object {
   int material = -1;  // -1: the mesh's own materials
   dmat4 world_from_object{1};
   std::string place;  // JSON pointer, for messages
+  int light = -1;     // index of the light that it shows; -1: none
 };
 
 /// What lies between all things: light over a distance d keeps exp(-density d) of its own and gets the rest

@@ -15,7 +15,8 @@ struct Integrator {
 };
 
 inline constexpr std::array integrators{
-    Integrator{"whitted", "entry/render_whitted.cl", "render_whitted", true}};
+    Integrator{"whitted", "entry/render_whitted.cl", "render_whitted", true},
+    Integrator{"path", "entry/render_path.cl", "render_path", true}};
 
 /// The names, in the table's order.
 inline constexpr auto integrator_names = [] {
@@ -23,6 +24,10 @@ inline constexpr auto integrator_names = [] {
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = integrators[i].name;
   return names;
 }();
+
+/// Path tracing chooses among lights and knows no artifices of the classical model, so what scenes compile to
+/// depends on it.
+constexpr bool traces_paths(std::string_view integrator) { return integrator == "path"; }
 
 /// The row of that name; nullptr where there is none.
 constexpr const Integrator* find_integrator(std::string_view name) {

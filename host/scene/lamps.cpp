@@ -64,8 +64,8 @@ void add_lamps(SceneDescription& scene) {
                               : dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, 1, 0),
                                       glm::dvec4(light.position, 1));
     scene.materials.push_back(material);
-    scene.objects.push_back(
-        {"lamp", shape, static_cast<int>(scene.materials.size()) - 1, place, fmt::format("/lights/{}", i)});
+    scene.objects.push_back({"lamp", shape, static_cast<int>(scene.materials.size()) - 1, place,
+                             fmt::format("/lights/{}", i), static_cast<int>(i)});
   }
 }
 

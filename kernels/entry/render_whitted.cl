@@ -5,33 +5,9 @@
 #include "lib/core/filter.cl"
 #include "lib/core/sampler.cl"
 #include "lib/path/lens.cl"
+#include "lib/path/tile.cl"
 #include "lib/whitted/whitted.cl"
 #include "shared/launch.h"
-
-// Pixel of lane `lane` of work-item `item`, counted from the rectangle's corner. Neighbouring work-items take
-// neighbouring tiles. Those of one pixel go through blocks of 8x4 of them, each in quarters of 4x2, so that
-// the eight or thirty-two that a device runs together have ray trees that are alike; in a launch of two
-// dimensions the group has its own shape.
-static inline uint2 lane_pixel(const Launch* launch, u32 item, u32 lane) {
-  if (BATCH == 1 && launch->blocks) {
-    const u32 columns = (launch->width + 7u) / 8u, block = item / 32u;
-    return (uint2)(block % columns * 8u + (item >> 1 & 4u) + (item & 3u),
-                   block / columns * 4u + (item >> 3 & 2u) + (item >> 2 & 1u));
-  }
-  const u32 columns = (launch->width + TILE_W - 1u) / TILE_W;
-  return (uint2)(item % columns * TILE_W + lane % TILE_W, item / columns * TILE_H + lane / TILE_W);
-}
-
-// The pixel of the image that the pixel `at` of the rectangle stands for. False: there is none.
-static inline bool image_pixel(const Launch* launch, __global const u32* restrict pixels, uint2 at,
-                               uint2* pixel) {
-  if (at.x >= launch->width || at.y >= launch->height) return false;
-  *pixel = (uint2)(launch->x0, launch->y0) + at;
-  if (!launch->listed) return true;
-  const u32 listed = pixels[at.y * launch->width + at.x];
-  *pixel = (uint2)(listed & 0xffffu, listed >> 16);
-  return listed != NO_PIXEL;
-}
 
 // The camera's rays of one sample. Returns the lanes that have a pixel; signs[lane] is what a sample counts.
 static inline MASK start_rays(const Scene* scene, const Launch* launch, __global const u32* restrict pixels,
@@ -58,24 +34,6 @@ static inline MASK start_rays(const Scene* scene, const Launch* launch, __global
   return lanes;
 }
 
-// Adds the light of one sample to film and weights.
-static inline void store_sample(const Launch* launch, u32 item, MASK lanes, const float4* radiance,
-                                const float* signs, __global float4* restrict film,
-                                __global float* restrict weights, u32* counts) {
-  for (u32 lane = 0; lane < BATCH; ++lane) {
-    if (!MASK_LANE(lanes, lane)) continue;
-    const float3 zero = radiance[lane].xyz * 0.0f;  // NaN where one is not finite
-    if (zero.x + zero.y + zero.z != 0.0f) {
-      counts[COUNT_NON_FINITE] += 1u;
-      continue;
-    }
-    const uint2 at = lane_pixel(launch, item, lane);
-    const u32 pixel = at.y * launch->width + at.x;
-    film[pixel] += HAS_FILTER ? signs[lane] * radiance[lane] : radiance[lane];
-    weights[pixel] += HAS_FILTER ? signs[lane] : 1.0f;
-  }
-}
-
 // One work-item of the kernel below.
 NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launch* launch, u32 item,
                               __global const u32* restrict pixels, __global float4* restrict film,
@@ -93,7 +51,9 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     const MASK lanes = start_rays(scene, launch, pixels, item, sample, around, &rays, signs, &tile);
     counts[COUNT_PRIMARY] += lane_count(lanes);
     trace_whitted(scene, &tile, &rays, lanes, &stack, radiance, counts);
-    store_sample(launch, item, lanes, radiance, signs, film, weights, counts);
+    for (u32 lane = 0; lane < BATCH; ++lane)
+      if (MASK_LANE(lanes, lane))
+        store_lane(launch, item, lane, radiance[lane], signs[lane], film, weights, counts);
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);

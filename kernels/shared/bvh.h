@@ -91,7 +91,8 @@ typedef struct Instance {
   u32 flags;     // INSTANCE_*
   u32 object;    // index of the scene object it came from, for AOVs and messages
   float touch;   // above 0 where surfaces of it may lie on others' or its own: how far rounding may part them
-  u32 pad0, pad1;
+  u32 light;     // index of the light that it shows, or NO_LIGHT
+  u32 first_prim;        // of a mesh whose triangles are lights, from `light` on: the index of the first
   float4 world_center;   // of the bounds; w = half the diagonal (0 when unbounded)
   float4 pattern_scale;  // xyz: from object space to that of the scene file, where patterns are measured;
                          // w: lengths there over lengths in the world, their geometric mean
@@ -99,6 +100,7 @@ typedef struct Instance {
 SUNDOG_SHARED_SIZE(Instance, 128)
 
 #define NO_MATERIAL 0xFFFFFFFFu
+#define NO_LIGHT 0xFFFFFFFFu
 #define INSTANCE_IDENTITY 1u   // object_from_world is the identity
 #define INSTANCE_FILTERS 2u    // a shadow ray may pass (some material of it transmits and lets light through)
 #define INSTANCE_TRANSMITS 4u  // some material of it has an interior medium

@@ -20,7 +20,8 @@ SUNDOG_SHARED_BEGIN
 typedef enum LightKind SUNDOG_ENUM_OF_U32 {
   LIGHTS(LIGHT_CONSTANT) LIGHT_KINDS,
   LIGHT_SUN = LIGHT_KINDS,  // a directional light from a disk in the sky
-  LIGHT_ENVIRONMENT         // from all around (shared/environment.h)
+  LIGHT_ENVIRONMENT,        // from all around (shared/environment.h)
+  LIGHT_TRIANGLE            // of a mesh that shines: a corner and two edges
 } LightKind;
 #undef LIGHT_CONSTANT
 
@@ -28,7 +29,8 @@ typedef enum LightKind SUNDOG_ENUM_OF_U32 {
 // its outside. direction.w: of a spot the cosine of the cone's outer half angle; of an extent its area; of a
 // sun 1 minus the cosine of its half angle, below 0 where it is not seen.
 typedef struct Light {
-  float4 position;   // world; of a rectangle the corner, else the centre
+  float4
+      position;  // world; of a rectangle the corner, else the centre; w = 1: an extent that rays do not meet
   float4 direction;  // unit, the way the light travels; w: see above
   float4 color;  // times intensity (the radiance, of an extent); w = cosine of the cone's inner half angle
   float falloff_constant, falloff_linear,

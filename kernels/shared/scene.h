@@ -22,7 +22,8 @@ SUNDOG_SHARED_BEGIN
 // Highlights up to this exponent, where it is whole, are products alone.
 #define GREATEST_WHOLE_EXPONENT 65535.0f
 
-#define LOBE_STEPS 32u  // of the table lobe_energy, along each axis
+#define LOBE_STEPS 32u                        // of each table in lobe_energy, along each axis
+#define LOBE_GAINS (LOBE_STEPS * LOBE_STEPS)  // where the second begins
 
 // 144 bytes. Each colour is already multiplied by its coefficient.
 typedef struct Material {
@@ -51,7 +52,14 @@ typedef struct Medium {
 } Medium;
 SUNDOG_SHARED_SIZE(Medium, 32)
 
-// 368 bytes: the scene's constants. Positions in all tables count from a point of the world, `origin` plus
+// Which ways of finding light path tracing adds: both, each by its share; lights chosen at surfaces alone
+// where these can be chosen; those that scattered rays meet alone where they can be met.
+#define LIGHT_STRATEGIES "mis", "lights", "surfaces"
+#define STRATEGY_MIS 0u
+#define STRATEGY_LIGHTS 1u
+#define STRATEGY_SURFACES 2u
+
+// 384 bytes: the scene's constants. Positions in all tables count from a point of the world, `origin` plus
 // `origin_rest`, near what the camera looks at (host/compile/local_origin.h). The pixel (x, y), y down,
 // sample offset (a, b) in [0, 1)^2, looks along camera_corner + (x + a) camera_dx + (y + b) camera_dy, which
 // has length 1 along camera_forward.
@@ -87,8 +95,12 @@ typedef struct SceneInfo {
   float4 lens_x, lens_y;
   // HAS_CAMERA_MOTION: how far these move while the shutter is open.
   float4 moved_position, moved_corner, moved_dx, moved_dy;
+  // Path tracing:
+  u32 roulette_depth;  // from this ray on paths end by chance
+  u32 light_strategy;  // STRATEGY_*
+  u32 pad0, pad1;
 } SceneInfo;
-SUNDOG_SHARED_SIZE(SceneInfo, 368)
+SUNDOG_SHARED_SIZE(SceneInfo, 384)
 
 // Ray counts of a launch, added with integer atomics (any order gives the same sum).
 #define COUNT_PRIMARY 0

@@ -23,6 +23,7 @@
   TABLE(Light, Light, lights, "lights")                                  \
   TABLE(LightRay, LightRay, light_rays, "rays to lights")                \
   TABLE(LightNode, LightNode, light_nodes, "nodes over lights")          \
+  TABLE(u32, u32, light_leaves, "leaves of lights")                      \
   TABLE(float, float, lobe_energy, "energy of lobes")                    \
   TABLE(Environment, Environment, environments, "environments")          \
   TABLE(float4, float4, environment, "environment's pixels")             \

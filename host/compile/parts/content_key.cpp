@@ -176,13 +176,14 @@ KeyMaker& KeyMaker::add(const TextureDescription& texture) {
 
 KeyMaker& KeyMaker::add(const MaterialDescription& material) {
   const auto& [name, type, ambient, diffuse, specular, exponent, blinn, emission, reflection, transmission,
-               roughness, medium, shadow_opaque, checker, checker_ambient, checker_diffuse, checker_size,
-               vertex_color, opacity, cutoff, one_sided, textures, metal_rough, normal_scale, bump, bump_uv,
-               occlusion] = material;
+               roughness, medium, shadow_opaque, shadow_filter, checker, checker_ambient, checker_diffuse,
+               checker_size, vertex_color, opacity, cutoff, one_sided, textures, metal_rough, normal_scale,
+               bump, bump_uv, occlusion] = material;
   (void)name;
   add_each(type, ambient, diffuse, specular, exponent, blinn, emission, reflection, transmission, roughness,
-           medium, shadow_opaque, checker, checker_ambient, checker_diffuse, checker_size, vertex_color,
-           opacity, cutoff, one_sided, normal_scale, bump, bump_uv, occlusion, metal_rough.has_value());
+           medium, shadow_opaque, shadow_filter, checker, checker_ambient, checker_diffuse, checker_size,
+           vertex_color, opacity, cutoff, one_sided, normal_scale, bump, bump_uv, occlusion,
+           metal_rough.has_value());
   static_assert(sizeof textures % sizeof(int) == 0);
   bytes(&textures, sizeof textures);
   if (!metal_rough) return *this;

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "compile/parts/parts.h"
+#include "scene/integrators.h"
 
 namespace sundog {
 namespace {
@@ -43,6 +44,11 @@ std::vector<SdfDescription> near_fields(const SceneDescription& scene, const std
   return fields;
 }
 
+/// Shadows with a penumbra and darker crevices stand in for light that path tracing follows.
+void drop_artifices(CompiledScene& out) {
+  for (SdfField& field : out.sdf_fields.edit()) field.shadow_hardness = field.occlusion_reach = 0;
+}
+
 void add_features(CompiledScene& out) {
   for (const SdfField& field : out.sdf_fields) {
     out.features.glow |= field.glow.w > 0;
@@ -66,7 +72,7 @@ ContentKey fields_key(const SceneDescription& scene, const std::vector<FieldView
                       const ContentKey& instances, const dvec3& origin) {
   KeyMaker key;
   const bool deep = any_deep(views);
-  key.add(deep);
+  key.add(deep).add(traces_paths(scene.render.integrator));
   if (!deep) return key.add_all(near_fields(scene, views)).key();
   key.add(instances).add(origin);
   for (std::size_t i = 0; i < views.size(); ++i)
@@ -95,6 +101,7 @@ ScenePart make_fields(const SceneDescription& scene, const std::vector<FieldView
   part.made.field_source = std::move(fields.source);
   part.made.sdf_fields = std::move(fields.fields);
   part.made.sdf_parameters = std::move(fields.parameters);
+  if (traces_paths(scene.render.integrator)) drop_artifices(part.made);
   add_features(part.made);
   return part;
 }

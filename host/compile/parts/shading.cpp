@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "compile/environment.h"
-#include "compile/light_tree.h"
 #include "compile/materials.h"
 #include "compile/parts/parts.h"
 #include "compile/textures.h"
+#include "scene/integrators.h"
 
 namespace sundog {
 namespace {
@@ -26,7 +26,7 @@ bool has_fractional_exponent(const Material& material) {
 
 ContentKey lights_key(const SceneDescription& scene, const dvec3& origin) {
   KeyMaker key;
-  key.add(origin).add_all(scene.lights).add(scene.environment).add(scene.render.light_samples);
+  key.add(origin).add_all(scene.lights).add(scene.environment);
   return key.add(scene.fog.color).add(scene.fog.density).key();
 }
 
@@ -35,7 +35,6 @@ ScenePart make_lights(const SceneDescription& scene, const dvec3& origin) {
   part.made.origin = origin;
   add_lights(scene, part.made);
   add_environment(scene, part.made);
-  add_light_tree(scene, part.made);
   add_fog(scene, part.made);
   return part;
 }
@@ -43,7 +42,7 @@ ScenePart make_lights(const SceneDescription& scene, const dvec3& origin) {
 ContentKey surfaces_key(const SceneDescription& scene) {
   KeyMaker key;
   key.add_all(scene.media).add_all(scene.images).add_all(scene.textures).add_all(scene.materials);
-  return key.add(lacks_materials(scene)).key();
+  return key.add(lacks_materials(scene)).add(traces_paths(scene.render.integrator)).key();
 }
 
 SurfacesPart make_surfaces(const SceneDescription& scene) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "device/choice.h"
+#include "scene/integrators.h"
 
 namespace sundog {
 namespace {
@@ -69,8 +70,8 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   if (tuning.packet_least > 0) define("PACKET_LEAST", tuning.packet_least);
   // Depth first, `batch` rays at a time, at most that many wait on each level, and one batch of children
   // more. Beyond 32 levels the kernel counts what does not fit, and the frame reports it.
-  const unsigned rays =
-      scene.features.secondary_rays ? batch * (std::min(scene.info.max_depth, 32u) + 2u) : batch;
+  const bool waits = scene.features.secondary_rays && !traces_paths(scene.integrator);
+  const unsigned rays = waits ? batch * (std::min(scene.info.max_depth, 32u) + 2u) : batch;
   define("RAY_STACK", rays);
   config.ray_stack = rays;
   if (batch == 1) {

@@ -226,6 +226,7 @@ MaterialDescription read_material(const JsonValue& value, std::string name, cons
     read_opacity(object, material, textures);
     read_surface(object, material, textures);
     material.shadow_opaque = object.choice("shadow", "filter", shadows) == "opaque";
+    material.shadow_filter = object.has("shadow") && !material.shadow_opaque;
     material.vertex_color = object.boolean("vertex_color", false);
     return material;
   });

@@ -118,6 +118,13 @@ void read_filter(JsonObject& object, RenderSettings& render) {
                                     least, render.samples));
 }
 
+void read_path(JsonObject& object, RenderSettings& render) {
+  static constexpr std::string_view strategies[] = {LIGHT_STRATEGIES};
+  render.roulette = object.integer("roulette", render.roulette, 1, 65);
+  const std::string strategy = object.choice("lights", std::string(strategies[0]), strategies);
+  render.light_strategy = static_cast<u32>(std::ranges::find(strategies, strategy) - strategies);
+}
+
 void read_adaptive(JsonObject& object, Sampling& sampling) {
   sampling.threshold = object.number("threshold", 0, {.low = 0, .high = 100});
   sampling.first_samples = object.integer("first_samples", sampling.first_samples, 1, 65536);
@@ -216,6 +223,11 @@ RenderSettings read_render(const JsonValue& value) {
     render.light_samples = object.integer("light_samples", render.light_samples, 0, 1024);
     render.cutoff = object.number("cutoff", render.cutoff, zero_to_one);
     render.integrator = object.choice("integrator", render.integrator, integrator_names);
+    if (const auto path = object.find("path"))
+      path->object("path", [&](JsonObject& inner) {
+        read_path(inner, render);
+        return true;
+      });
     const std::string sampler =
         object.choice("sampler", std::string(sampler_names[SAMPLER_AUTO]), sampler_names);
     render.sampler = static_cast<u32>(std::ranges::find(sampler_names, sampler) - sampler_names.begin());

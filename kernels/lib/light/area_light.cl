@@ -99,6 +99,16 @@ static inline LightSamples sample_rectangle(__global const Light* light, REAL3 p
   return sample_of_flat(light, to, used);
 }
 
+// Uniform in area (Heitz 2019, "A Low-Distortion Map Between Triangle and Square").
+static inline LightSamples sample_triangle(__global const Light* light, REAL3 p, REAL u_x, REAL u_y) {
+  const REAL half_x = 0.5f * u_x, half_y = 0.5f * u_y;
+  const MASK upper = MASK_OF(u_y > u_x);
+  const REAL x = select(u_x - half_y, half_x, upper), y = select(half_y, u_y - half_x, upper);
+  REAL3 to = subtract3(all3(light->position.xyz), p);
+  to = along3(along3(to, x, all3(light->edge_u.xyz)), y, all3(light->edge_v.xyz));
+  return sample_of_flat(light, to, (REAL)(0.0f));
+}
+
 static inline LightSamples sample_disk(__global const Light* light, REAL3 p, REAL u_x, REAL u_y) {
   REAL x, y;
   place_in_disk(u_x, u_y, &x, &y);
@@ -137,6 +147,7 @@ static inline LightSamples sample_sphere(__global const Light* light, REAL3 p, R
 static inline LightSamples sample_area_light(__global const Light* light, REAL3 p, REAL u_x, REAL u_y) {
   if (light->kind == LIGHT_RECTANGLE) return sample_rectangle(light, p, u_x, u_y);
   if (light->kind == LIGHT_DISK) return sample_disk(light, p, u_x, u_y);
+  if (light->kind == LIGHT_TRIANGLE) return sample_triangle(light, p, u_x, u_y);
   return sample_sphere(light, p, u_x, u_y);
 }
 

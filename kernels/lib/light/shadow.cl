@@ -190,17 +190,29 @@ static inline Hits shadow_hits(const Scene* scene, SceneRays* rays, MASK lanes, 
 }
 #endif
 
-#if BATCH > 1
-// Takes the newest shadow rays, at most `most`, to the light or to their next filters, where those that pass
-// wait again. `coherent`: the rays run close together.
-NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 most, bool coherent,
-                                  float4* radiance, u32* counts) {
-  SceneRays rays;
-  PathStates paths;
-  const MASK lanes = pop_shadows(stack, most, &rays, &paths);
-  Hits hits = shadow_hits(scene, &rays, lanes, coherent, counts);
-  const MASK passing = reach_filters(scene, &rays, &paths, &hits, lanes, radiance, counts);
-  push_shadows(stack, &rays, &paths, passing);
+// What of `light` arrives at the ends of the shadow rays of `lanes`, taken all the way there.
+#if HAS_SHADOW_FILTERS
+static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 light, MASK lanes,
+                                   u32* counts) {
+  while (any_lane(lanes)) {
+    Hits hits = shadow_hits(scene, rays, lanes, false, counts);
+    const MASK passing = pass_filters(scene, rays, &hits, lanes, &light);
+    const MASK too_many = passing & MASK_OF(rays->crossings >= MAX_FILTERS);
+    counts[COUNT_SHADOW_LIMIT] += lane_count(too_many);
+    light = select3(light, all3((float3)(0.0f)), too_many);
+    lanes = passing & ~too_many;
+  }
+  return light;
+}
+#else
+static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 light, MASK lanes,
+                                   u32* counts) {
+  const MASK arriving = lanes & ~any_hits(scene, rays, lanes, false, counts);
+  if (HAS_MEDIA) {
+    const MASK here = current_media(scene->media, rays, arriving);
+    light = multiply3(light, absorb(scene->media, here, rays->t_max, arriving));
+  }
+  return select3(all3((float3)(0.0f)), light, arriving);
 }
 #endif
 

@@ -6,6 +6,7 @@
 #include "lib/light/light.cl"
 #include "lib/path/path_samples.cl"
 #include "lib/path/ray_stack.cl"
+#include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
 #include "lib/shade/relief.cl"
 
@@ -14,6 +15,16 @@ typedef struct Shading {
   SurfaceInteractions s;
   Bsdfs bsdf;
 } Shading;
+
+// The surfaces of `lanes` and what they do to light.
+static inline void shade_hits(const Scene* scene, const SceneRays* rays, const Encounters* met, MASK lanes,
+                              Shading* at) {
+  interact(scene, rays->o, rays->d, &met->hit, &met->face, lanes, &at->s);
+  at->s.offset = offset_beyond(met, at->s.offset);
+  set_footprints(rays, met->hit.t, &at->s);
+  add_relief(scene, rays->d, lanes, &at->s);
+  at->bsdf = make_bsdfs(scene, &at->s, met->before, met->after, lanes);
+}
 
 #if HAS_LIGHT_TREE
 // A way to one of the lights of the tree for each point, for which it stands with all its light.

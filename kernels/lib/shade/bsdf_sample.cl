@@ -1,16 +1,28 @@
-// Random directions for surfaces, for integrators that follow one ray on: one of the four terms is chosen
-// (perfect reflection and transmission, diffuse, highlight), then a direction of it. A surface a lane.
+// Random directions for surfaces, for integrators that follow one ray on: one of the terms is chosen (perfect
+// reflection and transmission, microfacets, diffuse, highlight), then a direction of it. A surface a lane.
 #ifndef SUNDOG_LIB_BSDF_SAMPLE_CL
 #define SUNDOG_LIB_BSDF_SAMPLE_CL
 #include "lib/core/directions.cl"
 #include "lib/shade/bsdf.cl"
+#include "lib/shade/microfacets.cl"
 
 typedef struct BsdfSamples {
   REAL3 wi;       // unit
   REAL3 weight;   // BSDF times cosine over density: what light from wi counts for
   REAL density;   // of wi, per steradian; of a specular sample the probability of its term
-  MASK specular;  // perfect reflection or transmission: bsdf_eval() does not know it
+  MASK specular;  // perfect reflection or transmission: bsdf_scatter() does not know it
 } BsdfSamples;
+
+// The terms of surfaces for a viewer, and their shares among samples: as large as what they may return.
+typedef struct Lobes {
+  SpecularSplits split;
+  REAL mirror, through, facets, matte, glossy, all;
+  REAL exponent;  // of the highlight
+  MASK blinn;
+#if HAS_ROUGH
+  Microfacets rough;
+#endif
+} Lobes;
 
 // Density of directions whose cosine c to an axis is distributed as c^e, on its hemisphere.
 static inline REAL lobe_density(REAL c, REAL e) {
@@ -46,49 +58,114 @@ static inline void find_highlights(const Scene* scene, const Bsdfs* bsdf, MASK l
   }
 }
 
+// The lobes of the surfaces of `lanes`, seen from wo.
+static inline Lobes make_lobes(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes) {
+  const REAL zero = (REAL)(0.0f);
+  Lobes lobes;
+  lobes.split = bsdf_specular(scene, bsdf, wo, lanes);
+  lobes.blinn = MASK_OF((bsdf->flags & (int)MATERIAL_BLINN) != 0);
+  lobes.glossy = lobes.exponent = zero;
+  find_highlights(scene, bsdf, lanes, &lobes.glossy, &lobes.exponent);
+  lobes.mirror = greatest3(lobes.split.kr);
+  lobes.through = greatest3(lobes.split.kt);
+  lobes.facets = zero;
+  lobes.matte = greatest3(bsdf->diffuse);
+  lobes.all = lobes.mirror + lobes.through + lobes.matte + lobes.glossy;
+#if HAS_ROUGH
+  lobes.rough = make_microfacets(scene, bsdf, &lobes.split, wo, lanes);
+  // What does not bend goes straight through, whatever the facets.
+  const REAL of_facets = lobes.mirror + select(zero, lobes.through, lobes.rough.bends);
+  lobes.facets = select(zero, of_facets, lobes.rough.rough);
+  lobes.mirror = select(lobes.mirror, zero, lobes.rough.rough);
+  lobes.through = select(lobes.through, zero, lobes.rough.bends);
+#endif
+  return lobes;
+}
+
+// pi times the BSDF times the cosine of all terms that are not perfect, for the directions wi on either side
+// of the surfaces of `lanes`; `density`: that with which bsdf_sample() chooses them.
+static inline REAL3 bsdf_scatter(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
+                                 REAL3 wi, MASK lanes, REAL* density) {
+  const REAL zero = (REAL)(0.0f);
+  const MASK above = lanes & MASK_OF(dot3(bsdf->ns, wi) > 0.0f) & MASK_OF(dot3(bsdf->ng, wi) > 0.0f);
+  REAL chosen = lobes->matte * diffuse_density(bsdf, wi);
+  if (any_lane(above & MASK_OF(lobes->glossy > 0.0f)))
+    chosen += lobes->glossy * highlight_density(bsdf, wo, wi, lobes->blinn, lobes->exponent);
+  chosen = select(zero, chosen, above);
+  REAL3 value = select3(all3((float3)(0.0f)), bsdf_eval(scene, bsdf, wo, wi, above), above);
+#if HAS_ROUGH
+  if (any_lane(lanes & lobes->rough.rough)) {
+    REAL of_facets;
+    value =
+        add3(value, facet_scatter(scene, bsdf, &lobes->rough, lobes->split.eta, wo, wi, lanes, &of_facets));
+    chosen += lobes->facets * of_facets;
+  }
+#endif
+  *density = chosen / select((REAL)(1.0f), lobes->all, MASK_OF(lobes->all > 0.0f));
+  return value;
+}
+
+// Directions of the highlight, and those of the diffuse term where `matte`.
+static inline REAL3 local_direction(const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo, REAL u_x, REAL u_y,
+                                    MASK matte) {
+  const REAL3 diffuse = direction_about(bsdf->ns, real_sqrt(u_x), u_y);
+  if (!any_lane(~matte)) return diffuse;
+  const REAL cosine = pow(real_max(u_x, (REAL)(1e-30f)), 1.0f / (lobes->exponent + 1.0f));
+  const REAL3 half_vector = direction_about(bsdf->ns, cosine, u_y);
+  const REAL3 glossy =
+      select3(direction_about(reflect_direction(negate3(wo), bsdf->ns), cosine, u_y),
+              subtract3(scale3(half_vector, 2.0f * dot3(half_vector, wo)), wo), lobes->blinn);
+  return select3(glossy, diffuse, matte);
+}
+
 // A direction for each surface of `lanes`, by the numbers u in [0, 1): `u_term` chooses the term, u_x and u_y
 // the direction. The weights' mean is the light that the surface returns of a white surrounding. A weight of
 // 0 ends the path.
-static inline BsdfSamples bsdf_sample(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL u_term, REAL u_x,
-                                      REAL u_y, MASK lanes) {
+static inline BsdfSamples sample_lobes(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
+                                       REAL u_term, REAL u_x, REAL u_y, MASK lanes) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
-  const SpecularSplits split = bsdf_specular(scene, bsdf, wo, lanes);
-  const MASK blinn = MASK_OF((bsdf->flags & (int)MATERIAL_BLINN) != 0);
-  REAL shine = zero, exponent = zero;
-  find_highlights(scene, bsdf, lanes, &shine, &exponent);
-  // Shares of the terms, as large as what they may return.
-  const REAL reflects = greatest3(split.kr), transmits = greatest3(split.kt);
-  const REAL scatters = greatest3(bsdf->diffuse), all = reflects + transmits + scatters + shine;
-  const REAL at = u_term * all;
-  const MASK mirror = MASK_OF(at < reflects), through = ~mirror & MASK_OF(at < reflects + transmits);
-  const MASK matte = ~mirror & ~through & MASK_OF(at < reflects + transmits + scatters);
-  const REAL lobe = pow(real_max(u_x, (REAL)(1e-30f)), 1.0f / (exponent + 1.0f));
-  const REAL3 mirrored = reflected_direction(bsdf, wo), half_vector = direction_about(bsdf->ns, lobe, u_y);
-  const REAL3 glossy = select3(direction_about(reflect_direction(negate3(wo), bsdf->ns), lobe, u_y),
-                               subtract3(scale3(half_vector, 2.0f * dot3(half_vector, wo)), wo), blinn);
+  const REAL perfect = lobes->mirror + lobes->through, at = u_term * lobes->all;
+  const MASK mirror = MASK_OF(at < lobes->mirror), specular = MASK_OF(at < perfect);
+  const MASK matte = MASK_OF(at < perfect + lobes->facets + lobes->matte);
   BsdfSamples sample;
-  sample.specular = mirror | through;
-  sample.wi = select3(glossy, direction_about(bsdf->ns, real_sqrt(u_x), u_y), matte);
-  const REAL mixed = (scatters * diffuse_density(bsdf, sample.wi) +
-                      shine * highlight_density(bsdf, wo, sample.wi, blinn, exponent)) /
-                     all;
-  const MASK above = MASK_OF(dot3(bsdf->ns, sample.wi) > 0.0f) & MASK_OF(dot3(bsdf->ng, sample.wi) > 0.0f) &
-                     MASK_OF(mixed > 0.0f);
-  const REAL3 value = bsdf_eval(scene, bsdf, wo, sample.wi, lanes);
-  const REAL3 scattered = scale3(value, 1.0f / (M_PI_F * select(one, mixed, above)));
-  sample.weight = select3(all3((float3)(0.0f)), scattered, above);
-  sample.density = mixed;
-  sample.wi = select3(sample.wi, mirrored, mirror);
-  sample.wi = select3(sample.wi, transmitted_direction(bsdf, &split, wo), through);
-  const REAL chosen = select(transmits, reflects, mirror) / all;
-  const REAL3 part = select3(split.kt, split.kr, mirror);
-  sample.density = select(sample.density, chosen, sample.specular);
+  sample.specular = specular;
+  sample.wi = local_direction(bsdf, lobes, wo, u_x, u_y, matte | ~lanes);
+  MASK below = NO_LANES;  // where the term sends light to; what leaves on the other side is none of its
+#if HAS_ROUGH
+  const MASK facets = ~specular & MASK_OF(at < perfect + lobes->facets);
+  if (any_lane(lanes & facets)) {
+    const REAL u_side = (at - perfect) / select(one, lobes->facets, facets);
+    MASK through;
+    const REAL3 sent =
+        facet_direction(scene, bsdf, &lobes->rough, wo, u_side, u_x, u_y, lanes & facets, &through);
+    sample.wi = select3(sample.wi, sent, facets);
+    below = facets & through;
+  }
+#endif
+  const REAL3 value = bsdf_scatter(scene, bsdf, lobes, wo, sample.wi, lanes & ~specular, &sample.density);
+  const MASK strays = below ^ MASK_OF(dot3(bsdf->ns, sample.wi) <= 0.0f);
+  sample.density = select(sample.density, zero, strays);
+  const MASK some = MASK_OF(sample.density > 0.0f);
   sample.weight =
-      select3(sample.weight, scale3(part, 1.0f / select(one, chosen, sample.specular)), sample.specular);
-  const MASK black = MASK_OF(all <= 0.0f);
+      select3(all3((float3)(0.0f)), scale3(value, 1.0f / (M_PI_F * select(one, sample.density, some))), some);
+  if (any_lane(lanes & specular)) {
+    sample.wi = select3(sample.wi, reflected_direction(bsdf, wo), mirror);
+    sample.wi = select3(sample.wi, transmitted_direction(bsdf, &lobes->split, wo), specular & ~mirror);
+    const REAL chosen = select(lobes->through, lobes->mirror, mirror) / select(one, lobes->all, specular);
+    const REAL3 part = select3(lobes->split.kt, lobes->split.kr, mirror);
+    sample.density = select(sample.density, chosen, specular);
+    sample.weight = select3(sample.weight, scale3(part, 1.0f / select(one, chosen, specular)), specular);
+  }
+  const MASK black = MASK_OF(lobes->all <= 0.0f);
   sample.weight = select3(sample.weight, all3((float3)(0.0f)), black);
   sample.density = select(sample.density, zero, black);
   return sample;
+}
+
+static inline BsdfSamples bsdf_sample(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL u_term, REAL u_x,
+                                      REAL u_y, MASK lanes) {
+  const Lobes lobes = make_lobes(scene, bsdf, wo, lanes);
+  return sample_lobes(scene, bsdf, &lobes, wo, u_term, u_x, u_y, lanes);
 }
 
 #endif

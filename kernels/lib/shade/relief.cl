@@ -149,6 +149,7 @@ static inline REAL terminator(const SurfaceInteractions* s, REAL3 wi) {
 }
 #else
 static inline void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {}
+static inline REAL terminator(const SurfaceInteractions* s, REAL3 wi) { return (REAL)(1.0f); }
 #endif
 
 #endif

@@ -26,21 +26,27 @@ static inline REAL smith_lambda(REAL c, REAL alpha) {
   return 0.5f * (real_sqrt(1.0f + alpha * alpha * (1.0f - square) / square) - 1.0f);
 }
 
-// The part of light that facets send on without a second reflection, for white ones that are seen at the
-// cosine c: the table that host/compile/lobe_energy.h makes, by alpha and then by c.
-static inline REAL lobe_energy(const Scene* scene, REAL c, REAL alpha, MASK lanes) {
+// One of the tables that host/compile/lobe_energy.h makes, by alpha and then by the cosine c to the normal;
+// `first` is its first value's index. 1 elsewhere than in `lanes`.
+static inline REAL lobe_energy_at(const Scene* scene, u32 first, REAL c, REAL alpha, MASK lanes) {
   REAL energy = (REAL)(1.0f);
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     const float x = clamp(REAL_LANE(c, i), 0.0f, 1.0f) * (LOBE_STEPS - 1u),
                 y = clamp(REAL_LANE(alpha, i), 0.0f, 1.0f) * (LOBE_STEPS - 1u);
     const u32 x0 = min((u32)x, LOBE_STEPS - 2u), y0 = min((u32)y, LOBE_STEPS - 2u);
-    __global const float* at = scene->lobe_energy + y0 * LOBE_STEPS + x0;
+    __global const float* at = scene->lobe_energy + first + y0 * LOBE_STEPS + x0;
     const float low = mix(at[0], at[1], x - (float)x0),
                 high = mix(at[LOBE_STEPS], at[LOBE_STEPS + 1u], x - (float)x0);
     REAL_LANE(energy, i) = mix(low, high, y - (float)y0);
   }
   return energy;
+}
+
+// The part of light that facets send on without a second reflection, for white ones that are seen at the
+// cosine c.
+static inline REAL lobe_energy(const Scene* scene, REAL c, REAL alpha, MASK lanes) {
+  return lobe_energy_at(scene, 0u, c, alpha, lanes);
 }
 
 // Facets of surfaces: what rays meet in place of the surface.

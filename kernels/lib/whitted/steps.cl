@@ -3,6 +3,7 @@
 // receive.
 #ifndef SUNDOG_LIB_STEPS_CL
 #define SUNDOG_LIB_STEPS_CL
+#include "lib/light/field_openness.cl"
 #include "lib/light/shadow_rays.cl"
 #include "lib/path/camera.cl"
 #include "lib/whitted/children.cl"
@@ -64,16 +65,6 @@ static inline void note_first_hits(const PathStates* paths, MASK lanes, float4* 
   counts[COUNT_PRIMARY_HIT] += lane_count(first);
   for (u32 bits = lane_bits(first); bits; bits &= bits - 1u)
     radiance[MASK_LANE(paths->pixel, lowest_bit(bits))].w = 1.0f;
-}
-
-// The surfaces of `lanes` and what they do to light.
-static inline void shade_hits(const Scene* scene, const SceneRays* rays, const Encounters* met, MASK lanes,
-                              Shading* at) {
-  interact(scene, rays->o, rays->d, &met->hit, &met->face, lanes, &at->s);
-  at->s.offset = offset_beyond(met, at->s.offset);
-  set_footprints(rays, met->hit.t, &at->s);
-  add_relief(scene, rays->d, lanes, &at->s);
-  at->bsdf = make_bsdfs(scene, &at->s, met->before, met->after, lanes);
 }
 
 // The rays of `lanes` at what they met: the surfaces of those that hit something, which are returned, and

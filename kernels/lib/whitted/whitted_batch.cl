@@ -6,6 +6,18 @@
 #include "lib/whitted/steps.cl"
 
 #if BATCH > 1
+// Takes the newest shadow rays, at most `most`, to the light or to their next filters, where those that pass
+// wait again. `coherent`: the rays run close together.
+NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 most, bool coherent,
+                                  float4* radiance, u32* counts) {
+  SceneRays rays;
+  PathStates paths;
+  const MASK lanes = pop_shadows(stack, most, &rays, &paths);
+  Hits hits = shadow_hits(scene, &rays, lanes, coherent, counts);
+  const MASK passing = reach_filters(scene, &rays, &paths, &hits, lanes, radiance, counts);
+  push_shadows(stack, &rays, &paths, passing);
+}
+
 // Adds the lights that the surfaces of `lanes` see. `coherent`: the rays run close together, and so do those
 // to one light; else shadow rays wait until there are many, or with `last` until no others come.
 static inline void add_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,

@@ -109,6 +109,22 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("a path-traced image has the same bits for every work-group size, tile size, run and pass") {
+  SceneDescription scene = busy_mesh_scene();
+  scene.render.integrator = "path";
+  scene.render.sampler = SAMPLER_SOBOL;
+  scene.render.samples = 4;
+  scene.materials.front().specular = dvec3(0.2);
+  scene.materials.back().roughness = 0.3;
+  scene.materials.back().reflection = dvec3(0.3);
+  on_every_device([&](const DeviceInfo& device) {
+    check_work_groups(device, scene);
+    SceneDescription growing = scene;
+    growing.render.sampling.progressive = true;
+    CHECK(same_bits(scenes::render_on(device, growing).image, scenes::render_on(device, scene).image));
+  });
+}
+
 TEST_CASE("sub-devices compute the same bits as the whole device") {
   const SceneDescription scene = busy_scene();
   for (const DeviceInfo& device : test_devices()) {

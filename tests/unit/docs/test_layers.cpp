@@ -32,7 +32,7 @@ const std::map<std::string, std::vector<std::string>> folders = {
     {"host/render", {"values", "film", "plan", "frame", "device", "remote", "session"}},
     {"host/bench", {"plain", "report", "rays", "frames", "tune"}},
     {"host/app", {"process", "options", "job", "render", "bench", "commands", "serve"}},
-    {"kernels/lib", {"core", "solids", "sdf", "trace", "path", "shade", "light", "whitted"}},
+    {"kernels/lib", {"core", "solids", "sdf", "trace", "path", "shade", "light", "whitted", "pathtracer"}},
 };
 
 struct Include {

@@ -1,0 +1,93 @@
+// See mesh_lights.h.
+#include "compile/mesh_lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compile/pack.h"
+#include "scene/integrators.h"
+
+namespace sundog {
+namespace {
+
+/// The radiance that the outside of triangles of a material sends out, where it is the same all over them.
+dvec3 even_emission(const SceneDescription& scene, int material) {
+  if (material < 0) return dvec3(0);
+  const MaterialDescription& of = scene.materials[static_cast<std::size_t>(material)];
+  const bool even = of.textures.emission < 0 && of.textures.opacity < 0 && of.opacity == 1;
+  return even ? of.emission : dvec3(0);
+}
+
+int material_of(const Object& object, const Mesh& mesh, std::size_t triangle) {
+  if (object.material >= 0 || mesh.materials.empty()) return object.material;
+  return mesh.materials[triangle];
+}
+
+Light light_of(const Object& object, const Mesh& mesh, const glm::uvec3& corners, const dvec3& emission,
+               const dvec3& origin) {
+  const auto world = [&](unsigned i) {
+    return dvec3(object.world_from_object * glm::dvec4(dvec3(mesh.positions[i]), 1)) - origin;
+  };
+  const dvec3 a = world(corners.x), u = world(corners.y) - a, v = world(corners.z) - a;
+  dvec3 across = glm::cross(u, v);
+  // A mirroring transform turns the corners round, not what is outside.
+  if (glm::determinant(glm::dmat3(object.world_from_object)) < 0) across = -across;
+  const double twice = glm::length(across);
+  Light light{};
+  light.kind = LIGHT_TRIANGLE;
+  light.position = pack(a);
+  light.edge_u = pack(u, glm::length(u));
+  light.edge_v = pack(v, glm::length(v));
+  if (!(twice > 0) || !std::isfinite(twice)) return light;
+  light.direction = pack(across / twice, twice / 2);
+  light.color = pack(emission);
+  return light;
+}
+
+bool shines_somewhere(const SceneDescription& scene, const Object& object, const Mesh& mesh) {
+  if (object.material >= 0 || mesh.materials.empty())
+    return even_emission(scene, object.material) != dvec3(0);
+  return std::ranges::any_of(mesh.materials,
+                             [&](int material) { return even_emission(scene, material) != dvec3(0); });
+}
+
+/// For each object the light in the table that it shows as a lamp, or NO_LIGHT. Ambient lights have no row.
+std::vector<u32> lamps_of(const SceneDescription& scene) {
+  std::vector<u32> rows, lamps;
+  u32 row = 0;
+  for (const LightDescription& light : scene.lights)
+    rows.push_back(light.type == LightType::ambient ? NO_LIGHT : row++);
+  for (const Object& object : scene.objects)
+    lamps.push_back(object.light < 0 ? NO_LIGHT : rows.at(static_cast<std::size_t>(object.light)));
+  return lamps;
+}
+
+}  // namespace
+
+void add_mesh_lights(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
+                     CompiledScene& out) {
+  std::vector<u32> first = lamps_of(scene);
+  bool shines = false;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    const auto* shape = std::get_if<MeshShape>(&object.shape);
+    if (!shape || object.light >= 0) continue;
+    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(shape->mesh)];
+    if (mesh.triangles.size() > most_shining || !shines_somewhere(scene, object, mesh)) continue;
+    first[i] = static_cast<u32>(out.lights.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      out.lights.push_back(light_of(object, mesh, mesh.triangles[t],
+                                    even_emission(scene, material_of(object, mesh, t)), out.origin));
+    shines = true;
+  }
+  out.features.area_lights |= shines;
+  if (!shines && !traces_paths(out.integrator)) return;  // nobody asks which light an instance shows
+  for (Instance& instance : out.instances.edit()) {
+    if (instance.object >= first.size() || first[instance.object] == NO_LIGHT) continue;
+    instance.light = first[instance.object];
+    if (const auto* shape = std::get_if<MeshShape>(&scene.objects[instance.object].shape))
+      instance.first_prim = meshes[static_cast<std::size_t>(shape->mesh)].first_triangle;
+  }
+}
+
+}  // namespace sundog

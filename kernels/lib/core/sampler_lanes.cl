@@ -1,0 +1,80 @@
+// The sample values of shared/sampler.h for a pixel's sample a lane: the same bits, several at once.
+#ifndef SUNDOG_LIB_SAMPLER_LANES_CL
+#define SUNDOG_LIB_SAMPLER_LANES_CL
+#include "lib/core/lanes.h"
+#include "lib/core/sampler.cl"
+
+#if LANES == 1
+typedef u32 LANE_U32;
+#define AS_LANE_U32(x) as_uint(x)
+#elif LANES == 4
+typedef uint4 LANE_U32;
+#define AS_LANE_U32(x) as_uint4(x)
+#elif LANES == 8
+typedef uint8 LANE_U32;
+#define AS_LANE_U32(x) as_uint8(x)
+#else
+typedef uint16 LANE_U32;
+#define AS_LANE_U32(x) as_uint16(x)
+#endif
+
+static inline LANE_U32 hash_lanes(LANE_U32 x) {
+  const LANE_U32 state = x * 747796405u + 2891336453u;
+  const LANE_U32 word = ((state >> ((state >> 28) + 4u)) ^ state) * 277803737u;
+  return (word >> 22) ^ word;
+}
+
+static inline LANE_U32 reversed_lanes(LANE_U32 r) {
+  r = (r << 16) | (r >> 16);
+  r = ((r & 0x00ff00ffu) << 8) | ((r & 0xff00ff00u) >> 8);
+  r = ((r & 0x0f0f0f0fu) << 4) | ((r & 0xf0f0f0f0u) >> 4);
+  r = ((r & 0x33333333u) << 2) | ((r & 0xccccccccu) >> 2);
+  return ((r & 0x55555555u) << 1) | ((r & 0xaaaaaaaau) >> 1);
+}
+
+static inline LANE_U32 owen_lanes(LANE_U32 x, LANE_U32 seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  return x ^ x * 0x53a22864u;
+}
+
+// unit_float() of bits: 24 of them are an int above 0.
+static inline REAL unit_lanes(LANE_U32 bits) { return TO_REAL(AS_MASK(bits >> 8)) * 0x1p-24f; }
+
+static inline REAL scrambled_lanes(LANE_U32 reversed, LANE_U32 seed, u32 component) {
+  const LANE_U32 own = hash_lanes(seed + 0x9e3779b9u * (component + 1u));
+  return unit_lanes(reversed_lanes(owen_lanes(reversed & 0xffffu, own)));
+}
+
+// The pixel and the sample of each lane.
+typedef struct LaneSamples {
+  MASK x, y, sample;
+} LaneSamples;
+
+// Four numbers in [0, 1) for each lane: of the dimensions from `dimension` on, a multiple of four.
+typedef struct FourNumbers {
+  REAL x, y, z, w;
+} FourNumbers;
+
+static inline FourNumbers sample_lanes(const LaneSamples* at, MASK dimension) {
+  const LANE_U32 first = AS_LANE_U32(dimension), x = AS_LANE_U32(at->x), y = AS_LANE_U32(at->y),
+                 sample = AS_LANE_U32(at->sample);
+#if SAMPLER == SAMPLER_INDEPENDENT
+  const FourNumbers u = {
+      unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first))))),
+      unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first + 1u))))),
+      unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first + 2u))))),
+      unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first + 3u)))))};
+#else
+  const LANE_U32 seed = hash_lanes(x + hash_lanes(y + hash_lanes(first >> 2)));
+  const LANE_U32 order = owen_lanes(reversed_lanes(sample) >> 16, seed) & 0xffffu;
+  const LANE_U32 low = SOBOL_PAIR_01, high = SOBOL_PAIR_23;
+  const FourNumbers u = {scrambled_lanes(low, seed, 0u), scrambled_lanes(low >> 16, seed, 1u),
+                         scrambled_lanes(high, seed, 2u), scrambled_lanes(high >> 16, seed, 3u)};
+#endif
+  return u;
+}
+
+#endif

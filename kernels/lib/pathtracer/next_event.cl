@@ -1,0 +1,102 @@
+// Light chosen at the surfaces of paths: one light each, a place on it, and a shadow ray there.
+#ifndef SUNDOG_LIB_NEXT_EVENT_CL
+#define SUNDOG_LIB_NEXT_EVENT_CL
+#include "lib/light/shadow.cl"
+#include "lib/light/shadow_rays.cl"
+#include "lib/pathtracer/walk_state.cl"
+#include "lib/shade/bsdf_sample.cl"
+
+// A way to one of the lights for each of the points p, with its density among all; `seen`: rays may meet it.
+static inline LightSamples choose_one(const Scene* scene, REAL3 p, const FourNumbers* u, MASK lanes,
+                                      MASK* seen) {
+  const REAL count = (REAL)((float)scene->info->light_count), turn = u->z * count;
+  const REAL slot = real_min(floor(turn), count - 1.0f);
+  MASK chosen = NO_LANES;
+  REAL chance = 1.0f / count;
+  u32 index;
+  for (MASK left = lanes, slots = TO_MASK(slot); any_lane(left);) {
+    const MASK mine = take_alike(slots, &left, &index);
+    chosen = select(chosen, (MASK)((int)scene->light_rays[index].light), mine);
+  }
+#if HAS_LIGHT_TREE
+  const MASK among = lanes & MASK_OF(chosen == (int)LIGHT_CHOSEN);
+  if (any_lane(among)) {
+    REAL probability;
+    const MASK leaf = choose_lights(scene, p, turn - slot, among, &probability);
+    chosen = select(chosen, leaf, among);
+    chance = select(chance, chance * probability, among);
+  }
+#endif
+  LightSamples light;
+  light.wi = all3((float3)(0.0f));
+  light.distance = (REAL)(0.0f);
+  light.radiance = all3((float3)(0.0f));
+  light.density = (REAL)(1.0f);
+  light.delta = NO_LANES;
+  *seen = NO_LANES;
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(chosen, &left, &index);
+    const LightSamples one = sample_light(scene, index, p, u->x, u->y);
+    light.wi = select3(light.wi, one.wi, mine);
+    light.distance = select(light.distance, one.distance, mine);
+    light.radiance = select3(light.radiance, one.radiance, mine);
+    light.density = select(light.density, one.density, mine);
+    light.delta = select(light.delta, one.delta, mine);
+    __global const Light* lamp = scene->lights + index;
+    const bool met = lamp->kind == LIGHT_ENVIRONMENT ? scene->info->sees_environment != 0u
+                     : lamp->kind == LIGHT_SUN       ? lamp->direction.w > 0.0f
+                                                     : lamp->position.w == 0.0f;
+    if (met) *seen |= mine;
+  }
+  *seen &= ~light.delta;
+  // Of a delta light the chance counts for the light, not for a direction.
+  light.density *= chance;
+  return light;
+}
+
+// Shadow rays of `lanes` from the surfaces to the lights. `below`: they leave behind the surface.
+static inline SceneRays rays_to_light(const Scene* scene, const SceneRays* rays, const Encounters* met,
+                                      const Shading* at, const LightSamples* light, MASK below, MASK lanes) {
+  const SurfaceInteractions* s = &at->s;
+  SceneRays to_light = *rays;
+  start_on_surfaces(scene->info, &to_light, &met->hit, ~s->entering, lanes);
+  to_light.o = along3(s->p, select(s->offset, -s->offset, below), s->ng);
+  if (any_lane(below)) {
+    start_on_hits(scene->info, &to_light, &met->hit, s->entering, below);
+    enter_behind(met, rays, below, &to_light);
+  }
+  to_light.d = light->wi;
+  to_light.t_min = (REAL)(0.0f);
+  to_light.t_max = light->distance;
+  return to_light;
+}
+
+// What lights send to the surfaces of `lanes`, times what those make of it.
+NEVER_INLINE REAL3 next_event(const Scene* scene, const Walks* walks, const SceneRays* rays,
+                              const Encounters* met, const Shading* at, const Lobes* lobes,
+                              const FourNumbers* u, MASK lanes, u32* counts) {
+  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
+  const REAL3 none = all3((float3)(0.0f)), wo = negate3(rays->d);
+  const SurfaceInteractions* s = &at->s;
+  MASK seen;
+  const LightSamples light = choose_one(scene, s->p, u, lanes, &seen);
+  REAL scattered;
+  REAL3 possible = bsdf_scatter(scene, &at->bsdf, lobes, wo, light.wi, lanes, &scattered);
+  const REAL weight = weight_of_chosen(scene, light.density, select(zero, scattered, seen));
+  const REAL over = select(1.0f / (M_PI_F * light.density), one / light.density, light.delta);
+  possible = scale3(multiply3(possible, light.radiance), weight * over);
+  const MASK below = lanes & MASK_OF(dot3(s->ng, light.wi) < 0.0f);
+  if (HAS_RELIEF) possible = scale3(possible, select(terminator(s, light.wi), one, below));
+  if (HAS_MEDIA && any_lane(below)) {
+    const REAL eta = lobes->split.eta;
+    possible = scale3(possible, select(one, 1.0f / (eta * eta), below));
+  }
+  possible = multiply3(possible, walks->throughput);
+  const MASK lit = lanes & MASK_OF(greatest3(possible) >= FLT_MIN) & MASK_OF(light.distance > 0.0f);
+  if (!any_lane(lit)) return none;
+  counts[COUNT_SHADOW] += lane_count(lit);
+  SceneRays to_light = rays_to_light(scene, rays, met, at, &light, below, lit);
+  return select3(none, light_arriving(scene, &to_light, possible, lit, counts), lit);
+}
+
+#endif
