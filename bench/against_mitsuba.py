@@ -179,9 +179,10 @@ def compare(mi, args, name, folder):
     means, found = np.array(means), regions(picture)
     error = means.std(0, ddof=1) / math.sqrt(args.seeds) * math.sqrt(2)
     off = (found - means.mean(0)) / error
+    apart = np.abs(found / means.mean(0) - 1)[1:][np.abs(off[1:]) > 3]
     rate = SIZE * SIZE * args.samples / 1e6
     print(f"{name}: mean {found[0].round(5)} against {means.mean(0)[0].round(5)} ({off[0].round(1)} standard errors); "
-          f"regions: greatest {np.abs(off[1:]).max():.1f}, {(np.abs(off[1:]) > 3).sum()} of {off[1:].size} beyond 3; "
+          f"regions: greatest {np.abs(off[1:]).max():.1f}, {(np.abs(off[1:]) > 3).sum()} of {off[1:].size} beyond 3, these by {100 * max(apart, default=0):.2f} %; "
           f"{rate / np.median(ours):.2f} against {rate / np.median(theirs):.2f} Msamples/s: {np.median(theirs) / np.median(ours):.2f} times", flush=True)
 
 
