@@ -77,7 +77,7 @@ Picture picture_of_sky(const EnvironmentDescription& e) {
       picture.pixels[std::size_t(y) * sky_columns + std::size_t(x)] = pack(light * factor);
     }
   level += sky.sun_irradiance() * sun.y;
-  const auto horizon = picture.pixels.begin() + sky_rows / 2 * sky_columns;
+  const auto horizon = picture.pixels.begin() + std::ptrdiff_t{sky_rows / 2} * sky_columns;
   std::fill(horizon, picture.pixels.end(), pack(level * e.ground * factor));
   return picture;
 }

@@ -12,9 +12,9 @@
 namespace sundog {
 namespace {
 
-constexpr char magic[8] = {'S', 'U', 'N', 'D', 'O', 'G', 'P', '1'};
+constexpr char growing_magic[8] = {'S', 'U', 'N', 'D', 'O', 'G', 'P', '1'};
 
-struct Header {
+struct GrowingHeader {
   char magic[8];
   std::uint64_t key;
   std::int32_t width, height, pass_width, pass_height;
@@ -36,8 +36,8 @@ void for_each_array(Growing& film, Pixels& pixels, Made& made, const Visit& visi
 
 void write_growing_checkpoint(const std::filesystem::path& path, const GrowingFilm& film, const Pass& pass,
                               const Film& made, std::uint64_t key) {
-  Header header{};
-  std::memcpy(header.magic, magic, sizeof magic);
+  GrowingHeader header{};
+  std::memcpy(header.magic, growing_magic, sizeof growing_magic);
   header.key = key;
   header.width = film.film.width, header.height = film.film.height;
   header.pass_width = pass.width, header.pass_height = pass.height;
@@ -64,14 +64,14 @@ void read_growing_checkpoint(const std::filesystem::path& path, GrowingFilm& fil
                            "is no sundog checkpoint, or is damaged; remove it to start anew");
   const UsageError other(path.string() +
                          ": is a checkpoint of another scene or of other settings; remove it to start anew");
-  Header header{};
+  GrowingHeader header{};
   std::uint64_t checksum = 0;
   if (bytes.size() < sizeof header + sizeof checksum) throw damaged;
   std::memcpy(&header, bytes.data(), sizeof header);
   const std::size_t end = bytes.size() - sizeof checksum;
   std::memcpy(&checksum, bytes.data() + end, sizeof checksum);
   if (checksum != hash_bytes(bytes.data(), end)) throw damaged;
-  if (std::memcmp(header.magic, magic, sizeof magic) != 0 || header.key != key ||
+  if (std::memcmp(header.magic, growing_magic, sizeof growing_magic) != 0 || header.key != key ||
       header.width != film.film.width || header.height != film.film.height)
     throw other;
   if (!is_frame_size(header.pass_width, header.pass_height)) throw damaged;

@@ -144,6 +144,11 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
   }
   std::optional<std::size_t> index_of(const Worker& worker) const;
   void note_progress(const std::shared_ptr<SessionFrame>& frame);
+  /// The frame in hand may bring its first picture before a newer one takes its place.
+  bool is_awaited() const {
+    return current && !current->frame->stop && current->times.first < 0 && current->times.settled < 0 &&
+           current->begun.seconds() < current->patience;
+  }
   void answer_picks(const std::shared_ptr<TileServer>& server);
   void drop_frame();
   void drop_picks();
@@ -188,15 +193,15 @@ std::optional<std::size_t> RenderSession::State::index_of(const Worker& worker) 
 void RenderSession::State::run_control() {
   std::unique_lock lock(mutex);
   while (!closing) {
-    const auto wanted = [&] { return closing || pending.has_value(); };
-    if (current && !is_at_rest(state))
+    const auto wanted = [&] { return closing || (pending && !is_awaited()); };
+    if (current && (pending || !is_at_rest(state)))
       changed.wait_for(lock, look_again, wanted);
     else
       changed.wait(lock, wanted);
     if (closing) return;
-    if (pending)
+    if (wanted())
       take_order(lock);
-    else
+    else if (!pending)
       look_at(lock);
   }
 }
@@ -204,6 +209,7 @@ void RenderSession::State::run_control() {
 void RenderSession::State::take_order(std::unique_lock<std::mutex>& lock) {
   const Order order = std::move(*pending);
   pending.reset();
+  drop_frame();
   Servers servers;
   for (const auto& worker : workers) servers.push_back(worker->server);
   const double speed = pixel_seconds;
@@ -234,6 +240,7 @@ std::shared_ptr<SessionFrame> RenderSession::State::prepare(const Order& order, 
   made->generation = order.generation;
   made->scene = order.scene;
   made->clock = order.clock;
+  made->patience = order.settings.patience;
   const CompileWork before = compiler.work();
   made->flat = std::make_shared<const CompiledScene>(compiler.compile(*order.scene));
   made->compiled = difference(compiler.work(), before);
@@ -353,7 +360,7 @@ void RenderSession::State::serve_pick(std::unique_lock<std::mutex>& lock, Worker
 void RenderSession::State::note_progress(const std::shared_ptr<SessionFrame>& mine) {
   const FrameProgress progress = progress_of(*mine->frame);
   const std::lock_guard lock(mutex);
-  if (mine != current || mine->generation != newest || is_at_rest(state)) return;
+  if (mine != current || is_at_rest(state)) return;
   const double now = mine->clock.seconds();
   SessionTimes& times = mine->times;
   const auto reached = [&](bool there, double& time) {
@@ -364,6 +371,7 @@ void RenderSession::State::note_progress(const std::shared_ptr<SessionFrame>& mi
   reached(progress.full, times.full);
   reached(progress.settled, times.settled);
   if (progress.whole) shown = mine;
+  if (mine->generation != newest) return note();
   set_state(progress.settled ? SessionState::settled : SessionState::drawing);
 }
 
@@ -422,7 +430,7 @@ Generation RenderSession::start(std::shared_ptr<const SceneDescription> scene,
   State& s = *state_;
   const std::lock_guard lock(s.mutex);
   s.pending = State::Order{++s.newest, std::move(scene), settings, Stopwatch()};
-  s.drop_frame();
+  if (is_at_rest(s.state) || !s.is_awaited()) s.drop_frame();
   s.drop_picks();
   s.error.clear();
   s.set_state(SessionState::compiling);

@@ -27,6 +27,9 @@ using Generation = std::uint64_t;
 /// of it changes a bit of the settled picture.
 struct SessionSettings {
   bool coarse = true;  // while the picture would take longer, pixels 8 apart come first, then 4, then 2
+  /// Seconds that its first picture of the whole frame is given when a newer start() comes: without, scenes
+  /// that follow each other fast (a drag) would all be dropped before anything is seen of them.
+  double patience = 0.15;
   WorkGroup work_group;
   std::function<Tuning(const DeviceInfo&)> tuning;  // of each device; empty: the defaults
   Split split;
@@ -119,11 +122,12 @@ class RenderSession {
   RenderSession& operator=(const RenderSession&) = delete;
 
   /// Draws this scene from now on. Returns at once; what was in hand is dropped at the end of its launches
-  /// (about 50 ms), and what was waiting to be compiled never is. Errors of the scene or a device come as
+  /// (about 50 ms) as soon as it has a first picture or its patience is over, and what was waiting to be
+  /// compiled never is. Errors of the scene or a device come as
   /// SessionState::failed. The scene must not be changed afterwards.
   Generation start(std::shared_ptr<const SceneDescription> scene, const SessionSettings& settings = {});
 
-  /// Stops drawing. The picture so far stays.
+  /// Stops drawing at once. The picture so far stays.
   void cancel();
 
   /// From the next start() on. Devices that stay keep their kernels and tables. Throws DeviceError without

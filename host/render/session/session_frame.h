@@ -16,6 +16,8 @@ struct SessionFrame {
   std::shared_ptr<const CompiledScene> flat;
   std::shared_ptr<Frame> frame;
   Stopwatch clock;  // since start()
+  Stopwatch begun;  // since it can be drawn
+  double patience = 0;
   SessionTimes times;
   CompileWork compiled;  // for this generation
 };

@@ -2,8 +2,6 @@
 // uploads no geometry; a pick shows what the AOVs show.
 #include "render/session/render_session.h"
 
-#include <functional>
-
 #include "catch.h"
 #include "devices.h"
 #include "same_bits.h"
@@ -58,6 +56,7 @@ TEST_CASE("after edits the settled picture has the bits of a cold render") {
     scene.lights.back().intensity *= 0.5;
     scene.objects.back().world_from_object[3].y += 0.2;
     check_settled(session, scene, device);
+    if (device.label() != test_devices().front().label()) return;  // kernels of passes: on one device
     scene.render.sampling.threshold = 0.05;
     scene.render.samples = 8;
     check_settled(session, scene, device);

@@ -190,6 +190,27 @@ TEST_CASE("a storm of starts, cancels, picks and looks ends with the last scene"
   for (std::thread& thread : threads) thread.join();
 }
 
+TEST_CASE("scenes that follow each other fast are seen all the same") {
+  const Made made = servers(1);
+  made[0]->pause_us = 3000;
+  RenderSession session(given(made));
+  SessionSettings settings;
+  settings.patience = 60;
+  Generation last = 0;
+  std::size_t seen = 0;
+  for (int i = 1; i <= 400 && seen < 3; ++i) {
+    session.start(scene_of(i, 64), settings);
+    session.wait_for_change(session.snapshot(false).revision, 0.001);
+    const Snapshot now = session.snapshot(false);
+    seen += now.shown != last;
+    last = now.shown;
+  }
+  CHECK(seen == 3);
+  session.start(scene_of(2), settings);
+  session.wait();
+  check_shows(session.snapshot(), 2);
+}
+
 TEST_CASE("a cancelled scene stops, and keeps its picture") {
   const Made made = servers(1);
   RenderSession session(given(made));
