@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "scene/json/parse.h"
 #include "scene/json/value.h"
+#include "scene/kinds.h"
 #include "scene/model.h"
 #include "scene/model_scene.h"
 #include "scene/read/parts.h"
@@ -19,7 +20,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::array view_keys = {"camera", "image", "render"};
+constexpr std::array view_keys = {"camera", "image", "render", "lights"};
 
 bool same_but_view(const json& before, const json& after) {
   if (!before.is_object() || !after.is_object()) return false;
@@ -29,6 +30,12 @@ bool same_but_view(const json& before, const json& after) {
   for (const auto& [key, value] : after.items())
     if (!is_view(key) && !before.contains(key)) return false;
   return true;
+}
+
+/// Lights that rays meet are objects too (lamps.h).
+bool has_lamps(const std::vector<LightDescription>& lights) {
+  return std::ranges::any_of(
+      lights, [](const LightDescription& light) { return facts_of(light.type).extent && light.visible; });
 }
 
 bool has_place(const json& document) {
@@ -74,7 +81,17 @@ std::shared_ptr<const SceneDescription> change_view(const SceneDescription& scen
   bool placed = false;
   changed->camera = read_camera(section("camera"), placed);
   changed->image = after.contains("image") ? read_image(section("image")) : ImageSettings{};
+  if (!after.contains("lights") || after["lights"] != before.value("lights", json())) {
+    if (has_lamps(scene.lights)) return nullptr;
+    changed->lights.clear();
+    if (after.contains("lights"))
+      for (const JsonValue& light : section("lights").items("lights"))
+        changed->lights.push_back(read_light(light));
+    if (has_lamps(changed->lights)) return nullptr;
+  }
   changed->render = after.contains("render") ? read_render(section("render")) : RenderSettings{};
+  // Images were made smaller to fit what they may take.
+  if (changed->render.texture_memory != scene.render.texture_memory && !scene.images.empty()) return nullptr;
   return changed;
 }
 

@@ -19,8 +19,9 @@ SceneDescription load_scene_document(const nlohmann::json& document, const std::
                                      const LoadOptions& options = {});
 
 /// The scene of `after`, where that differs from `before` (whose scene is `scene`) in nothing but the camera,
-/// the size and background, and the render settings: no file is read again and no formula tried out. Null
-/// where more differs, or where the camera has no place of its own. Throws SceneError.
+/// the size and background, the render settings, and lights that rays do not meet: no file is read again and
+/// no formula tried out. Null where more differs, or where the camera has no place of its own. Throws
+/// SceneError.
 std::shared_ptr<const SceneDescription> change_view(const SceneDescription& scene,
                                                     const nlohmann::json& before,
                                                     const nlohmann::json& after);

@@ -74,7 +74,7 @@ WebHandlers Studio::handlers() {
   };
   all.closed = [](ClientId) {};
   all.ready = [](ClientId) {};
-  all.answer = [this](WebRequest request, std::function<void(WebAnswer)> reply) {
+  all.answer = [this](WebRequest request, const std::function<void(WebAnswer)>& reply) {
     const bool slow = request.path == "/api/picture";
     const bool taken =
         (slow ? asks_ : edits_).post([this, request = std::move(request), reply] { reply(answer(request)); });

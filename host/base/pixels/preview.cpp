@@ -3,7 +3,9 @@
 
 #include <turbojpeg.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
@@ -19,7 +21,8 @@ constexpr std::size_t levels = 4096;
 std::array<std::uint8_t, levels> srgb_table() {
   std::array<std::uint8_t, levels> table{};
   for (std::size_t i = 0; i < levels; ++i)
-    table[i] = static_cast<std::uint8_t>(255 * srgb_from_linear(static_cast<float>(i) / (levels - 1)) + 0.5f);
+    table[i] =
+        static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(static_cast<float>(i) / (levels - 1))));
   return table;
 }
 
@@ -32,7 +35,7 @@ std::vector<std::uint8_t> screen_samples(const Image& image) {
     for (std::size_t c = 0; c < 3; ++c) {
       const float value = image.data[i * channels + c];
       const float clipped = value > 0 ? std::min(value, 1.0f) : 0.0f;  // NaN becomes 0
-      samples[3 * i + c] = table[static_cast<std::size_t>(clipped * (levels - 1) + 0.5f)];
+      samples[3 * i + c] = table[static_cast<std::size_t>(std::lround(clipped * (levels - 1)))];
     }
   return samples;
 }

@@ -70,13 +70,29 @@ TEST_CASE("a change of the view alone gives the scene that reading everything gi
   CHECK(hash_of(*shorter) == hash_of(load_scene_document(after, file)));
 }
 
+TEST_CASE("a change of lights that rays do not meet gives the scene that reading everything gives") {
+  const auto file = scenes / "spheres.json";
+  const json before = read_scene_document(file);
+  const SceneDescription scene = load_scene_document(before, file);
+  json brighter = before, dark = before, more = before;
+  brighter["lights"][1]["intensity"] = 3;
+  dark.erase("lights");
+  more["lights"].push_back(
+      {{"type", "disk"}, {"position", {0, 3, 0}}, {"direction", {0, -1, 0}}, {"visible", false}});
+  for (const json& after : {brighter, dark, more}) {
+    const auto changed = change_view(scene, before, after);
+    REQUIRE(changed);
+    CHECK(hash_of(*changed) == hash_of(load_scene_document(after, file)));
+  }
+}
+
 TEST_CASE("more than the view is not taken for the view") {
   const auto file = scenes / "spheres.json";
   const json before = read_scene_document(file);
   const SceneDescription scene = load_scene_document(before, file);
   json light = before, removed = before, added = before, unplaced = before;
-  light["lights"][1]["intensity"] = 3;
-  removed.erase("lights");
+  light["lights"].push_back({{"type", "sphere"}, {"position", {0, 3, 0}}});  // rays meet it
+  removed.erase("materials");
   added["world"] = json::object();
   unplaced["camera"] = {{"fov", 30}};
   for (const json& after : {light, removed, added, unplaced}) CHECK_FALSE(change_view(scene, before, after));
