@@ -48,11 +48,13 @@ std::string samples_file(const RenderCommand& command) {
 /// Where the samples went, in words, and with --verbose as a picture.
 void tell_samples(const RenderCommand& command, const RenderResult& result, u32 each) {
   if (result.taken.empty()) return;
-  const SamplingFigures figures = sampling_figures(result.taken, result.surfaces_seen, each);
-  fmt::print(
-      "  {:.3g} samples a pixel in {} passes, at most {}; {:.1f} % of the pixels interpolated; {:.1f} % "
-      "fewer camera rays than {} a pixel\n",
-      figures.mean, result.passes, figures.most, 100 * figures.share_interpolated, 100 * figures.saved, each);
+  const SamplingFigures figures =
+      sampling_figures(result.taken, result.film.done, result.surfaces_seen, each);
+  fmt::print("  {:.3g} samples a pixel in {} passes, at most {}", figures.mean, result.passes, figures.most);
+  if (result.complete)
+    fmt::print("; {:.1f} % of the pixels interpolated; {:.1f} % fewer camera rays than {} a pixel",
+               100 * figures.share_interpolated, 100 * figures.saved, each);
+  fmt::print("\n");
   if (!command.verbose || is_standard_stream(command.out)) return;
   write_image(sampling_picture(result.taken, result.film.width, result.film.height), samples_file(command));
   fmt::print("  where they went: {}\n", samples_file(command));

@@ -30,8 +30,8 @@ json image_json(const RenderCommand& command, const SceneDescription& scene, con
 /// Of a frame in passes; null for others.
 json sampling_json(const SceneDescription& scene, const RenderResult& result) {
   if (result.taken.empty()) return nullptr;
-  const SamplingFigures figures =
-      sampling_figures(result.taken, result.surfaces_seen, static_cast<u32>(scene.render.samples));
+  const SamplingFigures figures = sampling_figures(result.taken, result.film.done, result.surfaces_seen,
+                                                   static_cast<u32>(scene.render.samples));
   return {{"passes", result.passes},
           {"samples", figures.samples},
           {"samples_a_pixel", figures.mean},

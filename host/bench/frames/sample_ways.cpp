@@ -58,7 +58,7 @@ std::vector<WayTime> measure_ways(const SampleWays& plan, const std::vector<Samp
     WayTime time;
     time.name = way.name;
     time.rays = traced_rays(result);
-    time.samples_a_pixel = sampling_figures(result.taken, 0, 1).mean;
+    time.samples_a_pixel = sampling_figures(result.taken, result.film.done, 0, 1).mean;
     time.rms = compare_images(result.image, right, 0).rms;
     time.even_rays = rays_for_error(even, time.rms);
     times.push_back(time);

@@ -7,14 +7,17 @@
 
 namespace sundog {
 
-SamplingFigures sampling_figures(const std::vector<u32>& taken, std::uint64_t surfaces, u32 each) {
+SamplingFigures sampling_figures(const std::vector<u32>& taken, const std::vector<std::uint8_t>& done,
+                                 std::uint64_t surfaces, u32 each) {
   SamplingFigures figures;
   if (taken.empty()) return figures;
   const auto pixels = static_cast<double>(taken.size());
   figures.samples = std::accumulate(taken.begin(), taken.end(), std::uint64_t{0});
   figures.mean = static_cast<double>(figures.samples) / pixels;
   figures.most = *std::ranges::max_element(taken);
-  figures.share_interpolated = static_cast<double>(std::ranges::count(taken, 0u)) / pixels;
+  std::uint64_t interpolated = 0;
+  for (std::size_t i = 0; i < taken.size(); ++i) interpolated += done[i] && taken[i] == 0;
+  figures.share_interpolated = static_cast<double>(interpolated) / pixels;
   figures.saved = 1 - static_cast<double>(figures.samples + surfaces) / (pixels * each);
   return figures;
 }

@@ -12,13 +12,14 @@ struct SamplingFigures {
   std::uint64_t samples = 0;      // taken
   double mean = 0;                // a pixel
   u32 most = 0;                   // of any pixel
-  double share_interpolated = 0;  // of the pixels: without a sample of their own
+  double share_interpolated = 0;  // of the pixels: done without a sample of their own
   double saved = 0;               // share of the camera's rays that `each` samples a pixel would have taken
 };
 
-/// `taken`: samples of each pixel; `surfaces`: further camera rays; `each`: the samples a pixel of a frame in
-/// which all have the same.
-SamplingFigures sampling_figures(const std::vector<u32>& taken, std::uint64_t surfaces, u32 each);
+/// `taken`: samples of each pixel; `done`: 1 for each pixel that is complete, as Film::done; `surfaces`:
+/// further camera rays; `each`: the samples a pixel of a frame in which all have the same.
+SamplingFigures sampling_figures(const std::vector<u32>& taken, const std::vector<std::uint8_t>& done,
+                                 std::uint64_t surfaces, u32 each);
 
 /// Blue: no sample (interpolated); then the more samples, the brighter, by their logarithm.
 Image sampling_picture(const std::vector<u32>& taken, int width, int height);

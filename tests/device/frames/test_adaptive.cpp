@@ -117,7 +117,7 @@ TEST_CASE("adaptive and subsampled pictures are near the full ones with fewer sa
   const DeviceInfo& info = test_devices().front();
   const Image right = scenes::render_on(info, reference).image;
   const RenderResult adaptive = scenes::render_on(info, adaptive_scene());
-  const SamplingFigures figures = sampling_figures(adaptive.taken, adaptive.surfaces_seen, 16);
+  const SamplingFigures figures = sampling_figures(adaptive.taken, adaptive.film.done, adaptive.surfaces_seen, 16);
   CHECK(figures.saved > 0.2);
   CHECK(figures.most == 16);
   CHECK(root_mean_square(adaptive.image, right) <
@@ -126,7 +126,7 @@ TEST_CASE("adaptive and subsampled pictures are near the full ones with fewer sa
   const RenderResult sparse = scenes::render_on(info, subsampled_scene());
   const Image all = scenes::render_on(info, ball_scene(2)).image;
   CHECK(root_mean_square(sparse.image, all) < 0.01);
-  CHECK(sampling_figures(sparse.taken, 0, 2).share_interpolated > 0.05);
+  CHECK(sampling_figures(sparse.taken, sparse.film.done, 0, 2).share_interpolated > 0.05);
 }
 
 TEST_CASE("a frame that its time limit ends is saved, and continues from its checkpoint") {
