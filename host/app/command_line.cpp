@@ -60,6 +60,7 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
   if (!typed.integrator.empty()) all.push_back(fmt::format("/render/integrator=\"{}\"", typed.integrator));
   if (!typed.filter.empty()) all.push_back(fmt::format("/render/filter=\"{}\"", typed.filter));
   if (!typed.filter_radius.empty()) all.push_back("/render/filter_radius=" + typed.filter_radius);
+  for (const std::string& setting : tone_map_overrides(typed.command)) all.push_back(setting);
   if (!typed.adaptive.empty())
     all.push_back(fmt::format("/render/adaptive/threshold={}", parse_amount("--adaptive", typed.adaptive)));
   if (typed.subsample) all.push_back("/render/subsample/on=true");
@@ -80,6 +81,12 @@ void add_picture(Arguments* app, PictureOptions& picture) {
   value(app, "--format", "NAME", picture.format,
         fmt::format("of the image that -o - writes: {} (default: png)", fmt::join(image_formats(), ", ")));
   app->add_flag("--float", picture.full_floats, "keep an .exr's colours as 32-bit floats (default: half)");
+  value(app, "--tone-map", "CURVE", picture.tone_curve,
+        fmt::format("how .png and .jpg show colours brighter than white: {}",
+                    fmt::join(tone_curve_names, ", ")));
+  value(app, "--exposure", "STOPS", picture.exposure, "brighten .png and .jpg by so many stops");
+  value(app, "--white-balance", "KELVIN", picture.white_balance,
+        "the temperature of the light that is white in .png and .jpg");
 }
 
 void check_format(PictureOptions& picture) {

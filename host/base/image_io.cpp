@@ -79,6 +79,11 @@ const std::vector<std::string>& image_formats() {
   return formats;
 }
 
+bool has_eight_bits(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+}
+
 std::string encode_image(const Image& image, const fs::path& path, const AovImages& aovs, ExrColor color) {
   check_image_path(path, !aovs.empty());
   const std::string extension = lower_extension(path);

@@ -25,6 +25,9 @@ std::string encode_image(const Image& image, const std::filesystem::path& path, 
 /// The extensions that are written, without the dot.
 const std::vector<std::string>& image_formats();
 
+/// Whether a file of this name has 8 bits a channel: .png, .jpg, .jpeg.
+bool has_eight_bits(const std::filesystem::path& path);
+
 /// Throws UsageError for an extension `write_image` would refuse: call it before a long render.
 void check_image_path(const std::filesystem::path& path, bool with_aovs);
 

@@ -14,6 +14,7 @@
 #include "app/options/pick_devices.h"
 #include "app/process/exit_status.h"
 #include "app/process/progress.h"
+#include "app/process/save_image.h"
 #include "app/process/warnings.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -115,7 +116,8 @@ GalleryPicture make_picture(const GalleryOptions& options, const std::string& sc
                   {"reflection", result.counts[COUNT_REFLECTION]},
                   {"refraction", result.counts[COUNT_REFRACTION]},
                   {"shadow", result.counts[COUNT_SHADOW]}};
-  write_image(result.image, fs::path(options.folder) / picture.file);
+  write_image(shown_in(picture.file, result.image, description.image.tone_map),
+              fs::path(options.folder) / picture.file);
   return picture;
 }
 

@@ -34,7 +34,39 @@ std::optional<std::pair<int, int>> number_pair(std::string_view text) {
   return std::pair(*width, *height);
 }
 
+/// The number that an option gives, in `low`..`high`; 0 without it.
+double real_number(const char* option, const std::string& text, double low, double high) {
+  if (text.empty()) return 0;
+  const std::optional<double> value = number(text, low, high);
+  if (!value) throw UsageError(fmt::format("{} {}: wanted a number from {} to {}", option, text, low, high));
+  return *value;
+}
+
 }  // namespace
+
+ToneMap parse_tone_map(const PictureOptions& picture) {
+  ToneMap map;
+  const auto& names = tone_curve_names;
+  const auto curve = std::ranges::find(names, picture.tone_curve);
+  if (!picture.tone_curve.empty() && curve == names.end())
+    throw UsageError(
+        fmt::format("--tone-map {}: wanted one of {}", picture.tone_curve, fmt::join(names, ", ")));
+  if (!picture.tone_curve.empty()) map.curve = static_cast<ToneCurve>(curve - names.begin());
+  map.exposure = real_number("--exposure", picture.exposure, -32, 32);
+  map.white_balance = real_number("--white-balance", picture.white_balance, least_white, greatest_white);
+  return map;
+}
+
+std::vector<std::string> tone_map_overrides(const PictureOptions& picture) {
+  const ToneMap map = parse_tone_map(picture);
+  std::vector<std::string> all;
+  if (!picture.tone_curve.empty())
+    all.push_back(fmt::format("/image/tone_map/curve=\"{}\"", picture.tone_curve));
+  if (!picture.exposure.empty()) all.push_back(fmt::format("/image/tone_map/exposure={}", map.exposure));
+  if (!picture.white_balance.empty())
+    all.push_back(fmt::format("/image/tone_map/white_balance={}", map.white_balance));
+  return all;
+}
 
 int parse_number(const char* option, const std::string& text, int low, int high) {
   const std::optional<int> value = number(text, low, high);

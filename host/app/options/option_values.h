@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "app/options/options.h"
+#include "base/tone_map.h"
 #include "render/render.h"
 
 namespace sundog {
@@ -28,6 +30,11 @@ double parse_amount(const char* option, const std::string& text);
 
 /// "WxH" as the overrides of a scene that make its image so.
 std::vector<std::string> parse_image_size(const std::string& text);
+
+/// The options of a picture's colours as overrides of a scene.
+std::vector<std::string> tone_map_overrides(const PictureOptions& picture);
+/// The same for a picture without a scene.
+ToneMap parse_tone_map(const PictureOptions& picture);
 
 /// Refuses what is not of the form JSON_POINTER=VALUE.
 void check_override(const std::string& setting);

@@ -13,9 +13,10 @@ namespace sundog {
 
 /// A picture that a command writes.
 struct PictureOptions {
-  std::string out;           // "-": the standard output
-  std::string format;        // of image_formats(), for the standard output
-  bool full_floats = false;  // an EXR's colours as 32-bit floats
+  std::string out;                                  // "-": the standard output
+  std::string format;                               // of image_formats(), for the standard output
+  bool full_floats = false;                         // an EXR's colours as 32-bit floats
+  std::string tone_curve, exposure, white_balance;  // as typed; empty: the scene's
 };
 
 struct RenderCommand : PictureOptions {

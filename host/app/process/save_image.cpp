@@ -17,7 +17,8 @@ fs::path named(const Picture& picture, const fs::path& path) {
 }
 
 void write(const Picture& picture, const fs::path& path) {
-  write_output(path, encode_image(picture.image, named(picture, path), picture.aovs,
+  const Image shown = shown_in(named(picture, path), picture.image, picture.tone_map);
+  write_output(path, encode_image(shown, named(picture, path), picture.aovs,
                                   picture.full_floats ? ExrColor::full : ExrColor::half));
 }
 
@@ -60,6 +61,11 @@ void save(const Picture& picture, const fs::path& path, const char* what, const 
 }
 
 }  // namespace
+
+Image shown_in(const fs::path& path, Image image, const ToneMap& map) {
+  if (has_eight_bits(path)) apply(map, image);
+  return image;
+}
 
 bool drops_alpha(const fs::path& path) { return path.extension() != ".exr" && path.extension() != ".EXR"; }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/image_io.h"
+#include "base/tone_map.h"
 #include "render/film/film.h"
 #include "render/film/part.h"
 
@@ -19,6 +20,7 @@ struct Picture {
   std::filesystem::path checkpoint;  // may be used in need; empty: none was asked for
   bool full_floats = false;
   std::string format = "png";  // of image_formats(), where the path is "-"
+  ToneMap tone_map = {};       // for formats of 8 bits
 };
 
 /// True where a program would show an alpha channel of coverage as holes.
@@ -26,6 +28,9 @@ bool drops_alpha(const std::filesystem::path& path);
 
 /// The channels that a file of this name keeps: 3, or 4 with coverage.
 inline int image_channels(const std::filesystem::path& path) { return drops_alpha(path) ? 3 : 4; }
+
+/// The image as a file of this name shows it.
+Image shown_in(const std::filesystem::path& path, Image image, const ToneMap& map);
 
 /// Writes `path`; "-" is the standard output. When that fails the frame is kept as a checkpoint, or as an
 /// image in the folder for temporary files: IoError says what happened and where it is.

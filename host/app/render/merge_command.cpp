@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/options/commands.h"
+#include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/process/save_image.h"
 #include "base/error.h"
@@ -15,6 +16,7 @@ namespace sundog {
 
 int merge_command(const MergeCommand& command) {
   check_output_files({command.out}, command.parts);
+  const ToneMap tone_map = parse_tone_map(command);
   check_picture(command, false);
   if (is_standard_stream(command.out)) claim_standard_output();
   remove_left_over(command.out);
@@ -23,7 +25,8 @@ int merge_command(const MergeCommand& command) {
   const Image image = whole.film.develop(image_channels(format_name(command)));
   AovImages aovs;
   for (const std::string& name : whole.aovs) aovs[name] = whole.film.develop_aov(name);
-  save_image({image, aovs, whole.film, whole.key, {}, command.full_floats, command.format}, command.out);
+  save_image({image, aovs, whole.film, whole.key, {}, command.full_floats, command.format, tone_map},
+             command.out);
   fmt::print("{}: {}x{} from {} parts\n", command.out, image.width, image.height, command.parts.size());
   return exit_done;
 }

@@ -172,7 +172,9 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
   options.tuning = [flat = scene.flat](const DeviceInfo& device) { return saved_tuning(device, *flat); };
   if (command.write_every > 0) {
     options.picture_seconds = command.write_every;
-    options.on_picture = [&](const Film& film) { write_so_far(command, film); };
+    options.on_picture = [&](const Film& film) {
+      write_so_far(command, scene.description.image.tone_map, film);
+    };
   }
   options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
   const RenderResult result = render(scene.flat, plan_servers(command, scene, setup), options);
@@ -182,7 +184,7 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
 
   times.render = result.times;
   const Stopwatch writing;
-  save_result(command, *scene.flat, result, checkpoint);
+  save_result(command, *scene.flat, scene.description.image.tone_map, result, checkpoint);
   times.write = writing.seconds();
   times.total = clock.seconds();
   if (!command.stats.empty()) {

@@ -102,10 +102,10 @@ FrameOutput frame_output(const RenderCommand& command, bool passes) {
           passes};
 }
 
-void save_result(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result,
-                 const std::string& checkpoint) {
-  Picture picture{result.image, result.aovs,         result.film,   result.key,
-                  checkpoint,   command.full_floats, command.format};
+void save_result(const RenderCommand& command, const CompiledScene& scene, const ToneMap& tone_map,
+                 const RenderResult& result, const std::string& checkpoint) {
+  Picture picture{result.image, result.aovs,         result.film,    result.key,
+                  checkpoint,   command.full_floats, command.format, tone_map};
   if (picture.key == 0) picture.key = hash_scene(scene);
   if (!command.part)
     save_image(picture, command.out);
@@ -116,9 +116,9 @@ void save_result(const RenderCommand& command, const CompiledScene& scene, const
   if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint);
 }
 
-void write_so_far(const RenderCommand& command, const Film& film) {
+void write_so_far(const RenderCommand& command, const ToneMap& tone_map, const Film& film) {
   try {
-    write_image(film.develop(image_channels(command.out)), command.out, {},
+    write_image(shown_in(command.out, film.develop(image_channels(command.out)), tone_map), command.out, {},
                 command.full_floats ? ExrColor::full : ExrColor::half);
   } catch (const IoError&) {
     // The disk may have room again when the whole picture is there.

@@ -14,11 +14,11 @@ namespace sundog {
 FrameOutput frame_output(const RenderCommand& command, bool passes);
 
 /// Writes the image, whole or in part, and takes the checkpoint of a whole one away: not before it is safe.
-void save_result(const RenderCommand& command, const CompiledScene& scene, const RenderResult& result,
-                 const std::string& checkpoint);
+void save_result(const RenderCommand& command, const CompiledScene& scene, const ToneMap& tone_map,
+                 const RenderResult& result, const std::string& checkpoint);
 
 /// Writes the picture as far as it is made; what fails is reported when the whole one is written.
-void write_so_far(const RenderCommand& command, const Film& film);
+void write_so_far(const RenderCommand& command, const ToneMap& tone_map, const Film& film);
 
 /// Tells of an interrupted frame that its checkpoint has it. Before the picture is written, for which mpirun
 /// may leave no time.

@@ -193,11 +193,24 @@ Camera read_camera(const JsonValue& value, bool& placed) {
   });
 }
 
+ToneMap read_tone_map(const JsonValue& value) {
+  return value.object("tone_map", [](JsonObject& object) {
+    ToneMap map;
+    const std::string curve = object.choice("curve", std::string(tone_curve_names[0]), tone_curve_names);
+    map.curve = static_cast<ToneCurve>(std::ranges::find(tone_curve_names, curve) - tone_curve_names.begin());
+    map.exposure = object.number("exposure", map.exposure, {.low = -32, .high = 32});
+    if (object.find("white_balance"))
+      map.white_balance = object.number("white_balance", 0, {.low = least_white, .high = greatest_white});
+    return map;
+  });
+}
+
 ImageSettings read_image(const JsonValue& value) {
   return value.object("image", [](JsonObject& object) {
     ImageSettings image;
     image.width = object.integer("width", image.width, 1, most_edge);
     image.height = object.integer("height", image.height, 1, most_edge);
+    if (const auto tone_map = object.find("tone_map")) image.tone_map = read_tone_map(*tone_map);
     const auto background = object.find("background");
     if (!background) return image;
     if (background->json().is_array()) {

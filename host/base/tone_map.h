@@ -1,0 +1,33 @@
+// From scene-linear colours to those of a screen: white balance, exposure, and a curve that compresses what
+// is brighter than white. For files of 8 bits a channel; others keep what was rendered.
+#pragma once
+#include <array>
+#include <string_view>
+
+#include "base/image.h"
+
+namespace sundog {
+
+/// none: colours above 1 are cut off.
+/// reinhard: L / (1 + L) on the luminance (Reinhard and others 2002, "Photographic Tone Reproduction for
+/// Digital Images", equation 3). Never reaches white.
+/// aces: the fit of Narkowicz 2016 to the ACES output transform, each channel by itself; saturates.
+/// agx: a fit of Sobotka's AgX (the polynomial and matrices that Wrensch published in 2023): 16.5 stops,
+/// whose bright colours go to white.
+enum class ToneCurve { none, reinhard, aces, agx };
+
+/// By ToneCurve.
+inline constexpr std::array<std::string_view, 4> tone_curve_names = {"none", "reinhard", "aces", "agx"};
+
+struct ToneMap {
+  ToneCurve curve = ToneCurve::none;
+  double exposure = 0;       // in stops: colours are multiplied by 2^exposure first
+  double white_balance = 0;  // kelvin, 1667..25000: light of this temperature becomes white; 0: as rendered
+};
+
+inline constexpr double least_white = 1667, greatest_white = 25000;
+
+/// Applies `map` to the first three channels; values that are not finite, and alpha, stay.
+void apply(const ToneMap& map, Image& image);
+
+}  // namespace sundog
