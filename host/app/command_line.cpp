@@ -10,6 +10,7 @@
 
 #include "app/bench/bench_options.h"
 #include "app/bench/tune_command.h"
+#include "app/commands/bake_command.h"
 #include "app/commands/check_command.h"
 #include "app/commands/formulas_command.h"
 #include "app/commands/gallery_command.h"
@@ -261,6 +262,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_check(arguments, chosen);
   add_tune(arguments, chosen);
   add_merge(arguments, chosen);
+  add_bake(arguments, chosen);
   add_gallery(arguments, chosen);
   add_serve(arguments, chosen);
   add_bench(arguments, chosen);

@@ -70,7 +70,11 @@ u32 pack_tangent(const dvec3& tangent, bool mirrored) {
          static_cast<u32>(std::lround((y * 0.5 + 0.5) * 32767)) << 16 | (mirrored ? 0x80000000u : 0u);
 }
 
-void fill_tangents(const Mesh& mesh, std::span<u32> packed) {
+}  // namespace
+
+std::vector<CornerTangent> corner_tangents(const Mesh& mesh) {
+  std::vector<CornerTangent> corners;
+  corners.reserve(3 * mesh.triangles.size());
   std::unordered_map<CornerKey, dvec3, CornerHash> sums;
   std::vector<FaceTangent> faces(mesh.triangles.size());
   const auto normal_at = [&](std::size_t t, int corner) {
@@ -101,19 +105,19 @@ void fill_tangents(const Mesh& mesh, std::span<u32> packed) {
         if (mean != dvec3(0)) tangent = mean;
       }
       if (tangent == dvec3(0)) tangent = dvec3(1, 0, 0);
-      packed[3 * t + static_cast<std::size_t>(corner)] = pack_tangent(tangent, mirrored);
+      corners.push_back({tangent, mirrored});
     }
+  return corners;
 }
-
-}  // namespace
 
 void add_tangents(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, CompiledScene& out) {
   if (!out.features.relief) return;
   std::vector<u32> table(3 * out.triangles.size());
   tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) {
     if (!meshes[i].used) return;
-    fill_tangents(scene.meshes[i], std::span(table).subspan(3 * std::size_t{meshes[i].first_triangle},
-                                                            3 * scene.meshes[i].triangles.size()));
+    u32* packed = table.data() + 3 * std::size_t{meshes[i].first_triangle};
+    for (const CornerTangent& corner : corner_tangents(scene.meshes[i]))
+      *packed++ = pack_tangent(corner.tangent, corner.mirrored);
   });
   out.tangents = std::move(table);
 }

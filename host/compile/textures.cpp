@@ -63,6 +63,8 @@ class TextureCompiler {
     maps.normal_scale = static_cast<float>(material.normal_scale);
     maps.bump = static_cast<float>(material.bump);
     maps.bump_uv = static_cast<float>(material.bump_uv);
+    maps.parallax = textures.height >= 0 ? static_cast<float>(material.parallax) : 0;
+    out_.features.parallax |= maps.parallax > 0;
     maps.occlusion = static_cast<float>(material.occlusion);
     if (textures.normal >= 0 || textures.height >= 0) add_relief(textures, maps);
     out_.material_maps.push_back(maps);

@@ -14,7 +14,16 @@ void add_textures(const SceneDescription& scene, CompiledScene& out);
 void add_further_uvs(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
                      CompiledScene& out);
 
-/// Tangents at the corners of each triangle, for normal maps. After add_meshes().
+/// A tangent in object space, and whether the bitangent is against the normal's cross product with it.
+struct CornerTangent {
+  dvec3 tangent;
+  bool mirrored;
+};
+
+/// The tangents of normal maps at the corners of each triangle (compile/tangents.cpp).
+std::vector<CornerTangent> corner_tangents(const Mesh& mesh);
+
+/// The same, packed, of all meshes. After add_meshes().
 void add_tangents(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, CompiledScene& out);
 
 /// Whether a material is more than its Material: it has textures, or is not opaque.

@@ -164,7 +164,12 @@ struct MaterialDescription {
   double normal_scale = 1;                  // factor on the slopes of a normal map
   double bump = 1;                          // height of a 1 of the height texture, object space
   double bump_uv = 0;                       // the same in units of u and v, added
-  double occlusion = 1;                     // how much of the occlusion texture counts, [0, 1]
+  double parallax = 0;             // above 0: how deep a 0 of the height texture is below a 1, object space
+  int displaced_by = -1;           // index into textures: heights that move the vertices of meshes
+  double displacement = 1;         // how far a 1 of them moves, object space
+  double displacement_middle = 0;  // what of them moves nothing
+  double displacement_edge = 0;    // of the triangles, object space; 0: about a texel's
+  double occlusion = 1;            // how much of the occlusion texture counts, [0, 1]
 };
 
 /// Triangles with shared vertices. `normals` (empty: flat shading), `uvs` and `colors` are empty or as long

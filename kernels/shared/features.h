@@ -31,6 +31,7 @@
   FEATURE(bool, HAS_EMISSION, emission)             /* some material shines by itself */                \
   FEATURE(bool, HAS_MAPS, maps)                     /* some material has a texture, emission or opacity */ \
   FEATURE(bool, HAS_RELIEF, relief)                 /* some material has a normal or height map */      \
+  FEATURE(bool, HAS_PARALLAX, parallax)             /* some material's heights are below its surface */ \
   FEATURE(bool, HAS_METAL_ROUGH, metal_rough)       /* some material has metalness and roughness of its own */ \
   FEATURE(u32, TEXTURE_MAPPINGS, texture_mappings)  /* bit i: some texture has the mapping i */         \
   FEATURE(u32, TEXTURE_KINDS, texture_kinds)        /* bit i: some texture has a node of kind i */      \

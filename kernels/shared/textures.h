@@ -132,7 +132,7 @@ typedef struct MaterialMaps {
   float bump;           // height of a 1 in the height map, in the object's own units
   float height_texels;  // of the height's image on a unit of u and v; 0: no image
   float occlusion;      // how much of the occlusion counts
-  float parallax;       // depth of a 0 in the height map below a 1, in units of u and v; 0: no parallax
+  float parallax;       // depth of a 0 of the heights below a 1, which is the surface; 0: no parallax
   float bump_uv;        // the same height in units of u and v
   u32 pad0, pad1;
 } MaterialMaps;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <spng.h>
 
+#include <cstdlib>
 #include <memory>
 #include <stdexcept>
 
@@ -82,6 +83,39 @@ StoredImage decode_png(std::string_view bytes) {
   check_png(spng_decode_image(context.get(), stored.data.data(), size, format, SPNG_DECODE_TRNS));
   stored.exponent = png_decoding_exponent(bytes);
   return stored;
+}
+
+std::string encode_png(const StoredImage& image) {
+  const Context context(spng_ctx_new(SPNG_CTX_ENCODER), spng_ctx_free);
+  if (!context) throw std::bad_alloc();
+  const auto check = [](int error) {
+    if (error) throw std::runtime_error(fmt::format("PNG: {}", spng_strerror(error)));
+  };
+  std::vector<std::uint8_t> samples;
+  const std::size_t bytes = image.sample_bytes();
+  if (image.channels == 1) {
+    samples = image.data;
+  } else {
+    samples.reserve(image.data.size() / 4 * 3);
+    for (std::size_t i = 0; i < image.data.size(); i += 4 * bytes)
+      samples.insert(samples.end(), image.data.begin() + static_cast<std::ptrdiff_t>(i),
+                     image.data.begin() + static_cast<std::ptrdiff_t>(i + 3 * bytes));
+  }
+  spng_ihdr header{};
+  header.width = static_cast<std::uint32_t>(image.width);
+  header.height = static_cast<std::uint32_t>(image.height);
+  header.bit_depth = static_cast<std::uint8_t>(8 * bytes);
+  header.color_type =
+      static_cast<std::uint8_t>(image.channels == 1 ? SPNG_COLOR_TYPE_GRAYSCALE : SPNG_COLOR_TYPE_TRUECOLOR);
+  check(spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1));
+  check(spng_set_ihdr(context.get(), &header));
+  check(spng_encode_image(context.get(), samples.data(), samples.size(), SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE));
+  std::size_t size = 0;
+  int error = 0;
+  const std::unique_ptr<void, decltype(&std::free)> png(spng_get_png_buffer(context.get(), &size, &error),
+                                                        std::free);
+  check(error);
+  return std::string(static_cast<const char*>(png.get()), size);
 }
 
 }  // namespace sundog

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -30,6 +31,9 @@ struct StoredImage {
 /// PNG, JPEG, WebP, Radiance HDR, EXR and PFM, by the content; samples of the latter three become halves.
 /// Throws std::runtime_error with the reason alone.
 StoredImage decode_stored(std::string_view bytes);
+
+/// As PNG, grey or RGB of 8 or 16 bits; alpha is left out. Throws std::runtime_error.
+std::string encode_png(const StoredImage& image);
 
 /// One format each. A PNG's gAMA chunk becomes the exponent where it has no sRGB or iCCP chunk and does not
 /// mean sRGB. Animated WebP is refused.

@@ -178,11 +178,14 @@ KeyMaker& KeyMaker::add(const MaterialDescription& material) {
   const auto& [name, type, ambient, diffuse, specular, exponent, blinn, emission, reflection, transmission,
                roughness, medium, shadow_opaque, shadow_filter, checker, checker_ambient, checker_diffuse,
                checker_size, vertex_color, opacity, cutoff, one_sided, textures, metal_rough, normal_scale,
-               bump, bump_uv, occlusion] = material;
+               bump, bump_uv, parallax, displaced_by, displacement, displacement_middle, displacement_edge,
+               occlusion] = material;
   (void)name;
+  // These have made the meshes.
+  (void)displaced_by, (void)displacement, (void)displacement_middle, (void)displacement_edge;
   add_each(type, ambient, diffuse, specular, exponent, blinn, emission, reflection, transmission, roughness,
            medium, shadow_opaque, shadow_filter, checker, checker_ambient, checker_diffuse, checker_size,
-           vertex_color, opacity, cutoff, one_sided, normal_scale, bump, bump_uv, occlusion,
+           vertex_color, opacity, cutoff, one_sided, normal_scale, bump, bump_uv, parallax, occlusion,
            metal_rough.has_value());
   static_assert(sizeof textures % sizeof(int) == 0);
   bytes(&textures, sizeof textures);

@@ -143,12 +143,23 @@ void read_interior(JsonObject& object, MaterialDescription& material, const Name
 
 /// {"texture": name, KEY: number}, or the name alone.
 int read_relief(const JsonValue& value, TextureLibrary& textures, TextureUse use, const char* kind,
-                const char* key, double* number) {
+                const char* key, double* number, const Range& range = {.low = -1e6, .high = 1e6}) {
   if (value.json().is_string()) return textures.use(value, use);
   if (!value.json().is_object()) value.wanted("the name of a texture, or an object");
   return value.object(kind, [&](JsonObject& object) {
-    *number = object.number(key, *number, {.low = -1e6, .high = 1e6});
+    *number = object.number(key, *number, range);
     return textures.use(object.at("texture", "the name of a texture"), use);
+  });
+}
+
+int read_displacement(const JsonValue& value, TextureLibrary& textures, MaterialDescription& material) {
+  if (value.json().is_string()) return textures.use(value, TextureUse::number);
+  if (!value.json().is_object()) value.wanted("the name of a texture, or an object");
+  return value.object("displacement_map", [&](JsonObject& object) {
+    material.displacement = object.number("height", material.displacement, {.low = -1e6, .high = 1e6});
+    material.displacement_middle = object.number("middle", 0, zero_to_one);
+    material.displacement_edge = object.number("edge", 0, {.low = 0, .high = 1e6});
+    return textures.use(object.at("texture", "the name of a texture"), TextureUse::number);
   });
 }
 
@@ -160,6 +171,15 @@ void read_surface(JsonObject& object, MaterialDescription& material, TextureLibr
   if (const auto bump = object.find("bump"))
     material.textures.height =
         read_relief(*bump, textures, TextureUse::number, "bump_map", "height", &material.bump);
+  if (const auto parallax = object.find("parallax")) {
+    object.not_both("bump", "parallax");
+    material.parallax = 1;
+    material.textures.height = read_relief(*parallax, textures, TextureUse::number, "parallax_map", "depth",
+                                           &material.parallax, {.low = 0, .high = 1e6});
+    material.bump = material.textures.normal < 0 ? material.parallax : 0;
+  }
+  if (const auto displacement = object.find("displacement"))
+    material.displaced_by = read_displacement(*displacement, textures, material);
   if (const auto occlusion = object.find("occlusion"))
     material.textures.occlusion = textures.use(*occlusion, TextureUse::number);
   material.one_sided = object.choice("sides", "both", sides) == "front";

@@ -11,6 +11,7 @@
 #include "scene/animate.h"
 #include "scene/bounds.h"
 #include "scene/decode_images.h"
+#include "scene/displace.h"
 #include "scene/formula/read.h"
 #include "scene/inside.h"
 #include "scene/json/parse.h"
@@ -36,6 +37,7 @@ class SceneReader {
   SceneDescription read() {
     root_.object("scene", [&](JsonObject& object) { read_root(object); });
     decode_images(scene_);
+    displace_meshes(scene_);
     return std::move(scene_);
   }
 

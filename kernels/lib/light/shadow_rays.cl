@@ -8,6 +8,7 @@
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
+#include "lib/shade/parallax.cl"
 #include "lib/shade/relief.cl"
 
 // What surfaces and the rays that met them are, for all that is done there.
@@ -22,6 +23,7 @@ static inline void shade_hits(const Scene* scene, const SceneRays* rays, const E
   interact(scene, rays->o, rays->d, &met->hit, &met->face, lanes, &at->s);
   at->s.offset = offset_beyond(met, at->s.offset);
   set_footprints(rays, met->hit.t, &at->s);
+  add_parallax(scene, rays->d, lanes, &at->s);
   add_relief(scene, rays->d, lanes, &at->s);
   at->bsdf = make_bsdfs(scene, &at->s, met->before, met->after, lanes);
 }
@@ -89,6 +91,7 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
 #if HAS_RELIEF
   possible = scale3(possible, terminator(s, light.wi));
 #endif
+  if (HAS_PARALLAX) possible = scale3(possible, relief_visibility(scene, s, light.wi, facing));
   // A high power of (r.v) may leave less than the least normal float, which some devices take for zero: not
   // worth a ray.
   const MASK lit = facing & MASK_OF(greatest3(possible) >= FLT_MIN);

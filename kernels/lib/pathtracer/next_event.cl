@@ -87,6 +87,7 @@ NEVER_INLINE REAL3 next_event(const Scene* scene, const Walks* walks, const Scen
   possible = scale3(multiply3(possible, light.radiance), weight * over);
   const MASK below = lanes & MASK_OF(dot3(s->ng, light.wi) < 0.0f);
   if (HAS_RELIEF) possible = scale3(possible, select(terminator(s, light.wi), one, below));
+  if (HAS_PARALLAX) possible = scale3(possible, relief_visibility(scene, s, light.wi, lanes));
   if (HAS_MEDIA && any_lane(below)) {
     const REAL eta = lobes->split.eta;
     possible = scale3(possible, select(one, 1.0f / (eta * eta), below));

@@ -28,6 +28,10 @@ typedef struct SurfaceInteractions {
 #if HAS_RELIEF
   MASK bent;  // ns is not the geometry's
 #endif
+#if HAS_PARALLAX
+  REAL3 shift;  // along the surface to where the ray meets the relief below it; u and v are those there
+  REAL sunk;    // how deep that is, of the relief's depth
+#endif
 } SurfaceInteractions;
 
 static inline REAL greatest_size(REAL3 a) { return greatest3(real3(fabs(a.x), fabs(a.y), fabs(a.z))); }
@@ -100,6 +104,10 @@ static inline void locate(const Scene* scene, const Hits* hits, MASK lanes, Surf
   s->prim = hits->prim;
   s->b = hits->u;
   s->c = hits->v;
+#endif
+#if HAS_PARALLAX
+  s->shift = all3((float3)(0.0f));
+  s->sunk = (REAL)(0.0f);
 #endif
 }
 

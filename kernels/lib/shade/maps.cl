@@ -28,7 +28,11 @@ static inline void texture_points(const Scene* scene, const SurfaceInteractions*
   at->v = s->at.v;
   at->uv_length = s->at.length;
 #endif
-  at->p = s->p;
+  REAL3 p = s->p;
+#if HAS_PARALLAX
+  p = add3(p, s->shift);
+#endif
+  at->p = p;
   at->n = s->ns;
   at->scale = (REAL)(1.0f);
   u32 index;
@@ -36,7 +40,7 @@ static inline void texture_points(const Scene* scene, const SurfaceInteractions*
     const MASK mine = take_alike(s->instance, &lanes, &index);
     __global const Instance* instance = scene->instances + index;
     const float4 scale = instance->pattern_scale;
-    at->p = select3(at->p, multiply3(object_points(instance, s->p), all3(scale.xyz)), mine);
+    at->p = select3(at->p, multiply3(object_points(instance, p), all3(scale.xyz)), mine);
     at->scale = select(at->scale, (REAL)(scale.w), mine);
     at->n = select3(at->n, multiply3(object_vectors(instance, s->ng), all3(scale.xyz)), mine);
   }

@@ -131,7 +131,7 @@ NEVER_INLINE void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInt
     __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
     if (maps->slot[MAP_NORMAL] != NO_TEXTURE)
       normal = select3(normal, mapped_normals(scene, maps, &at, &frame, mine), mine);
-    if (maps->slot[MAP_HEIGHT] != NO_TEXTURE)
+    if (maps->slot[MAP_HEIGHT] != NO_TEXTURE && (maps->bump != 0.0f || maps->bump_uv != 0.0f))
       normal = select3(normal, bumped_normals(scene, maps, s, &at, normal, mine), mine);
   }
   s->ns = select3(s->ns, facing_normals(safe_unit3(normal), s->ng, s->entering, d), mapped);

@@ -9,7 +9,7 @@
 #include "lib/whitted/children.cl"
 
 // Light of the fields that glow along the rays.
-static inline REAL3 see_emitted(const SceneRays* rays, const PathStates* paths) {
+static inline REAL3 see_glow(const SceneRays* rays, const PathStates* paths) {
   return HAS_GLOW ? multiply3(paths->throughput, emitted(rays)) : all3((float3)(0.0f));
 }
 
@@ -42,8 +42,8 @@ static inline REAL3 see_ambient(const Scene* scene, const SceneRays* rays, const
 }
 
 // What surfaces of `lanes` shine by themselves, on their outsides.
-static inline REAL3 see_shining(const Scene* scene, const PathStates* paths, const SurfaceInteractions* s,
-                                const Bsdfs* bsdf, MASK lanes) {
+static inline REAL3 see_emission(const Scene* scene, const PathStates* paths, const SurfaceInteractions* s,
+                                 const Bsdfs* bsdf, MASK lanes) {
   REAL3 light = all3((float3)(0.0f));
 #if HAS_EMISSION
   u32 index;
@@ -73,7 +73,7 @@ static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, co
                                  PathStates* paths, MASK lanes, MASK unseen, MASK fresh,
                                  const Encounters* met, Shading* at, REAL3* light, RayStack* stack,
                                  float4* radiance, u32* counts) {
-  REAL3 seen = see_emitted(rays, paths);
+  REAL3 seen = see_glow(rays, paths);
   paths->throughput = multiply3(paths->throughput, met->absorbed);
   if (BATCH > 1 && any_lane(unseen)) push_rays(stack, rays, paths, unseen);
   const MASK ended = lanes & ~unseen, hit = ended & hit_anything(&met->hit);
@@ -82,7 +82,7 @@ static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, co
   if (any_lane(hit)) {
     shade_hits(scene, rays, met, hit, at);
     seen = select3(seen, add3(seen, see_ambient(scene, rays, paths, &met->hit, &at->bsdf, hit)), hit);
-    if (HAS_EMISSION) seen = add3(seen, see_shining(scene, paths, &at->s, &at->bsdf, hit));
+    if (HAS_EMISSION) seen = add3(seen, see_emission(scene, paths, &at->s, &at->bsdf, hit));
     spawn_children(scene, tile, &at->s, &at->bsdf, met, rays, paths, hit & fresh, stack, counts);
     note_first_hits(paths, hit & fresh, radiance, counts);
   }

@@ -31,7 +31,7 @@ const std::map<std::string, Names> allowed = {
 const std::map<std::string, std::vector<std::string>> folders = {
     {"host/render", {"values", "film", "plan", "frame", "device", "remote", "session"}},
     {"host/bench", {"plain", "report", "rays", "frames", "tune"}},
-    {"host/app", {"process", "options", "job", "render", "bench", "commands", "serve"}},
+    {"host/app", {"process", "options", "job", "render", "bench", "bake", "commands", "serve"}},
     {"kernels/lib", {"core", "solids", "sdf", "trace", "path", "shade", "light", "whitted", "pathtracer"}},
 };
 

@@ -43,6 +43,7 @@ const std::string everything = R"({
   "materials": {
     "textured": {"color": "t", "specular": {"color": "t", "exponent": "t"}, "emission": {"color": "t"}, "opacity": "t",
       "normal_map": {"texture": "t"}, "bump": {"texture": "e"}, "occlusion": "t"},
+    "deep": {"parallax": {"texture": "e"}, "displacement": {"texture": "t"}},
     "m": {"color": {"checker": [[0, 0, 0], [1, 1, 1]]}, "ambient": {}, "specular": {}, "reflection": {}},
     "plain": {"color": [0, 1, 0], "ambient": 0, "specular": 0.5, "transmission": 1, "ior": 1.5},
     "glass": {"type": "dielectric", "medium": "a"}},

@@ -1,0 +1,162 @@
+// Parallax: rays go on below a surface until they meet its height map, and light is held off by what rises on
+// its way (Brawley and Tatarchuk 2004, "Parallax Occlusion Mapping: Self-Shadowing, Perspective-Correct Bump
+// Mapping Using Reverse Height Map Tracing"). The surface itself is where heights are 1. A surface a lane.
+#ifndef SUNDOG_LIB_PARALLAX_CL
+#define SUNDOG_LIB_PARALLAX_CL
+#include "lib/shade/maps.cl"
+
+#if HAS_PARALLAX
+#define PARALLAX_SLANT 0.05f  // rays that run closer along the surface are taken as of this sine
+#define PARALLAX_STEPS 128    // at most
+#define PARALLAX_LEAST 8.0f   // steps, and one more for each texel that a way crosses
+#define PARALLAX_UNKNOWN 48   // of heights without texels
+#define PARALLAX_HALVINGS 6   // of the step in which a ray meets the heights
+#define PARALLAX_BIAS 0.01f   // of the depth: what heights must rise above a way to hold light off
+
+// Straight ways through the layer of heights, from 0 to 1.
+typedef struct ReliefWays {
+  REAL u, v;        // how the coordinates change
+  REAL3 p;          // and the point in the object's own units, along the surface
+  REAL begin, end;  // depths, 0 at the surface and 1 where heights are 0
+  MASK steps;       // one a texel, or a pixel where those are wider
+} ReliefWays;
+
+// The ways of directions d (unit) between the depths `begin` and `end`. `along` receives how far they lead
+// along the surface, in the world.
+static inline ReliefWays relief_ways(const Scene* scene, __global const MaterialMaps* maps,
+                                     const SurfaceInteractions* s, const TexturePoints* at, REAL3 d,
+                                     REAL begin, REAL end, MASK lanes, REAL3* along) {
+  const REAL3 n = s->ng;
+  const REAL rise = dot3(n, d), slant = real_max(fabs(rise), (REAL)(PARALLAX_SLANT));
+  const REAL depth = maps->parallax / nonzero(at->scale);
+  const REAL length = depth * fabs(end - begin) / slant;
+  const REAL3 way = scale3(along3(d, -rise, n), length);
+  const REAL area = nonzero(dot3(n, cross3(s->at.dpdu, s->at.dpdv)));
+  ReliefWays ways;
+  ways.u = dot3(n, cross3(way, s->at.dpdv)) / area;
+  ways.v = dot3(n, cross3(s->at.dpdu, way)) / area;
+  ways.begin = begin;
+  ways.end = end;
+  ways.p = way;
+  u32 index;
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(at->instance, &left, &index);
+    __global const Instance* instance = scene->instances + index;
+    const REAL3 own = multiply3(object_vectors(instance, way), all3(instance->pattern_scale.xyz));
+    ways.p = select3(ways.p, own, mine);
+  }
+  const REAL texel = maps->height_texels > 0.0f ? at->uv_length / maps->height_texels : (REAL)(0.0f);
+  const REAL step = real_max(at->footprint, texel), crossed = length3(way) / nonzero(step);
+  const REAL most = (REAL)((float)(maps->height_texels > 0.0f ? PARALLAX_STEPS : PARALLAX_UNKNOWN));
+  ways.steps =
+      TO_MASK(select(most, PARALLAX_LEAST + real_min(crossed, most - PARALLAX_LEAST), MASK_OF(step > 0.0f)));
+  *along = way;
+  return ways;
+}
+
+// How far the heights are above the ways at t.
+static inline REAL height_above(const Scene* scene, __global const MaterialMaps* maps,
+                                const TexturePoints* at, const ReliefWays* ways, REAL t, MASK lanes) {
+  TexturePoints there = *at;
+  there.u = fma(t, ways->u, at->u);
+  there.v = fma(t, ways->v, at->v);
+  there.p = along3(at->p, t, ways->p);
+  return slot_values(scene, maps, MAP_HEIGHT, &there, lanes).x - 1.0f +
+         fma(t, ways->end - ways->begin, ways->begin);
+}
+
+// Where ways that begin at the surface meet the heights: the first step that ends below them, halved.
+static inline REAL meet_heights(const Scene* scene, __global const MaterialMaps* maps,
+                                const TexturePoints* at, const ReliefWays* ways, MASK lanes) {
+  const REAL inverse = 1.0f / TO_REAL(ways->steps);
+  REAL above = (REAL)(0.0f), below = (REAL)(1.0f);
+  MASK open = lanes & MASK_OF(height_above(scene, maps, at, ways, above, lanes) < 0.0f);
+  below = select(above, below, open);
+  for (int k = 1; k <= PARALLAX_STEPS && any_lane(open); ++k) {
+    open &= MASK_OF(ways->steps >= k);
+    const REAL t = inverse * (float)k;
+    const MASK under = open & MASK_OF(height_above(scene, maps, at, ways, t, open) >= 0.0f);
+    above = select(above, t, open & ~under);
+    below = select(below, t, under);
+    open &= ~under;
+  }
+  below = real_max(below, above);
+  for (int k = 0; k < PARALLAX_HALVINGS; ++k) {
+    const REAL middle = 0.5f * (above + below);
+    const MASK under = MASK_OF(height_above(scene, maps, at, ways, middle, lanes) >= 0.0f);
+    below = select(below, middle, under);
+    above = select(middle, above, under);
+  }
+  // The heights are straight between here and there, unless they have a step.
+  const REAL high = height_above(scene, maps, at, ways, below, lanes),
+             low = height_above(scene, maps, at, ways, above, lanes);
+  const REAL share = real_clamp(low / nonzero(low - high), (REAL)(0.0f), (REAL)(1.0f));
+  return select(below, fma(share, below - above, above), MASK_OF(low < 0.0f) & MASK_OF(high > 0.0f));
+}
+
+static inline MASK has_parallax(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
+  MASK found = NO_LANES;
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(s->material, &lanes, &index);
+    const u32 number = scene->materials[index].maps;
+    if (number != NO_MAPS && scene->material_maps[number].parallax != 0.0f) found |= mine;
+  }
+  return found;
+}
+
+// Takes what textures see of the surfaces of `lanes` to where rays of the directions d meet their heights.
+NEVER_INLINE void add_parallax(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {
+  const MASK deep = has_parallax(scene, s, lanes & s->entering);
+  if (!any_lane(deep)) return;
+  TexturePoints at;
+  texture_points(scene, s, deep, &at);
+  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
+  u32 index;
+  for (MASK left = deep; any_lane(left);) {
+    const MASK mine = take_alike(s->material, &left, &index);
+    __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
+    REAL3 along;
+    const ReliefWays ways = relief_ways(scene, maps, s, &at, d, zero, one, mine, &along);
+    const REAL t = select(zero, meet_heights(scene, maps, &at, &ways, mine), mine);
+    s->at.u = fma(t, ways.u, s->at.u);
+    s->at.v = fma(t, ways.v, s->at.v);
+    s->shift = along3(s->shift, t, select3(all3((float3)(0.0f)), along, mine));
+    s->sunk = select(s->sunk, t, mine);
+  }
+}
+
+// What of light from wi comes to the surfaces of `lanes` past their own heights: all or nothing.
+NEVER_INLINE REAL relief_visibility(const Scene* scene, const SurfaceInteractions* s, REAL3 wi, MASK lanes) {
+  const REAL zero = (REAL)(0.0f);
+  const MASK deep = lanes & MASK_OF(s->sunk > 0.0f) & MASK_OF(dot3(s->ng, wi) > 0.0f);
+  MASK dark = NO_LANES;
+  if (!any_lane(deep)) return (REAL)(1.0f);
+  TexturePoints at;
+  texture_points(scene, s, deep, &at);
+  u32 index;
+  for (MASK left = deep; any_lane(left);) {
+    const MASK mine = take_alike(s->material, &left, &index);
+    __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
+    REAL3 along;
+    const ReliefWays ways = relief_ways(scene, maps, s, &at, wi, s->sunk, zero, mine, &along);
+    const REAL inverse = 1.0f / TO_REAL(ways.steps);
+    MASK open = mine;
+    for (int k = 1; k < PARALLAX_STEPS && any_lane(open); ++k) {
+      open &= MASK_OF(ways.steps > k);
+      const REAL above = height_above(scene, maps, &at, &ways, inverse * (float)k, open);
+      const MASK held = open & MASK_OF(above > PARALLAX_BIAS);
+      dark |= held;
+      open &= ~held;
+    }
+  }
+  return select((REAL)(1.0f), zero, dark);
+}
+#else
+static inline void add_parallax(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {}
+static inline REAL relief_visibility(const Scene* scene, const SurfaceInteractions* s, REAL3 wi, MASK lanes) {
+  return (REAL)(1.0f);
+}
+#endif
+
+#endif

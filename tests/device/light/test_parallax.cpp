@@ -1,0 +1,113 @@
+// Relief below surfaces: where rays meet it and where its own shadows lie, by closed forms.
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "catch.h"
+#include "devices.h"
+#include "scenes.h"
+#include "surface_testing.h"
+
+using namespace sundog;
+
+namespace {
+
+constexpr double depth = 0.2;
+
+/// A plane with heights from a square of texels that change along u, in [0, 1].
+SceneDescription deep_plane(const std::vector<std::uint8_t>& texels, TextureFilter filter) {
+  SceneDescription scene = scenes::line_of_sight({0, 5, 0}, {0, 0, 0}, {0, 0, 1});
+  scenes::place(scene, PlaneShape{}, scenes::add_white(scene));
+  ImageDescription image;
+  image.srgb = false;
+  image.pixels.width = image.pixels.height = static_cast<int>(texels.size());
+  image.pixels.channels = 1;
+  for (std::size_t row = 0; row < texels.size(); ++row)
+    image.pixels.data.insert(image.pixels.data.end(), texels.begin(), texels.end());
+  scene.images.push_back(image);
+  TextureDescription texture;
+  texture.kind = TEXTURE_IMAGE;
+  texture.image = 0;
+  texture.filter = filter;
+  texture.wrap[0] = texture.wrap[1] = Wrap::clamp;
+  scene.textures.push_back(texture);
+  scene.materials[0].textures.height = 0;
+  scene.materials[0].parallax = depth;
+  scene.materials[0].bump = 0;
+  return scene;
+}
+
+/// The point x of the plane, seen along (run, -1) and lit along (light, 1).
+surfaces::Point at(double x, double run, double light = 0) {
+  surfaces::Point point;
+  const dvec3 d = glm::normalize(dvec3(run, -1, 0)), wi = glm::normalize(dvec3(light, 1, 0));
+  point.p = {float(x), 0, 0.5f, 1e-4f};
+  point.d = {float(d.x), float(d.y), 0, 0};
+  point.wi = {float(wi.x), float(wi.y), 0, 0};
+  return point;
+}
+
+/// High for u below 1/2, low beyond.
+SceneDescription wall_plane() {
+  std::vector<std::uint8_t> texels(16, 0);
+  std::fill_n(texels.begin(), 8, std::uint8_t{255});
+  return deep_plane(texels, TextureFilter::nearest);
+}
+
+}  // namespace
+
+TEST_CASE("a ray meets heights below a surface where they are, however it slants") {
+  const SceneDescription flat = deep_plane({102, 102}, TextureFilter::bilinear);  // 0.4 everywhere
+  const SceneDescription slope = deep_plane({0, 255}, TextureFilter::bilinear);
+  const SceneDescription wall = wall_plane();
+  on_every_device([&](const DeviceInfo& info) {
+    for (const double run : {0.0, 0.5, -2.0, 8.0}) {
+      const surfaces::Shaded seen = surfaces::shade(info, surfaces::Part::parallax, flat, at(0.3, run));
+      CHECK(double(seen.sunk.x) == Approx(0.6).margin(1e-4));
+      CHECK(double(seen.sunk.y) == Approx(0.3 + run * 0.6 * depth).margin(2e-4));
+      CHECK(double(seen.sunk.z) == Approx(run * 0.6 * depth).margin(2e-4));
+    }
+    // The heights rise from 0 at u = 1/4 to 1 at u = 3/4: a ray from u0 meets them at a depth of 1 - h.
+    for (const double run : {0.0, 0.7, -0.7}) {
+      const double h = 2 * (0.45 + run * depth - 0.25) / (1 + 2 * run * depth);
+      const surfaces::Shaded seen = surfaces::shade(info, surfaces::Part::parallax, slope, at(0.45, run));
+      CHECK(double(seen.sunk.x) == Approx(1 - h).margin(1e-3));
+    }
+    // Past the wall's upper edge on its floor, and against the wall.
+    CHECK(double(surfaces::shade(info, surfaces::Part::parallax, wall, at(0.9, -1)).sunk.y) ==
+          Approx(0.7).margin(1e-3));
+    CHECK(double(surfaces::shade(info, surfaces::Part::parallax, wall, at(0.6, -1)).sunk.y) ==
+          Approx(0.5).margin(3e-3));
+    CHECK(double(surfaces::shade(info, surfaces::Part::parallax, wall, at(0.6, -1)).sunk.x) ==
+          Approx(0.5).margin(0.02));
+    CHECK(double(surfaces::shade(info, surfaces::Part::parallax, wall, at(0.4, -1)).sunk.x) == 0);
+  });
+}
+
+TEST_CASE("a wall below a surface throws its shadow on its floor, as long as the light is low") {
+  const SceneDescription wall = wall_plane();
+  on_every_device([&](const DeviceInfo& info) {
+    const auto lit = [&](double x, double light) {
+      return surfaces::shade(info, surfaces::Part::parallax, wall, at(x, 0, light)).sunk.w;
+    };
+    for (const double light : {0.5, 1.0, 2.0}) {
+      INFO(light);
+      CHECK(lit(0.5 + 0.8 * light * depth, -light) == 0);  // the light stands behind the wall
+      CHECK(lit(0.5 + 1.3 * light * depth, -light) == 1);
+      CHECK(lit(0.5 + 0.8 * light * depth, light) == 1);  // and before it
+      CHECK(lit(0.4, -light) == 1);                       // on top
+    }
+  });
+}
+
+TEST_CASE("a surface with heights below it is one without them from behind, and where they are white") {
+  const SceneDescription white = deep_plane({255, 255}, TextureFilter::bilinear);
+  const SceneDescription black = deep_plane({0, 0}, TextureFilter::bilinear);
+  on_every_device([&](const DeviceInfo& info) {
+    CHECK(surfaces::shade(info, surfaces::Part::parallax, white, at(0.3, 1)).sunk.x == 0);
+    surfaces::Point behind = at(0.3, 1);
+    behind.d.y = -behind.d.y;
+    CHECK(surfaces::shade(info, surfaces::Part::parallax, black, behind).sunk.x == 0);
+    CHECK(double(surfaces::shade(info, surfaces::Part::parallax, black, at(0.3, 1)).sunk.x) == Approx(1));
+  });
+}
