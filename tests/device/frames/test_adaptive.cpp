@@ -117,7 +117,8 @@ TEST_CASE("adaptive and subsampled pictures are near the full ones with fewer sa
   const DeviceInfo& info = test_devices().front();
   const Image right = scenes::render_on(info, reference).image;
   const RenderResult adaptive = scenes::render_on(info, adaptive_scene());
-  const SamplingFigures figures = sampling_figures(adaptive.taken, adaptive.film.done, adaptive.surfaces_seen, 16);
+  const SamplingFigures figures =
+      sampling_figures(adaptive.taken, adaptive.film.done, adaptive.surfaces_seen, 16);
   CHECK(figures.saved > 0.2);
   CHECK(figures.most == 16);
   CHECK(root_mean_square(adaptive.image, right) <
