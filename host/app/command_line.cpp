@@ -148,7 +148,8 @@ void add_render(Arguments& root, Command& chosen) {
         "more samples only where the picture's estimated error is above T; --samples is the most");
   app->add_flag("--subsample", typed->subsample,
                 "samples for every second pixel each way, and for the others where they are needed");
-  value(app, "--time-limit", "S", typed->time_limit, "end the render after S seconds with what there is");
+  value(app, "--time-limit", "S", typed->time_limit,
+        "end the render after S seconds and write the picture so far");
   value(app, "--noise-threshold", "T", typed->noise,
         "end the render when its mean estimated error is below T");
   value(app, "--write-every", "S", typed->write_every, "write the picture so far every S seconds");

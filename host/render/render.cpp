@@ -136,7 +136,7 @@ void keep_checkpoint(const Frame& frame, RenderResult& result) {
   }
 }
 
-/// Gathers the finished film, or what there is of it.
+/// Gathers the film, complete or not.
 RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   const std::lock_guard lock(frame.mutex);
   RenderResult result;

@@ -69,9 +69,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     const MASK going = lanes | begun;
     if (!any_lane(going)) break;
     counts[COUNT_PRIMARY] += lane_count(begun);
-#if HAS_SDF
-    counts[COUNT_MARCH_LEFT] = MARCH_WORK;
-#endif
+    start_marching(counts);
     lanes = step_walks(scene, &walks, &rays, going, !any_lane(lanes), counts);
     for (u32 bits = lane_bits(going & ~lanes); bits; bits &= bits - 1u) {
       const u32 lane = lowest_bit(bits);

@@ -24,7 +24,7 @@ class PictureStream {
   PictureStream(const PictureStream&) = delete;
   PictureStream& operator=(const PictureStream&) = delete;
 
-  /// A page has come: it gets what there is.
+  /// A page has come: it gets the newest picture.
   void greet(ClientId client);
 
  private:

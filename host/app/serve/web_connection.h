@@ -55,7 +55,7 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
                             });
   }
 
-  /// Answers and closes: what is left of the request is not read.
+  /// Answers and closes: the rest of the request is not read.
   void refuse(const Refusal& refusal) {
     write({refusal.status, "text/plain; charset=utf-8", refusal.reason + "\n", ""}, false);
   }

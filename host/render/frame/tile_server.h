@@ -36,7 +36,7 @@ struct TileResult {
   RayCounts counts{};
 };
 
-/// Asked between launches: whether to give back what there is.
+/// Asked between launches: whether to return the finished part.
 struct StopFlags {
   const std::atomic<bool>* stop = nullptr;       // the frame is over
   const std::atomic<bool>* cancelled = nullptr;  // another device has finished the tile

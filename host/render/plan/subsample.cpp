@@ -82,7 +82,7 @@ bool fits_corners(const Grid& grid, int x, int y) {
 }
 
 /// A sampled pixel whose light is not what its corners of the same surface promised: a shadow's or a
-/// reflection's edge, which may go on between the corners nearby.
+/// reflection's edge, which may continue between the corners nearby.
 bool surprises(const Grid& grid, int x, int y) {
   const std::size_t p = grid.at(x, y);
   const GrowingFilm& film = grid.film;

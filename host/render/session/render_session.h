@@ -77,7 +77,7 @@ struct SessionTimes {
   double settled = -1;
 };
 
-/// The session at one moment. A value: it stays as it is when the session goes on.
+/// The session at one moment. A value: later work of the session does not change it.
 struct Snapshot {
   Generation generation = 0;   // the newest that was started; 0: none
   Generation shown = 0;        // whose picture this is: an older one's until the newest has a pixel; 0: none

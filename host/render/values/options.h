@@ -47,13 +47,14 @@ struct RenderOptions {
   double checkpoint_seconds = 60;    // between those written on the way
   std::atomic<bool>* keep_now = nullptr;        // set: write one at once, and take this back
   bool in_haste = false;                        // when stopped, a moment more may be too long
-  double time_limit = 0;                        // seconds; then what there is is returned; 0: none
+  double time_limit = 0;                        // seconds, after which the film so far is returned; 0: none
   double noise = 0;                             // a frame in passes ends below this mean error
   std::function<void(const Film&)> on_picture;  // the film so far, every `picture_seconds`
   double picture_seconds = 0;
   std::function<void(const RenderProgress&)> on_progress;  // called by one thread at a time
-  const std::atomic<bool>* stop = nullptr;                 // set: finish what runs, return what there is
-  bool keep_failed = false;  // when every device failed, return what there is, and the failure, not throw it
+  const std::atomic<bool>* stop = nullptr;                 // set: finish what runs, return the film so far
+  bool keep_failed =
+      false;  // when every device failed, return the film so far and the failure instead of throwing it
 };
 
 }  // namespace sundog

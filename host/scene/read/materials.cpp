@@ -28,7 +28,8 @@ Pattern scale(const Pattern& pattern, double coefficient) {
 dvec3 read_absorption(const JsonValue& value) {
   if (value.json().is_array()) return value.vec3(at_least_0);
   if (!value.json().is_object())
-    value.wanted("absorption per unit of length [r, g, b] or {\"color\": what is left, \"distance\": after}");
+    value.wanted(
+        "absorption per unit of length [r, g, b] or {\"color\": transmittance, \"distance\": its length}");
   return value.object("absorption", [](JsonObject& object) {
     const dvec3 left =
         object.at("color", "a colour [r, g, b]").color({.low = 0, .high = 1, .low_open = true});

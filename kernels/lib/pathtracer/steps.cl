@@ -54,7 +54,7 @@ static inline void join_rays(SceneRays* rays, const SceneRays* others, MASK lane
 #endif
 }
 
-// Paths of `lanes` that go on, by Russian roulette: the others end, and those that remain stand for them.
+// Paths of `lanes` that continue after Russian roulette: they stand for those that end.
 // What refraction took from the radiance comes back when the ray leaves the medium, and says nothing of its
 // worth.
 static inline MASK play_roulette(const Scene* scene, Walks* walks, REAL u, MASK lanes) {
@@ -86,7 +86,7 @@ static inline void leave_surfaces(const Scene* scene, const Encounters* met, con
   join_rays(rays, &child, lanes);
 }
 
-// Surfaces of `lanes` scatter: the paths' next rays. Returns the paths that go on.
+// Surfaces of `lanes` scatter: the paths' next rays. Returns the paths that continue.
 NEVER_INLINE MASK scatter(const Scene* scene, const Encounters* met, const Shading* at, const Lobes* lobes,
                           Walks* walks, SceneRays* rays, MASK lanes, u32* counts) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
@@ -120,8 +120,8 @@ NEVER_INLINE MASK scatter(const Scene* scene, const Encounters* met, const Shadi
   return going;
 }
 
-// Takes the paths of `lanes` a step further. Returns those that go on; the light of the others is complete.
-// `coherent`: their rays run close together.
+// Takes the paths of `lanes` a step further. Returns those that continue; the light of the others is
+// complete. `coherent`: their rays run close together.
 NEVER_INLINE MASK step_walks(const Scene* scene, Walks* walks, SceneRays* rays, MASK lanes, bool coherent,
                              u32* counts) {
   Encounters met;

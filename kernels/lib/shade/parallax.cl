@@ -1,6 +1,7 @@
-// Parallax: rays go on below a surface until they meet its height map, and light is held off by what rises on
-// its way (Brawley and Tatarchuk 2004, "Parallax Occlusion Mapping: Self-Shadowing, Perspective-Correct Bump
-// Mapping Using Reverse Height Map Tracing"). The surface itself is where heights are 1. A surface a lane.
+// Parallax: rays continue below a surface until they meet its height map, and light is held off by what rises
+// on its way (Brawley and Tatarchuk 2004, "Parallax Occlusion Mapping: Self-Shadowing, Perspective-Correct
+// Bump Mapping Using Reverse Height Map Tracing"). The surface itself is where heights are 1. A surface a
+// lane.
 #ifndef SUNDOG_LIB_PARALLAX_CL
 #define SUNDOG_LIB_PARALLAX_CL
 #include "lib/shade/maps.cl"

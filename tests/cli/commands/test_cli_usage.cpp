@@ -82,7 +82,7 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
       {{"render", scene, "-o", out, "--work-group", "8x"}, "--work-group 8x"},
       {{"render", scene, "-o", out, "--work-group", "big"}, "auto or driver"},
       {{"render", scene, "-o", out, "--integrator", "magic"},
-       "wanted \"whitted\", found the string \"magic\""},
+       "wanted \"whitted\" or \"path\", found the string \"magic\""},
       {{"render", scene, "-o", out, "--set", "fov=3"}, "--set fov=3: wanted JSON_POINTER=VALUE"},
       {{"render", scene, "-o", out, "--set", "/camera/fov"}, "wanted JSON_POINTER=VALUE"},
       {{"render", scene, "-o", out, "--set", "/camera/fov=190"},

@@ -23,7 +23,8 @@ struct ScriptTree : TemporaryFolder {
       fs::create_directories((root / script).parent_path());
       fs::copy_file(fs::path(SUNDOG_SOURCE_DIR) / script, root / script);
     }
-    for (const char* folder : {"host", "kernels", "build/release"}) fs::create_directories(root / folder);
+    for (const char* folder : {"host", "kernels", "third_party", "build/release"})
+      fs::create_directories(root / folder);
     for (const char* file : {"CMakeLists.txt", "CMakePresets.json"}) write("a tree/" + std::string(file), "");
     script("a tree/build/release/sundog", "printf '<%s>' \"$@\"");
     tool("cmake", "echo building");
