@@ -12,10 +12,12 @@ void append(std::vector<Value>& to, std::vector<Value>& from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
-void shift_textures(MaterialTextures& textures, int by){
-#define SUNDOG_SHIFT_MAP(constant, name) \
-  if (textures.name >= 0) textures.name += by;
-    MAP_SLOTS(SUNDOG_SHIFT_MAP)
+void shift_textures(MaterialTextures& textures, int by) {
+  const auto shift = [by](int& texture) {
+    if (texture >= 0) texture += by;
+  };
+#define SUNDOG_SHIFT_MAP(constant, name) shift(textures.name);
+  MAP_SLOTS(SUNDOG_SHIFT_MAP)
 #undef SUNDOG_SHIFT_MAP
 }
 

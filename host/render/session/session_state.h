@@ -1,0 +1,99 @@
+// What a session holds for its threads and its callers. Locks: a frame's mutex may be held when the session's
+// is taken, never the other way. Internal to the session.
+#pragma once
+#include <condition_variable>
+#include <deque>
+#include <future>
+#include <mutex>
+#include <thread>
+
+#include "render/frame/frame.h"
+#include "render/session/render_session.h"
+#include "render/session/session_frame.h"
+
+namespace sundog {
+
+using Servers = std::vector<std::shared_ptr<SceneServer>>;
+
+// How often a frame in hand is looked at for drivers that hang.
+inline constexpr std::chrono::milliseconds look_again{50};
+
+inline bool is_at_rest(SessionState state) {
+  return state == SessionState::settled || state == SessionState::stopped || state == SessionState::failed;
+}
+
+struct RenderSession::State : std::enable_shared_from_this<RenderSession::State> {
+  struct Order {
+    Generation generation = 0;
+    std::shared_ptr<const SceneDescription> scene;
+    SessionSettings settings;
+    Stopwatch clock;
+  };
+  struct Worker {
+    std::shared_ptr<SceneServer> server;
+    std::thread thread;
+    std::shared_ptr<SessionFrame> seen;  // the last frame that it took part in
+    bool opening = false;                // it may be in a driver's compiler
+    bool leave = false, gone = false;
+  };
+  struct Pick {
+    Generation generation = 0;
+    int x = 0, y = 0;
+    std::promise<std::optional<Picked>> answer;
+  };
+
+  mutable std::mutex mutex;
+  mutable std::condition_variable changed;
+  std::uint64_t revision = 0;
+  Generation newest = 0;
+  SessionState state = SessionState::idle;
+  std::string error;
+  std::optional<Order> pending;
+  std::shared_ptr<SessionFrame> current, shown;
+  std::vector<std::shared_ptr<Worker>> workers;
+  std::vector<std::shared_ptr<Worker>> leaving;
+  std::deque<Pick> picks;
+  double pixel_seconds = 0;
+  bool closing = false;
+  std::thread control;
+  SceneCompiler compiler;  // the control thread's
+
+  mutable std::mutex picture_mutex;
+  mutable std::shared_ptr<const Image> picture;
+  mutable std::weak_ptr<const Frame> picture_frame;
+  mutable std::uint64_t picture_passes = 0, picture_pixels = 0;
+
+  void note() {
+    ++revision;
+    changed.notify_all();
+  }
+  void set_state(SessionState next) {
+    state = next;
+    note();
+  }
+
+  void add_worker(std::shared_ptr<SceneServer> server);
+  void run_control();
+  void take_order(std::unique_lock<std::mutex>& lock);
+  std::shared_ptr<SessionFrame> prepare(const Order& order, Servers servers, double speed);
+  void look_at(std::unique_lock<std::mutex>& lock);
+  void run_worker(Worker& worker);
+  void serve(std::unique_lock<std::mutex>& lock, Worker& worker, std::size_t index);
+  void serve_pick(std::unique_lock<std::mutex>& lock, Worker& worker);
+  bool may_pick(const Worker& worker) const {
+    return !picks.empty() && worker.seen == current && worker.server->is_open();
+  }
+  std::optional<std::size_t> index_of(const Worker& worker) const;
+  void note_progress(const std::shared_ptr<SessionFrame>& frame);
+  /// The frame in hand may bring its first picture before a newer one takes its place.
+  bool is_awaited() const {
+    return current && !current->frame->stop && current->times.first < 0 && current->times.settled < 0 &&
+           current->begun.seconds() < current->patience;
+  }
+  void answer_picks(const std::shared_ptr<TileServer>& server);
+  void drop_frame();
+  void drop_picks();
+  std::shared_ptr<const Image> picture_so_far(const Frame& frame) const;
+};
+
+}  // namespace sundog

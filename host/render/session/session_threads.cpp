@@ -1,0 +1,272 @@
+// A session's threads: one that compiles scenes and watches the frame in hand, and one a device.
+#include <algorithm>
+
+#include "base/error.h"
+#include "render/session/session_state.h"
+
+namespace sundog {
+namespace {
+
+CompileWork difference(const CompileWork& now, const CompileWork& before) {
+  return {now.meshes - before.meshes,     now.bvhs - before.bvhs,     now.lights - before.lights,
+          now.surfaces - before.surfaces, now.fields - before.fields, now.instances - before.instances};
+}
+
+Picked picked_from(const TileResult& made) {
+  const float4 *a = made.aovs.data(), *b = a + 1, *c = a + 2;
+  Picked picked;
+  picked.object = static_cast<int>(b->w);
+  picked.material = static_cast<int>(c->w);
+  picked.position = {b->x, b->y, b->z};
+  picked.normal = {a->x, a->y, a->z};
+  picked.depth = a->w;
+  return picked;
+}
+
+/// One ray through the middle of a pixel.
+Picked pick_on(SceneServer& server, int x, int y) {
+  TileRequest request;
+  request.tile = {x, y, 1, 1};
+  request.in_pass = request.surfaces = true;
+  server.prepare_surfaces();
+  return picked_from(server.render(request, {}));
+}
+
+}  // namespace
+
+void RenderSession::State::add_worker(std::shared_ptr<SceneServer> server) {
+  auto worker = std::make_shared<Worker>();
+  worker->server = std::move(server);
+  workers.push_back(worker);
+  count_left_behind(1);
+  worker->thread = std::thread([self = shared_from_this(), worker]() mutable {
+    self->run_worker(*worker);
+    worker.reset();
+    self.reset();
+    count_left_behind(-1);
+  });
+}
+
+/// What is in hand is of no use any more. The caller holds the mutex.
+void RenderSession::State::drop_frame() {
+  if (!current) return;
+  current->frame->stop = true;
+  current->frame->queue.close();
+}
+
+void RenderSession::State::drop_picks() {
+  for (Pick& pick : picks) pick.answer.set_value(std::nullopt);
+  picks.clear();
+}
+
+std::optional<std::size_t> RenderSession::State::index_of(const Worker& worker) const {
+  if (!current) return std::nullopt;
+  const auto& servers = current->frame->servers;
+  for (std::size_t i = 0; i < servers.size(); ++i)
+    if (servers[i].server == worker.server) return i;
+  return std::nullopt;
+}
+
+// The control thread: compiles the newest scene and watches the frame in hand.
+
+void RenderSession::State::run_control() {
+  std::unique_lock lock(mutex);
+  while (!closing) {
+    const auto wanted = [&] { return closing || (pending && !is_awaited()); };
+    if (current && (pending || !is_at_rest(state)))
+      changed.wait_for(lock, look_again, wanted);
+    else
+      changed.wait(lock, wanted);
+    if (closing) return;
+    if (wanted())
+      take_order(lock);
+    else if (!pending)
+      look_at(lock);
+  }
+}
+
+void RenderSession::State::take_order(std::unique_lock<std::mutex>& lock) {
+  const Order order = std::move(*pending);
+  pending.reset();
+  drop_frame();
+  Servers servers;
+  for (const auto& worker : workers) servers.push_back(worker->server);
+  const double speed = pixel_seconds;
+  lock.unlock();
+  std::shared_ptr<SessionFrame> made;
+  std::string failure;
+  try {
+    made = prepare(order, std::move(servers), speed);
+  } catch (const std::exception& thrown) {
+    failure = thrown.what();
+  }
+  lock.lock();
+  if (order.generation != newest || is_at_rest(state)) return;  // replaced, or cancelled
+  if (!made) {
+    error = failure;
+    drop_picks();
+    set_state(SessionState::failed);
+    return;
+  }
+  current = std::move(made);
+  current->times.compiled = order.clock.seconds();
+  set_state(SessionState::preparing);
+}
+
+std::shared_ptr<SessionFrame> RenderSession::State::prepare(const Order& order, Servers servers,
+                                                            double speed) {
+  auto made = std::make_shared<SessionFrame>();
+  made->generation = order.generation;
+  made->scene = order.scene;
+  made->clock = order.clock;
+  made->patience = order.settings.patience;
+  const CompileWork before = compiler.work();
+  made->flat = std::make_shared<const CompiledScene>(compiler.compile(*order.scene));
+  made->compiled = difference(compiler.work(), before);
+  const std::weak_ptr<State> session = weak_from_this();
+  const std::weak_ptr<SessionFrame> frame = made;
+  made->frame = make_session_frame({made->flat, order.settings, std::move(servers), speed},
+                                   [session, frame](const RenderProgress&) {
+                                     const auto self = session.lock();
+                                     const auto mine = frame.lock();
+                                     if (self && mine) self->note_progress(mine);
+                                   });
+  made->frame->between_tiles = [session, frame](std::size_t i) {
+    const auto self = session.lock();
+    const auto mine = frame.lock();
+    if (self && mine) self->answer_picks(mine->frame->servers[i].server);
+  };
+  return made;
+}
+
+/// Called by a worker between two tiles.
+void RenderSession::State::answer_picks(const std::shared_ptr<TileServer>& server) {
+  std::unique_lock lock(mutex);
+  if (picks.empty()) return;
+  const auto found =
+      std::ranges::find_if(workers, [&](const auto& worker) { return worker->server == server; });
+  if (found == workers.end()) return;
+  const std::shared_ptr<Worker> worker = *found;
+  if (may_pick(*worker)) serve_pick(lock, *worker);
+}
+
+/// Ends the generation when nobody is left who could draw it.
+void RenderSession::State::look_at(std::unique_lock<std::mutex>& lock) {
+  const std::shared_ptr<SessionFrame> mine = current;
+  lock.unlock();
+  Frame& frame = *mine->frame;
+  for (std::size_t i = 0; i < frame.servers.size(); ++i)
+    if (const double seconds = frame.servers[i].server->overdue(); seconds > 0) {
+      const std::string why = frame.servers[i].server->info().label() +
+                              ": a launch has not come back for too long: the driver hangs";
+      retire_server(frame, i, why, std::make_exception_ptr(DeviceError(why)));
+    }
+  std::string failure;
+  {
+    const std::lock_guard frame_lock(frame.mutex);
+    if (!frame.servers.empty() && std::ranges::all_of(frame.servers, &Frame::Server::failed))
+      for (const Frame::Server& server : frame.servers)
+        failure += (failure.empty() ? "" : "; ") + server.report.messages.back();
+  }
+  lock.lock();
+  if (failure.empty() || mine != current || mine->generation != newest || is_at_rest(state)) return;
+  error = failure;
+  drop_picks();
+  set_state(SessionState::failed);
+}
+
+// The workers' threads.
+
+void RenderSession::State::run_worker(Worker& worker) {
+  std::unique_lock lock(mutex);
+  while (true) {
+    const auto wanted = [&] {
+      return closing || worker.leave || (current && current != worker.seen && index_of(worker)) ||
+             may_pick(worker);
+    };
+    changed.wait(lock, wanted);
+    if (closing || worker.leave) break;
+    const std::optional<std::size_t> index = index_of(worker);
+    if (current != worker.seen && index)
+      serve(lock, worker, *index);
+    else
+      serve_pick(lock, worker);
+  }
+  worker.opening = false;
+  lock.unlock();
+  try {
+    worker.server->close();
+  } catch (const std::exception&) {
+    // It is let go of as well as can be.
+  }
+  lock.lock();
+  worker.gone = true;
+  changed.notify_all();
+}
+
+void RenderSession::State::serve(std::unique_lock<std::mutex>& lock, Worker& worker, std::size_t index) {
+  const std::shared_ptr<SessionFrame> mine = current;
+  const std::shared_ptr<SessionFrame> before = std::exchange(worker.seen, mine);
+  worker.opening = true;
+  lock.unlock();
+  Frame& frame = *mine->frame;
+  worker.server->show(mine->flat, frame.options);
+  serve_frame(frame, index);
+  double speed = 0;
+  {
+    const std::lock_guard frame_lock(frame.mutex);
+    speed = frame.passes->pixel_seconds;
+  }
+  lock.lock();
+  worker.opening = false;
+  if (speed > 0) pixel_seconds = speed;
+  note();
+}
+
+void RenderSession::State::serve_pick(std::unique_lock<std::mutex>& lock, Worker& worker) {
+  Pick pick = std::move(picks.front());
+  picks.pop_front();
+  lock.unlock();
+  try {
+    pick.answer.set_value(pick_on(*worker.server, pick.x, pick.y));
+  } catch (const std::exception&) {
+    pick.answer.set_exception(std::current_exception());
+  }
+  lock.lock();
+}
+
+/// Called by a worker that has put a tile into the frame, whose mutex it holds.
+void RenderSession::State::note_progress(const std::shared_ptr<SessionFrame>& mine) {
+  const FrameProgress progress = progress_of(*mine->frame);
+  const std::lock_guard lock(mutex);
+  if (mine != current || is_at_rest(state)) return;
+  const double now = mine->clock.seconds();
+  SessionTimes& times = mine->times;
+  const auto reached = [&](bool there, double& time) {
+    if (there && time < 0) time = now;
+  };
+  reached(true, times.ready);
+  reached(progress.whole, times.first);
+  reached(progress.full, times.full);
+  reached(progress.settled, times.settled);
+  if (progress.whole) shown = mine;
+  if (mine->generation != newest) return note();
+  set_state(progress.settled ? SessionState::settled : SessionState::drawing);
+}
+
+/// The caller holds the frame's mutex. Developed once, however many ask.
+std::shared_ptr<const Image> RenderSession::State::picture_so_far(const Frame& frame) const {
+  const std::lock_guard lock(picture_mutex);
+  const FramePasses& passes = *frame.passes;
+  const std::uint64_t count = passes.coarse_passes + std::uint64_t{passes.film.stage};
+  const bool same = picture && picture_frame.lock().get() == &frame && picture_passes == count &&
+                    picture_pixels == frame.pixels_done;
+  if (same) return picture;
+  picture = std::make_shared<const Image>(picture_of(frame));
+  picture_frame = frame.weak_from_this();
+  picture_passes = count;
+  picture_pixels = frame.pixels_done;
+  return picture;
+}
+
+}  // namespace sundog
