@@ -84,7 +84,7 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
     return !picks.empty() && worker.seen == current && worker.server->is_open();
   }
   std::optional<std::size_t> index_of(const Worker& worker) const;
-  void note_progress(const std::shared_ptr<SessionFrame>& frame);
+  void note_progress(const std::shared_ptr<SessionFrame>& mine);
   /// The frame in hand may bring its first picture before a newer one takes its place.
   bool is_awaited() const {
     return current && !current->frame->stop && current->times.first < 0 && current->times.settled < 0 &&

@@ -146,7 +146,8 @@ void RenderSession::State::answer_picks(const std::shared_ptr<TileServer>& serve
   const auto found =
       std::ranges::find_if(workers, [&](const auto& worker) { return worker->server == server; });
   if (found == workers.end()) return;
-  const std::shared_ptr<Worker> worker = *found;
+  // A copy: serve_pick unlocks, and then the list of workers may change.
+  const std::shared_ptr<Worker> worker = *found;  // NOLINT(performance-unnecessary-copy-initialization)
   if (may_pick(*worker)) serve_pick(lock, *worker);
 }
 
