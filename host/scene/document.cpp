@@ -9,7 +9,6 @@
 #include "scene/json/parse.h"
 #include "scene/json/value.h"
 #include "scene/kinds.h"
-#include "scene/model.h"
 #include "scene/model_scene.h"
 #include "scene/read/parts.h"
 #include "scene/read/scene_reader.h"
@@ -59,13 +58,14 @@ json read_scene_document(const fs::path& path, const LoadOptions& options) {
   return read_json_file(path);
 }
 
-SceneDescription load_scene_document(const json& document, const fs::path& file, const LoadOptions& options) {
+SceneDescription load_scene_document(const json& document, const fs::path& file, const LoadOptions& options,
+                                     const NamedMeshes& made) {
   std::vector<std::string> warnings;
   const JsonContext context{.file = file,
                             .native_code = options.native_code,
                             .warnings = &warnings,
                             .outside_files = options.outside_files};
-  SceneDescription scene = read_scene(JsonValue(document, context));
+  SceneDescription scene = read_scene(JsonValue(document, context), std::nullopt, made);
   scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
   return scene;
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "scene/load.h"
+#include "scene/model.h"
 
 namespace sundog {
 
@@ -14,9 +15,9 @@ namespace sundog {
 nlohmann::json read_scene_document(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// The scene of a document. `file` (it need not be there) stands for it in messages, and names of files count
-/// from its folder. Throws SceneError.
+/// from its folder. `made` are meshes beside the document's. Throws SceneError.
 SceneDescription load_scene_document(const nlohmann::json& document, const std::filesystem::path& file,
-                                     const LoadOptions& options = {});
+                                     const LoadOptions& options = {}, const NamedMeshes& made = {});
 
 /// The scene of `after`, where that differs from `before` (whose scene is `scene`) in nothing but the camera,
 /// the size and background, the render settings, and lights that rays do not meet: no file is read again and

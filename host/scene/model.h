@@ -2,6 +2,8 @@
 #pragma once
 #include <cstddef>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +34,9 @@ struct Model {
   std::vector<std::string> unread;     // features of the file that are not read, each named once
   std::vector<std::string> warnings;   // of what was read past: unread features, missing material files, ...
 };
+
+/// Meshes that a program has made, by the names that objects place them by.
+using NamedMeshes = std::map<std::string, std::shared_ptr<const Mesh>>;
 
 struct ModelOptions {
   /// Angle in degrees up to which made-up normals are smoothed across an edge; nullopt: the format's own rule

@@ -28,7 +28,8 @@ namespace {
 
 class SceneReader {
  public:
-  SceneReader(const JsonValue& root, std::optional<Model> known) : root_(root), library_(scene_) {
+  SceneReader(const JsonValue& root, std::optional<Model> known, const NamedMeshes& made)
+      : root_(root), made_(made), library_(scene_) {
     scene_.file = root.context().file;
     scene_.media.push_back({.name = "vacuum", .priority = world_priority});
     if (known) library_.keep(scene_.file, std::move(*known));
@@ -82,6 +83,7 @@ class SceneReader {
     if (const auto meshes = object.find("meshes"))
       for (const auto& [name, value] : meshes->members("meshes"))
         meshes_.emplace(name, read_mesh(value, name));
+    add_made_meshes();
     if (const auto fields = object.find("fields"))
       for (const auto& [name, value] : fields->members("fields")) {
         fields_.emplace(name, static_cast<int>(scene_.fields.size()));
@@ -145,12 +147,25 @@ class SceneReader {
           options.crease_angle = angle->number({.low = 0, .high = 180});
         return library_.load(file, options);
       }
-      Model made;
-      made.meshes.push_back(generate_mesh(from));
-      made.meshes.back().name = name;
-      made.objects.emplace_back().shape = MeshShape{0};
-      return library_.add(std::move(made), name);
+      return add_mesh(generate_mesh(from), name);
     });
+  }
+
+  ModelLibrary::Parts add_mesh(Mesh mesh, const std::string& name) {
+    Model made;
+    made.meshes.push_back(std::move(mesh));
+    made.meshes.back().name = name;
+    made.objects.emplace_back().shape = MeshShape{0};
+    return library_.add(std::move(made), name);
+  }
+
+  void add_made_meshes() {
+    for (const auto& [name, mesh] : made_) {
+      if (meshes_.contains(name))
+        throw SceneError(scene_.file.string(), join_pointer("/meshes", name),
+                         "the program has made a mesh of that name too; wanted two names");
+      meshes_.emplace(name, add_mesh(*mesh, name));
+    }
   }
 
   static bool is_one_of(const std::string& type, Names names) {
@@ -230,6 +245,7 @@ class SceneReader {
   }
 
   const JsonValue& root_;
+  const NamedMeshes& made_;
   SceneDescription scene_;
   ModelLibrary library_;
   TextureLibrary textures_{scene_};
@@ -239,8 +255,8 @@ class SceneReader {
 
 }  // namespace
 
-SceneDescription read_scene(const JsonValue& root, std::optional<Model> known) {
-  return SceneReader(root, std::move(known)).read();
+SceneDescription read_scene(const JsonValue& root, std::optional<Model> known, const NamedMeshes& made) {
+  return SceneReader(root, std::move(known), made).read();
 }
 
 }  // namespace sundog

@@ -9,8 +9,9 @@
 namespace sundog {
 
 /// Reads a scene document; meshes are looked for beside `root.context().file`. `known`, when set, is the
-/// content of that file itself, which the document then places (a model as a scene by itself). Throws
-/// SceneError.
-SceneDescription read_scene(const JsonValue& root, std::optional<Model> known = std::nullopt);
+/// content of that file itself, which the document then places (a model as a scene by itself). `made` are
+/// further meshes, beside the document's. Throws SceneError.
+SceneDescription read_scene(const JsonValue& root, std::optional<Model> known = std::nullopt,
+                            const NamedMeshes& made = {});
 
 }  // namespace sundog

@@ -22,6 +22,7 @@ const std::map<std::string, Names> allowed = {
     {"device", {"base"}},
     {"render", {"base", "scene", "compile", "device", "shared"}},
     {"bench", {"base", "scene", "compile", "device", "render", "shared"}},
+    {"api", {"base", "scene", "compile", "device", "render", "shared"}},
     {"mpi", {"render"}},
     {"app", {"base", "scene", "compile", "device", "render", "bench", "shared"}},
 };

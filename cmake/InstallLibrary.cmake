@@ -1,0 +1,51 @@
+# libsundog for other programs, shared and static: include/sundog over the layers up to host/api, with what
+# find_package(sundog) and pkg-config need.
+include(CMakePackageConfigHelpers)
+
+add_library(sundog_shared SHARED $<TARGET_OBJECTS:sundog_api>)
+target_link_libraries(sundog_shared PRIVATE sundog_render)
+# Templates of other libraries are visible whatever the compiler is told: the linker leaves the public names alone.
+set(symbols ${PROJECT_SOURCE_DIR}/host/api/symbols.map)
+target_link_options(sundog_shared PRIVATE -Wl,--version-script=${symbols} -Wl,--no-undefined)
+set_target_properties(sundog_shared PROPERTIES LINK_DEPENDS ${symbols} VERSION ${PROJECT_VERSION}
+  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+
+# All layers in one archive; a program that links it links what they need too.
+set(objects "")
+foreach(layer base scene compile device render api)
+  list(APPEND objects $<TARGET_OBJECTS:sundog_${layer}>)
+endforeach()
+add_library(sundog_static STATIC ${objects})
+set(packages OpenCL TBB fmt OpenEXR ZLIB Threads)
+set(libraries spng turbojpeg webp)
+target_link_libraries(sundog_static INTERFACE OpenCL::OpenCL TBB::tbb fmt::fmt OpenEXR::OpenEXR ZLIB::ZLIB Threads::Threads
+  ${libraries} ${CMAKE_DL_LIBS})
+
+set(exported sundog)  # sundog::sundog and sundog::sundog_static
+foreach(library sundog_shared sundog_static)
+  target_include_directories(${library} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(${library} INTERFACE cxx_std_20)
+  set_target_properties(${library} PROPERTIES OUTPUT_NAME sundog EXPORT_NAME ${exported} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}
+    ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+  set(exported sundog_static)
+endforeach()
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/sundog)
+install(TARGETS sundog_shared sundog_static EXPORT sundogTargets COMPONENT library
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sundog DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library)
+install(EXPORT sundogTargets NAMESPACE sundog:: DESTINATION ${package_folder} COMPONENT library)
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sundogConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/sundogConfig.cmake
+  INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/sundogConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/sundogConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/sundogConfigVersion.cmake
+  DESTINATION ${package_folder} COMPONENT library)
+
+list(TRANSFORM libraries PREPEND -l OUTPUT_VARIABLE private_libraries)
+list(JOIN private_libraries " " private_libraries)
+# A prefix may be moved: paths count from the file's own folder.
+file(RELATIVE_PATH pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+string(REGEX REPLACE "/$" "" pc_to_prefix "${pc_to_prefix}")
+configure_file(${PROJECT_SOURCE_DIR}/cmake/sundog.pc.in ${CMAKE_CURRENT_BINARY_DIR}/sundog.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/sundog.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT library)

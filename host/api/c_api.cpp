@@ -1,0 +1,266 @@
+// The C interface over the C++ one: every exception becomes a status and a line kept for its thread.
+#include "api/impl.h"
+// The public headers come after the host's.
+#include <sundog/session.h>
+#include <sundog/sundog.h>
+
+#include <algorithm>
+#include <cstring>
+#include <stop_token>
+
+struct sundog_scene {
+  sundog::v0::Scene scene;
+};
+struct sundog_devices {
+  std::vector<sundog::v0::Device> list;
+};
+struct sundog_film {
+  sundog::v0::Film film;
+  std::vector<std::pair<std::string, sundog::v0::Image>> images;  // "": the picture
+};
+struct sundog_session {
+  sundog::v0::Session session;
+};
+
+namespace sundog {
+inline namespace v0 {
+namespace {
+
+/// Of this thread's last call that failed.
+struct LastError {
+  std::string what, file, place;
+};
+
+LastError& last_error() noexcept {
+  thread_local LastError error;
+  return error;
+}
+
+sundog_status keep(sundog_status status, const char* what, const std::string& file = {},
+                   const std::string& place = {}) noexcept {
+  try {
+    last_error() = {what, file, place};
+  } catch (...) {
+    last_error().what.clear();  // there is no memory even for the message
+  }
+  return status;
+}
+
+sundog_status status_of(ErrorKind kind) {
+  return static_cast<sundog_status>(static_cast<int>(kind) + SUNDOG_USAGE);
+}
+static_assert(static_cast<int>(ErrorKind::internal) + SUNDOG_USAGE == SUNDOG_INTERNAL);
+static_assert(static_cast<int>(SessionState::failed) == SUNDOG_FAILED);
+
+/// f(), which may throw or return a status of its own.
+template <class F>
+sundog_status guarded(const F& f) noexcept {
+  try {
+    if constexpr (std::is_void_v<decltype(f())>) {
+      f();
+      return SUNDOG_OK;
+    } else {
+      return f();
+    }
+  } catch (const Error& error) {
+    return keep(status_of(error.kind()), error.what(), error.file(), error.place());
+  } catch (const std::exception& error) {
+    return keep(SUNDOG_INTERNAL, error.what());
+  } catch (...) {
+    return keep(SUNDOG_INTERNAL, "an unknown exception");
+  }
+}
+
+template <class T>
+T& wanted(T* pointer, const char* name) {
+  if (!pointer) throw Error(ErrorKind::usage, std::string(name) + ": wanted a value, found NULL");
+  return *pointer;
+}
+
+std::vector<std::string> split(const char* list) {
+  std::vector<std::string> items;
+  for (const char* at = list; at && *at;) {
+    const std::size_t length = std::strcspn(at, ",");
+    items.emplace_back(at, length);
+    at += length + (at[length] == ',');
+  }
+  return items;
+}
+
+/// A new handle of what `make` returns.
+template <class Handle, class F>
+sundog_status made(Handle** handle, const char* name, const F& make) noexcept {
+  return guarded([&] {
+    Handle*& result = wanted(handle, name);
+    result = new Handle{make()};
+  });
+}
+
+template <std::size_t count, class T>
+std::span<const std::array<T, count>> groups(const T* values, std::size_t length) {
+  static_assert(sizeof(std::array<T, count>) == count * sizeof(T));
+  return {reinterpret_cast<const std::array<T, count>*>(values), values ? length : 0};
+}
+
+RenderOptions options_of(const sundog_options* options, std::stop_source& stop) {
+  RenderOptions result;
+  if (!options) return result;
+  if (options->devices) result.devices = options->devices->list;
+  result.aovs = split(options->aovs);
+  if (options->work_group_x > 0)
+    result.work_group = {.x = options->work_group_x, .y = std::max(1u, options->work_group_y)};
+  result.tile = options->tile;
+  result.time_limit = options->time_limit;
+  if (options->progress)
+    result.on_progress = [call = options->progress, user = options->user, &stop](const Progress& now) {
+      if (call(now.pixels_done, now.pixels_total, now.seconds, user) != 0) stop.request_stop();
+    };
+  result.stop = stop.get_token();
+  return result;
+}
+
+}  // namespace
+}  // namespace v0
+}  // namespace sundog
+
+using namespace sundog::v0;
+
+const char* sundog_version(void) {
+  static const std::string text = version();
+  return text.c_str();
+}
+
+const char* sundog_last_error(void) { return last_error().what.c_str(); }
+const char* sundog_last_error_file(void) { return last_error().file.c_str(); }
+const char* sundog_last_error_place(void) { return last_error().place.c_str(); }
+
+sundog_status sundog_scene_load(const char* file, sundog_scene** scene) {
+  return made(scene, "scene", [&] { return Scene::load(&wanted(file, "file")); });
+}
+
+sundog_status sundog_scene_from_json(const char* text, const char* folder, sundog_scene** scene) {
+  return made(scene, "scene", [&] { return Scene::from_json(&wanted(text, "text"), folder ? folder : "."); });
+}
+
+sundog_status sundog_scene_set(sundog_scene* scene, const char* pointer, const char* json) {
+  return guarded([&] {
+    wanted(scene, "scene").scene.set(&wanted(pointer, "pointer"), std::string_view(&wanted(json, "json")));
+  });
+}
+
+sundog_status sundog_scene_add_mesh(sundog_scene* scene, const char* name, const float* positions,
+                                    size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
+                                    const float* normals, const float* uvs) {
+  return guarded([&] {
+    wanted(positions, "positions");
+    wanted(triangles, "triangles");
+    const MeshView mesh{.positions = groups<3>(positions, vertex_count),
+                        .triangles = groups<3>(triangles, triangle_count),
+                        .normals = groups<3>(normals, vertex_count),
+                        .uvs = groups<2>(uvs, vertex_count)};
+    wanted(scene, "scene").scene.add_mesh(&wanted(name, "name"), mesh);
+  });
+}
+
+sundog_status sundog_scene_check(const sundog_scene* scene) {
+  return guarded([&] { (void)wanted(scene, "scene").scene.check(); });
+}
+
+void sundog_scene_free(sundog_scene* scene) { delete scene; }
+
+sundog_status sundog_devices_list(sundog_devices** devices) {
+  return made(devices, "devices", [&] { return sundog::v0::devices(); });
+}
+
+sundog_status sundog_devices_choose(const char* specs, sundog_devices** devices) {
+  return made(devices, "devices", [&] { return choose_devices(split(specs)); });
+}
+
+size_t sundog_devices_count(const sundog_devices* devices) { return devices ? devices->list.size() : 0; }
+
+const char* sundog_devices_label(const sundog_devices* devices, size_t index) {
+  return index < sundog_devices_count(devices) ? devices->list[index].label.c_str() : nullptr;
+}
+
+const char* sundog_devices_problem(const sundog_devices* devices, size_t index) {
+  return index < sundog_devices_count(devices) ? devices->list[index].problem.c_str() : nullptr;
+}
+
+void sundog_devices_free(sundog_devices* devices) { delete devices; }
+
+sundog_status sundog_render(const sundog_scene* scene, const sundog_options* options, sundog_film** film) {
+  return guarded([&]() -> sundog_status {
+    sundog_film*& result = wanted(film, "film");
+    std::stop_source stop;
+    auto made = std::make_unique<sundog_film>();
+    made->film = render(wanted(scene, "scene").scene, options_of(options, stop));
+    made->images.emplace_back("", made->film.image());
+    for (const std::string& name : made->film.aovs()) made->images.emplace_back(name, made->film.aov(name));
+    result = made.release();
+    return stop.stop_requested() ? keep(SUNDOG_STOPPED, "the progress callback ended the render") : SUNDOG_OK;
+  });
+}
+
+int sundog_film_complete(const sundog_film* film) { return film && film->film.complete() ? 1 : 0; }
+
+sundog_status sundog_film_pixels(const sundog_film* film, const char* aov, const float** pixels, int* width,
+                                 int* height, int* channels) {
+  return guarded([&] {
+    const std::string name = aov ? aov : "";
+    const auto& images = wanted(film, "film").images;
+    const auto found = std::ranges::find(images, name, &std::pair<std::string, Image>::first);
+    if (found == images.end())
+      throw Error(ErrorKind::usage, "the film has no AOV \"" + name + "\"; name it in sundog_options::aovs");
+    wanted(pixels, "pixels") = found->second.pixels().data();
+    if (width) *width = found->second.width();
+    if (height) *height = found->second.height();
+    if (channels) *channels = found->second.channels();
+  });
+}
+
+sundog_status sundog_film_save(const sundog_film* film, const char* file) {
+  return guarded([&] { wanted(film, "film").film.save(&wanted(file, "file")); });
+}
+
+void sundog_film_free(sundog_film* film) { delete film; }
+
+sundog_status sundog_session_open(const sundog_devices* devices, sundog_session** session) {
+  return made(session, "session", [&] { return Session(devices ? devices->list : std::vector<Device>()); });
+}
+
+sundog_status sundog_session_start(sundog_session* session, const sundog_scene* scene) {
+  return guarded([&] { wanted(session, "session").session.start(wanted(scene, "scene").scene); });
+}
+
+sundog_status sundog_session_cancel(sundog_session* session) {
+  return guarded([&] { wanted(session, "session").session.cancel(); });
+}
+
+sundog_status sundog_session_wait(const sundog_session* session, double seconds, sundog_state* state) {
+  return guarded([&] {
+    const Session& waiting = wanted(session, "session").session;
+    if (seconds < 0)
+      waiting.wait();
+    else
+      waiting.wait_for(seconds);
+    const Snapshot now = waiting.snapshot(false);
+    if (state) *state = static_cast<sundog_state>(now.state);
+    if (now.state == SessionState::failed) throw Error(ErrorKind::device, now.error);
+  });
+}
+
+sundog_status sundog_session_picture(const sundog_session* session, float* pixels, size_t capacity,
+                                     int* width, int* height) {
+  return guarded([&] {
+    const Image picture = wanted(session, "session").session.snapshot().picture;
+    wanted(width, "width") = picture.width();
+    wanted(height, "height") = picture.height();
+    if (picture.pixels().empty()) return;
+    if (picture.pixels().size() > capacity)
+      throw Error(ErrorKind::usage, "the picture has " + std::to_string(picture.pixels().size()) +
+                                        " floats; wanted room for them, found " + std::to_string(capacity));
+    std::ranges::copy(picture.pixels(), &wanted(pixels, "pixels"));
+  });
+}
+
+void sundog_session_free(sundog_session* session) { delete session; }

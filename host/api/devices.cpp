@@ -1,0 +1,67 @@
+// Devices as programs see them.
+#include "api/impl.h"
+
+namespace sundog {
+inline namespace v0 {
+namespace {
+
+Device device_of(const core::DeviceInfo& info) {
+  Device device;
+  device.label = info.label();
+  device.platform = info.platform;
+  device.index = info.device;
+  device.platform_name = info.platform_name;
+  device.name = info.name;
+  device.vendor = info.vendor;
+  device.driver = info.driver;
+  device.type = info.type;
+  device.compute_units = info.sub_units > 0 ? info.sub_units : info.compute_units;
+  device.global_memory = info.global_memory;
+  device.estimate = info.estimate;
+  device.usable = info.usable();
+  device.problem = info.problem;
+  device.handle = std::make_shared<const Device::Handle>(Device::Handle{info});
+  return device;
+}
+
+std::vector<Device> devices_of_host(const std::vector<core::DeviceInfo>& all) {
+  std::vector<Device> result;
+  result.reserve(all.size());
+  for (const core::DeviceInfo& info : all) result.push_back(device_of(info));
+  return result;
+}
+
+}  // namespace
+
+std::vector<Device> devices() {
+  return translated([] { return devices_of_host(core::enumerate_devices()); });
+}
+
+std::vector<Device> choose_devices(const std::vector<std::string>& specs,
+                                   std::vector<std::string>* warnings) {
+  return translated([&] {
+    const std::vector<core::DeviceInfo> all = core::enumerate_devices();
+    return devices_of_host(core::select_devices(all, specs, warnings));
+  });
+}
+
+std::vector<core::DeviceInfo> devices_of(const std::vector<Device>& devices) {
+  if (devices.empty()) return core::select_devices(core::enumerate_devices(), {});
+  std::vector<core::DeviceInfo> infos;
+  for (const Device& device : devices) {
+    if (!device.handle) throw core::UsageError("a device wants to come from devices() or choose_devices()");
+    if (!device.usable) throw core::DeviceError(device.label + ": " + device.problem);
+    infos.push_back(device.handle->info);
+  }
+  return infos;
+}
+
+core::WorkGroup group_of(const WorkGroup& group) {
+  if (group.driver) return {.kind = core::WorkGroup::Kind::driver};
+  if (group.x == 0) return {};
+  if (group.y == 0) throw core::UsageError("a work-group wants one work-item or more each way");
+  return {.kind = core::WorkGroup::Kind::fixed, .x = group.x, .y = group.y};
+}
+
+}  // namespace v0
+}  // namespace sundog

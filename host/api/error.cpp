@@ -1,0 +1,51 @@
+// The host's exceptions as the one that programs see.
+#include <new>
+
+#include "api/impl.h"
+
+namespace sundog {
+inline namespace v0 {
+
+static_assert(SUNDOG_VERSION_MAJOR == SUNDOG_BUILT_MAJOR && SUNDOG_VERSION_MINOR == SUNDOG_BUILT_MINOR &&
+                  SUNDOG_VERSION_PATCH == SUNDOG_BUILT_PATCH,
+              "CMakeLists.txt and include/sundog/version.h name different versions");
+
+std::string version() {
+  return std::to_string(SUNDOG_VERSION_MAJOR) + "." + std::to_string(SUNDOG_VERSION_MINOR) + "." +
+         std::to_string(SUNDOG_VERSION_PATCH);
+}
+
+Error::Error(ErrorKind kind, const std::string& what, ErrorFacts facts)
+    : std::runtime_error(what), kind_(kind), facts_(std::move(facts)) {
+  if (facts_.reason.empty()) facts_.reason = what;
+}
+Error::Error(const Error&) = default;
+Error& Error::operator=(const Error&) = default;
+Error::~Error() = default;
+
+void throw_public() {
+  try {
+    throw;
+  } catch (const core::UsageError& error) {
+    throw Error(ErrorKind::usage, error.what());
+  } catch (const core::SceneError& error) {
+    throw Error(ErrorKind::scene, error.what(),
+                {.file = error.file, .place = error.place, .reason = error.reason, .log = {}});
+  } catch (const core::DeviceError& error) {
+    throw Error(ErrorKind::device, error.what(),
+                {.file = {}, .place = {}, .reason = {}, .log = {}, .status = error.status});
+  } catch (const core::BuildError& error) {
+    throw Error(ErrorKind::build, error.what(), {.file = {}, .place = {}, .reason = {}, .log = error.log});
+  } catch (const core::IoError& error) {
+    throw Error(ErrorKind::io, error.what());
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorKind::internal, "out of memory");
+  } catch (const std::exception& error) {
+    throw Error(ErrorKind::internal, error.what());
+  }
+}
+
+}  // namespace v0
+}  // namespace sundog

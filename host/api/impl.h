@@ -1,0 +1,78 @@
+// What the public handles hold.
+#pragma once
+#include "api/core.h"
+// The public names come after the host's.
+#include <sundog/error.h>
+#include <sundog/render.h>
+#include <sundog/scene.h>
+
+#include <mutex>
+
+/// No program sees it, though its class is public.
+#define SUNDOG_LOCAL __attribute__((visibility("hidden")))
+
+namespace sundog {
+inline namespace v0 {
+
+/// Throws the exception in hand as an Error; those of a program's own callbacks as they are.
+[[noreturn]] void throw_public();
+
+/// f(), with the host's exceptions turned into Errors.
+template <class F>
+auto translated(const F& f) -> decltype(f()) {
+  try {
+    return f();
+  } catch (...) {
+    throw_public();
+  }
+}
+
+struct SUNDOG_LOCAL Image::Impl {
+  std::shared_ptr<const core::Image> image;  // never null
+};
+
+struct SUNDOG_LOCAL Device::Handle {
+  core::DeviceInfo info;
+};
+
+struct SUNDOG_LOCAL Film::Impl {
+  core::RenderResult result;  // without the image and the AOVs below
+  core::ToneMap tone_map;
+  Image image;
+  std::map<std::string, Image> aovs;
+  Figures figures;
+  std::vector<std::string> warnings;
+};
+
+/// The document, and its description as far as it has been read.
+struct SUNDOG_LOCAL Scene::Impl {
+  nlohmann::json document;
+  std::filesystem::path file;
+  core::LoadOptions options;
+  core::NamedMeshes meshes;
+
+  Impl();
+  Impl(const Impl& other);
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() = default;
+
+  /// Any thread, while nobody changes the scene. Throws SceneError.
+  std::shared_ptr<const core::SceneDescription> describe() const;
+  void forget_description();
+
+ private:
+  mutable std::mutex mutex_;
+  mutable nlohmann::json described_document_;
+  mutable std::shared_ptr<const core::SceneDescription> described_;
+};
+
+Image share(core::Image image);
+Image share(std::shared_ptr<const core::Image> image);
+
+/// Of the handles, or the default device. Throws DeviceError, UsageError.
+std::vector<core::DeviceInfo> devices_of(const std::vector<Device>& devices);
+
+core::WorkGroup group_of(const WorkGroup& group);
+
+}  // namespace v0
+}  // namespace sundog

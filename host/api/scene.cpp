@@ -1,0 +1,145 @@
+// Scenes: a JSON document, with meshes from memory beside it.
+#include "api/impl.h"
+
+namespace sundog {
+inline namespace v0 {
+namespace {
+
+using nlohmann::json;
+
+/// Stands for the file in messages about scenes that have none.
+constexpr const char* no_file = "(scene)";
+
+[[noreturn]] void fail_at(std::string_view pointer, const std::string& reason) {
+  throw Error(ErrorKind::usage, std::string(pointer) + ": " + reason,
+              {.file = {}, .place = std::string(pointer), .reason = reason, .log = {}});
+}
+
+/// f() of the pointer, with the JSON library's refusals as Errors.
+template <class F>
+auto at(std::string_view pointer, const F& f) {
+  try {
+    return f(json::json_pointer(std::string(pointer)));
+  } catch (const json::exception&) {
+    fail_at(pointer, "wanted a JSON pointer that leads to a value, such as /camera/fov");
+  }
+}
+
+core::LoadOptions options_of(const LoadOptions& options) {
+  core::LoadOptions result;
+  result.frame = options.frame;
+  result.native_code = options.native_code;
+  result.outside_files = options.outside_files;
+  return result;
+}
+
+}  // namespace
+
+Scene::Impl::Impl() : document({{"objects", json::array()}}), file(no_file) {}
+
+Scene::Impl::Impl(const Impl& other)
+    : document(other.document), file(other.file), options(other.options), meshes(other.meshes) {
+  const std::lock_guard lock(other.mutex_);
+  described_document_ = other.described_document_;
+  described_ = other.described_;
+}
+
+void Scene::Impl::forget_description() {
+  const std::lock_guard lock(mutex_);
+  described_ = nullptr;
+}
+
+std::shared_ptr<const core::SceneDescription> Scene::Impl::describe() const {
+  const std::lock_guard lock(mutex_);
+  if (described_ && described_document_ == document) return described_;
+  std::shared_ptr<const core::SceneDescription> next;
+  if (described_ && !options.frame) next = core::change_view(*described_, described_document_, document);
+  if (!next) {
+    json moved = document;
+    if (options.frame) core::apply_animation(moved, *options.frame, core::JsonContext{.file = file});
+    next = std::make_shared<const core::SceneDescription>(
+        core::load_scene_document(moved, file, options, meshes));
+  }
+  described_document_ = document;
+  described_ = std::move(next);
+  return described_;
+}
+
+Scene::Scene() : impl_(std::make_unique<Impl>()) {}
+Scene::Scene(const Scene& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(const Scene& other) {
+  if (this != &other) impl_ = std::make_unique<Impl>(*other.impl_);
+  return *this;
+}
+Scene& Scene::operator=(Scene&&) noexcept = default;
+Scene::~Scene() = default;
+
+Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options) {
+  return translated([&] {
+    Scene scene;
+    scene.impl_->options = options_of(options);
+    scene.impl_->document = core::read_scene_document(file, scene.impl_->options);
+    scene.impl_->file = file;
+    return scene;
+  });
+}
+
+Scene Scene::from_json(std::string_view text, const std::filesystem::path& folder,
+                       const LoadOptions& options) {
+  return translated([&] {
+    Scene scene;
+    scene.impl_->options = options_of(options);
+    scene.impl_->file = folder / no_file;
+    scene.impl_->document = sundog::parse_json(text, scene.impl_->file);
+    return scene;
+  });
+}
+
+std::string Scene::to_json() const {
+  return impl_->document.dump(2, ' ', false, json::error_handler_t::replace);
+}
+
+std::string Scene::get(std::string_view pointer) const {
+  return at(pointer, [&](const json::json_pointer& place) {
+    return impl_->document.at(place).dump(-1, ' ', false, json::error_handler_t::replace);
+  });
+}
+
+bool Scene::contains(std::string_view pointer) const {
+  return at(pointer, [&](const json::json_pointer& place) { return impl_->document.contains(place); });
+}
+
+Scene& Scene::set(std::string_view pointer, std::string_view text) {
+  json value;
+  try {
+    value = sundog::parse_json(text, no_file);
+  } catch (const core::SceneError& error) {
+    fail_at(pointer, "wanted JSON, found " + std::string(text.substr(0, 40)) + ": " + error.reason);
+  }
+  json changed = impl_->document;
+  at(pointer, [&](const json::json_pointer& place) { changed[place] = std::move(value); });
+  impl_->document = std::move(changed);
+  return *this;
+}
+
+Scene& Scene::set(std::string_view pointer, double value) { return set(pointer, json(value).dump()); }
+
+Scene& Scene::remove(std::string_view pointer) {
+  at(pointer, [&](const json::json_pointer& place) {
+    json& parent = impl_->document.at(place.parent_pointer());
+    if (place.empty() || !impl_->document.contains(place)) fail_at(pointer, "there is no such value");
+    if (parent.is_array())
+      parent.erase(std::stoul(place.back()));
+    else
+      parent.erase(place.back());
+  });
+  return *this;
+}
+
+std::vector<std::string> Scene::check() const {
+  return translated([&] { return impl_->describe()->warnings; });
+}
+
+}  // namespace v0
+}  // namespace sundog

@@ -1,0 +1,41 @@
+// The machine's OpenCL devices.
+#pragma once
+#include <sundog/version.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sundog {
+inline namespace v0 {
+
+/// What a device reports. Made by devices() and choose_devices(); copies are the same device.
+struct Device {
+  std::string label{};           // "0:1 Portable Computing Language / cpu-..."
+  int platform = 0, index = -1;  // as `clinfo -l` numbers them; index -1: a platform without a device
+  std::string platform_name{}, name{}, vendor{}, driver{};
+  std::string type{};               // "cpu", "gpu", "accelerator", "custom"
+  unsigned compute_units = 0;       // of a sub-device, those that it has
+  std::uint64_t global_memory = 0;  // bytes
+  double estimate = 0;              // relative speed, by which the default device is chosen
+  bool usable = false;
+  std::string problem{};  // why it is not usable
+
+  struct Handle;
+  std::shared_ptr<const Handle> handle{};  // null: not made by this library
+};
+
+/// Every device, and each platform that has none; one that fails has a `problem`. Any thread; the first call
+/// loads the drivers, which can take a second. Throws Error (internal) for want of memory only.
+SUNDOG_API std::vector<Device> devices();
+
+/// The devices that `specs` mean, each once. No spec: the one estimated fastest. A spec is "P:D" (indices),
+/// "cpu", "gpu", "accelerator", "all" or a part of "platform/device" in any case, each with "/N" for a
+/// sub-device of N units, or "!SPEC" to leave out. Throws Error: device where nothing matches, usage for
+/// another text. `warnings`, when given, gets what was likely meant otherwise. Any thread.
+SUNDOG_API std::vector<Device> choose_devices(const std::vector<std::string>& specs = {},
+                                              std::vector<std::string>* warnings = nullptr);
+
+}  // namespace v0
+}  // namespace sundog

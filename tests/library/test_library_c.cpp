@@ -1,0 +1,184 @@
+// The C interface: what it gives back, and that each function's errors are a status and a line.
+#include <sundog/sundog.h>
+
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "file_bytes.h"
+#include "library_testing.h"
+#include "temporary_folder.h"
+
+namespace {
+
+constexpr const char* text = R"({"image": {"width": 24, "height": 16, "background": [0.25, 0.5, 1]},
+  "camera": {"position": [0, 0, 5], "target": [0, 0, 0]}, "lights": [{"type": "ambient"}],
+  "materials": {"red": {"color": [1, 0, 0], "ambient": 1, "diffuse": 0}}, "objects": []})";
+
+sundog_scene* scene_of(const char* json) {
+  sundog_scene* scene = nullptr;
+  REQUIRE(sundog_scene_from_json(json, nullptr, &scene) == SUNDOG_OK);
+  return scene;
+}
+
+sundog_devices* c_device() {
+  sundog_devices* devices = nullptr;
+  REQUIRE(sundog_devices_choose(test_spec().empty() ? nullptr : test_spec().c_str(), &devices) == SUNDOG_OK);
+  return devices;
+}
+
+}  // namespace
+
+TEST_CASE("C renders a mesh of its own and reads the pixels") {
+  sundog_scene* scene = scene_of(text);
+  sundog_devices* devices = c_device();
+  const float positions[] = {-9, -9, 0, 9, -9, 0, 0, 9, 0};
+  const std::uint32_t triangles[] = {0, 1, 2};
+  CHECK(sundog_scene_add_mesh(scene, "wall", positions, 3, triangles, 1, nullptr, nullptr) == SUNDOG_OK);
+  CHECK(sundog_scene_set(scene, "/objects/-", R"({"type": "mesh", "mesh": "wall", "material": "red"})") ==
+        SUNDOG_OK);
+  CHECK(sundog_scene_check(scene) == SUNDOG_OK);
+  sundog_options options{};
+  options.devices = devices;
+  options.aovs = "depth,normal";
+  options.work_group_x = 8;
+  sundog_film* film = nullptr;
+  REQUIRE(sundog_render(scene, &options, &film) == SUNDOG_OK);
+  CHECK(sundog_film_complete(film) == 1);
+  const float* pixels = nullptr;
+  int width = 0, height = 0, channels = 0;
+  REQUIRE(sundog_film_pixels(film, nullptr, &pixels, &width, &height, &channels) == SUNDOG_OK);
+  CHECK((width == 24 && height == 16 && channels == 4));
+  const float* middle = pixels + 4 * (8 * 24 + 12);
+  CHECK(middle[0] == Approx(1));
+  CHECK(middle[1] == Approx(0).margin(1e-6));
+  REQUIRE(sundog_film_pixels(film, "depth", &pixels, nullptr, nullptr, &channels) == SUNDOG_OK);
+  CHECK(channels == 1);
+  CHECK(pixels[8 * 24 + 12] == Approx(5));
+  const TemporaryFolder folder;
+  CHECK(sundog_film_save(film, (folder / "a.png").c_str()) == SUNDOG_OK);
+  CHECK(file_bytes(folder / "a.png").starts_with("\x89PNG"));
+  CHECK(sundog_film_save(film, (folder / "a.gif").c_str()) == SUNDOG_USAGE);
+  CHECK(sundog_film_save(film, (folder / "none/a.png").c_str()) == SUNDOG_IO);
+  CHECK(sundog_film_pixels(film, "albedo", &pixels, nullptr, nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(std::string(sundog_last_error()).find("albedo") != std::string::npos);
+  sundog_film_free(film);
+  sundog_devices_free(devices);
+  sundog_scene_free(scene);
+}
+
+TEST_CASE("a C callback ends a render, and gets its user pointer") {
+  sundog_scene* scene = scene_of(text);
+  CHECK(sundog_scene_set(scene, "/render/samples", "65536") == SUNDOG_OK);
+  CHECK(sundog_scene_set(scene, "/objects/-", R"({"type": "sphere", "material": "red"})") == SUNDOG_OK);
+  sundog_devices* devices = c_device();
+  sundog_options options{};
+  int calls = 0;
+  options.devices = devices;
+  options.user = &calls;
+  options.progress = [](std::uint64_t, std::uint64_t total, double, void* user) {
+    ++*static_cast<int*>(user);
+    return total == 24u * 16 ? 1 : 0;
+  };
+  sundog_film* film = nullptr;
+  CHECK(sundog_render(scene, &options, &film) == SUNDOG_STOPPED);
+  REQUIRE(film != nullptr);
+  CHECK(calls > 0);
+  sundog_film_free(film);
+  sundog_devices_free(devices);
+  sundog_scene_free(scene);
+}
+
+TEST_CASE("no exception crosses the C interface, a callback's neither") {
+  sundog_scene* scene = scene_of(text);
+  sundog_devices* devices = c_device();
+  sundog_options options{};
+  options.devices = devices;
+  options.progress = [](std::uint64_t, std::uint64_t, double, void*) -> int {
+    throw std::logic_error("from C++");
+  };
+  sundog_film* film = nullptr;
+  CHECK(sundog_render(scene, &options, &film) == SUNDOG_INTERNAL);
+  CHECK(std::string(sundog_last_error()) == "from C++");
+  CHECK(film == nullptr);
+  sundog_devices_free(devices);
+  sundog_scene_free(scene);
+}
+
+TEST_CASE("every function of C reports its errors") {
+  sundog_scene* scene = nullptr;
+  sundog_devices* devices = nullptr;
+  sundog_film* film = nullptr;
+  sundog_session* session = nullptr;
+  int size = 0;
+  CHECK(sundog_scene_load("/none/such.json", &scene) == SUNDOG_SCENE);
+  CHECK(std::string(sundog_last_error_file()) == "/none/such.json");
+  CHECK(sundog_scene_load(nullptr, &scene) == SUNDOG_USAGE);
+  CHECK(sundog_scene_load("x.json", nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_scene_from_json("{", nullptr, &scene) == SUNDOG_SCENE);
+  CHECK(sundog_scene_from_json(nullptr, nullptr, &scene) == SUNDOG_USAGE);
+  CHECK(scene == nullptr);
+  CHECK(sundog_devices_choose("no such device", &devices) == SUNDOG_DEVICE);
+  CHECK(sundog_devices_list(nullptr) == SUNDOG_USAGE);
+  CHECK(devices == nullptr);
+  CHECK(sundog_render(nullptr, nullptr, &film) == SUNDOG_USAGE);
+  CHECK(sundog_film_pixels(nullptr, nullptr, nullptr, nullptr, nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_film_save(nullptr, "a.png") == SUNDOG_USAGE);
+  CHECK(sundog_film_complete(nullptr) == 0);
+  CHECK(sundog_session_open(nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_session_start(nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_session_cancel(nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_session_wait(nullptr, 0, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_session_picture(session, nullptr, 0, &size, &size) == SUNDOG_USAGE);
+  scene = scene_of(text);
+  CHECK(sundog_scene_set(scene, "camera", "1") == SUNDOG_USAGE);
+  CHECK(sundog_scene_set(scene, nullptr, "1") == SUNDOG_USAGE);
+  CHECK(sundog_scene_add_mesh(scene, "m", nullptr, 0, nullptr, 0, nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_scene_set(scene, "/camera/fov", "0") == SUNDOG_OK);
+  CHECK(sundog_scene_check(scene) == SUNDOG_SCENE);
+  CHECK(std::string(sundog_last_error_place()) == "/camera/fov");
+  sundog_scene_free(scene);
+  sundog_scene_free(nullptr);
+  sundog_devices_free(nullptr);
+  sundog_film_free(nullptr);
+  sundog_session_free(nullptr);
+}
+
+TEST_CASE("each thread has an error of its own") {
+  CHECK(sundog_scene_load("/none/mine.json", nullptr) == SUNDOG_USAGE);
+  const std::string mine = sundog_last_error();
+  std::thread([] { CHECK(std::strlen(sundog_last_error()) == 0); }).join();
+  CHECK(sundog_last_error() == mine);
+}
+
+TEST_CASE("C lists devices and draws in a session") {
+  sundog_devices* all = nullptr;
+  REQUIRE(sundog_devices_list(&all) == SUNDOG_OK);
+  REQUIRE(sundog_devices_count(all) > 0);
+  CHECK(sundog_devices_label(all, 0) != nullptr);
+  CHECK(sundog_devices_problem(all, 0) != nullptr);
+  CHECK(sundog_devices_label(all, 1000) == nullptr);
+  sundog_devices_free(all);
+  sundog_devices* devices = c_device();
+  sundog_session* session = nullptr;
+  REQUIRE(sundog_session_open(devices, &session) == SUNDOG_OK);
+  sundog_scene* scene = scene_of(text);
+  std::vector<float> pixels(24 * 16 * 4);
+  int width = -1, height = -1;
+  CHECK(sundog_session_picture(session, pixels.data(), pixels.size(), &width, &height) == SUNDOG_OK);
+  CHECK(width == 0);
+  CHECK(sundog_session_start(session, scene) == SUNDOG_OK);
+  sundog_state state = SUNDOG_IDLE;
+  CHECK(sundog_session_wait(session, -1, &state) == SUNDOG_OK);
+  CHECK(state == SUNDOG_SETTLED);
+  CHECK(sundog_session_picture(session, pixels.data(), 3, &width, &height) == SUNDOG_USAGE);
+  CHECK(sundog_session_picture(session, pixels.data(), pixels.size(), &width, &height) == SUNDOG_OK);
+  CHECK((width == 24 && height == 16));
+  CHECK(pixels[2] == 1);
+  CHECK(sundog_session_cancel(session) == SUNDOG_OK);
+  sundog_session_free(session);
+  sundog_scene_free(scene);
+  sundog_devices_free(devices);
+}

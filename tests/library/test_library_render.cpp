@@ -1,0 +1,195 @@
+// Renders through the public interface: the command line's bits, callbacks, cancellation, errors.
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "file_bytes.h"
+#include "library_testing.h"
+#include "run_command.h"
+#include "temporary_folder.h"
+
+using sundog::ErrorKind;
+
+namespace {
+
+std::vector<std::string> command_line(const std::string& scene, const std::string& out) {
+  std::vector<std::string> arguments{"render", scene, "-o", out, "--size", "64x48", "--quiet"};
+  if (!test_spec().empty()) arguments.insert(arguments.end(), {"--device", test_spec()});
+  return arguments;
+}
+
+/// Takes long enough to be stopped: many samples of a scene of glass.
+sundog::Scene long_scene() {
+  sundog::Scene scene = sundog::Scene::load(shipped_scene("spheres"));
+  return scene.set_size(1024, 768).set_samples(4096);
+}
+
+}  // namespace
+
+TEST_CASE("a render has the command line's bytes in every kind of file") {
+  const TemporaryFolder folder;
+  sundog::Scene scene = sundog::Scene::load(shipped_scene("spheres"));
+  scene.set_size(64, 48);
+  const sundog::Film film = sundog::render(scene, {.devices = test_device(), .aovs = {"depth", "normal"}});
+  CHECK(film.complete());
+  CHECK(film.width() == 64);
+  CHECK(film.image().channels() == 4);
+  CHECK(film.aov("depth").channels() == 1);
+  CHECK(film.aov("normal").channels() == 3);
+  CHECK(film.aovs() == std::vector<std::string>{"depth", "normal"});
+  CHECK(film.figures().primary == 64u * 48 * 4);
+  CHECK(film.figures().devices.at(0).share == 1);
+  for (const std::string extension : {"png", "exr", "pfm"}) {
+    CAPTURE(extension);
+    const std::string ours = (folder / ("ours." + extension)).string(),
+                      theirs = (folder / ("theirs." + extension)).string();
+    std::vector<std::string> arguments = command_line(shipped_scene("spheres").string(), theirs);
+    if (extension == "exr") arguments.insert(arguments.end(), {"--aov", "depth", "--aov", "normal"});
+    const CommandResult command = run_sundog(arguments);
+    CAPTURE(command.err);
+    REQUIRE(command.status == 0);
+    film.save(ours);
+    CHECK(file_bytes(ours) == file_bytes(theirs));
+  }
+}
+
+TEST_CASE("a mesh made in code is seen where it stands, and a formula beside it") {
+  const std::vector<std::array<float, 3>> corners{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
+  sundog::Scene scene;
+  scene.set_size(32, 16).set_camera({.position = {0, 0, 8}, .target = {0, 0, 0}, .fov = 30});
+  scene.add_light({.type = "ambient"});
+  scene.add_material("green", {.color = {0, 1, 0}, .ambient = 1, .diffuse = 0});
+  scene.add_material("blue", {.color = {0, 0, 1}, .ambient = 1, .diffuse = 0});
+  scene.add_mesh("square", {.positions = corners, .triangles = triangles});
+  sundog::Mat4 left = sundog::identity, right = sundog::identity;
+  left[3] = -2, right[3] = 2;
+  scene.add_instance("square", {.material = "green", .name = "square", .transform = left});
+  scene.add_formula({.map = {}, .distance = "length(p) - size", .parameters = {{"size", 1.0}}},
+                    {.material = "blue", .name = "ball", .transform = right});
+  const sundog::Film film = sundog::render(scene, {.devices = test_device()});
+  const auto pixel = [image = film.image()](int x, int y) {
+    return image.pixels().subspan(std::size_t(4 * (32 * y + x)), 4);
+  };
+  CHECK(pixel(8, 8)[1] == Approx(1).margin(1e-6));
+  CHECK(pixel(24, 8)[2] == Approx(1).margin(1e-6));
+  CHECK(pixel(24, 8)[1] == Approx(0).margin(1e-6));
+  CHECK(pixel(16, 8)[3] == 0);
+}
+
+TEST_CASE("progress and pictures come while a frame is made, and end with it") {
+  std::atomic<std::uint64_t> calls{0}, last{0}, total{0}, pictures{0};
+  sundog::Scene scene = small_scene();
+  scene.set_size(320, 240).set_samples(256);
+  sundog::RenderOptions options{.devices = test_device()};
+  options.on_progress = [&](const sundog::Progress& now) {
+    ++calls;
+    last = now.pixels_done;
+    total = now.pixels_total;
+  };
+  options.picture_seconds = 0.01;
+  options.on_picture = [&](const sundog::Image& image) { pictures += image.width() == 320; };
+  const sundog::Film film = sundog::render(scene, options);
+  CHECK(film.complete());
+  CHECK(calls > 0);
+  CHECK(last == 320u * 240);
+  CHECK(total == 320u * 240);
+  CHECK(pictures > 0);
+}
+
+TEST_CASE("a render that is stopped from another thread returns what it has") {
+  std::stop_source source;
+  std::atomic<bool> begun{false};
+  sundog::RenderOptions options{.devices = test_device(), .stop = source.get_token()};
+  options.on_progress = [&](const sundog::Progress&) { begun = true; };
+  std::jthread stopper([&] {
+    while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    source.request_stop();
+  });
+  const sundog::Film film = sundog::render(long_scene(), options);
+  CHECK_FALSE(film.complete());
+  CHECK(film.width() == 1024);
+}
+
+TEST_CASE("a render that is stopped before it begins has no pixel") {
+  std::stop_source source;
+  source.request_stop();
+  const sundog::Film film =
+      sundog::render(small_scene(), {.devices = test_device(), .stop = source.get_token()});
+  CHECK_FALSE(film.complete());
+  CHECK(std::ranges::count(film.image().pixels(), 0.0f) == 64 * 48 * 4);
+}
+
+TEST_CASE("what a callback throws ends the render and comes out of it") {
+  sundog::RenderOptions options{.devices = test_device()};
+  options.on_progress = [](const sundog::Progress&) { throw std::out_of_range("the program's own"); };
+  CHECK_THROWS_AS(sundog::render(long_scene(), options), std::out_of_range);
+}
+
+TEST_CASE("a time limit ends a render") {
+  CHECK_FALSE(sundog::render(long_scene(), {.devices = test_device(), .time_limit = 0.2}).complete());
+}
+
+TEST_CASE("a picture is the same for every work-group and tile") {
+  const sundog::Scene scene = small_scene();
+  const sundog::Image wanted = sundog::render(scene, {.devices = test_device()}).image();
+  for (const unsigned size : {1u, 16u}) {
+    const sundog::Film film =
+        sundog::render(scene, {.devices = test_device(), .work_group = {.x = size}, .tile = 16});
+    CHECK(same_pixels(film.image(), wanted));
+  }
+  CHECK(same_pixels(sundog::render(scene, {.devices = test_device(), .work_group = {.driver = true}}).image(),
+                    wanted));
+}
+
+TEST_CASE("errors of a render have their kind") {
+  const sundog::Scene scene = small_scene();
+  const auto kind_of = [&](const sundog::RenderOptions& options) {
+    return error_of([&] { (void)sundog::render(scene, options); }).kind();
+  };
+  CHECK(kind_of({.devices = test_device(), .aovs = {"colour"}}) == ErrorKind::usage);
+  CHECK(kind_of({.devices = test_device(), .work_group = {.x = 8, .y = 0}}) == ErrorKind::usage);
+  CHECK(kind_of({.devices = {sundog::Device{}}}) == ErrorKind::usage);
+  sundog::Device broken = test_device().at(0);
+  broken.usable = false;
+  broken.problem = "it is unplugged";
+  CHECK(kind_of({.devices = {broken}}) == ErrorKind::device);
+  CHECK(error_of([] { (void)sundog::render(sundog::Scene::from_json("{}")); }).kind() == ErrorKind::scene);
+  const sundog::Film film = sundog::render(scene, {.devices = test_device()});
+  CHECK(error_of([&] { (void)film.aov("depth"); }).kind() == ErrorKind::usage);
+  const TemporaryFolder folder;
+  CHECK(error_of([&] { film.save(folder / "a.gif"); }).kind() == ErrorKind::usage);
+  CHECK(error_of([&] { film.save(folder / "none" / "a.png"); }).kind() == ErrorKind::io);
+  CHECK(error_of([&] { sundog::Film().save(folder / "a.png"); }).kind() == ErrorKind::usage);
+}
+
+TEST_CASE("devices are chosen as the command line chooses them") {
+  CHECK(error_of([] { (void)sundog::choose_devices({"no such device"}); }).kind() == ErrorKind::device);
+  CHECK(error_of([] { (void)sundog::choose_devices({""}); }).kind() == ErrorKind::usage);
+  const auto all = sundog::devices();
+  CHECK(std::ranges::any_of(all, &sundog::Device::usable));
+  std::vector<std::string> warnings;
+  CHECK_FALSE(sundog::choose_devices({"all", "!no such device"}, &warnings).empty());
+  CHECK(warnings.size() == 1);
+}
+
+TEST_CASE("renders of several threads at once have the bits of one after the other") {
+  const sundog::Scene scene = small_scene();
+  const auto device = test_device();
+  const sundog::Image wanted = sundog::render(scene, {.devices = device}).image();
+  std::array<sundog::Image, 3> images;
+  {
+    std::vector<std::jthread> threads;
+    for (sundog::Image& image : images)
+      threads.emplace_back([&] { image = sundog::render(scene, {.devices = device}).image(); });
+  }
+  for (const sundog::Image& image : images) CHECK(same_pixels(image, wanted));
+}
+
+TEST_CASE("no thread stays in a driver that works") {
+  (void)sundog::render(small_scene(), {.devices = test_device()});
+  for (int tries = 0; sundog::threads_left_behind() > 0 && tries < 300; ++tries)  // a stopped one may compile
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  CHECK(sundog::threads_left_behind() == 0);
+}

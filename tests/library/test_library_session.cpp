@@ -1,0 +1,104 @@
+// Sessions of the public interface.
+#include <cmath>
+#include <thread>
+
+#include "file_bytes.h"
+#include "library_testing.h"
+#include "run_command.h"
+#include "temporary_folder.h"
+
+using sundog::ErrorKind;
+using sundog::SessionState;
+
+TEST_CASE("two sessions in one process at once have the command line's bits") {
+  const TemporaryFolder folder;
+  const std::vector<std::string> names{"spheres", "mandelbulb"};
+  std::vector<sundog::Image> images;
+  {
+    sundog::Session first(test_device()), second(test_device());
+    std::vector<sundog::Scene> scenes;
+    for (const std::string& name : names)
+      scenes.push_back(sundog::Scene::load(shipped_scene(name)).set_size(48, 32));
+    first.start(scenes[0]);
+    second.start(scenes[1]);
+    images = {first.finish(), second.finish()};
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string ours = (folder / "ours.exr").string(), theirs = (folder / "theirs.exr").string();
+    std::vector<std::string> arguments{"render", shipped_scene(names[i]).string(), "-o", theirs, "--size",
+                                       "48x32"};
+    if (!test_spec().empty()) arguments.insert(arguments.end(), {"--device", test_spec()});
+    REQUIRE(run_sundog(arguments).status == 0);
+    images[i].save(ours);
+    CAPTURE(names[i]);
+    CHECK(file_bytes(ours) == file_bytes(theirs));
+  }
+}
+
+TEST_CASE("an edit in a session draws the scene that it makes") {
+  sundog::Scene scene = small_scene();
+  sundog::Session session(test_device());
+  const auto first = session.start(scene);
+  const sundog::Image before = session.finish();
+  scene.set("/lights/1/intensity", 0.25);
+  const auto second = session.start(scene);
+  CHECK(second == first + 1);
+  const sundog::Image after = session.finish();
+  CHECK_FALSE(same_pixels(before, after));
+  CHECK(same_pixels(after, sundog::render(scene, {.devices = test_device()}).image()));
+  const sundog::Snapshot now = session.snapshot(false);
+  CHECK(now.state == SessionState::settled);
+  CHECK(now.shown == second);
+  CHECK(now.fraction == 1);
+  CHECK(now.picture.pixels().empty());
+}
+
+TEST_CASE("a session is cancelled from another thread, and can be started again") {
+  sundog::Scene scene = small_scene();
+  scene.set_size(640, 480).set_samples(65536);
+  sundog::Session session(test_device());
+  CHECK(session.snapshot().state == SessionState::idle);
+  session.start(scene);
+  std::jthread([&] {
+    while (session.snapshot(false).shown == 0) session.wait_for_change(session.snapshot(false).revision, 1);
+    session.cancel();
+  }).join();
+  CHECK(session.wait_for(30));
+  CHECK(session.snapshot().state == SessionState::stopped);
+  CHECK(session.snapshot().picture.width() == 640);
+  session.start(small_scene());
+  CHECK(session.finish().width() == 64);
+}
+
+TEST_CASE("a session names what a pixel shows") {
+  sundog::Session session(test_device());
+  CHECK_FALSE(session.pick(1, 1).has_value());
+  session.start(small_scene());
+  session.wait();
+  const auto ball = session.pick(32, 20);
+  REQUIRE(ball.has_value());
+  CHECK(ball->object == "ball");
+  CHECK(ball->material == "red");
+  CHECK(ball->depth == Approx(4).margin(0.2));
+  CHECK(session.pick(32, 47)->object == "ground");
+  const auto sky = session.pick(32, 0);
+  REQUIRE(sky.has_value());
+  CHECK(sky->object.empty());
+  CHECK(std::isinf(sky->depth));
+  CHECK_FALSE(session.pick(64, 0).has_value());
+}
+
+TEST_CASE("errors of a session have their kind, and leave it as it was") {
+  sundog::Device broken = test_device().at(0);
+  broken.usable = false;
+  CHECK(error_of([&] { sundog::Session session({broken}); }).kind() == ErrorKind::device);
+  sundog::Session session(test_device());
+  session.start(small_scene());
+  CHECK(error_of([&] { session.use_devices({sundog::Device{}}); }).kind() == ErrorKind::usage);
+  CHECK(error_of([&] { session.start(sundog::Scene::from_json("{}")); }).kind() == ErrorKind::scene);
+  CHECK(error_of([&] { session.start(small_scene(), {.work_group = {.x = 4, .y = 0}}); }).kind() ==
+        ErrorKind::usage);
+  CHECK(session.finish().width() == 64);
+  sundog::Session moved = std::move(session);
+  CHECK(moved.snapshot().generation == 1);
+}
