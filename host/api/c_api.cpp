@@ -92,7 +92,7 @@ template <class Handle, class F>
 sundog_status made(Handle** handle, const char* name, const F& make) noexcept {
   return guarded([&] {
     Handle*& result = wanted(handle, name);
-    result = new Handle{make()};
+    result = std::make_unique<Handle>(make()).release();
   });
 }
 

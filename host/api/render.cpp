@@ -1,4 +1,8 @@
 // One picture: the scene's description, its tables, the devices, the film.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <atomic>
 #include <exception>
 
@@ -92,9 +96,8 @@ Figures figures_of(const core::RenderResult& result, double compile_seconds) {
 void check_aovs(const std::vector<std::string>& aovs) {
   for (const std::string& name : aovs)
     if (std::ranges::count(core::aov_names(), name) == 0) {
-      std::string known;
-      for (const std::string& each : core::aov_names()) known += (known.empty() ? "" : ", ") + each;
-      throw core::UsageError("there is no AOV \"" + name + "\"; wanted some of " + known);
+      throw core::UsageError(
+          fmt::format("there is no AOV \"{}\"; wanted some of {}", name, fmt::join(core::aov_names(), ", ")));
     }
 }
 

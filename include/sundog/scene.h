@@ -118,7 +118,7 @@ class SUNDOG_API Scene {
   /// Sets one value, given as JSON text; "-" as the last key appends to an array, objects around it that are
   /// missing are made. Throws Error (usage) for text that is no JSON, or a pointer that leads nowhere.
   /// Whether the value makes sense is checked by check(), render() and Session::start().
-  Scene& set(std::string_view pointer, std::string_view json);
+  Scene& set(std::string_view pointer, std::string_view text);
   /// The same for a number, such as set("/camera/fov", 30.0).
   Scene& set(std::string_view pointer, double value);
   Scene& remove(std::string_view pointer);
