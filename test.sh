@@ -4,7 +4,7 @@ set -eu
 root=$(readlink -f -- "${BASH_SOURCE[0]}")
 root=${root%/*}
 stamp=$root/build/release/built-tests  # younger than every source: there is nothing to do
-sources=("$root"/{host,include,examples,kernels,cmake,third_party,tests,bench,CMakeLists.txt,CMakePresets.json})
+sources=("$root"/{host,include,examples,python,kernels,cmake,third_party,tests,bench,CMakeLists.txt,CMakePresets.json,pyproject.toml})
 
 if [[ ! -e $stamp || -n $(find "${sources[@]}" -newer "$stamp" -print -quit) ]]; then
   "$root/cmake/prepare.sh" packages

@@ -11,8 +11,10 @@ needed=(g++ cmake ninja-build ocl-icd-opencl-dev opencl-clhpp-headers pocl-openc
   libopenexr-dev libspng-dev libturbojpeg0-dev libwebp-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtbb-dev zlib1g-dev catch2)
 # Debian 12 has Boost 1.81 beside an older one.
 if grep -qs '^12' /etc/debian_version; then needed+=(libboost1.81-dev); else needed+=(libboost-dev); fi
-# The tests compare with these where they are; Open MPI is what `mpirun sundog` needs; a browser opens the viewer's page.
-peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin chromium chromium-driver)
+# The tests compare with these where they are; Open MPI is what `mpirun sundog` needs; a browser opens the viewer's page; pip
+# builds the Python package, and pkg-config finds the library.
+peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin chromium chromium-driver
+  python3-dev python3-venv pkg-config)
 # Of one version, so that every machine finds the same: tests/check_format.sh, tests/tidy.sh.
 checkers=(clang-format-19 clang-tidy-19)
 

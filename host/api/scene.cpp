@@ -90,7 +90,7 @@ Scene Scene::from_json(std::string_view text, const std::filesystem::path& folde
   return translated([&] {
     Scene scene;
     scene.impl_->options = options_of(options);
-    scene.impl_->file = folder / no_file;
+    scene.impl_->file = folder == "." ? no_file : folder / no_file;
     scene.impl_->document = sundog::parse_json(text, scene.impl_->file);
     return scene;
   });

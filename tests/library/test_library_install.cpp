@@ -2,40 +2,16 @@
 #include <filesystem>
 
 #include "file_bytes.h"
+#include "installed.h"
 #include "library_testing.h"
 #include "run_command.h"
 #include "temporary_folder.h"
 
-namespace {
-
 namespace fs = std::filesystem;
-
-void must(const std::vector<std::string>& command) {
-  const CommandResult result = run_command(command);
-  CAPTURE(command, result.out, result.err);
-  REQUIRE(result.status == 0);
-}
-
-/// libsundog with its headers, in a prefix that is moved after the installation.
-fs::path install(const TemporaryFolder& folder) {
-  must({"cmake", "--install", fs::path(SUNDOG_BINARY).parent_path().string(), "--component", "library",
-        "--prefix", (folder / "first").string()});
-  fs::rename(folder / "first", folder / "moved");
-  return folder / "moved";
-}
-
-std::string find_below(const fs::path& folder, const std::string& name) {
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.path().filename() == name) return entry.path().string();
-  FAIL("there is no " << name << " below " << folder);
-  return "";
-}
-
-}  // namespace
 
 TEST_CASE("the examples build and run from an installed tree") {
   const TemporaryFolder folder;
-  const fs::path prefix = install(folder);
+  const fs::path prefix = install_library(folder.path());
   fs::copy(fs::path(SUNDOG_SOURCE_DIR) / "examples", folder / "examples");
   const std::string build = (folder / "build").string();
   must(
@@ -69,7 +45,7 @@ TEST_CASE("pkg-config finds the installed library, wherever its prefix is moved"
     return;
   }
   const TemporaryFolder folder;
-  const fs::path prefix = install(folder);
+  const fs::path prefix = install_library(folder.path());
   const std::string file = find_below(prefix, "sundog.pc");
   const std::string source = (fs::path(SUNDOG_SOURCE_DIR) / "examples/plain_c.c").string(),
                     program = (folder / "c").string();

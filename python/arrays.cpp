@@ -1,0 +1,73 @@
+// See values.h.
+#include "values.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+namespace {
+
+template <std::size_t count, class Array>
+auto groups(const Array& array) {
+  using Number = std::remove_cv_t<std::remove_pointer_t<decltype(array.data())>>;
+  return std::span(reinterpret_cast<const std::array<Number, count>*>(array.data()), array.shape(0));
+}
+
+}  // namespace
+
+Pixels pixels_of(const sundog::Image& image) {
+  auto* shared = new sundog::Image(image);
+  const nb::capsule owner(shared, [](void* held) noexcept { delete static_cast<sundog::Image*>(held); });
+  const std::size_t shape[] = {std::size_t(image.height()), std::size_t(image.width()),
+                               std::size_t(image.channels())};
+  return Pixels(image.pixels().data(), image.channels() == 1 ? 2 : 3, shape, owner);
+}
+
+sundog::Image image_of(const PixelsIn& pixels) {
+  if (pixels.ndim() != 2 && pixels.ndim() != 3)
+    throw sundog::Error(sundog::ErrorKind::usage,
+                        "an image wants an array of (height, width, channels) or (height, width)");
+  const int channels = pixels.ndim() == 3 ? int(pixels.shape(2)) : 1;
+  return {int(pixels.shape(1)), int(pixels.shape(0)), channels, std::span(pixels.data(), pixels.size())};
+}
+
+void add_mesh(sundog::Scene& scene, const std::string& name, const Floats3& positions,
+              const Indices& triangles, const std::optional<Floats3>& normals,
+              const std::optional<Floats2>& uvs, const std::optional<Floats3>& colors) {
+  sundog::MeshView mesh{.positions = groups<3>(positions), .triangles = groups<3>(triangles)};
+  if (normals) mesh.normals = groups<3>(*normals);
+  if (uvs) mesh.uvs = groups<2>(*uvs);
+  if (colors) mesh.colors = groups<3>(*colors);
+  scene.add_mesh(name, mesh);
+}
+
+std::string json_of(nb::handle value) {
+  const nb::object plain = nb::cpp_function([](nb::handle other) -> nb::object {
+    if (nb::hasattr(other, "tolist")) return other.attr("tolist")();
+    throw nb::type_error("a scene holds dicts, lists, numbers, text, True, False and None");
+  });
+  return nb::cast<std::string>(nb::module_::import_("json").attr("dumps")(value, nb::arg("default") = plain));
+}
+
+nb::object value_of(const std::string& json) { return nb::module_::import_("json").attr("loads")(json); }
+
+sundog::Scene scene_of(nb::handle value) {
+  if (nb::isinstance<sundog::Scene>(value)) return nb::cast<sundog::Scene&>(value);
+  if (nb::isinstance<nb::dict>(value)) return sundog::Scene::from_json(json_of(value));
+  return sundog::Scene::load(nb::cast<std::string>(nb::module_::import_("os").attr("fspath")(value)));
+}
+
+std::vector<sundog::Device> devices_of(nb::handle value) {
+  if (value.is_none()) return {};
+  if (nb::isinstance<sundog::Device>(value)) return {nb::cast<sundog::Device>(value)};
+  if (nb::isinstance<nb::str>(value)) return sundog::choose_devices({nb::cast<std::string>(value)});
+  std::vector<sundog::Device> devices;
+  std::vector<std::string> specs;
+  for (const nb::handle item : nb::iter(value))
+    if (nb::isinstance<nb::str>(item))
+      specs.push_back(nb::cast<std::string>(item));
+    else
+      devices.push_back(nb::cast<sundog::Device>(item));
+  if (!specs.empty())
+    for (sundog::Device& device : sundog::choose_devices(specs)) devices.push_back(std::move(device));
+  return devices;
+}

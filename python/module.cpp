@@ -1,0 +1,304 @@
+// The Python module: the library's classes under the names of its headers.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/function.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/vector.h>
+
+#include "values.h"
+
+using namespace sundog;
+using Unlocked = nb::call_guard<nb::gil_scoped_release>;
+
+namespace {
+
+constexpr const char* kinds[] = {"usage", "scene", "device", "build", "io", "internal"};
+constexpr const char* states[] = {"idle",    "compiling", "preparing", "drawing",
+                                  "settled", "stopped",   "failed"};
+
+/// Error as Python's sundog.Error, with its facts as attributes.
+void raise(const Error& error, void* type) {
+  const nb::object raised = nb::borrow(static_cast<PyObject*>(type))(error.what());
+  nb::setattr(raised, "kind", nb::str(kinds[static_cast<int>(error.kind())]));
+  nb::setattr(raised, "file", nb::str(error.file().c_str()));
+  nb::setattr(raised, "place", nb::str(error.place().c_str()));
+  nb::setattr(raised, "reason", nb::str(error.reason().c_str()));
+  nb::setattr(raised, "log", nb::str(error.log().c_str()));
+  nb::setattr(raised, "status", nb::int_(error.status()));
+  PyErr_SetObject(static_cast<PyObject*>(type), raised.ptr());
+}
+
+void add_error(nb::module_& m) {
+  PyObject* type = PyErr_NewExceptionWithDoc(
+      "sundog.Error",
+      "What the library refuses or cannot do. kind: \"usage\", \"scene\", \"device\", \"build\", \"io\" or "
+      "\"internal\"; file, place, reason, log, status: the facts, empty or 0 where there are none.",
+      PyExc_RuntimeError, nullptr);
+  m.attr("Error") = nb::borrow(type);
+  nb::register_exception_translator(
+      [](const std::exception_ptr& thrown, void* payload) {
+        try {
+          std::rethrow_exception(thrown);
+        } catch (const Error& error) {
+          raise(error, payload);
+        }
+      },
+      type);
+}
+
+nb::bytes png_of(const Image& image) {
+  const std::string bytes = [&] {
+    nb::gil_scoped_release release;
+    return image.encode("png");
+  }();
+  return nb::bytes(bytes.data(), bytes.size());
+}
+
+nb::dict dict_of(const DeviceFigures& figures) {
+  nb::dict result;
+  result["label"] = figures.label;
+  result["tiles"] = figures.tiles;
+  result["pixels"] = figures.pixels;
+  result["share"] = figures.share;
+  result["busy_seconds"] = figures.busy_seconds;
+  result["kernel_ms"] = figures.kernel_ms;
+  result["retired"] = figures.retired;
+  result["messages"] = figures.messages;
+  return result;
+}
+
+nb::dict dict_of(const Figures& figures) {
+  nb::dict result;
+  result["primary"] = figures.primary;
+  result["reflection"] = figures.reflection;
+  result["refraction"] = figures.refraction;
+  result["shadow"] = figures.shadow;
+  result["march_steps"] = figures.march_steps;
+  result["dropped_samples"] = figures.dropped_samples;
+  result["compile_seconds"] = figures.compile_seconds;
+  result["build_seconds"] = figures.build_seconds;
+  result["render_seconds"] = figures.render_seconds;
+  result["cached"] = figures.cached;
+  result["efficiency"] = figures.efficiency;
+  nb::list devices;
+  for (const DeviceFigures& device : figures.devices) devices.append(dict_of(device));
+  result["devices"] = devices;
+  return result;
+}
+
+Film render_scene(nb::handle scene, nb::handle devices, const std::vector<std::string>& aovs,
+                  std::optional<std::pair<unsigned, unsigned>> work_group, int tile, double time_limit,
+                  std::function<nb::object(std::uint64_t, std::uint64_t, double)> on_progress,
+                  std::function<void(Image)> on_picture, double picture_seconds) {
+  const Scene copy = scene_of(scene);  // other threads may change theirs meanwhile
+  std::stop_source stop;
+  RenderOptions options{.devices = devices_of(devices), .aovs = aovs, .tile = tile, .time_limit = time_limit};
+  if (work_group) options.work_group = {.x = work_group->first, .y = work_group->second};
+  options.stop = stop.get_token();
+  if (on_progress)
+    options.on_progress = [&](const Progress& now) {
+      const nb::gil_scoped_acquire acquire;
+      if (on_progress(now.pixels_done, now.pixels_total, now.seconds).ptr() == Py_False) stop.request_stop();
+    };
+  if (on_picture)
+    options.on_picture = [&](const Image& image) {
+      const nb::gil_scoped_acquire acquire;
+      on_picture(image);
+    };
+  options.picture_seconds = picture_seconds;
+  return interruptible([&] { return render(copy, options); }, [&] { stop.request_stop(); });
+}
+
+void add_images(nb::module_& m) {
+  nb::class_<Device>(m, "Device", "One OpenCL device, as devices() and choose_devices() give it.")
+      .def_ro("label", &Device::label)
+      .def_ro("platform", &Device::platform)
+      .def_ro("index", &Device::index)
+      .def_ro("platform_name", &Device::platform_name)
+      .def_ro("name", &Device::name)
+      .def_ro("vendor", &Device::vendor)
+      .def_ro("driver", &Device::driver)
+      .def_ro("type", &Device::type)
+      .def_ro("compute_units", &Device::compute_units)
+      .def_ro("global_memory", &Device::global_memory, "Bytes.")
+      .def_ro("usable", &Device::usable)
+      .def_ro("problem", &Device::problem, "Why it is not usable.")
+      .def("__repr__", [](const Device& device) { return "<sundog.Device " + device.label + ">"; });
+  m.def("devices", &devices, Unlocked(), "Every device, the broken ones too.");
+  m.def(
+      "choose_devices",
+      [](nb::handle specs) { return specs.is_none() ? choose_devices() : devices_of(specs); },
+      nb::arg("specs").none() = nb::none(),
+      "The devices that a spec or a list of them means: \"cpu\", \"0:1\", a part of a name. None: the "
+      "fastest.");
+  nb::class_<Image>(m, "Image", "Linear floats that copies share.")
+      .def(
+          "__init__", [](Image* self, const PixelsIn& pixels) { new (self) Image(image_of(pixels)); },
+          nb::arg("pixels"), "A copy of an array of (height, width, channels) or (height, width).")
+      .def_prop_ro("width", &Image::width)
+      .def_prop_ro("height", &Image::height)
+      .def_prop_ro("channels", &Image::channels)
+      .def_prop_ro("pixels", &pixels_of, nb::rv_policy::automatic,
+                   "numpy, read-only, without a copy: (height, width, channels), float32.")
+      .def(
+          "__array__",
+          [](const Image& image, nb::handle dtype, nb::handle copy) -> nb::object {
+            const nb::object array = nb::cast(pixels_of(image));
+            if (dtype.is_none() && copy.ptr() != Py_True) return array;
+            return nb::module_::import_("numpy").attr("array")(array, dtype);
+          },
+          nb::arg("dtype").none() = nb::none(), nb::arg("copy").none() = nb::none())
+      .def(
+          "tone_mapped",
+          [](const Image& image, const std::string& curve, double exposure, double white_balance) {
+            return image.tone_mapped({curve, exposure, white_balance});
+          },
+          nb::arg("curve") = "none", nb::arg("exposure") = 0.0, nb::arg("white_balance") = 0.0)
+      .def_static(
+          "load", [](const std::string& file) { return Image::load(file); }, nb::arg("file"), Unlocked())
+      .def(
+          "save", [](const Image& image, const std::string& file) { image.save(file); }, nb::arg("file"),
+          Unlocked(), "Writes .png .jpg .exr .hdr or .pfm.")
+      .def("_repr_png_", &png_of);
+  nb::class_<Film>(m, "Film", "A finished or stopped render.")
+      .def_prop_ro("width", &Film::width)
+      .def_prop_ro("height", &Film::height)
+      .def_prop_ro("complete", &Film::complete, "False: stopped, or out of time.")
+      .def_prop_ro("image", &Film::image, "Linear RGBA; alpha is coverage.")
+      .def_prop_ro("shown", &Film::shown, "The image after the scene's tone map.")
+      .def("aov", &Film::aov, nb::arg("name"))
+      .def_prop_ro("aovs", &Film::aovs)
+      .def_prop_ro(
+          "figures", [](const Film& film) { return dict_of(film.figures()); }, "Rays, seconds, devices.")
+      .def_prop_ro("warnings", &Film::warnings)
+      .def(
+          "save", [](const Film& film, const std::string& file) { film.save(file); }, nb::arg("file"),
+          Unlocked(), "As `sundog render -o` does.")
+      .def("_repr_png_", [](const Film& film) { return png_of(film.shown()); });
+}
+
+void add_scene(nb::module_& m) {
+  nb::class_<Scene>(m, "Scene", "A JSON document (docs/scene-reference.md), with meshes from memory.")
+      .def(
+          "__init__",
+          [](Scene* self, nb::handle source) {
+            new (self) Scene(source.is_none() ? Scene() : scene_of(source));
+          },
+          nb::arg("source").none() = nb::none(), "Of a dict, a file or another Scene; empty without.")
+      .def_static(
+          "load",
+          [](const std::string& file, std::optional<double> frame, bool native_code, bool outside_files) {
+            return Scene::load(file,
+                               {.frame = frame, .native_code = native_code, .outside_files = outside_files});
+          },
+          nb::arg("file"), nb::arg("frame") = nb::none(), nb::arg("native_code") = false,
+          nb::arg("outside_files") = false)
+      .def("to_dict", [](const Scene& scene) { return value_of(scene.to_json()); })
+      .def(
+          "__getitem__", [](const Scene& scene, const std::string& at) { return value_of(scene.get(at)); },
+          "The value at a JSON pointer: scene[\"/camera/fov\"].")
+      .def("__setitem__",
+           [](Scene& scene, const std::string& at, nb::handle value) { scene.set(at, json_of(value)); })
+      .def("__delitem__", [](Scene& scene, const std::string& at) { scene.remove(at); })
+      .def("__contains__", &Scene::contains)
+      .def("__copy__", [](const Scene& scene) { return Scene(scene); })
+      .def("__deepcopy__", [](const Scene& scene, nb::handle) { return Scene(scene); })
+      .def("copy", [](const Scene& scene) { return Scene(scene); })
+      .def("add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions"), nb::arg("triangles"),
+           nb::arg("normals") = nb::none(), nb::arg("uvs") = nb::none(), nb::arg("colors") = nb::none(),
+           "A mesh of arrays (n, 3), indices (m, 3), for objects {\"type\": \"mesh\", \"mesh\": name}.")
+      .def(
+          "add", [](Scene& scene, nb::handle object) { scene.set("/objects/-", json_of(object)); },
+          nb::arg("object"), "Appends a dict to the objects.")
+      .def("check", &Scene::check, "Reads the whole scene; returns warnings, raises Error.");
+}
+
+void add_session(nb::module_& m) {
+  nb::class_<Snapshot>(m, "Snapshot", "A session at one moment.")
+      .def_ro("generation", &Snapshot::generation)
+      .def_ro("shown", &Snapshot::shown)
+      .def_ro("revision", &Snapshot::revision)
+      .def_prop_ro("state", [](const Snapshot& now) { return states[static_cast<int>(now.state)]; })
+      .def_ro("error", &Snapshot::error)
+      .def_ro("fraction", &Snapshot::fraction)
+      .def_ro("samples", &Snapshot::samples)
+      .def_ro("block", &Snapshot::block)
+      .def_ro("seconds", &Snapshot::seconds)
+      .def_ro("image", &Snapshot::picture);
+  nb::class_<Pick>(m, "Pick", "What a pixel's centre shows.")
+      .def_ro("object", &Pick::object)
+      .def_ro("material", &Pick::material)
+      .def_ro("position", &Pick::position)
+      .def_ro("normal", &Pick::normal)
+      .def_ro("depth", &Pick::depth);
+  nb::class_<Session>(m, "Session", "Devices that stay open and draw one scene after the other.")
+      .def(
+          "__init__", [](Session* self, nb::handle devices) { new (self) Session(devices_of(devices)); },
+          nb::arg("devices").none() = nb::none())
+      .def(
+          "start",
+          [](Session& session, nb::handle scene, bool coarse, double patience) {
+            const Scene copy = scene_of(scene);
+            const nb::gil_scoped_release release;
+            return session.start(copy, {.coarse = coarse, .patience = patience});
+          },
+          nb::arg("scene"), nb::arg("coarse") = true, nb::arg("patience") = 0.15,
+          "Draws this scene from now on.")
+      .def("cancel", &Session::cancel, Unlocked())
+      .def("use_devices",
+           [](Session& session, nb::handle devices) { session.use_devices(devices_of(devices)); })
+      .def("snapshot", &Session::snapshot, nb::arg("picture") = true, Unlocked())
+      .def(
+          "wait",
+          [](const Session& session, double seconds) {
+            std::atomic<bool> leave = false;
+            const auto begun = std::chrono::steady_clock::now();
+            return interruptible(
+                [&] {
+                  while (!leave && !session.wait_for(0.02))
+                    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() >
+                        seconds)
+                      return false;
+                  return true;
+                },
+                [&] { leave = true; });
+          },
+          nb::arg("seconds") = 1e9, "Waits until the picture is settled; whether it is.")
+      .def("wait_for_change", &Session::wait_for_change, nb::arg("revision"), nb::arg("seconds"), Unlocked())
+      .def(
+          "finish",
+          [](const Session& session) {
+            std::atomic<bool> leave = false;
+            interruptible(
+                [&] {
+                  while (!leave && !session.wait_for(0.02)) {
+                  }
+                  return true;
+                },
+                [&] { leave = true; });
+            return session.finish();
+          },
+          "wait(), then the picture.")
+      .def("pick", &Session::pick, nb::arg("x"), nb::arg("y"), Unlocked());
+}
+
+}  // namespace
+
+NB_MODULE(_sundog, m) {
+  m.doc() = "The module behind the package sundog.";
+  add_error(m);
+  add_images(m);
+  add_scene(m);
+  add_session(m);
+  m.def("version", &version);
+  m.def("threads_left_behind", &threads_left_behind);
+  m.def("render", &render_scene, nb::arg("scene"), nb::arg("devices").none() = nb::none(),
+        nb::arg("aovs") = std::vector<std::string>(), nb::arg("work_group") = nb::none(), nb::arg("tile") = 0,
+        nb::arg("time_limit") = 0.0, nb::arg("on_progress").none() = nb::none(),
+        nb::arg("on_picture").none() = nb::none(), nb::arg("picture_seconds") = 1.0,
+        "Renders a Scene, a file or a dict, and waits; other threads go on. on_progress(pixels, of, seconds) "
+        "may "
+        "return False to stop; Ctrl-C stops too and raises KeyboardInterrupt.");
+}

@@ -1,0 +1,55 @@
+// Python's values as the library's, and back.
+#pragma once
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <sundog/sundog.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <string>
+#include <vector>
+
+namespace nb = nanobind;
+
+using Pixels = nb::ndarray<nb::numpy, const float>;
+using Floats3 = nb::ndarray<const float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Floats2 = nb::ndarray<const float, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using Indices = nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using PixelsIn = nb::ndarray<const float, nb::c_contig, nb::device::cpu>;
+
+/// The image's own memory, read-only: (height, width, channels), or (height, width) for one channel.
+Pixels pixels_of(const sundog::Image& image);
+sundog::Image image_of(const PixelsIn& pixels);
+void add_mesh(sundog::Scene& scene, const std::string& name, const Floats3& positions,
+              const Indices& triangles, const std::optional<Floats3>& normals,
+              const std::optional<Floats2>& uvs, const std::optional<Floats3>& colors);
+
+/// json.dumps(), where numpy's values count as lists and numbers.
+std::string json_of(nb::handle value);
+nb::object value_of(const std::string& json);
+
+/// A Scene, the path of a file, or a dict.
+sundog::Scene scene_of(nb::handle value);
+/// None, a spec, a Device, or a list of these.
+std::vector<sundog::Device> devices_of(nb::handle value);
+
+/// f() in a thread of its own without the interpreter's lock, until it returns; Ctrl-C calls stop() and
+/// raises.
+template <class F, class Stop>
+auto interruptible(const F& f, const Stop& stop) {
+  bool interrupted = false;
+  auto running = std::async(std::launch::async, f);
+  {
+    nb::gil_scoped_release release;
+    while (running.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
+      nb::gil_scoped_acquire acquire;
+      if (!interrupted && PyErr_CheckSignals() != 0) {
+        interrupted = true;
+        stop();
+      }
+    }
+  }
+  if (interrupted) throw nb::python_error();
+  return running.get();
+}

@@ -1,0 +1,127 @@
+"""The Python package, as installed by pip: check_python.py SCENE [DEVICE]. Ends with an exception where something is wrong."""
+
+import copy
+import os
+import signal
+import sys
+import threading
+import time
+
+import numpy as np
+import sundog
+
+device = sys.argv[2] if len(sys.argv) > 2 else None
+
+
+def error_of(call):
+    try:
+        call()
+    except sundog.Error as error:
+        return error
+    raise AssertionError("no error was raised")
+
+
+def small():
+    scene = sundog.Scene({
+        "image": {"width": 32, "height": 24, "background": [0.25, 0.5, 1]},
+        "camera": {"position": [0, 0, 5], "target": [0, 0, 0]},
+        "lights": [{"type": "ambient"}],
+        "materials": {"red": {"color": np.array([1.0, 0, 0]), "ambient": 1, "diffuse": 0}},
+        "objects": [],
+    })
+    corners = np.array([[-1, -1, 0], [1, -1, 0], [0, 1, 0]])  # doubles: they are converted
+    scene.add_mesh("triangle", corners, np.array([[0, 1, 2]]))
+    scene.add({"type": "mesh", "mesh": "triangle", "material": "red", "name": "the triangle"})
+    return scene
+
+
+def long():
+    scene = small()
+    scene["/image/width"] = scene["/image/height"] = 1024
+    scene["/render/samples"] = 65536
+    return scene
+
+
+# Pictures: numpy sees the library's own memory, which outlives the film.
+calls = []
+film = sundog.render(small(), devices=device, aovs=["depth"], work_group=(8, 1), on_progress=lambda *now: calls.append(now))
+assert film.complete and calls[-1][0] == 32 * 24, calls
+pixels, depth = film.image.pixels, film.aov("depth").pixels
+assert pixels.shape == (24, 32, 4) and pixels.dtype == np.float32 and not pixels.flags.writeable
+assert np.shares_memory(pixels, film.image.pixels) and np.shares_memory(np.asarray(film.image), pixels)
+assert depth.shape == (24, 32) and abs(depth[12, 16] - 5) < 1e-5
+assert film.figures["primary"] == 32 * 24 and film.figures["devices"][0]["share"] == 1
+assert film._repr_png_().startswith(b"\x89PNG") and film.image._repr_png_().startswith(b"\x89PNG")
+del film
+assert np.allclose(pixels[12, 16, :3], [1, 0, 0], atol=1e-6) and pixels[0, 0, 2] == 1
+assert np.array_equal(sundog.Image(pixels).pixels, pixels)
+
+# A file and a dict are scenes too, and have the same picture.
+loaded = sundog.Scene(sys.argv[1])
+loaded["/image/width"], loaded["/image/height"] = 40, 30
+first = sundog.render(loaded, devices=device).image.pixels
+document = loaded.to_dict()
+assert np.array_equal(sundog.render(document, devices=device).image.pixels, first)
+other = copy.copy(loaded)
+other["/image/width"] = 20
+assert loaded["/image/width"] == 40 and "/image/width" in other
+del other["/image/width"]
+assert "/image/width" not in other
+
+# Errors have facts.
+error = error_of(lambda: sundog.Scene({"objects": [{"type": "sphre"}]}).check())
+assert error.kind == "scene" and error.place == "/objects/0/type" and error.reason in str(error)
+assert error_of(lambda: sundog.render("/none/such.json")).file == "/none/such.json"
+assert error_of(lambda: sundog.choose_devices("no such device")).kind == "device"
+assert error_of(lambda: sundog.render(small(), aovs=["colour"])).kind == "usage"
+assert error_of(lambda: small().add_mesh("m", np.zeros((2, 3)), np.array([[0, 1, 2]]))).kind == "usage"
+for bad in (lambda: sundog.Scene({"objects": object()}), lambda: small().add_mesh("m", np.zeros((2, 2)), np.zeros((1, 3)))):
+    try:
+        bad()
+        raise AssertionError("no TypeError")
+    except TypeError:
+        pass
+
+# Other threads go on while a frame is rendered; a callback stops it, and its exceptions come out.
+turns = 0
+running = True
+
+
+def turn():
+    global turns
+    while running:
+        turns += 1
+        time.sleep(0.005)
+
+
+other_thread = threading.Thread(target=turn)
+other_thread.start()
+begun = time.monotonic()
+stopped = sundog.render(long(), devices=device, on_progress=lambda *now: time.monotonic() - begun < 0.3)
+running = False
+other_thread.join()
+assert not stopped.complete and turns > 20, turns
+try:
+    sundog.render(long(), devices=device, on_progress=lambda *now: 1 / 0)
+    raise AssertionError("no ZeroDivisionError")
+except ZeroDivisionError:
+    pass
+
+# Ctrl-C ends a render, and a wait for a session.
+session = sundog.Session(device)
+for wait in (lambda: sundog.render(long(), devices=device), lambda: session.start(long()) and session.finish()):
+    threading.Timer(0.4, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    begun = time.monotonic()
+    try:
+        wait()
+        raise AssertionError("no KeyboardInterrupt")
+    except KeyboardInterrupt:
+        assert time.monotonic() - begun < 20
+
+# A session draws what render() draws.
+session.start(small())
+assert session.wait(60) and session.snapshot().state == "settled"
+assert np.array_equal(session.finish().pixels, pixels)
+assert session.pick(16, 12).object == "the triangle"
+assert error_of(lambda: session.start({"objects": 3})).kind == "scene"
+print("the package works")

@@ -1,0 +1,62 @@
+// The Python package: pip builds it over the installed library in a virtual environment of its own.
+#include <filesystem>
+
+#include "installed.h"
+#include "library_testing.h"
+#include "run_command.h"
+#include "temporary_folder.h"
+
+namespace fs = std::filesystem;
+
+TEST_CASE("pip installs the Python package, which renders, stops for Ctrl-C and shares its pixels") {
+  const char* here =
+      "import ensurepip, os, sysconfig; assert os.path.exists(sysconfig.get_path('include') + '/Python.h')";
+  if (run_command({"python3", "-c", here}).status != 0) {
+    WARN(
+        "there is no Python with headers and venv here (python3-dev, python3-venv): its package is not "
+        "tried");
+    return;
+  }
+  const TemporaryFolder folder;
+  const fs::path environment = folder / "environment";
+  must({"python3", "-m", "venv", environment.string()});
+  const std::string python = (environment / "bin/python").string();
+  CommandOptions patient;
+  patient.timeout = 600;
+  const CommandResult fetched = run_command({python, "-m", "pip", "install", "--quiet", "--retries", "1",
+                                             "scikit-build-core", "nanobind", "ninja", "numpy"},
+                                            patient);
+  if (fetched.status != 0) {
+    WARN("pip cannot fetch what builds the package, so it is not tried: " << fetched.err);
+    return;
+  }
+  const fs::path prefix = install_library(folder.path());
+  const std::string config = fs::path(find_below(prefix, "sundogConfig.cmake")).parent_path().string();
+  const CommandResult built =
+      run_command({python, "-m", "pip", "install", "--quiet", "--no-build-isolation", SUNDOG_SOURCE_DIR, "-C",
+                   "cmake.define.sundog_DIR=" + config, "-C", "build-dir=" + (folder / "build").string()},
+                  patient);
+  CAPTURE(built.out, built.err);
+  REQUIRE(built.status == 0);
+  std::vector<std::string> check{python, std::string(SUNDOG_SOURCE_DIR) + "/tests/library/check_python.py",
+                                 shipped_scene("spheres").string()};
+  std::vector<std::string> sweep{python,
+                                 std::string(SUNDOG_SOURCE_DIR) + "/examples/sweep.py",
+                                 shipped_scene("spheres").string(),
+                                 "--size",
+                                 "32x24",
+                                 "--repeat",
+                                 "1"};
+  if (!test_spec().empty()) {
+    check.push_back(test_spec());
+    sweep.insert(sweep.end(), {"--device", test_spec()});
+  }
+  const CommandResult checked = run_command(check, patient);
+  CAPTURE(checked.out, checked.err);
+  CHECK(checked.status == 0);
+  const CommandResult swept = run_command(sweep, patient);
+  CAPTURE(swept.out, swept.err);
+  CHECK(swept.status == 0);
+  CHECK(swept.out.find("| 64x1 |") != std::string::npos);
+  CHECK(fs::exists(find_below(environment, "_sundog.pyi")));
+}
