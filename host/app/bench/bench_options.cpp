@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <tuple>
 
 #include "app/options/commands.h"
 #include "app/options/option_helpers.h"
@@ -55,8 +56,10 @@ void remember_command_line(int argc, const char* const* argv) {
   }
 }
 
-void add_bench_options(Arguments* app, BenchOptions& options) {
-  value(app, "SCENE", "FILE", options.scenes, std::string(scene_help) + "; several may be given")->required();
+void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed) {
+  auto* scenes =
+      value(app, "SCENE", "FILE", options.scenes, std::string(scene_help) + "; several may be given");
+  if (scene_needed) scenes->required();
   values(app, "--device", "SPEC", options.devices, device_help);
   values(app, "--set", "POINTER=VALUE", options.overrides, "change the scenes, as in /camera/fov=30");
   app->add_option("--repeat", options.repeat, "runs of each measurement, in turn with the others (default 5)")
@@ -111,20 +114,30 @@ void show_step(const BenchOptions& options, const std::string& step) {
 
 std::string scene_name(const std::string& file) { return std::filesystem::path(file).stem().string(); }
 
-CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
-                          const std::vector<std::string>& more) {
+SceneDescription bench_description(const std::string& file, const BenchOptions& options,
+                                   const std::vector<std::string>& more) {
   std::vector<std::string> overrides = more;
   if (!options.size.empty())
     for (const std::string& setting : parse_image_size(options.size)) overrides.push_back(setting);
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
   try {
-    return compile(load_scene(file, overrides, {.outside_files = options.outside_files}));
+    return load_scene(file, overrides, {.outside_files = options.outside_files});
   } catch (const SceneError& error) {
     for (const std::string& setting : overrides)
       if (error.file == scene_file_name(file) && concerns(setting, error.place))
         throw UsageError(error.what());
     throw;
   }
+}
+
+CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
+                          const std::vector<std::string>& more) {
+  return compile(bench_description(file, options, more));
+}
+
+SceneDescription sized(SceneDescription scene, const BenchOptions& options) {
+  if (!options.size.empty()) std::tie(scene.image.width, scene.image.height) = parse_size(options.size);
+  return scene;
 }
 
 std::vector<DeviceInfo> bench_devices(const BenchOptions& options) {
@@ -157,6 +170,7 @@ void add_bench(Arguments& root, Command& chosen) {
   add_bench_threads(*bench, chosen);
   add_bench_rays(*bench, chosen);
   add_bench_samples(*bench, chosen);
+  add_bench_textures(*bench, chosen);
   add_bench_devices(*bench, chosen);
   add_bench_kernels(*bench, chosen);
 }

@@ -27,8 +27,9 @@ struct BenchOptions {
   bool quiet = false;
 };
 
-/// SCENE... --device --set --repeat --json --csv --html --quiet.
-void add_bench_options(Arguments* app, BenchOptions& options);
+/// SCENE... --device --set --repeat --json --csv --html --quiet. Where no scene is needed the benchmark has
+/// one.
+void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed = true);
 
 /// `name` is the benchmark's. Facts: version, revision, command line, machine. Throws IoError when a file of
 /// the options cannot be written.
@@ -50,6 +51,13 @@ std::string scene_name(const std::string& file);
 CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
                           const std::vector<std::string>& more = {});
 
+/// The same, loaded only.
+SceneDescription bench_description(const std::string& file, const BenchOptions& options,
+                                   const std::vector<std::string>& more = {});
+
+/// A made scene with the size of the options.
+SceneDescription sized(SceneDescription scene, const BenchOptions& options);
+
 /// The devices that the options mean.
 std::vector<DeviceInfo> bench_devices(const BenchOptions& options);
 
@@ -69,5 +77,6 @@ void add_bench_kernels(Arguments& bench, Command& chosen);
 void add_bench_workgroup(Arguments& bench, Command& chosen);
 void add_bench_rays(Arguments& bench, Command& chosen);
 void add_bench_samples(Arguments& bench, Command& chosen);
+void add_bench_textures(Arguments& bench, Command& chosen);
 
 }  // namespace sundog

@@ -129,12 +129,17 @@ double parse_amount(const char* option, const std::string& text) {
   return *value;
 }
 
-std::vector<std::string> parse_image_size(const std::string& text) {
+std::pair<int, int> parse_size(const std::string& text) {
   const auto size = number_pair(text);
   if (!size)
     throw UsageError(
         fmt::format("--size {}: wanted WIDTHxHEIGHT, each from 1 to {}, such as 640x480", text, most_edge));
-  return {fmt::format("/image/width={}", size->first), fmt::format("/image/height={}", size->second)};
+  return *size;
+}
+
+std::vector<std::string> parse_image_size(const std::string& text) {
+  const auto [width, height] = parse_size(text);
+  return {fmt::format("/image/width={}", width), fmt::format("/image/height={}", height)};
 }
 
 void check_override(const std::string& setting) {

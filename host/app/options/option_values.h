@@ -2,6 +2,7 @@
 // found.
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/options/options.h"
@@ -28,7 +29,10 @@ double parse_tolerance(const std::string& text);
 /// A finite number above 0.
 double parse_amount(const char* option, const std::string& text);
 
-/// "WxH" as the overrides of a scene that make its image so.
+/// "WxH", each from 1 to the greatest edge.
+std::pair<int, int> parse_size(const std::string& text);
+
+/// The same as the overrides of a scene that make its image so.
 std::vector<std::string> parse_image_size(const std::string& text);
 
 /// The options of a picture's colours as overrides of a scene.

@@ -50,36 +50,40 @@ std::uint16_t word_at(const StoredImage& image, std::size_t sample) {
   return word;
 }
 
+/// One pixel's channels, linear; colours times alpha where they count by it.
+template <std::size_t channels>
+using Pixel = std::array<float, channels>;
+
 /// Samples of an image as linear floats.
+template <std::size_t channels>
 class SampleReader {
  public:
-  SampleReader(const StoredImage& image, bool srgb) : image_(image), srgb_(srgb) {
-    for (std::size_t i = 0; i < 256; ++i) table_[i] = srgb ? linear_bytes()[i] : static_cast<float>(i) / 255;
+  SampleReader(const StoredImage& image, bool srgb) : image_(image), by_alpha_(srgb && channels == 4) {
+    for (std::size_t i = 0; i < 256; ++i) {
+      plain_[i] = static_cast<float>(i) / 255;
+      table_[i] = srgb ? linear_bytes()[i] : plain_[i];
+    }
   }
-  /// A pixel's channels; colours times alpha where `by_alpha`.
-  void pixel(std::size_t at, float* to) const {
-    const auto channels = static_cast<std::size_t>(image_.channels);
+  Pixel<channels> operator()(std::size_t at) const {
+    Pixel<channels> pixel;
     if (image_.sample == Sample::byte) {
       const std::uint8_t* from = image_.data.data() + at * channels;
-      to[0] = table_[from[0]];
-      if (channels == 1) return;
-      to[1] = table_[from[1]];
-      to[2] = table_[from[2]];
-      to[3] = static_cast<float>(from[3]) / 255;
+      for (std::size_t c = 0; c < channels; ++c) pixel[c] = c == 3 ? plain_[from[c]] : table_[from[c]];
     } else {
       for (std::size_t c = 0; c < channels; ++c) {
         const std::uint16_t word = word_at(image_, at * channels + c);
-        to[c] = image_.sample == Sample::word ? static_cast<float>(word) / 65535 : float_from_half(word);
+        pixel[c] = image_.sample == Sample::word ? static_cast<float>(word) / 65535 : float_from_half(word);
       }
     }
-    if (srgb_ && channels == 4)
-      for (int c = 0; c < 3; ++c) to[c] *= to[3];
+    if (by_alpha_)
+      for (std::size_t c = 0; c + 1 < channels; ++c) pixel[c] *= pixel[channels - 1];
+    return pixel;
   }
 
  private:
   const StoredImage& image_;
-  bool srgb_;
-  std::array<float, 256> table_{};
+  bool by_alpha_;
+  std::array<float, 256> table_{}, plain_{};
 };
 
 /// Which pixels of an edge make pixel `i` of the half edge, from 2 i on, and their weights.
@@ -91,59 +95,92 @@ std::array<float, 3> weights_of(int edge, int i) {
   return {static_cast<float>(half - i) / n, static_cast<float>(half) / n, static_cast<float>(i + 1) / n};
 }
 
-template <class Pixel>
-LinearLevel halve(int width, int height, std::size_t channels, const Pixel& pixel) {
+/// The mean of 2x2 pixels from `at` on.
+template <std::size_t channels, class Read>
+Pixel<channels> mean_of_four(const Read& read, std::size_t at, std::size_t width) {
+  const Pixel<channels> a = read(at), b = read(at + 1), c = read(at + width), d = read(at + width + 1);
+  Pixel<channels> mean;
+  for (std::size_t k = 0; k < channels; ++k) mean[k] = 0.25f * (a[k] + b[k] + c[k] + d[k]);
+  return mean;
+}
+
+/// The weighted mean of up to 3x3 pixels from `at` on, of an edge that is odd.
+template <std::size_t channels, class Read>
+Pixel<channels> weighted_mean(const Read& read, std::size_t at, std::size_t width,
+                              const std::array<float, 3>& across, const std::array<float, 3>& down) {
+  Pixel<channels> sum{};
+  for (std::size_t j = 0; j < 3; ++j)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float weight = down[j] * across[i];
+      if (weight == 0) continue;
+      const Pixel<channels> pixel = read(at + j * width + i);
+      for (std::size_t c = 0; c < channels; ++c) sum[c] += weight * pixel[c];
+    }
+  return sum;
+}
+
+template <std::size_t channels, class Read>
+LinearLevel halve(int width, int height, const Read& read) {
   LinearLevel level{std::max(1, width / 2), std::max(1, height / 2), channels, {}};
-  level.data.resize(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height) *
-                    channels);
+  const auto row = static_cast<std::size_t>(level.width) * channels,
+             from_row = static_cast<std::size_t>(width);
+  level.data.resize(static_cast<std::size_t>(level.height) * row);
+  const bool even = width % 2 == 0 && height % 2 == 0;
   tbb::parallel_for(tbb::blocked_range<int>(0, level.height, 16), [&](const auto& rows) {
     for (int y = rows.begin(); y != rows.end(); ++y) {
-      const auto down = weights_of(height, y);
-      float* to =
-          level.data.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) * channels;
-      for (int x = 0; x < level.width; ++x, to += channels) {
-        const auto across = weights_of(width, x);
-        float sum[4] = {}, value[4] = {};
-        for (int j = 0; j < 3; ++j)
-          for (int i = 0; i < 3; ++i) {
-            const float weight = down[static_cast<std::size_t>(j)] * across[static_cast<std::size_t>(i)];
-            if (weight == 0) continue;
-            pixel(static_cast<std::size_t>(2 * y + j) * static_cast<std::size_t>(width) +
-                      static_cast<std::size_t>(2 * x + i),
-                  value);
-            for (std::size_t c = 0; c < channels; ++c) sum[c] += weight * value[c];
-          }
-        std::copy(sum, sum + channels, to);
+      float* to = level.data.data() + static_cast<std::size_t>(y) * row;
+      std::size_t at = 2 * static_cast<std::size_t>(y) * from_row;
+      for (int x = 0; x < level.width; ++x, to += channels, at += 2) {
+        const Pixel<channels> mean =
+            even ? mean_of_four<channels>(read, at, from_row)
+                 : weighted_mean<channels>(read, at, from_row, weights_of(width, x), weights_of(height, y));
+        std::copy(mean.begin(), mean.end(), to);
       }
     }
   });
   return level;
 }
 
+template <std::size_t channels>
 LinearLevel halve(const LinearLevel& from) {
-  return halve(from.width, from.height, from.channels, [&](std::size_t at, float* to) {
-    std::copy_n(from.data.data() + at * from.channels, from.channels, to);
+  return halve<channels>(from.width, from.height, [&](std::size_t at) {
+    Pixel<channels> pixel;
+    std::copy_n(from.data.data() + at * channels, channels, pixel.begin());
+    return pixel;
   });
 }
+LinearLevel halve(const LinearLevel& from) { return from.channels == 1 ? halve<1>(from) : halve<4>(from); }
 
 LinearLevel halve(const StoredImage& from, bool srgb) {
-  const SampleReader reader(from, srgb);
-  return halve(from.width, from.height, static_cast<std::size_t>(from.channels),
-               [&](std::size_t at, float* to) { reader.pixel(at, to); });
+  if (from.channels == 1) return halve<1>(from.width, from.height, SampleReader<1>(from, srgb));
+  return halve<4>(from.width, from.height, SampleReader<4>(from, srgb));
 }
 
-void write_sample(StoredImage& image, std::size_t sample, float value, bool srgb) {
+/// `table` is that of sRGB bytes, or none where they are linear.
+void write_sample(StoredImage& image, std::size_t sample, float value, const std::uint8_t* table) {
   if (image.sample == Sample::byte) {
     const float unit = std::clamp(value, 0.0f, 1.0f);
-    image.data[sample] =
-        srgb ? srgb_bytes()[static_cast<std::size_t>(unit * static_cast<float>(srgb_steps) + 0.5f)]
-             : static_cast<std::uint8_t>(unit * 255 + 0.5f);
+    image.data[sample] = table ? table[static_cast<std::size_t>(unit * static_cast<float>(srgb_steps) + 0.5f)]
+                               : static_cast<std::uint8_t>(unit * 255 + 0.5f);
     return;
   }
   const std::uint16_t word = image.sample == Sample::half
                                  ? half_from_float(value)
                                  : static_cast<std::uint16_t>(std::clamp(value, 0.0f, 1.0f) * 65535 + 0.5f);
   std::memcpy(image.data.data() + 2 * sample, &word, 2);
+}
+
+template <std::size_t channels>
+void store_pixels(const LinearLevel& level, std::size_t begin, std::size_t end, bool srgb,
+                  StoredImage& image) {
+  const std::uint8_t* table = srgb ? srgb_bytes().data() : nullptr;
+  for (std::size_t i = begin; i != end; ++i) {
+    const float* from = level.data.data() + i * channels;
+    const float alpha = srgb && channels == 4 ? from[channels - 1] : 1;
+    const float scale = alpha == 1 ? 1 : alpha > 0 ? 1 / alpha : 0;
+    for (std::size_t c = 0; c < channels; ++c)
+      write_sample(image, i * channels + c, c == 3 ? from[c] : from[c] * scale, c == 3 ? nullptr : table);
+  }
 }
 
 StoredImage store(const LinearLevel& level, Sample kind, bool srgb) {
@@ -153,14 +190,11 @@ StoredImage store(const LinearLevel& level, Sample kind, bool srgb) {
   image.channels = static_cast<int>(level.channels);
   image.sample = kind;
   image.data.resize(image.pixel_count() * image.pixel_bytes());
-  const bool by_alpha = srgb && level.channels == 4;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, image.pixel_count(), 4096), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const float* from = level.data.data() + i * level.channels;
-      const float alpha = by_alpha ? from[3] : 1, scale = alpha > 0 ? 1 / alpha : 0;
-      for (std::size_t c = 0; c < level.channels; ++c)
-        write_sample(image, i * level.channels + c, c == 3 ? from[3] : from[c] * scale, srgb && c != 3);
-    }
+    if (level.channels == 1)
+      store_pixels<1>(level, range.begin(), range.end(), srgb, image);
+    else
+      store_pixels<4>(level, range.begin(), range.end(), srgb, image);
   });
   return image;
 }

@@ -40,8 +40,10 @@ NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, con
   while (any_lane(lanes)) {
     const MASK mine = take_alike(s.material, &lanes, &index);
     __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
-    map_term(scene, maps, MAP_TRANSMISSION, &at, mine, &transmission);
-    REAL opacity = opacity_at(scene, maps, &at, mine);
+    SlotValues values;
+    read_slots(scene, maps, 1u << MAP_TRANSMISSION | 1u << MAP_OPACITY, &at, mine, &values);
+    map_term(maps, &values, MAP_TRANSMISSION, mine, &transmission);
+    REAL opacity = opacity_of(maps, &values);
     if (scene->materials[index].flags & MATERIAL_ONE_SIDED)
       opacity = select((REAL)(0.0f), opacity, faces->entering);
     const REAL behind = 1.0f - opacity;

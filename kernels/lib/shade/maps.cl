@@ -14,6 +14,9 @@ typedef struct Terms {
   REAL exponent;
 } Terms;
 
+// Textures ask for the place on an object, not for u and v alone; heights for its size.
+#define TEXTURES_PLACED (HAS_RELIEF || (TEXTURE_MAPPINGS & ~1u))
+
 // The surfaces of `lanes` as textures see them.
 static inline void texture_points(const Scene* scene, const SurfaceInteractions* s, MASK lanes,
                                   TexturePoints* at) {
@@ -35,6 +38,7 @@ static inline void texture_points(const Scene* scene, const SurfaceInteractions*
   at->p = p;
   at->n = s->ns;
   at->scale = (REAL)(1.0f);
+#if TEXTURES_PLACED
   u32 index;
   while (any_lane(lanes)) {
     const MASK mine = take_alike(s->instance, &lanes, &index);
@@ -44,6 +48,7 @@ static inline void texture_points(const Scene* scene, const SurfaceInteractions*
     at->scale = select(at->scale, (REAL)(scale.w), mine);
     at->n = select3(at->n, multiply3(object_vectors(instance, s->ng), all3(scale.xyz)), mine);
   }
+#endif
 }
 
 // The values of a slot, 1 where it has no texture.
@@ -56,31 +61,51 @@ static inline REAL4 slot_values(const Scene* scene, __global const MaterialMaps*
   return real4(one, one, one, one);
 }
 
+// The values of a material's textures.
+typedef struct SlotValues {
+  REAL4 of[MAP_COUNT];
+} SlotValues;
+
+// Those of the slots in the bits of `wanted`, where they have textures. One loop, because compilers repeat a
+// texture's code wherever it is called.
+static inline void read_slots(const Scene* scene, __global const MaterialMaps* maps, u32 wanted,
+                              const TexturePoints* at, MASK lanes, SlotValues* values) {
+#if TEXTURE_KINDS
+  for (u32 slot = 0; slot < MAP_COUNT; ++slot)
+    if (wanted >> slot & 1u && maps->slot[slot] != NO_TEXTURE)
+      values->of[slot] = value_of_texture(scene, maps->slot[slot], at, lanes);
+#endif
+}
+static inline bool has_slot(__global const MaterialMaps* maps, u32 slot) {
+  return TEXTURE_KINDS && maps->slot[slot] != NO_TEXTURE;
+}
+static inline REAL first_value(__global const MaterialMaps* maps, const SlotValues* values, u32 slot) {
+  return has_slot(maps, slot) ? values->of[slot].x : (REAL)(1.0f);
+}
+
 // What of surfaces is there: all below 1 lets what is behind it through.
-static inline REAL opacity_at(const Scene* scene, __global const MaterialMaps* maps, const TexturePoints* at,
-                              MASK lanes) {
+static inline REAL opacity_of(__global const MaterialMaps* maps, const SlotValues* values) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
-  const REAL opacity =
-      real_clamp(maps->opacity * slot_values(scene, maps, MAP_OPACITY, at, lanes).x, zero, one);
+  const REAL opacity = real_clamp(maps->opacity * first_value(maps, values, MAP_OPACITY), zero, one);
   return maps->cutoff > 0.0f ? select(zero, one, MASK_OF(opacity >= maps->cutoff)) : opacity;
 }
 
 static inline void scale_term(REAL3* term, REAL4 factor, MASK lanes) {
   *term = select3(*term, multiply3(*term, real3(factor.x, factor.y, factor.z)), lanes);
 }
-static inline void map_term(const Scene* scene, __global const MaterialMaps* maps, u32 slot,
-                            const TexturePoints* at, MASK lanes, REAL3* term) {
-  if (maps->slot[slot] == NO_TEXTURE) return;
-  scale_term(term, slot_values(scene, maps, slot, at, lanes), lanes);
+static inline void map_term(__global const MaterialMaps* maps, const SlotValues* values, u32 slot, MASK lanes,
+                            REAL3* term) {
+  if (has_slot(maps, slot)) scale_term(term, values->of[slot], lanes);
 }
 
 #if HAS_METAL_ROUGH
 // The terms of `lanes`, all of one material by metalness and roughness (shared/metal_rough.h).
-static inline void metal_rough_terms(const Scene* scene, __global const MaterialMaps* maps,
-                                     const TexturePoints* at, REAL3 tint, MASK lanes, Terms* terms) {
-  const REAL4 color = slot_values(scene, maps, MAP_DIFFUSE, at, lanes),
-              metal_rough = slot_values(scene, maps, MAP_METAL_ROUGH, at, lanes);
+static inline void metal_rough_terms(__global const MaterialMaps* maps, const SlotValues* values, REAL3 tint,
+                                     MASK lanes, Terms* terms) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
+  const REAL4 white = real4(one, one, one, one);
+  const REAL4 color = has_slot(maps, MAP_DIFFUSE) ? values->of[MAP_DIFFUSE] : white,
+              metal_rough = has_slot(maps, MAP_METAL_ROUGH) ? values->of[MAP_METAL_ROUGH] : white;
   const REAL metalness = real_clamp(metal_rough.z * maps->base.w, zero, one);
   const REAL roughness = real_clamp(metal_rough.y * maps->roughness, zero, one);
   const REAL mirror = metal_mirror(metalness, roughness);
@@ -95,38 +120,21 @@ static inline void metal_rough_terms(const Scene* scene, __global const Material
 }
 #endif
 
-// Multiplies the terms of `lanes`, all of one material, by its textures.
-static inline void map_material(const Scene* scene, __global const MaterialMaps* maps, u32 flags,
-                                const TexturePoints* at, const SurfaceInteractions* s, MASK lanes,
-                                Terms* terms) {
-  const bool metal = HAS_METAL_ROUGH && flags & MATERIAL_METAL_ROUGH;
+// The ambient and diffuse terms, which often share a texture, and those that metalness and roughness make.
+static inline void map_colors(__global const MaterialMaps* maps, const SlotValues* values, bool metal,
+                              bool shared, REAL3 tint, MASK lanes, Terms* terms) {
 #if HAS_METAL_ROUGH
-  if (metal) metal_rough_terms(scene, maps, at, s->color, lanes, terms);
+  if (metal) {
+    metal_rough_terms(maps, values, tint, lanes, terms);
+    return;
+  }
 #endif
-  if (!metal && maps->slot[MAP_DIFFUSE] != NO_TEXTURE) {
-    const REAL4 diffuse = slot_values(scene, maps, MAP_DIFFUSE, at, lanes);
-    scale_term(&terms->diffuse, diffuse, lanes);
-    if (maps->slot[MAP_AMBIENT] == maps->slot[MAP_DIFFUSE]) scale_term(&terms->ambient, diffuse, lanes);
-  }
-  if (!metal && maps->slot[MAP_AMBIENT] != maps->slot[MAP_DIFFUSE])
-    map_term(scene, maps, MAP_AMBIENT, at, lanes, &terms->ambient);
-  map_term(scene, maps, MAP_SPECULAR, at, lanes, &terms->specular);
-  map_term(scene, maps, MAP_REFLECTION, at, lanes, &terms->reflection);
-  map_term(scene, maps, MAP_TRANSMISSION, at, lanes, &terms->transmission);
-  map_term(scene, maps, MAP_EMISSION, at, lanes, &terms->emission);
-  if (maps->slot[MAP_EXPONENT] != NO_TEXTURE) {
-    const REAL exponent = slot_values(scene, maps, MAP_EXPONENT, at, lanes).x;
-    terms->exponent = select(terms->exponent, terms->exponent * exponent, lanes);
-  }
-  if (maps->slot[MAP_OCCLUSION] != NO_TEXTURE) {
-    const REAL open = slot_values(scene, maps, MAP_OCCLUSION, at, lanes).x;
-    const REAL kept = fma((REAL)(maps->occlusion), open - 1.0f, (REAL)(1.0f));
-    terms->ambient = select3(terms->ambient, scale3(terms->ambient, kept), lanes);
-  }
-  const bool one_sided = flags & MATERIAL_ONE_SIDED;
-  if (maps->opacity == 1.0f && maps->slot[MAP_OPACITY] == NO_TEXTURE && !one_sided) return;
-  REAL opacity = opacity_at(scene, maps, at, lanes);
-  if (one_sided) opacity = select((REAL)(0.0f), opacity, s->entering);
+  map_term(maps, values, MAP_DIFFUSE, lanes, &terms->diffuse);
+  map_term(maps, values, shared ? MAP_DIFFUSE : MAP_AMBIENT, lanes, &terms->ambient);
+}
+
+// Takes what is not there from the terms of `lanes`; it shows what lies behind.
+static inline void map_opacity(REAL opacity, MASK lanes, Terms* terms) {
   const REAL4 part = real4(opacity, opacity, opacity, opacity);
   scale_term(&terms->ambient, part, lanes);
   scale_term(&terms->diffuse, part, lanes);
@@ -137,6 +145,34 @@ static inline void map_material(const Scene* scene, __global const MaterialMaps*
   const REAL behind = 1.0f - opacity;
   terms->transmission =
       select3(terms->transmission, add3(terms->transmission, real3(behind, behind, behind)), lanes);
+}
+
+// Multiplies the terms of `lanes`, all of one material, by its textures.
+static inline void map_material(const Scene* scene, __global const MaterialMaps* maps, u32 flags,
+                                const TexturePoints* at, const SurfaceInteractions* s, MASK lanes,
+                                Terms* terms) {
+  const bool metal = HAS_METAL_ROUGH && flags & MATERIAL_METAL_ROUGH;
+  const bool shared = maps->slot[MAP_AMBIENT] == maps->slot[MAP_DIFFUSE];
+  u32 wanted = ~(1u << MAP_NORMAL | 1u << MAP_HEIGHT);
+  if (metal || shared) wanted &= ~(1u << MAP_AMBIENT);
+  SlotValues values;
+  read_slots(scene, maps, wanted, at, lanes, &values);
+  map_colors(maps, &values, metal, shared, s->color, lanes, terms);
+  map_term(maps, &values, MAP_SPECULAR, lanes, &terms->specular);
+  map_term(maps, &values, MAP_REFLECTION, lanes, &terms->reflection);
+  map_term(maps, &values, MAP_TRANSMISSION, lanes, &terms->transmission);
+  map_term(maps, &values, MAP_EMISSION, lanes, &terms->emission);
+  if (has_slot(maps, MAP_EXPONENT))
+    terms->exponent = select(terms->exponent, terms->exponent * values.of[MAP_EXPONENT].x, lanes);
+  if (has_slot(maps, MAP_OCCLUSION)) {
+    const REAL open = values.of[MAP_OCCLUSION].x;
+    const REAL kept = fma((REAL)(maps->occlusion), open - 1.0f, (REAL)(1.0f));
+    terms->ambient = select3(terms->ambient, scale3(terms->ambient, kept), lanes);
+  }
+  const bool one_sided = flags & MATERIAL_ONE_SIDED;
+  if (maps->opacity == 1.0f && !has_slot(maps, MAP_OPACITY) && !one_sided) return;
+  const REAL opacity = opacity_of(maps, &values);
+  map_opacity(one_sided ? select((REAL)(0.0f), opacity, s->entering) : opacity, lanes, terms);
 }
 
 // The same for all of `lanes`, which have MaterialMaps.

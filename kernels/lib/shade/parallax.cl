@@ -66,33 +66,53 @@ static inline REAL height_above(const Scene* scene, __global const MaterialMaps*
          fma(t, ways->end - ways->begin, ways->begin);
 }
 
-// Where ways that begin at the surface meet the heights: the first step that ends below them, halved.
+// How ways come to the heights: they begin, go in steps until one ends below, halve that step, and look at
+// both its ends.
+enum { PARALLAX_BEGIN, PARALLAX_STEP, PARALLAX_HALVE, PARALLAX_BELOW, PARALLAX_ABOVE };
+
+// Where ways that begin at the surface meet the heights: the first step that ends below them, halved. The
+// heights are looked up in one place, because compilers repeat a texture's code wherever it is called.
 static inline REAL meet_heights(const Scene* scene, __global const MaterialMaps* maps,
                                 const TexturePoints* at, const ReliefWays* ways, MASK lanes) {
-  const REAL inverse = 1.0f / TO_REAL(ways->steps);
-  REAL above = (REAL)(0.0f), below = (REAL)(1.0f);
-  MASK open = lanes & MASK_OF(height_above(scene, maps, at, ways, above, lanes) < 0.0f);
-  below = select(above, below, open);
-  for (int k = 1; k <= PARALLAX_STEPS && any_lane(open); ++k) {
-    open &= MASK_OF(ways->steps >= k);
-    const REAL t = inverse * (float)k;
-    const MASK under = open & MASK_OF(height_above(scene, maps, at, ways, t, open) >= 0.0f);
-    above = select(above, t, open & ~under);
-    below = select(below, t, under);
-    open &= ~under;
+  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), inverse = 1.0f / TO_REAL(ways->steps);
+  REAL above = zero, below = one, t = zero, high = zero;
+  MASK open = lanes;
+  int k = 0;
+  for (u32 stage = PARALLAX_BEGIN;;) {
+    const REAL over = height_above(scene, maps, at, ways, t, stage == PARALLAX_STEP ? open : lanes);
+    const MASK under = MASK_OF(over >= 0.0f);
+    if (stage == PARALLAX_ABOVE) {
+      // The heights are straight between here and there, unless they have a step.
+      const REAL share = real_clamp(over / nonzero(over - high), zero, one);
+      return select(below, fma(share, below - above, above), MASK_OF(over < 0.0f) & MASK_OF(high > 0.0f));
+    }
+    if (stage == PARALLAX_BELOW) high = over;
+    if (stage == PARALLAX_BEGIN) {
+      open = lanes & ~under;
+      below = select(zero, one, open);
+    }
+    if (stage == PARALLAX_STEP) {
+      above = select(above, t, open & ~under);
+      below = select(below, t, open & under);
+      open &= ~under;
+    }
+    if (stage == PARALLAX_HALVE) {
+      below = select(below, t, under);
+      above = select(t, above, under);
+    }
+    // What is next to look at.
+    ++k;
+    if (stage <= PARALLAX_STEP) {
+      open &= MASK_OF(ways->steps >= k);
+      stage = PARALLAX_STEP;
+      t = inverse * (float)k;
+      if (k <= PARALLAX_STEPS && any_lane(open)) continue;
+      below = real_max(below, above);
+      k = 0;
+    }
+    stage = k < PARALLAX_HALVINGS ? PARALLAX_HALVE : k == PARALLAX_HALVINGS ? PARALLAX_BELOW : PARALLAX_ABOVE;
+    t = stage == PARALLAX_HALVE ? 0.5f * (above + below) : stage == PARALLAX_BELOW ? below : above;
   }
-  below = real_max(below, above);
-  for (int k = 0; k < PARALLAX_HALVINGS; ++k) {
-    const REAL middle = 0.5f * (above + below);
-    const MASK under = MASK_OF(height_above(scene, maps, at, ways, middle, lanes) >= 0.0f);
-    below = select(below, middle, under);
-    above = select(middle, above, under);
-  }
-  // The heights are straight between here and there, unless they have a step.
-  const REAL high = height_above(scene, maps, at, ways, below, lanes),
-             low = height_above(scene, maps, at, ways, above, lanes);
-  const REAL share = real_clamp(low / nonzero(low - high), (REAL)(0.0f), (REAL)(1.0f));
-  return select(below, fma(share, below - above, above), MASK_OF(low < 0.0f) & MASK_OF(high > 0.0f));
 }
 
 static inline MASK has_parallax(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {

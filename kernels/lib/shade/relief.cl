@@ -82,24 +82,25 @@ static inline REAL3 bumped_normals(const Scene* scene, __global const MaterialMa
                                    MASK lanes) {
   const REAL least = maps->height_texels > 0.0f ? at->uv_length / maps->height_texels : (REAL)(1e-9f);
   const REAL step = real_max(at->footprint, least);
-  const REAL here = slot_values(scene, maps, MAP_HEIGHT, at, lanes).x;
-  REAL slope[2];
-  for (u32 k = 0; k < 2u; ++k) {
-    const REAL3 along = k == 0u ? s->at.dpdu : s->at.dpdv;
+  REAL here = (REAL)(0.0f), slope[2];
+  for (u32 k = 0; k < 3u; ++k) {  // one place for all three: compilers repeat a texture's code at each call
+    const REAL3 along = k < 2u ? s->at.dpdu : s->at.dpdv;
     const REAL part = step / nonzero(length3(along));
     TexturePoints there = *at;
-    if (k == 0u)
-      there.u += part;
-    else
-      there.v += part;
+    if (k == 1u) there.u += part;
+    if (k == 2u) there.v += part;
     u32 index;
-    for (MASK left = lanes; any_lane(left);) {
+    for (MASK left = lanes; k > 0u && any_lane(left);) {
       const MASK mine = take_alike(at->instance, &left, &index);
       __global const Instance* instance = scene->instances + index;
       const REAL3 way = multiply3(object_vectors(instance, along), all3(instance->pattern_scale.xyz));
       there.p = select3(there.p, along3(at->p, part, way), mine);
     }
-    slope[k] = (slot_values(scene, maps, MAP_HEIGHT, &there, lanes).x - here) / nonzero(part);
+    const REAL height = slot_values(scene, maps, MAP_HEIGHT, &there, lanes).x;
+    if (k == 0u)
+      here = height;
+    else
+      slope[k - 1u] = (height - here) / nonzero(part);
   }
   const REAL3 across_u = cross3(s->at.dpdv, normal), across_v = cross3(normal, s->at.dpdu);
   const REAL area = dot3(normal, cross3(s->at.dpdu, s->at.dpdv));

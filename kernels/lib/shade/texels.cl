@@ -61,6 +61,15 @@ typedef struct TexelLevels {
 
 static inline TexelLevels levels_of_image(const Scene* scene, __global const TextureNode* node, MASK number,
                                           MASK lanes) {
+#if LANES > 1
+  // Most batches see one level. Numbers are right in lanes that are not asked for too.
+  const u32 bits = lane_bits(lanes), one = (u32)MASK_LANE(number, lowest_bit(bits ? bits : 1u));
+  if (!any_lane(lanes & MASK_OF(number != (MASK)((int)one)))) {
+    __global const TexelLevel* same = scene->texel_levels + node->first + one;
+    const TexelLevels level = {(MASK)((int)same->first), (MASK)((int)same->width), (MASK)((int)same->height)};
+    return level;
+  }
+#endif
   __global const u32* levels = (__global const u32*)(scene->texel_levels + node->first);
   const TexelLevels level = {gather_words(levels, 4 * number, lanes),
                              gather_words(levels, 4 * number + 1, lanes),
@@ -68,25 +77,49 @@ static inline TexelLevels levels_of_image(const Scene* scene, __global const Tex
   return level;
 }
 
-// The texels (x, y) of levels, linear. Bytes of colours are looked up in a table.
-static inline REAL4 texels(const Scene* scene, const TexelLevels* level, u32 flags, MASK x, MASK y,
-                           MASK lanes) {
-  const u32 format = flags >> TEXTURE_FORMAT_SHIFT & 15u, size = format & TEXEL_SIZE_MASK;
-  const bool srgb = flags & TEXTURE_SRGB;
-  const REAL one = (REAL)(1.0f);
+// Texels as they are stored.
+typedef struct StoredTexels {
+  MASK words, more;  // the second word of texels of 8 bytes
+  MASK byte;         // of smaller ones: where they begin in their tile
+} StoredTexels;
+
+// The texels (x, y) of levels.
+static inline StoredTexels fetch_texels(const Scene* scene, const TexelLevels* level, u32 format, MASK x,
+                                        MASK y, MASK lanes) {
+  const int size = (int)(format & TEXEL_SIZE_MASK);
   const MASK tile = (y >> 2) * ((level->width + 3) >> 2) + (x >> 2), in_tile = (y & 3) * 4 + (x & 3);
   // A tile begins at a unit; the units of its texels follow.
-  const MASK byte = in_tile << (int)size;
-  const MASK unit = level->first + (tile << (int)size) + (byte >> 4), word = (byte >> 2) & 3;
+  const MASK byte = in_tile << size;
+  const MASK unit = level->first + (tile << size) + (byte >> 4), word = (byte >> 2) & 3;
+  StoredTexels texels = {NO_LANES, NO_LANES, byte};
 #if HAS_TEXEL_PAGES
-  MASK words = NO_LANES;
   for (u32 k = 0; k < 4u; ++k) {
     const MASK mine = lanes & MASK_OF(word == (int)k);
-    if (any_lane(mine)) words |= texel_words(scene, unit, k, mine);
+    if (any_lane(mine)) texels.words |= texel_words(scene, unit, k, mine);
   }
 #else
-  const MASK words = gather_words(scene->texels0, unit * 4 + word, lanes);
+  texels.words = gather_words(scene->texels0, unit * 4 + word, lanes);
 #endif
+#if HAS_FORMAT(TEXEL_RGBA16) || HAS_FORMAT(TEXEL_RGBA_HALF)
+  if (size < 3) return texels;
+#if HAS_TEXEL_PAGES
+  for (u32 k = 1; k < 4u; k += 2u) {
+    const MASK mine = lanes & MASK_OF(word + 1 == (int)k);
+    if (any_lane(mine)) texels.more |= texel_words(scene, unit, k, mine);
+  }
+#else
+  texels.more = gather_words(scene->texels0, unit * 4 + word + 1, lanes);
+#endif
+#endif
+  return texels;
+}
+
+// Their linear values. Bytes of colours are looked up in a table.
+static inline REAL4 decode_texels(const Scene* scene, const StoredTexels* texels, u32 flags, MASK lanes) {
+  const u32 format = flags >> TEXTURE_FORMAT_SHIFT & 15u;
+  const bool srgb = flags & TEXTURE_SRGB;
+  const REAL one = (REAL)(1.0f);
+  const MASK words = texels->words;
 #if HAS_FORMAT(TEXEL_RGBA8)
   if (format == TEXEL_RGBA8)
     return real4(floats_of_bytes(scene, words & 0xFF, srgb, lanes),
@@ -96,28 +129,19 @@ static inline REAL4 texels(const Scene* scene, const TexelLevels* level, u32 fla
 #endif
 #if HAS_FORMAT(TEXEL_GREY8)
   if (format == TEXEL_GREY8) {
-    const REAL grey = floats_of_bytes(scene, words >> ((byte & 3) * 8) & 0xFF, srgb, lanes);
+    const REAL grey = floats_of_bytes(scene, words >> ((texels->byte & 3) * 8) & 0xFF, srgb, lanes);
     return real4(grey, grey, grey, one);
   }
 #endif
 #if HAS_FORMAT(TEXEL_GREY16) || HAS_FORMAT(TEXEL_GREY_HALF)
-  if (size == 1u) {
-    const REAL grey = floats_of_words(words >> ((byte & 2) * 8), format);
+  if ((format & TEXEL_SIZE_MASK) == 1u) {
+    const REAL grey = floats_of_words(words >> ((texels->byte & 2) * 8), format);
     return real4(grey, grey, grey, one);
   }
 #endif
 #if HAS_FORMAT(TEXEL_RGBA16) || HAS_FORMAT(TEXEL_RGBA_HALF)
-#if HAS_TEXEL_PAGES
-  MASK more = NO_LANES;
-  for (u32 k = 1; k < 4u; k += 2u) {
-    const MASK mine = lanes & MASK_OF(word + 1 == (int)k);
-    if (any_lane(mine)) more |= texel_words(scene, unit, k, mine);
-  }
-#else
-  const MASK more = gather_words(scene->texels0, unit * 4 + word + 1, lanes);
-#endif
   return real4(floats_of_words(words, format), floats_of_words(words >> 16 & 0xFFFF, format),
-               floats_of_words(more, format), floats_of_words(more >> 16 & 0xFFFF, format));
+               floats_of_words(texels->more, format), floats_of_words(texels->more >> 16 & 0xFFFF, format));
 #else
   return real4(one, one, one, one);
 #endif
@@ -140,25 +164,42 @@ static inline MASK wrap_texel(MASK x, MASK size, u32 mode) {
   return clamp(x, NO_LANES, size - 1);
 }
 
-// Samples of one level each at (u, v) in [0, 1]^2, v down.
-static inline REAL4 sample_levels(const Scene* scene, __global const TextureNode* node, MASK number, REAL u,
-                                  REAL v, MASK lanes) {
+// The four texels about a point in each lane's level, as they are stored, and where the point lies between.
+typedef struct StoredCells {
+  StoredTexels corner[4];
+  REAL s, t;
+} StoredCells;
+
+// Those at (u, v) in [0, 1]^2, v down; of a nearest texel only the first.
+static inline void fetch_cells(const Scene* scene, __global const TextureNode* node, MASK number, REAL u,
+                               REAL v, MASK lanes, StoredCells* cells) {
   const TexelLevels level = levels_of_image(scene, node, number, lanes);
-  const u32 flags = node->flags;
+  const u32 flags = node->flags, format = flags >> TEXTURE_FORMAT_SHIFT & 15u;
   const u32 wrap_u = flags >> TEXTURE_WRAP_U_SHIFT & 3u, wrap_v = flags >> TEXTURE_WRAP_V_SHIFT & 3u;
   const float middle = flags & TEXTURE_NEAREST ? 0.0f : 0.5f;
   const REAL x = u * TO_REAL(level.width) - middle, y = v * TO_REAL(level.height) - middle;
-  const REAL left = floor(x), top = floor(y), s = x - left, t = y - top;
-  const MASK x0 = TO_MASK(left), y0 = TO_MASK(top);
+  const REAL left = floor(x), top = floor(y);
+  cells->s = x - left;
+  cells->t = y - top;
+  const MASK x0 = wrap_texel(TO_MASK(left), level.width, wrap_u),
+             y0 = wrap_texel(TO_MASK(top), level.height, wrap_v);
+  cells->corner[0] = fetch_texels(scene, &level, format, x0, y0, lanes);
+  if (flags & TEXTURE_NEAREST) return;
+  const MASK x1 = wrap_texel(TO_MASK(left) + 1, level.width, wrap_u),
+             y1 = wrap_texel(TO_MASK(top) + 1, level.height, wrap_v);
+  for (u32 k = 1; k < 4u; ++k)
+    cells->corner[k] = fetch_texels(scene, &level, format, k & 1u ? x1 : x0, k & 2u ? y1 : y0, lanes);
+}
+
+// Their values between them.
+static inline REAL4 filter_cells(const Scene* scene, u32 flags, const StoredCells* cells, MASK lanes) {
   REAL4 rows[2];
-  for (int row = 0; row < 2; ++row) {
-    const MASK yy = wrap_texel(y0 + row, level.height, wrap_v);
-    rows[row] = texels(scene, &level, flags, wrap_texel(x0, level.width, wrap_u), yy, lanes);
+  for (u32 row = 0; row < 2u; ++row) {
+    rows[row] = decode_texels(scene, &cells->corner[2u * row], flags, lanes);
     if (flags & TEXTURE_NEAREST) return rows[0];
-    const REAL4 right = texels(scene, &level, flags, wrap_texel(x0 + 1, level.width, wrap_u), yy, lanes);
-    rows[row] = mix4(rows[row], right, s);
+    rows[row] = mix4(rows[row], decode_texels(scene, &cells->corner[2u * row + 1u], flags, lanes), cells->s);
   }
-  return mix4(rows[0], rows[1], t);
+  return mix4(rows[0], rows[1], cells->t);
 }
 
 // The image at (u, v), v up, where `footprint` is the width of what is seen, in texels of the greatest level.
@@ -170,14 +211,19 @@ NEVER_INLINE REAL4 sample_image(const Scene* scene, __global const TextureNode* 
   const REAL last = (REAL)((float)(node->count - 1u)), one = (REAL)(1.0f);
   const REAL wide = select(one, real_min(footprint, (REAL)(1e9f)), MASK_OF(footprint > 1.0f));
   const REAL level = real_min(real_log(wide) * 1.44269504f, last);
-  if (flags & (TEXTURE_NEAREST | TEXTURE_BILINEAR))
-    return sample_levels(scene, node, TO_MASK(level + 0.5f), u, v, lanes);
-  const MASK number = TO_MASK(level);
+  const bool blends = !(flags & (TEXTURE_NEAREST | TEXTURE_BILINEAR));
+  const MASK number = TO_MASK(blends ? level : level + 0.5f);
   const REAL between = level - TO_REAL(number);
-  const MASK two = lanes & MASK_OF(between > 0.0f);
-  const REAL4 fine = sample_levels(scene, node, number, u, v, lanes);
-  if (!any_lane(two)) return fine;
-  return mix4(fine, sample_levels(scene, node, number + 1, u, v, two), select((REAL)(0.0f), between, two));
+  const MASK two = blends ? lanes & MASK_OF(between > 0.0f) : NO_LANES;
+  const u32 levels = any_lane(two) ? 2u : 1u;
+  // All texels before the first is decoded: what is waited for is then fetched at once.
+  StoredCells cells[2];
+  for (u32 k = 0; k < levels; ++k)
+    fetch_cells(scene, node, number + (int)k, u, v, k ? two : lanes, &cells[k]);
+  REAL4 value = filter_cells(scene, flags, &cells[0], lanes);
+  if (levels == 2u)
+    value = mix4(value, filter_cells(scene, flags, &cells[1], two), select((REAL)(0.0f), between, two));
+  return value;
 }
 #endif
 

@@ -271,3 +271,20 @@ TEST_CASE("bench samples tells time and error by samples, and the error falls") 
   CHECK(result.status == 2);
   CHECK(is_one_error_line(result.err));
 }
+
+TEST_CASE("bench textures times a frame with textures and without, and the loading of images") {
+  const CliFolder folder;
+  const CommandResult result =
+      run_sundog({"bench", "textures", "--device", "portable", "--size", "24x16", "--edge", "32",
+                  "--loaded-edge", "64", "--repeat", "1", "--json", folder.file("t.json"), "--quiet"});
+  CAPTURE(result.err);
+  REQUIRE(result.status == 0);
+  const json rows = json::parse(sundog::read_file(folder.file("t.json"))).at("measurements");
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[0].at("scene") == "eight 32x32");
+  CHECK(rows[0].at("ratio") > 0);
+  // Textures change colours alone.
+  CHECK(rows[0].at("rays textured") == rows[0].at("rays without"));
+  CHECK(rows[1].at("scene") == "eight PNG, 64x64");
+  CHECK(rows[1].at("decoding_ms").at("median") > 0);
+}

@@ -91,7 +91,9 @@ __kernel void shade_points(SCENE_PARAMETERS, __global const float4* points, __gl
 #else
   const REAL3 none = all3((float3)(0.0f));
   Terms terms = {none, none, none, none, none, none, zero};
-  metal_rough_terms(&scene, scene.material_maps + 1, &at, s.color, lanes, &terms);
+  SlotValues values;
+  read_slots(&scene, scene.material_maps + 1, ~0u, &at, lanes, &values);
+  metal_rough_terms(scene.material_maps + 1, &values, s.color, lanes, &terms);
   for (u32 i = 0; i < BATCH && first + i < count; ++i) {
     __global float4* to = out + 7u * (first + i);
     to[2] = lane4(&terms.ambient, zero, i); to[3] = lane4(&terms.diffuse, terms.exponent, i);
