@@ -284,7 +284,7 @@ TEST_CASE("bench textures times a frame with textures and without, and the loadi
   CHECK(rows[0].at("scene") == "eight 32x32");
   CHECK(rows[0].at("ratio") > 0);
   // Textures change colours alone.
-  CHECK(rows[0].at("rays textured") == rows[0].at("rays without"));
+  CHECK(rows[0].at("rays_textured") == rows[0].at("rays_without"));
   CHECK(rows[1].at("scene") == "eight PNG, 64x64");
   CHECK(rows[1].at("decoding_ms").at("median") > 0);
 }
