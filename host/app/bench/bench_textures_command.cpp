@@ -21,7 +21,9 @@ int bench_textures(const TexturesOptions& options) {
   add_device_facts(report, devices);
   const auto measure = [&](const std::string& name, const SceneDescription& scene) {
     for (const DeviceInfo& device : devices) {
-      const auto on_step = [&](const std::string& step) { show_step(options, fmt::format("{}, {}", name, step)); };
+      const auto on_step = [&](const std::string& step) {
+        show_step(options, fmt::format("{}, {}", name, step));
+      };
       add_texture_rows(report, name, device, measure_texture_cost(scene, device, options.repeat, on_step));
     }
   };

@@ -199,7 +199,7 @@ void add_texture_rows(Report& report, const std::string& scene, const DeviceInfo
     report.measurements.columns = {{"scene", ""},      {"device", ""},       {"without", "ms"},
                                    {"textured", "ms"}, {"ratio", ""},        {"ratio low", ""},
                                    {"ratio high", ""}, {"rays without", ""}, {"rays textured", ""},
-                                   {"decoding", "ms"}, {"levels", "ms"},     {"loading, processor", "ms"}};
+                                   {"decoding", "ms"}, {"levels", "ms"},     {"loading on processors", "ms"}};
   const std::string label = device.label();
   report.measurements.rows.push_back({scene, label.substr(0, label.find(' ')), scaled(cost.plain, 1e3),
                                       scaled(cost.textured, 1e3), cost.ratio, cost.ratio_low, cost.ratio_high,
