@@ -32,15 +32,17 @@ foreach(library sundog_shared sundog_static)
 endforeach()
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/sundog)
-install(TARGETS sundog_shared sundog_static EXPORT sundogTargets COMPONENT library
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sundog DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library)
-install(EXPORT sundogTargets NAMESPACE sundog:: DESTINATION ${package_folder} COMPONENT library)
+# Two components: `library` is what programs need at run time, `development` what builds them.
+install(TARGETS sundog_shared sundog_static EXPORT sundogTargets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sundog DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+install(EXPORT sundogTargets NAMESPACE sundog:: DESTINATION ${package_folder} COMPONENT development)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sundogConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/sundogConfig.cmake
   INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/sundogConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/sundogConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/sundogConfigVersion.cmake
-  DESTINATION ${package_folder} COMPONENT library)
+  DESTINATION ${package_folder} COMPONENT development)
 
 list(TRANSFORM libraries PREPEND -l OUTPUT_VARIABLE private_libraries)
 list(JOIN private_libraries " " private_libraries)
@@ -48,4 +50,4 @@ list(JOIN private_libraries " " private_libraries)
 file(RELATIVE_PATH pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 string(REGEX REPLACE "/$" "" pc_to_prefix "${pc_to_prefix}")
 configure_file(${PROJECT_SOURCE_DIR}/cmake/sundog.pc.in ${CMAKE_CURRENT_BINARY_DIR}/sundog.pc @ONLY)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/sundog.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT library)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/sundog.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
