@@ -16,8 +16,9 @@ inline void must(const std::vector<std::string>& command) {
 
 /// libsundog with its headers, in a prefix that is moved after the installation.
 inline std::filesystem::path install_library(const std::filesystem::path& folder) {
-  must({"cmake", "--install", std::filesystem::path(SUNDOG_BINARY).parent_path().string(), "--component",
-        "library", "--prefix", (folder / "first").string()});
+  for (const char* component : {"library", "development"})
+    must({"cmake", "--install", std::filesystem::path(SUNDOG_BINARY).parent_path().string(), "--component",
+          component, "--prefix", (folder / "first").string()});
   std::filesystem::rename(folder / "first", folder / "moved");
   return folder / "moved";
 }
