@@ -12,7 +12,7 @@
 namespace sundog {
 
 /// One model's meshes where they lie, without lights; or a .json scene as it is.
-SceneDescription scene_of_model(const std::string& model, bool spatial_splits);
+SceneDescription scene_of_model(const std::string& path, bool spatial_splits);
 
 /// bench/scenes/glass_model.json around a model of one mesh, whose holes are closed and which is scaled to
 /// two units and stands a little in the floor. The vertices themselves are moved, so that nobody needs a

@@ -80,7 +80,9 @@ nlohmann::json rays_of(const RayCounts& counts) {
 }
 
 void print_rays(const char* who, const RayCounts& counts) {
-  const auto million = [&](int kind) { return static_cast<double>(counts[kind]) * 1e-6; };
+  const auto million = [&](int kind) {
+    return static_cast<double>(counts[static_cast<std::size_t>(kind)]) * 1e-6;
+  };
   fmt::print("  {:<10} {:.4f} M primary, {:.4f} M reflected, {:.4f} M refracted, {:.4f} M shadow rays\n", who,
              million(COUNT_PRIMARY), million(COUNT_REFLECTION), million(COUNT_REFRACTION),
              million(COUNT_SHADOW));

@@ -35,8 +35,9 @@ class Renderer {
     V o, d;
     M active;
     LANES_DO {
+      const int row = y0 + l / 4;
       const float a = (static_cast<float>(x0 + l % 4) + 0.5f - 0.5f * static_cast<float>(p_.width)) * scale;
-      const float b = (0.5f * static_cast<float>(p_.height) - static_cast<float>(y0 + l / 4) - 0.5f) * scale;
+      const float b = (0.5f * static_cast<float>(p_.height) - static_cast<float>(row) - 0.5f) * scale;
       const float x = p_.forward[0] + a * p_.right[0] + b * p_.up[0];
       const float y = p_.forward[1] + a * p_.right[1] + b * p_.up[1];
       const float z = p_.forward[2] + a * p_.right[2] + b * p_.up[2];

@@ -205,12 +205,12 @@ RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& d
   return render_frame(borrowed, plan_servers(borrowed, devices), options, true);
 }
 
-RenderResult render(std::shared_ptr<const CompiledScene> scene, const std::vector<DeviceInfo>& devices,
+RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options) {
   return render_frame(scene, plan_servers(scene, devices), options, false);
 }
 
-RenderResult render(std::shared_ptr<const CompiledScene> scene, const std::vector<ServerPlan>& servers,
+RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<ServerPlan>& servers,
                     const RenderOptions& options) {
   return render_frame(scene, servers, options, false);
 }

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "scene/heights.h"
+#include "scene/json/value.h"
 #include "scene/models/normals.h"
 
 namespace sundog {

@@ -30,6 +30,11 @@ const std::vector<sundog::DeviceInfo>& test_devices() {
   return devices;
 }
 
+std::span<const sundog::DeviceInfo> picture_devices() {
+  const std::span<const sundog::DeviceInfo> all = test_devices();
+  return std::getenv("SUNDOG_TEST_DEVICES") ? all : all.first(1);
+}
+
 sundog::KernelDefines all_features() {
   using sundog::u32;
   sundog::KernelDefines defines;

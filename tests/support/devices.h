@@ -16,12 +16,19 @@ void prepare_opencl_environment();
 /// test when there is none.
 const std::vector<sundog::DeviceInfo>& test_devices();
 
-/// Calls body(device's DeviceInfo) for each of them, in a section of its own.
-void on_every_device(const auto& body) {
-  for (const sundog::DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+/// For what a picture shows: the first device, or every one that SUNDOG_TEST_DEVICES lists. Some drivers
+/// compile a frame's kernels for ten seconds; that they draw what the first does is a test of its own
+/// (frames/test_drivers_agree.cpp).
+std::span<const sundog::DeviceInfo> picture_devices();
+
+/// Calls body(device's DeviceInfo) for each of the devices, in a section of its own.
+void on_devices(std::span<const sundog::DeviceInfo> devices, const auto& body) {
+  for (const sundog::DeviceInfo& device : devices) DYNAMIC_SECTION(device.label()) {
       body(device);
     }
 }
+void on_every_device(const auto& body) { on_devices(test_devices(), body); }
+void on_picture_devices(const auto& body) { on_devices(picture_devices(), body); }
 
 /// Definitions of every shape and feature, for kernels that are tested by themselves.
 sundog::KernelDefines all_features();

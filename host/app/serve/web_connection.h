@@ -109,8 +109,8 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
     http::async_write(stream_, response_, [self = shared_from_this(), keep](NetError error, std::size_t) {
       if (error) return;
       if (keep) return self->read_head();
-      NetError ignored;
-      self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+      NetError ignored;  // the other side may have closed first
+      std::ignore = self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
       self->drain();
     });
   }
@@ -121,8 +121,8 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
     stream_.expires_after(std::chrono::seconds(2));
     stream_.async_read_some(asio::buffer(scrap_),
                             [self = shared_from_this()](NetError error, std::size_t bytes) {
-                              if (error || (self->drained_ += bytes) > (std::size_t{4} << 20)) return;
-                              self->drain();
+                              self->drained_ += bytes;
+                              if (!error && self->drained_ <= (std::size_t{4} << 20)) self->drain();
                             });
   }
 

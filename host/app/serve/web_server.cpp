@@ -19,8 +19,8 @@ void WebState::accept_next() {
       return;
     }
     if (connections < limits.connections) {
-      NetError ignored;
-      socket.set_option(tcp::no_delay(true), ignored);
+      NetError ignored;  // a connection without it is slower, no more
+      std::ignore = socket.set_option(tcp::no_delay(true), ignored);
       std::make_shared<WebConnection>(*this, std::move(socket))->read_head();
     }
     accept_next();
@@ -33,8 +33,8 @@ WebServer::WebServer(int port, const WebLimits& limits) : state_(std::make_uniqu
   NetError error;
   state_->acceptor.open(place.protocol());
   state_->acceptor.set_option(tcp::acceptor::reuse_address(true));
-  state_->acceptor.bind(place, error);
-  if (!error) state_->acceptor.listen(asio::socket_base::max_listen_connections, error);
+  std::ignore = state_->acceptor.bind(place, error);
+  if (!error) std::ignore = state_->acceptor.listen(asio::socket_base::max_listen_connections, error);
   if (error) throw IoError(fmt::format("serve: --port {}: cannot listen there: {}", port, error.message()));
 }
 

@@ -156,17 +156,22 @@ LinearLevel halve(const StoredImage& from, bool srgb) {
   return halve<4>(from.width, from.height, SampleReader<4>(from, srgb));
 }
 
+/// Rounds what is not negative.
+std::size_t rounded(float value) {
+  return static_cast<std::size_t>(value + 0.5f);  // NOLINT(bugprone-incorrect-roundings): faster than lround
+}
+
 /// `table` is that of sRGB bytes, or none where they are linear.
 void write_sample(StoredImage& image, std::size_t sample, float value, const std::uint8_t* table) {
   if (image.sample == Sample::byte) {
     const float unit = std::clamp(value, 0.0f, 1.0f);
-    image.data[sample] = table ? table[static_cast<std::size_t>(unit * static_cast<float>(srgb_steps) + 0.5f)]
-                               : static_cast<std::uint8_t>(unit * 255 + 0.5f);
+    image.data[sample] = table ? table[rounded(unit * static_cast<float>(srgb_steps))]
+                               : static_cast<std::uint8_t>(rounded(unit * 255));
     return;
   }
   const std::uint16_t word = image.sample == Sample::half
                                  ? half_from_float(value)
-                                 : static_cast<std::uint16_t>(std::clamp(value, 0.0f, 1.0f) * 65535 + 0.5f);
+                                 : static_cast<std::uint16_t>(rounded(std::clamp(value, 0.0f, 1.0f) * 65535));
   std::memcpy(image.data.data() + 2 * sample, &word, 2);
 }
 

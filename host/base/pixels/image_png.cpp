@@ -16,7 +16,7 @@ namespace {
 using Context = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
 
 /// Deflate packs at most 1032 bytes into one, and eight pixels fit into a byte.
-constexpr std::int64_t png_pixels_a_byte = 1032 * 8;
+constexpr std::int64_t png_pixels_a_byte = std::int64_t{1032} * 8;
 /// Texts, profiles: nothing of them is used.
 constexpr std::size_t most_chunk_bytes = std::size_t{1} << 26;
 

@@ -51,6 +51,6 @@ Image linear_image(const StoredImage& stored);
 
 /// The nearest half of a float, clamped to +-65504 (NaN becomes 0), and back.
 std::uint16_t half_from_float(float value);
-float float_from_half(std::uint16_t half);
+float float_from_half(std::uint16_t bits);
 
 }  // namespace sundog

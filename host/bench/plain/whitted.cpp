@@ -128,7 +128,7 @@ struct Path {
   vec3 throughput{1};
 };
 
-vec3 trace(const World& world, const Path& path, float* coverage);
+vec3 trace(const World& world, const Path& start, float* coverage);
 
 vec3 background(const SceneInfo& info, const vec3& d) {
   const float s = std::clamp(0.5f + 0.5f * glm::dot(d, rgb(info.up)), 0.0f, 1.0f);

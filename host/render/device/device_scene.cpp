@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <span>
 #include <utility>
 
 #include "base/error.h"
@@ -87,7 +89,8 @@ UploadFigures update_scene(Device& device, const CompiledScene& scene, DeviceSce
   Uploader upload(device, compact);
   if (!held.info.memory())
     held.info = device.upload(std::span<const SceneInfo>(&scene.info, 1));
-  else if (std::memcmp(&held.held_info, &scene.info, sizeof scene.info) != 0)
+  else if (!std::ranges::equal(std::as_bytes(std::span(&held.held_info, 1)),
+                               std::as_bytes(std::span(&scene.info, 1))))
     device.write(held.info, std::span<const SceneInfo>(&scene.info, 1));
   held.held_info = scene.info;
 #define SUNDOG_UPLOAD_TABLE(type, host_type, name, label) \

@@ -44,7 +44,8 @@ void define_features(const SceneFeatures& features, const Define& define) {
 
 std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& device) {
   if (device.device_class != DeviceClass::cpu) return device.max_work_group;
-  const std::size_t item = config.ray_stack * ray_bytes + config.tile_w * config.tile_h * batch_bytes;
+  const std::size_t item =
+      config.ray_stack * ray_bytes + std::size_t{config.tile_w} * config.tile_h * batch_bytes;
   return std::min(device.max_work_group, group_memory / item);
 }
 

@@ -59,7 +59,7 @@ LaunchSize LaunchSizer::group_items(std::size_t columns, std::size_t rows) const
   // One ray a lane wants a full group, if only to fill the driver's vectors. With many pixels a work-item,
   // small groups leave no unit idle at a launch's end, as PoCL hands them out 32 at a time; of two sizes, as
   // it compiles for each.
-  const std::size_t share = items / (4 * std::max(1u, limits_.compute_units));
+  const std::size_t share = items / (std::size_t{4} * std::max(1u, limits_.compute_units));
   std::size_t wanted = 64;
   if (limits_.device_class == DeviceClass::cpu) {
     const bool many_pixels = limits_.tile_w * limits_.tile_h > 1;
@@ -96,7 +96,7 @@ std::optional<SizedLaunch> LaunchSizer::next() {
   if (sample_ == samples_) item_ += items_, items_ = 0, sample_ = 0;
   const unsigned all = columns_ * rows_;
   if (item_ >= all || samples_ == 0) return std::nullopt;
-  const std::size_t item_pixels = limits_.tile_w * limits_.tile_h;
+  const std::size_t item_pixels = std::size_t{limits_.tile_w} * limits_.tile_h;
   if (items_ == 0)  // all samples of these items come before the next items
     items_ =
         static_cast<unsigned>(std::clamp<std::size_t>(next_size_ / least_size_ * step_, step_, all - item_));

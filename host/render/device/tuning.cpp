@@ -72,7 +72,7 @@ std::string kernels_hash() {
 std::filesystem::path tuning_folder() { return cache_folder("tuning"); }
 
 std::filesystem::path tuning_path(const DeviceInfo& device) {
-  const std::filesystem::path folder = tuning_folder();
+  std::filesystem::path folder = tuning_folder();
   if (folder.empty()) return folder;
   const std::string key =
       fmt::format("{}\n{}\n{}\n{}", device.platform_name, device.name, device.driver, device.sub_units);

@@ -26,7 +26,7 @@ struct CoarsePicture {
   std::vector<float4> colors;  // of each block, row by row: linear RGB and coverage
 
   /// Takes the place of what was there.
-  void take(const Pass& pass, const Film& made, int image_width, int image_height, int block);
+  void take(const Pass& pass, const Film& made, int image_width, int image_height, int edge);
   const float4& at(int x, int y) const {
     return colors[static_cast<std::size_t>(y / block) * static_cast<std::size_t>(columns) +
                   static_cast<std::size_t>(x / block)];

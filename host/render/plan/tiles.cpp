@@ -55,7 +55,7 @@ std::vector<Tile> unfinished_tiles(const Film& film, const Tile& area) {
   return tiles;
 }
 
-WaitingTiles::WaitingTiles(std::vector<Tile> tiles) {
+WaitingTiles::WaitingTiles(const std::vector<Tile>& tiles) {
   for (const Tile& tile : tiles) {
     if (tile.width <= 0 || tile.height <= 0) continue;
     tiles_.push_back(tile);

@@ -27,7 +27,7 @@ inline std::uint64_t pixel_count(const Tile& tile) {
 class WaitingTiles {
  public:
   WaitingTiles() = default;
-  explicit WaitingTiles(std::vector<Tile> tiles);
+  explicit WaitingTiles(const std::vector<Tile>& tiles);
 
   std::uint64_t pixels() const { return pixels_; }
   /// About `wanted` pixels: as many whole rows of the first rectangle as come to that, or, of a wide one, a

@@ -116,7 +116,7 @@ FrameProgress progress_of(const Frame& frame) {
   progress.settled = frame.queue.complete();
   progress.full = passes.film.stage > 0;
   progress.whole = progress.full || passes.coarse.block > 0;
-  progress.block = progress.full || passes.coarse.block == 0 ? 1 : passes.coarse.block;
+  progress.block = progress.full || passes.coarse.block == 0 ? 1 : static_cast<unsigned>(passes.coarse.block);
   return progress;
 }
 

@@ -103,7 +103,7 @@ FormulaEvaluator::Part FormulaEvaluator::part(const Section& section, const std:
     outputs.push_back(guard.condition == no_node ? guard.argument : guard.condition);
   }
   met_.resize(breaches_.size());
-  result.program = GraphProgram(section.graph, std::move(outputs));
+  result.program = GraphProgram(section.graph, outputs);
   return result;
 }
 

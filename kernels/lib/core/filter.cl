@@ -4,7 +4,6 @@
 #include "shared/filter.h"
 #include "shared/types.h"
 
-#if HAS_FILTER
 // How far along an axis from the centre the sample value u in [0, 1) lies. `sign` is multiplied by the sign
 // of the filter there.
 static inline float filter_offset(__global const float* restrict table, float u, float* sign) {
@@ -17,17 +16,14 @@ static inline float filter_offset(__global const float* restrict table, float u,
   if (lobe) *sign = -*sign;
   return copysign(distances[0] + (at - (float)step) * (distances[1] - distances[0]), side);
 }
-#endif
 
 // Takes a place in a pixel's square to one in the reach of the filter; 1.0 or -1.0 is what a sample there
 // counts.
 static inline float filter_place(__global const float* restrict table, u32 samples, float2* place) {
   float sign = 1.0f;
-#if HAS_FILTER
-  if (samples > 1u)
+  if (HAS_FILTER && samples > 1u)
     *place =
         (float2)(0.5f + filter_offset(table, place->x, &sign), 0.5f + filter_offset(table, place->y, &sign));
-#endif
   return sign;
 }
 

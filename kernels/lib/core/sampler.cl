@@ -14,11 +14,9 @@ static inline float unit_float(u32 bits) { return (float)(bits >> 8) * 0x1p-24f;
 
 // A number in [0, 1) for a dimension of a pixel's sample.
 static inline float sample_1d(uint2 pixel, u32 sample, u32 dimension) {
-#if SAMPLER == SAMPLER_INDEPENDENT
-  return unit_float(hash_u32(sample + hash_pixel(pixel.x, pixel.y, dimension)));
-#else
-  return unit_float(sobol_bits(pixel.x, pixel.y, sample, dimension));
-#endif
+  return unit_float(SAMPLER == SAMPLER_INDEPENDENT
+                        ? hash_u32(sample + hash_pixel(pixel.x, pixel.y, dimension))
+                        : sobol_bits(pixel.x, pixel.y, sample, dimension));
 }
 
 // Two numbers in [0, 1) for the dimensions `dimension` and `dimension` + 1.
@@ -46,18 +44,13 @@ static inline float2 grid_cell(u32 sample, u32 samples, float2 in_cell) {
 // Where a camera sample lies in its pixel, in [0, 1) each way: in the middle for one sample.
 static inline float2 pixel_sample(uint2 pixel, u32 sample, u32 samples) {
   if (samples <= 1u) return (float2)(0.5f);
-#if SAMPLER == SAMPLER_AUTO
-  return hammersley(pixel, sample, samples);
-#elif SAMPLER == SAMPLER_STRATIFIED
+  if (SAMPLER == SAMPLER_AUTO) return hammersley(pixel, sample, samples);
+  if (SAMPLER == SAMPLER_REGULAR) return grid_cell(sample, samples, (float2)(0.5f));
+  if (SAMPLER != SAMPLER_STRATIFIED) return sample_2d(pixel, sample, DIMENSION_PIXEL);
   const u32 seed = hash_pixel(pixel.x, pixel.y, DIMENSION_PIXEL);
   return grid_cell(
       sample, samples,
       (float2)(unit_float(hash_u32(seed + 2u * sample)), unit_float(hash_u32(seed + 2u * sample + 1u))));
-#elif SAMPLER == SAMPLER_REGULAR
-  return grid_cell(sample, samples, (float2)(0.5f));
-#else
-  return sample_2d(pixel, sample, DIMENSION_PIXEL);
-#endif
 }
 
 #endif

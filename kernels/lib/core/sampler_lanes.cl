@@ -61,19 +61,19 @@ typedef struct FourNumbers {
 static inline FourNumbers sample_lanes(const LaneSamples* at, MASK dimension) {
   const LANE_U32 first = AS_LANE_U32(dimension), x = AS_LANE_U32(at->x), y = AS_LANE_U32(at->y),
                  sample = AS_LANE_U32(at->sample);
-#if SAMPLER == SAMPLER_INDEPENDENT
-  const FourNumbers u = {
-      unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first))))),
-      unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first + 1u))))),
-      unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first + 2u))))),
-      unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first + 3u)))))};
-#else
+  if (SAMPLER == SAMPLER_INDEPENDENT) {
+    const FourNumbers u = {
+        unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first))))),
+        unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first + 1u))))),
+        unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first + 2u))))),
+        unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first + 3u)))))};
+    return u;
+  }
   const LANE_U32 seed = hash_lanes(x + hash_lanes(y + hash_lanes(first >> 2)));
   const LANE_U32 order = owen_lanes(reversed_lanes(sample) >> 16, seed) & 0xffffu;
   const LANE_U32 low = SOBOL_PAIR_01, high = SOBOL_PAIR_23;
   const FourNumbers u = {scrambled_lanes(low, seed, 0u), scrambled_lanes(low >> 16, seed, 1u),
                          scrambled_lanes(high, seed, 2u), scrambled_lanes(high >> 16, seed, 3u)};
-#endif
   return u;
 }
 

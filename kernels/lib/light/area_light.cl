@@ -6,7 +6,6 @@
 #include "lib/core/tables.h"
 #include "lib/light/light_sample.cl"
 
-#if HAS_AREA_LIGHTS
 // A rectangle that is seen under less, in steradians, is sampled by area: the difference of angles has few
 // digits left.
 #define LEAST_SOLID_ANGLE 0.01f
@@ -165,6 +164,5 @@ static inline REAL area_light_density(__global const Light* light, REAL3 p, REAL
   const MASK by_angle = MASK_OF(used > 0.0f);
   return select(by_area, 1.0f / select((REAL)(1.0f), used, by_angle), by_angle);
 }
-#endif
 
 #endif

@@ -6,7 +6,6 @@
 #include "lib/light/light_sample.cl"
 #include "lib/path/camera.cl"
 
-#if HAS_ENVIRONMENT
 // Where directions lie in the picture: shares of its width and, from the top, of its height.
 static inline void environment_place(__global const Environment* e, REAL3 d, REAL* x, REAL* y) {
   const REAL right = dot3(d, all3(e->right.xyz)), ahead = dot3(d, all3(e->ahead.xyz));
@@ -107,9 +106,7 @@ static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL
   sample.radiance = environment_along(scene, sample.wi, ALL_LANES);
   return sample;
 }
-#endif
 
-#if HAS_AREA_LIGHTS
 // Directions to a sun, uniform in its disk in the sky.
 static inline LightSamples sample_sun(__global const Light* light, REAL u_x, REAL u_y) {
   const float cap = fabs(light->direction.w);
@@ -122,18 +119,15 @@ static inline LightSamples sample_sun(__global const Light* light, REAL u_x, REA
   sample.radiance = all3(light->color.xyz);
   return sample;
 }
-#endif
 
 // What the rays of `lanes` see, which meet nothing: the environment, or else the background; and suns in
 // front of it. The square of the chord from a sun's middle is twice 1 minus the cosine, with more digits.
 static inline REAL3 sky_along(const Scene* scene, REAL3 d, MASK lanes) {
-#if HAS_SKY
+  if (!HAS_SKY) return background_along(scene->info, d);
   REAL3 light;
-#if HAS_ENVIRONMENT
-  if (scene->info->sees_environment)
+  if (HAS_ENVIRONMENT && scene->info->sees_environment)
     light = environment_along(scene, d, lanes);
   else
-#endif
     light = background_along(scene->info, d);
   for (u32 index = 0; index < scene->info->table_lights; ++index) {
     __global const Light* sun = scene->lights + index;
@@ -143,9 +137,6 @@ static inline REAL3 sky_along(const Scene* scene, REAL3 d, MASK lanes) {
     light = select3(light, add3(light, all3(sun->color.xyz)), inside);
   }
   return light;
-#else
-  return background_along(scene->info, d);
-#endif
 }
 
 #endif

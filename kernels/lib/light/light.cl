@@ -11,13 +11,9 @@
 // extent leave alone.
 static inline LightSamples sample_light(const Scene* scene, u32 index, REAL3 p, REAL u_x, REAL u_y) {
   __global const Light* light = scene->lights + index;
-#if HAS_AREA_LIGHTS
-  if (light->kind == LIGHT_SUN) return sample_sun(light, u_x, u_y);
-#if HAS_ENVIRONMENT
-  if (light->kind == LIGHT_ENVIRONMENT) return sample_environment(scene, u_x, u_y);
-#endif
-  if (light->kind >= LIGHT_RECTANGLE) return sample_area_light(light, p, u_x, u_y);
-#endif
+  if (HAS_AREA_LIGHTS && light->kind == LIGHT_SUN) return sample_sun(light, u_x, u_y);
+  if (HAS_ENVIRONMENT && light->kind == LIGHT_ENVIRONMENT) return sample_environment(scene, u_x, u_y);
+  if (HAS_AREA_LIGHTS && light->kind >= LIGHT_RECTANGLE) return sample_area_light(light, p, u_x, u_y);
   LightSamples sample;
   sample.density = (REAL)(1.0f);
   sample.delta = ALL_LANES;
@@ -49,12 +45,10 @@ static inline LightSamples sample_light(const Scene* scene, u32 index, REAL3 p, 
 }
 
 // What the rays have gathered from fields that glow.
-static inline REAL3 emitted(const SceneRays* rays) {
 #if HAS_GLOW
-  return rays->glow;
+static inline REAL3 emitted(const SceneRays* rays) { return rays->glow; }
 #else
-  return all3((float3)(0.0f));
+static inline REAL3 emitted(const SceneRays* rays) { return all3((float3)(0.0f)); }
 #endif
-}
 
 #endif

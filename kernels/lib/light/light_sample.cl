@@ -13,11 +13,8 @@ typedef struct LightSamples {
 
 // What a sample counts for, times pi BSDF cos: see bsdf_eval() for the units.
 static inline REAL light_weight(const LightSamples* light) {
-#if HAS_AREA_LIGHTS
+  if (!HAS_AREA_LIGHTS) return (REAL)(1.0f);
   return select(1.0f / (M_PI_F * light->density), (REAL)(1.0f), light->delta);
-#else
-  return (REAL)(1.0f);
-#endif
 }
 
 #endif

@@ -55,6 +55,11 @@ NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, 
   light.radiance = scale3(light.radiance, light_weight(&light) / (float)way->rays);
   return light;
 }
+#else
+static inline LightSamples choose_among(const Scene* scene, const LightRay* way, const TileSamples* tile,
+                                        const PathStates* paths, REAL3 p, MASK lanes) {
+  return sample_light(scene, way->light, p, (REAL)(0.5f), (REAL)(0.5f));
+}
 #endif
 
 // The way of the shadow ray `index` from the surfaces of `lanes`, which have 1 a light, or those of the table
@@ -62,20 +67,15 @@ NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, 
 static inline LightSamples choose_way(const Scene* scene, u32 index, const TileSamples* tile,
                                       const PathStates* paths, REAL3 p, MASK lanes) {
   const REAL middle = (REAL)(0.5f);
-#if HAS_AREA_LIGHTS
+  if (!HAS_AREA_LIGHTS) return sample_light(scene, index, p, middle, middle);
   const LightRay way = scene->light_rays[index];
-#if HAS_LIGHT_TREE
-  if (way.light == LIGHT_CHOSEN) return choose_among(scene, &way, tile, paths, p, lanes);
-#endif
+  if (HAS_LIGHT_TREE && way.light == LIGHT_CHOSEN) return choose_among(scene, &way, tile, paths, p, lanes);
   REAL u_x = middle, u_y = middle;
   if (scene->lights[way.light].kind >= LIGHT_RECTANGLE)
     bounce_numbers(tile, paths, way.light, BOUNCE_LIGHT_POINT, way.ray, way.rays, lanes, &u_x, &u_y);
   LightSamples light = sample_light(scene, way.light, p, u_x, u_y);
   light.radiance = scale3(light.radiance, light_weight(&light) / (float)way.rays);
   return light;
-#else
-  return sample_light(scene, index, p, middle, middle);
-#endif
 }
 
 // Sends shadow rays from the surfaces of `lanes` to one light, with what it would do there: Ij (kd n.l +
@@ -88,9 +88,7 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
   const MASK facing = lanes & MASK_OF(dot3(s->ns, light.wi) > 0.0f);
   if (!any_lane(facing)) return;
   REAL3 possible = multiply3(light.radiance, bsdf_eval(scene, &at->bsdf, negate3(rays->d), light.wi, facing));
-#if HAS_RELIEF
-  possible = scale3(possible, terminator(s, light.wi));
-#endif
+  if (HAS_RELIEF) possible = scale3(possible, terminator(s, light.wi));
   if (HAS_PARALLAX) possible = scale3(possible, relief_visibility(scene, s, light.wi, facing));
   // A high power of (r.v) may leave less than the least normal float, which some devices take for zero: not
   // worth a ray.

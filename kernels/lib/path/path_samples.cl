@@ -29,6 +29,10 @@ static inline MASK child_branch(MASK branch, u32 kind) {
   return child;
 }
 
+static inline void start_branch(const PathStates* parent, u32 kind, PathStates* child) {
+  child->branch = child_branch(parent->branch, kind);
+}
+
 // Two numbers for each of `lanes`, whose rays have met a surface: the dimensions `offset` (BOUNCE_...) and
 // the next of that surface, for the light `light` (0 where it is no light's); of the sample `part` of the
 // `parts` into which the pixel's sample is divided.
@@ -48,6 +52,11 @@ NEVER_INLINE void bounce_numbers(const TileSamples* tile, const PathStates* path
 #else
 static inline void set_tile_pixel(TileSamples* tile, u32 lane, uint2 pixel) {}
 static inline void start_branches(PathStates* paths) {}
+static inline void start_branch(const PathStates* parent, u32 kind, PathStates* child) {}
+static inline void bounce_numbers(const TileSamples* tile, const PathStates* paths, u32 light, u32 offset,
+                                  u32 part, u32 parts, MASK lanes, REAL* u_x, REAL* u_y) {
+  *u_x = *u_y = (REAL)(0.5f);
+}
 #endif
 
 #endif

@@ -3,15 +3,11 @@
 // et al. 2014), so a step is never longer than what the field's bound proves empty.
 #ifndef SUNDOG_LIB_SDF_MARCH_CL
 #define SUNDOG_LIB_SDF_MARCH_CL
-#include "generated/sdf.cl"
 #include "lib/sdf/cut.cl"
+#include "lib/sdf/near.cl"
 
 // Rays may step over a surface, and go back to where they crossed it.
-#if SDF_TWO_SIDED || defined(SDF_HAS_NEAR)
-#define SDF_CROSSES 1
-#else
-#define SDF_CROSSES 0
-#endif
+#define SDF_CROSSES (SDF_TWO_SIDED || SDF_HAS_NEAR)
 
 // t counts in lengths of direction, which need not be a unit vector. The pixel's footprint at t is
 // footprint + t * spread, in the same unit.
@@ -40,12 +36,10 @@ typedef struct MarchHits {
 // Distance to the surface on the side that each lane travels on: negative when it is on the wrong side.
 static inline REAL march_estimate(u32 field, REAL3 p, MASK active, MASK inside,
                                   __global const float* restrict q) {
-#if SDF_TWO_SIDED
-  if (any_lane(inside & active)) {
+  if (SDF_TWO_SIDED && any_lane(inside & active)) {
     const REAL d = sdf_signed(field, p, active, q);
     return select(d, -d, inside);
   }
-#endif
   return sdf_distance(field, p, active, q);
 }
 
@@ -57,17 +51,13 @@ __attribute__((noinline)) static REAL called_estimate(u32 field, REAL3 p, MASK a
 
 // The same, with the distance itself in the place of an estimate that is a small part of it. To first order:
 // it is used near the surface only.
-#ifdef SDF_HAS_NEAR
 __attribute__((noinline)) static REAL called_near(u32 field, REAL3 p, MASK active, MASK inside,
                                                   __global const float* restrict q) {
   const REAL d = sdf_near(field, p, active, q);
   return select(d, -d, inside);
 }
-#endif
 static inline REAL surface_distance(const Scene* scene, u32 field, REAL3 p, MASK active, MASK inside) {
-#ifdef SDF_HAS_NEAR
   if (sdf_uneven(field)) return called_near(field, p, active, inside, scene->sdf_parameters);
-#endif
   return called_estimate(field, p, active, inside, scene->sdf_parameters);
 }
 
@@ -147,13 +137,9 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
   // A ray inside an estimated surface continues to where it comes out: depths are too rough to stop before
   // it.
   const MASK to_crossing = smooth ? NO_LANES : rays->inside;
-#if SDF_CROSSES
   MASK overshot = NO_LANES;
   REAL clear_at = first;  // the last point on the side that the ray travels on
-#endif
-#ifdef SDF_HAS_NEAR
   const bool uneven = sdf_uneven(index);
-#endif
   const REAL spread = rays->spread * speed * field->detail,
              footprint = rays->footprint * speed * field->detail;
   const REAL least = (REAL)(field->lower.w), greatest = (REAL)(field->upper.w);
@@ -163,17 +149,12 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
     const REAL threshold = real_clamp(fma(t, spread, footprint), least, greatest);
     hits.steps -= active;
     REAL d = f;  // to the surface
-#ifdef SDF_HAS_NEAR
     const MASK close = uneven ? active & MASK_OF(f < threshold) : NO_LANES;
     if (uneven && (HAS_GLOW || any_lane(close)))
       d = called_near(index, p, active, rays->inside, scene->sdf_parameters);
-#endif
-#if HAS_GLOW
-    hits.nearest = select(hits.nearest, real_min(real_max(d, (REAL)(0.0f)), hits.nearest), active);
-#endif
-#ifdef SDF_HAS_NEAR
-    d = select(f, d, close);
-#endif
+    if (HAS_GLOW)
+      hits.nearest = select(hits.nearest, real_min(real_max(d, (REAL)(0.0f)), hits.nearest), active);
+    if (uneven) d = select(f, d, close);
 
     // The spheres about the last point and this one must touch: else back to where the last one ended.
     const MASK gap = active & relaxed & MASK_OF(f + previous < step);
@@ -182,14 +163,10 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
 
     const REAL near = select(threshold, (REAL)(0.0f), to_crossing);
     const MASK arrived = forward & select(MASK_OF(d < near), MASK_OF(d < wrong * threshold), leaving);
-#if SDF_CROSSES
-#ifdef SDF_HAS_NEAR
-    overshot |= arrived & MASK_OF(d < 0.0f) & (uneven && smooth ? rays->inside | ~leaving : rays->inside);
-#else
-    overshot |= arrived & MASK_OF(d < 0.0f) & rays->inside;
-#endif
-    clear_at = select(clear_at, t, forward & ~arrived);
-#endif
+    if (SDF_CROSSES) {
+      overshot |= arrived & MASK_OF(d < 0.0f) & (uneven && smooth ? rays->inside | ~leaving : rays->inside);
+      clear_at = select(clear_at, t, forward & ~arrived);
+    }
     leaving &= ~(forward & MASK_OF(d >= threshold));
     hits.hit |= arrived;
     // Back to where the surface is a threshold away, so that rays which start here are clear of it.
@@ -205,9 +182,8 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
     slope = select(slope, 0.5f * (slope + measured), forward & MASK_OF(step > 0.0f));
     slope = select(slope, (REAL)(-1.0f), gap);
     REAL proven = real_max(f, 0.5f * threshold);
-#ifdef SDF_HAS_NEAR  // a step over the surface is found by its sign, and taken back to it
-    proven = select(proven, real_max(proven, real_min(0.5f * d, 4.0f * threshold)), close);
-#endif
+    if (uneven)  // a step over the surface is found by its sign, and taken back to it
+      proven = select(proven, real_max(proven, real_min(0.5f * d, 4.0f * threshold)), close);
     const REAL longer = 2.0f * f * rough_inverse(1.0f - slope);
     const REAL remaining = (last - t) * speed;
     const MASK through = forward & ~arrived & MASK_OF(proven >= remaining);
@@ -224,14 +200,13 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
   hits.limited = active;
   hits.t = select(select(hits.t, t, active), last, hits.cut & ~hits.hit);
   hits.hit |= active | hits.cut;
-#if SDF_CROSSES  // depths are no proven bound in every fractal (definition.h)
-  if (any_lane(overshot))
+  // Depths are no proven bound in every fractal (definition.h).
+  if (SDF_CROSSES && any_lane(overshot))
     hits.t = select(hits.t, bisect_crossing(scene, index, rays, clear_at, hits.t, overshot), overshot);
   const MASK out = to_crossing & overshot;
-  if (any_lane(out))
+  if (SDF_CROSSES && any_lane(out))
     hits.t =
         select(hits.t, clear_exit(scene, index, rays, hits.t, last, inverse_speed, hits.threshold, out), out);
-#endif
   if (smooth) {
     const MASK on_surface = hits.hit & ~hits.cut;
     const REAL refined = refine_hit(scene, index, rays, hits.t, inverse_speed, hits.threshold, on_surface);

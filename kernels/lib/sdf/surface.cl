@@ -73,18 +73,22 @@ static inline REAL3 sdf_normal(const Scene* scene, u32 index, REAL3 p, REAL thre
   return any_lane(cut) ? select3(normal, cut_normal(field, p), cut) : normal;
 }
 
+// The point p in the field's own space.
+#ifdef SDF_DEEP
+static inline REAL3 trap_place(const Scene* scene, u32 index, REAL3 p) {
+  return sdf_place(index, p, scene->sdf_parameters);
+}
+#else
+static inline REAL3 trap_place(const Scene* scene, u32 index, REAL3 p) { return p; }
+#endif
+
 // A factor on the material's ambient and diffuse colours at p, linear: what the orbit's trap gives.
 static inline REAL3 sdf_color(const Scene* scene, u32 index, REAL3 p) {
   __global const SdfField* restrict field = scene->sdf_fields + index;
   if (field->color_by == SDF_COLOR_NONE) return all3((float3)(1.0f));
-#ifdef SDF_DEEP
-  const REAL3 place = sdf_place(index, p, scene->sdf_parameters);
-#else
-  const REAL3 place = p;
-#endif
   SdfSample s;
   called_sample(scene, index, &p, &s);
-  return palette_color(scene, field, trap_value(field->color_by, s, place));
+  return palette_color(scene, field, trap_value(field->color_by, s, trap_place(scene, index, p)));
 }
 
 #endif

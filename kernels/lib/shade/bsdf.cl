@@ -20,6 +20,15 @@ typedef struct Bsdfs {
 #endif
 } Bsdfs;
 
+// The light of materials' emission as their textures have it.
+#if HAS_MAPS
+static inline REAL3 mapped_emission(const Bsdfs* bsdf, REAL3 light) {
+  return multiply3(light, bsdf->emission);
+}
+#else
+static inline REAL3 mapped_emission(const Bsdfs* bsdf, REAL3 light) { return light; }
+#endif
+
 // Whether points, in units of the pattern, lie in odd cells of the checker.
 static inline MASK odd_cell(REAL3 p, float frequency) {
   // Half a cell in 2^16 off the lattice, so that a face on a cell's border is one colour.
@@ -99,10 +108,8 @@ static inline Bsdfs make_bsdfs(const Scene* scene, const SurfaceInteractions* s,
 
 // x^e for x in [0, 1]. Whole exponents, which most are, by squaring.
 static inline REAL highlight(REAL x, float e) {
-#if HAS_FRACTIONAL_EXPONENTS
-  if (e != floor(e) || e > GREATEST_WHOLE_EXPONENT)
+  if (HAS_FRACTIONAL_EXPONENTS && (e != floor(e) || e > GREATEST_WHOLE_EXPONENT))
     return select(real_exp(e * real_log(real_max(x, (REAL)(1e-37f)))), (REAL)(0.0f), MASK_OF(x < 1e-37f));
-#endif
   REAL result = (REAL)(1.0f);
   for (u32 bits = (u32)e; bits; bits >>= 1) {
     if (bits & 1u) result *= x;
@@ -118,10 +125,11 @@ static inline REAL highlight_cosine(u32 flags, REAL3 ns, REAL3 wo, REAL3 wi) {
   return -dot3(subtract3(wi, scale3(ns, 2.0f * dot3(ns, wi))), wo);
 }
 
+// Adds the highlights of the surfaces of `lanes`.
 #if HAS_MAPS
-// The highlights of surfaces whose colour and exponent may come from textures, the exponent not whole.
-static inline REAL3 mapped_highlights(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes) {
-  REAL3 sum = all3((float3)(0.0f));
+// Colour and exponent may come from textures, the exponent not whole.
+static inline REAL3 add_highlights(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes,
+                                   REAL3 sum) {
   if (!any_lane(lanes & MASK_OF(greatest3(bsdf->specular) > 0.0f))) return sum;
   REAL cosine = (REAL)(0.0f);
   u32 index;
@@ -132,19 +140,11 @@ static inline REAL3 mapped_highlights(const Scene* scene, const Bsdfs* bsdf, REA
   const REAL x = real_clamp(cosine, (REAL)(0.0f), (REAL)(1.0f));
   const REAL power = real_exp(bsdf->exponent * real_log(real_max(x, (REAL)(1e-37f))));
   const REAL shine = select(power, (REAL)(0.0f), MASK_OF(x < 1e-37f) & MASK_OF(bsdf->exponent > 0.0f));
-  return scale3(bsdf->specular, shine);
+  return add3(sum, scale3(bsdf->specular, shine));
 }
-#endif
-
-// kd (n.l) + ks max(r.v, 0)^beta, or max(n.h, 0)^beta for Blinn, where 0^0 is 1: with a beta of 0 a highlight
-// is the same from everywhere. This is pi times the BSDF times the cosine, in the classical units where a
-// white surface that faces a light of intensity 1 has the radiance 1. Perfect reflection and transmission are
-// not in it. For n.l > 0.
-static inline REAL3 bsdf_eval(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes) {
-  REAL3 sum = scale3(bsdf->diffuse, dot3(bsdf->ns, wi));
-#if HAS_MAPS
-  return add3(sum, mapped_highlights(scene, bsdf, wo, wi, lanes));
-#endif
+#else
+static inline REAL3 add_highlights(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes,
+                                   REAL3 sum) {
   u32 index;
   while (any_lane(lanes)) {
     const MASK mine = take_alike(bsdf->material, &lanes, &index);
@@ -157,6 +157,15 @@ static inline REAL3 bsdf_eval(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, R
   }
   return sum;
 }
+#endif
+
+// kd (n.l) + ks max(r.v, 0)^beta, or max(n.h, 0)^beta for Blinn, where 0^0 is 1: with a beta of 0 a highlight
+// is the same from everywhere. This is pi times the BSDF times the cosine, in the classical units where a
+// white surface that faces a light of intensity 1 has the radiance 1. Perfect reflection and transmission are
+// not in it. For n.l > 0.
+static inline REAL3 bsdf_eval(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes) {
+  return add_highlights(scene, bsdf, wo, wi, lanes, scale3(bsdf->diffuse, dot3(bsdf->ns, wi)));
+}
 
 // How perfect reflection and transmission share the light of surfaces.
 typedef struct SpecularSplits {
@@ -164,6 +173,22 @@ typedef struct SpecularSplits {
   MASK branches, transmits;  // does either; transmits
   REAL eta, cos_i, cos_t;    // index behind over index before; cosines to ns, 1 where nothing bends
 } SpecularSplits;
+
+#if HAS_MAPS
+static inline REAL3 reflection_of(const Bsdfs* bsdf, __global const Material* material) {
+  return bsdf->reflection;
+}
+static inline REAL3 transmission_of(const Bsdfs* bsdf, __global const Material* material) {
+  return bsdf->transmission;
+}
+#else
+static inline REAL3 reflection_of(const Bsdfs* bsdf, __global const Material* material) {
+  return all3(material->reflection.xyz);
+}
+static inline REAL3 transmission_of(const Bsdfs* bsdf, __global const Material* material) {
+  return all3(material->transmission.xyz);
+}
+#endif
 
 static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes) {
   const REAL3 none = all3((float3)(0.0f));
@@ -175,13 +200,8 @@ static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf
     const MASK mine = take_alike(bsdf->material, &lanes, &index);
     __global const Material* material = scene->materials + index;
     if (!(material->flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS))) continue;
-#if HAS_MAPS
-    split.kr = select3(split.kr, bsdf->reflection, mine);
-    split.kt = select3(split.kt, bsdf->transmission, mine);
-#else
-    split.kr = select3(split.kr, all3(material->reflection.xyz), mine);
-    split.kt = select3(split.kt, all3(material->transmission.xyz), mine);
-#endif
+    split.kr = select3(split.kr, reflection_of(bsdf, material), mine);
+    split.kt = select3(split.kt, transmission_of(bsdf, material), mine);
     split.branches |= mine;
     if (material->kind == MATERIAL_DIELECTRIC) dielectric |= mine;
   }

@@ -52,15 +52,22 @@ static inline void spread_reflected(REAL curvature, SceneRays* child) {
   child->cone_spread = fma(2.0f * curvature, child->cone_width, child->cone_spread);
 }
 
-// The cones of transmitted rays, `spread` before: Snell's law for rays beside each other at right angles to
-// the plane of incidence (Coddington's sagittal equation), where the index changes by split->eta.
-static inline void spread_transmitted(REAL curvature, const SpecularSplits* split, REAL spread,
+// The cones of transmitted rays, those of `rays` before: Snell's law for rays beside each other at right
+// angles to the plane of incidence (Coddington's sagittal equation), where the index changes by split->eta.
+static inline void spread_transmitted(REAL curvature, const SpecularSplits* split, const SceneRays* rays,
                                       SceneRays* child) {
-  const REAL inverse = 1.0f / split->eta;
+  const REAL inverse = 1.0f / split->eta, spread = rays->cone_spread;
   const REAL bend = split->cos_t - split->cos_i * inverse;
   const MASK straight = MASK_OF(split->eta == 1.0f);
   child->cone_spread = select(fma(-curvature * bend, child->cone_width, spread * inverse), spread, straight);
 }
+#else
+static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
+  return (REAL)(0.0f);
+}
+static inline void spread_reflected(REAL curvature, SceneRays* child) {}
+static inline void spread_transmitted(REAL curvature, const SpecularSplits* split, const SceneRays* rays,
+                                      SceneRays* child) {}
 #endif
 
 #endif

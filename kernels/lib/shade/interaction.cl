@@ -93,22 +93,48 @@ NEVER_INLINE REAL3 field_colors(const Scene* scene, u32 index, const REAL3* o, c
   const REAL3 p = along3(field_points(instance, *o), t, object_vectors(instance, *d));
   return sdf_color(scene, instance->root, p);
 }
+#else
+static inline REAL3 field_colors(const Scene* scene, u32 index, const REAL3* o, const REAL3* d, REAL t) {
+  return all3((float3)(1.0f));
+}
+#endif
+
+// What interactions hold in some scenes only; without the feature nothing.
+#if HAS_UV
+static inline void set_coordinates(const Scene* scene, const Hits* hits, MASK lanes, SurfaceInteractions* s) {
+  find_coordinates(scene, hits, &s->p, lanes, &s->at);
+}
+#else
+static inline void set_coordinates(const Scene* scene, const Hits* hits, MASK lanes, SurfaceInteractions* s) {
+}
+#endif
+
+#if HAS_MAPS
+static inline void keep_place(const Hits* hits, SurfaceInteractions* s) {
+  s->prim = hits->prim;
+  s->b = hits->u;
+  s->c = hits->v;
+}
+static inline void set_footprint(REAL width, SurfaceInteractions* s) { s->footprint = width; }
+#else
+static inline void keep_place(const Hits* hits, SurfaceInteractions* s) {}
+static inline void set_footprint(REAL width, SurfaceInteractions* s) {}
+#endif
+
+#if HAS_PARALLAX
+static inline void start_on_top(SurfaceInteractions* s) {
+  s->shift = all3((float3)(0.0f));
+  s->sunk = (REAL)(0.0f);
+}
+#else
+static inline void start_on_top(SurfaceInteractions* s) {}
 #endif
 
 // What textures want to know of the hits of `lanes`, at the points s->p.
 static inline void locate(const Scene* scene, const Hits* hits, MASK lanes, SurfaceInteractions* s) {
-#if HAS_UV
-  find_coordinates(scene, hits, &s->p, lanes, &s->at);
-#endif
-#if HAS_MAPS
-  s->prim = hits->prim;
-  s->b = hits->u;
-  s->c = hits->v;
-#endif
-#if HAS_PARALLAX
-  s->shift = all3((float3)(0.0f));
-  s->sunk = (REAL)(0.0f);
-#endif
+  set_coordinates(scene, hits, lanes, s);
+  keep_place(hits, s);
+  start_on_top(s);
 }
 
 // Vertex colours count where the material says so, field colours always.
@@ -135,21 +161,16 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(hits->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
-#if HAS_SPHERE
-    if (instance->shape == SHAPE_SPHERE) s->p = select3(s->p, settle_on_sphere(instance, s->p), mine);
-#endif
-#if HAS_MESH
-    if (instance->shape == SHAPE_MESH) {
+    if (HAS_SPHERE && instance->shape == SHAPE_SPHERE)
+      s->p = select3(s->p, settle_on_sphere(instance, s->p), mine);
+    if (HAS_MESH && instance->shape == SHAPE_MESH) {
       const REAL3 ns = shading_normals(scene, instance, hits, mine, &color, &extent);
       s->ns = select3(s->ns, facing_normals(ns, s->ng, faces->entering, d), mine);
     }
-#endif
-#if HAS_SDF
-    if (instance->shape == SHAPE_SDF) {
+    if (HAS_SDF && instance->shape == SHAPE_SDF) {
       color = select3(color, field_colors(scene, index, &o, &d, hits->t), mine);
       on_field |= mine;
     }
-#endif
   }
   s->color = select3(white, color, has_color(faces, on_field));
   s->offset = real_max(triangle_offset(extent, hits->ng, faces->outward), offset_distance(o, s->p));
@@ -159,13 +180,15 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
 // Sets the footprints of surfaces that rays with these cones have met: the longer axis of the ellipse in
 // which the cone meets the surface (Akenine-Moeller and others 2019, "Texture Level of Detail Strategies for
 // Real-Time Ray Tracing").
-static inline void set_footprints(const SceneRays* rays, REAL t, SurfaceInteractions* s) {
 #if HAS_CONES
+static inline void set_footprints(const SceneRays* rays, REAL t, SurfaceInteractions* s) {
   const REAL cosine = real_max(fabs(dot3(s->ng, rays->d)), (REAL)(0.01f));
-  s->footprint = fabs(fma(t, rays->cone_spread, rays->cone_width)) / cosine;
-#elif HAS_MAPS
-  s->footprint = (REAL)(0.0f);
-#endif
+  set_footprint(fabs(fma(t, rays->cone_spread, rays->cone_width)) / cosine, s);
 }
+#else
+static inline void set_footprints(const SceneRays* rays, REAL t, SurfaceInteractions* s) {
+  set_footprint((REAL)(0.0f), s);
+}
+#endif
 
 #endif

@@ -29,20 +29,53 @@ NEVER_INLINE void spawn(__global const SceneInfo* restrict info, RayStack* stack
   push_rays(stack, rays, paths, lanes_of(bits));
 }
 
+// What rays meet at surfaces: rough ones have facets there, others are their own.
+#if HAS_ROUGH
+static inline Facets met_facets(const Scene* scene, const TileSamples* tile, const PathStates* paths,
+                                const Bsdfs* surface, REAL3 wo, MASK lanes) {
+  REAL u_x, u_y;
+  bounce_numbers(tile, paths, 0u, BOUNCE_DIRECTION, 0u, 1u, lanes, &u_x, &u_y);
+  return make_facets(scene, surface, wo, u_x, u_y, lanes);
+}
+static inline REAL3 reflected_by(const Facets* facets, REAL3 wo) {
+  const Bsdfs* bsdf = &facets->bsdf;
+  return select3(reflected_direction(bsdf, wo), reflect_direction(negate3(wo), bsdf->ns), facets->rough);
+}
+static inline REAL3 transmitted_by(const Facets* facets, const SpecularSplits* split, REAL3 wo) {
+  const Bsdfs* bsdf = &facets->bsdf;
+  const REAL3 bent = refract_direction(negate3(wo), bsdf->ns, split->cos_i, split->cos_t, split->eta);
+  return select3(transmitted_direction(bsdf, split, wo), bent, facets->rough & MASK_OF(split->eta != 1.0f));
+}
+static inline void weigh_by_facets(const Facets* facets, const Bsdfs* surface, REAL3 wi, float side,
+                                   REAL3 color, MASK mends, REAL3* throughput) {
+  *throughput = multiply3(*throughput, facet_weight(facets, surface, wi, side, color, mends));
+}
+#else
+typedef struct Facets {
+  Bsdfs bsdf;
+} Facets;
+static inline Facets met_facets(const Scene* scene, const TileSamples* tile, const PathStates* paths,
+                                const Bsdfs* surface, REAL3 wo, MASK lanes) {
+  const Facets facets = {*surface};
+  return facets;
+}
+static inline REAL3 reflected_by(const Facets* facets, REAL3 wo) {
+  return reflected_direction(&facets->bsdf, wo);
+}
+static inline REAL3 transmitted_by(const Facets* facets, const SpecularSplits* split, REAL3 wo) {
+  return transmitted_direction(&facets->bsdf, split, wo);
+}
+static inline void weigh_by_facets(const Facets* facets, const Bsdfs* surface, REAL3 wi, float side,
+                                   REAL3 color, MASK mends, REAL3* throughput) {}
+#endif
+
 // The children of the surfaces of `lanes`: kr I(reflected) + kt I(transmitted).
 static inline void spawn_children(const Scene* scene, const TileSamples* tile, const SurfaceInteractions* s,
                                   const Bsdfs* surface, const Encounters* met, const SceneRays* rays,
                                   const PathStates* paths, MASK lanes, RayStack* stack, u32* counts) {
   const REAL3 wo = negate3(rays->d);
-#if HAS_ROUGH
-  REAL u_x, u_y;
-  bounce_numbers(tile, paths, 0u, BOUNCE_DIRECTION, 0u, 1u, lanes, &u_x, &u_y);
-  const Facets facets = make_facets(scene, surface, wo, u_x, u_y, lanes);
-  const Bsdfs* bsdf = &facets.bsdf;
-#else
-  const Bsdfs* bsdf = surface;
-#endif
-  const SpecularSplits split = bsdf_specular(scene, bsdf, wo, lanes);
+  const Facets facets = met_facets(scene, tile, paths, surface, wo, lanes);
+  const SpecularSplits split = bsdf_specular(scene, &facets.bsdf, wo, lanes);
   if (!any_lane(split.branches)) return;
   SceneRays child = *rays;
   child.t_min = (REAL)(0.0f);
@@ -50,42 +83,23 @@ static inline void spawn_children(const Scene* scene, const TileSamples* tile, c
   PathStates state = *paths;
   state.depth = paths->depth + 1;
   start_on_surfaces(scene->info, &child, &met->hit, ~s->entering, split.branches);
-#if HAS_CONES
-  const REAL curvature = curvatures(scene, s, split.branches), spread = child.cone_spread;
+  const REAL curvature = curvatures(scene, s, split.branches);
   spread_reflected(curvature, &child);
-#endif
-  child.d = reflected_direction(bsdf, wo);
+  child.d = reflected_by(&facets, wo);
   child.o = along3(s->p, s->offset, s->ng);
   state.throughput = multiply3(paths->throughput, split.kr);
-#if HAS_ROUGH
-  child.d = select3(child.d, reflect_direction(rays->d, bsdf->ns), facets.rough);
   const MASK simple = MASK_OF(split.kt.x + split.kt.y + split.kt.z == 0.0f) | ~split.transmits;
-  state.throughput =
-      multiply3(state.throughput, facet_weight(&facets, surface, child.d, 1.0f, split.kr, simple));
-#endif
-#if HAS_RANDOM
-  state.branch = child_branch(paths->branch, 0u);
-#endif
+  weigh_by_facets(&facets, surface, child.d, 1.0f, split.kr, simple, &state.throughput);
+  start_branch(paths, 0u, &state);
   spawn(scene->info, stack, &child, &state, split.branches, COUNT_REFLECTION, counts);
 
   if (!any_lane(split.transmits)) return;
-#if HAS_CONES
-  spread_transmitted(curvature, &split, spread, &child);
-#endif
-  child.d = transmitted_direction(bsdf, &split, wo);
-#if HAS_ROUGH
-  const REAL3 bent = refract_direction(rays->d, bsdf->ns, split.cos_i, split.cos_t, split.eta);
-  child.d = select3(child.d, bent, facets.rough & MASK_OF(split.eta != 1.0f));
-#endif
+  spread_transmitted(curvature, &split, rays, &child);
+  child.d = transmitted_by(&facets, &split, wo);
   child.o = along3(s->p, -s->offset, s->ng);
   state.throughput = multiply3(paths->throughput, split.kt);
-#if HAS_ROUGH
-  state.throughput =
-      multiply3(state.throughput, facet_weight(&facets, surface, child.d, -1.0f, split.kt, NO_LANES));
-#endif
-#if HAS_RANDOM
-  state.branch = child_branch(paths->branch, 1u);
-#endif
+  weigh_by_facets(&facets, surface, child.d, -1.0f, split.kt, NO_LANES, &state.throughput);
+  start_branch(paths, 1u, &state);
   start_on_hits(scene->info, &child, &met->hit, s->entering, split.transmits);
   enter_behind(met, rays, split.transmits, &child);
   spawn(scene->info, stack, &child, &state, split.transmits, COUNT_REFRACTION, counts);

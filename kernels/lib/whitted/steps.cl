@@ -16,16 +16,13 @@ static inline REAL3 see_glow(const SceneRays* rays, const PathStates* paths) {
 // The world's fog, for rays of `ended` that were not inside anything: what it adds, and what it takes from
 // all behind it.
 static inline REAL3 see_fog(const Scene* scene, const Encounters* met, MASK ended, PathStates* paths) {
-#if HAS_FOG
+  if (!HAS_FOG) return all3((float3)(0.0f));
   const MASK foggy = ended & MASK_OF(met->before == 0);
   const float4 fog = scene->info->fog;
   const REAL clear = select((REAL)(1.0f), real_exp(-fog.w * met->hit.t), foggy);
   const REAL3 light = multiply3(scale3(paths->throughput, 1.0f - clear), all3(fog.xyz));
   paths->throughput = scale3(paths->throughput, clear);
   return light;
-#else
-  return all3((float3)(0.0f));
-#endif
 }
 
 static inline REAL3 see_background(const Scene* scene, const SceneRays* rays, const PathStates* paths,
@@ -45,18 +42,13 @@ static inline REAL3 see_ambient(const Scene* scene, const SceneRays* rays, const
 static inline REAL3 see_emission(const Scene* scene, const PathStates* paths, const SurfaceInteractions* s,
                                  const Bsdfs* bsdf, MASK lanes) {
   REAL3 light = all3((float3)(0.0f));
-#if HAS_EMISSION
+  if (!HAS_EMISSION) return light;
   u32 index;
   for (MASK left = lanes & s->entering; any_lane(left);) {
     const MASK mine = take_alike(s->material, &left, &index);
     light = select3(light, all3(scene->materials[index].emission.xyz), mine);
   }
-  light = multiply3(paths->throughput, light);
-#if HAS_MAPS
-  light = multiply3(light, bsdf->emission);
-#endif
-#endif
-  return light;
+  return mapped_emission(bsdf, multiply3(paths->throughput, light));
 }
 
 // Marks the pixels whose camera rays have hit something.

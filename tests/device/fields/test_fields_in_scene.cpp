@@ -68,7 +68,7 @@ TEST_CASE("a distance field looks like the exact solid") {
   const auto with = [&](const std::string& object) {
     return still_life(fmt::format(R"({{{}, "material": "{}"}})", object, material));
   };
-  for (const DeviceInfo& device : test_devices()) {
+  for (const DeviceInfo& device : picture_devices()) {
     // One program has it all: slow compilers get that one alone.
     if (!is_quick(device) && !(material == "glass" && pair.solid.find("sphere") != std::string::npos))
       continue;
@@ -93,7 +93,7 @@ TEST_CASE("light through a field is absorbed over the length inside, as far as t
   const Cut cut = GENERATE(Cut{R"({"min": [-2, -2, -2], "max": [2, 2, 2]})", 2},
                            Cut{R"({"min": [-2, -2, -0.25], "max": [2, 2, 2]})", 1.25},
                            Cut{R"({"min": [-2, -2, -0.25], "max": [2, 2, 0.5]})", 0.75});
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label() << cut.length) {
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label() << cut.length) {
       const glm::dvec3 seen = scenes::pixel_on(device, absorbing_ball(cut.interval));
       CHECK(seen.x == Approx(std::exp(-0.7 * cut.length)).epsilon(2e-4));
       CHECK(seen.y == 1);  // nothing is lost at interfaces between equal indices
@@ -112,7 +112,7 @@ TEST_CASE("a glass fractal refracts as its exact solid does, and one of the air'
   const std::string ball =
       julia + R"(24, "parameters": {"seed": [0, 0, 0, 0]}})";  // the unit ball's boundary
   const std::string folds = julia + R"(6, "parameters": {"seed": [-0.2, 0.6, 0.2, 0.2]}})";
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     if (!is_quick(device)) return;
     const RenderResult exact =
         scenes::render_on(device, with(R"({"type": "sphere", "material": "glass"})", 1.5));
@@ -135,7 +135,7 @@ TEST_CASE("a glass fractal refracts as its exact solid does, and one of the air'
 TEST_CASE("a camera inside a field sees out through the rest of its medium") {
   SceneDescription scene = absorbing_ball(R"({"min": [-2, -2, -2], "max": [2, 2, 2]})");
   scene.camera.position = {0, 0, 0.5};
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     CHECK(scenes::pixel_on(device, scene).x == Approx(std::exp(-0.7 * 1.5)).epsilon(2e-4));
   });
 }
@@ -155,7 +155,7 @@ TEST_CASE("fields and solids shadow each other") {
   const auto field = [&](double y) { return placed(R"("type": "formula", "distance": "length(p) - 1")", y); };
   const auto ball = [&](double y) { return placed(R"("type": "sphere", "radius": 1)", y); };
   const std::string floor = R"({"type": "plane", "point": [0, -1, 0], "material": "m"})";
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     CHECK(scenes::pixel_on(device, scene(field(3), floor)).x == 0);
     CHECK(scenes::pixel_on(device, scene(ball(3), field(-2))).x == 0);
     CHECK(scenes::pixel_on(device, scene(field(3), field(-2))).x == 0);
@@ -183,7 +183,7 @@ TEST_CASE("a ray in a mirror or behind a pane is as wide as its way is long") {
   const std::string to_pane = R"("position": [0, 0, 3], "target": [0, 0, 4])",
                     to_ball = R"("position": [0, 0, 9], "target": [0, 0, 0])",
                     half = R"("reflection": 0.5, "transmission": 0.5)";
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const double direct = scenes::pixel_on(device, scene(to_ball, R"("transmission": 1)", 50)).x;
     CHECK(direct > 0.1);
     CHECK(scenes::pixel_on(device, scene(to_ball, half, 50)).x == Approx(direct / 2).epsilon(0.05));
@@ -206,7 +206,7 @@ TEST_CASE("a named field placed twice is two of them") {
   };
   const std::string field = R"("type": "field", "field": "ball")",
                     solid = R"("type": "sphere", "radius": 0.5)";
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const Image fields = scenes::render_on(device, scene(head, field, field)).image;
     const Image solids = scenes::render_on(device, scene("{", solid, solid)).image;
     CHECK(compare_images(solids, fields, 0.02).over_tolerance < 20);
@@ -219,7 +219,7 @@ TEST_CASE("a scene with fields has the same bits for every work-group and tile s
           "glow": {"color": [0.1, 0.2, 0.3]}},
          {"type": "fractal", "formula": "menger", "material": "mirror", "transform": [{"scale": 0.3},
           {"translate": [0.9, -0.8, 0.9]}]})");
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     if (!is_quick(device)) return;  // two minutes of Mesa's compiler
     const RenderResult reference = scenes::render_on(device, scene);
     REQUIRE(reference.counts[COUNT_REFRACTION] > 0);
@@ -245,7 +245,7 @@ TEST_CASE("every kind of solid stands beside a field") {
       {"type": "disk", "material": "white", "transform": [{"translate": [3, 3, 0]}]},
       {"type": "torus", "material": "white", "transform": [{"translate": [-3, 3, 0]}]},
       {"type": "round_box", "material": "white", "transform": [{"translate": [3, -3, 0]}]}]})");
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const Image image = scenes::render_on(device, scene).image;
     CHECK(*std::max_element(image.data.begin(), image.data.end()) > 0.3f);
   });

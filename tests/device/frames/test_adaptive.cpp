@@ -59,7 +59,7 @@ double root_mean_square(const Image& a, const Image& b) {
 
 TEST_CASE("adaptive and subsampled frames have the same bits for every tile and work-group") {
   for (const SceneDescription& scene : {adaptive_scene(), subsampled_scene()})
-    on_every_device([&](const DeviceInfo& info) {
+    on_picture_devices([&](const DeviceInfo& info) {
       const RenderResult whole = scenes::render_on(info, scene);
       CHECK(whole.complete);
       RenderOptions options;
@@ -76,7 +76,7 @@ TEST_CASE("a frame in passes has a plain frame's bits where every pixel has ever
   SceneDescription plain = ball_scene(6), passes = plain;
   plain.render.sampler = SAMPLER_SOBOL;
   passes.render.sampling.progressive = true;
-  on_every_device([&](const DeviceInfo& info) {
+  on_picture_devices([&](const DeviceInfo& info) {
     const RenderResult expected = scenes::render_on(info, plain), made = scenes::render_on(info, passes);
     CHECK(same_bits(expected.image, made.image));
     CHECK(expected.counts == made.counts);

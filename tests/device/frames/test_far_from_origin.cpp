@@ -81,7 +81,7 @@ SceneDescription floor_from(double x, double z) {
 
 TEST_CASE("a scene looks the same far from the origin as near it") {
   const SceneDescription near = still_life();
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const Image expected = scenes::render_on(device, near).image;
     for (const dvec3& shift : shifts) {
       CAPTURE(shift.x, shift.y, shift.z);
@@ -104,7 +104,7 @@ TEST_CASE("the plain program draws a scene far from the origin as near it") {
 }
 
 TEST_CASE("an infinite pattern stays sharp far from its origin") {
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const Image expected = scenes::render_on(device, floor_from(0.2, 0.3)).image;
     for (const double periods : {1e3, 1e5}) {
       const double far = periods * 2 * 0.7;
@@ -120,7 +120,7 @@ TEST_CASE("positions in extra images are the world's") {
   RenderOptions options;
   options.aovs = {"position"};
   const SceneDescription near = still_life();
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const RenderResult here = scenes::render_on(device, near, options),
                        there = scenes::render_on(device, moved(near, shift), options);
     const std::vector<float>&a = here.aovs.at("position").data, &b = there.aovs.at("position").data;

@@ -218,7 +218,7 @@ TEST_CASE("a floor has the irradiance over pi, and half behind what covers half 
   light.size = {2, 1};
   light.intensity = 3;
   const double whole = 3 * irradiance(light, {0, 0, 0}, {0, 1, 0}) / pi;
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const int samples : {1, 4})
       for (const bool covered : {false, true}) {
         light.samples = samples;
@@ -235,7 +235,7 @@ TEST_CASE("a floor has the irradiance over pi, and half behind what covers half 
 }
 
 TEST_CASE("a visible lamp shows its radiance from the front, is black behind, and shadows start behind it") {
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const LightType type : {LightType::rectangle, LightType::disk, LightType::sphere}) {
       LightDescription light = lamp(type, {0, 0, 1});
       light.position = {0, 0, 0};

@@ -121,7 +121,7 @@ TEST_CASE("an environment is seen upright, its middle along -z, and turns counte
   SceneDescription scene = scenes::line_of_sight({0, 0, 0}, {0, 0, -1});
   scene.environment = picture(4, 1, 0);
   for (int x = 0; x < 4; ++x) scene.environment.picture.pixel(x, 0)[0] = float(x + 1);
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     CHECK(seen_along(device, scene, {1, 0.2, -1}).x == Approx(3).epsilon(1e-4));
     CHECK(seen_along(device, scene, {-1, 0.2, -1}).x == Approx(2).epsilon(1e-4));
     CHECK(seen_along(device, scene, {1, -0.5, 1}).x == Approx(4).epsilon(1e-4));
@@ -141,7 +141,7 @@ TEST_CASE("an environment is seen upright, its middle along -z, and turns counte
 }
 
 TEST_CASE("in a white environment a white surface is white, and so are mirrors and glass") {
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     SceneDescription scene = floor_scene(8);
     scene.environment = picture(1, 1, 1);
     scene.environment.samples = 16;
@@ -164,7 +164,7 @@ TEST_CASE("one bright pixel of an environment shines as a directional light does
   const dvec3 to(std::sin(zenith) * std::sin(azimuth), std::cos(zenith),
                  -std::sin(zenith) * std::cos(azimuth));
   const double angle = 2 * pi / width * (std::cos(pi * y / height) - std::cos(pi * (y + 1) / height));
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     SceneDescription scene = floor_scene(8);
     scene.environment = picture(width, height, 0, x, y, 1000);
     scene.environment.samples = 64;
@@ -180,7 +180,7 @@ TEST_CASE("a directional light of some degrees across is as bright, is seen, and
   sun.direction = {0, -1, 0};
   sun.angle = 6;
   sun.samples = 8;
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     SceneDescription scene = floor_scene(8);
     scene.lights.push_back(sun);
     CHECK(mean_of(scenes::render_on(device, scene).image) == Approx(1).epsilon(2e-3));

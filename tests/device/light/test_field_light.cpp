@@ -83,7 +83,7 @@ TEST_CASE("ambient light in a corner is less by what the wall takes of five poin
   Wanted corner;
   corner.distance = "min(p.x, p.y)";
   corner.floor = R"(, {"type": "plane", "material": "white", "point": [0, -9, 0]})";
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const double reach : {0.2, 0.5, 0.7}) {
       corner.occlusion = reach;
       CHECK(scenes::pixel_on(device, scene_of(corner)).x == Approx(openness(0.25, reach)).epsilon(2e-3));
@@ -97,7 +97,7 @@ TEST_CASE("a wall's soft shadow is its distance over that of the farthest point 
   Wanted wall;
   wall.lights = R"({"type": "directional", "direction": [0, -1, 0]})";
   wall.floor = floor_below;
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const double hardness : {1.0, 2.0, 9.0}) {
       wall.soft_shadow = hardness;
       CHECK(scenes::pixel_on(device, scene_of(wall)).x ==
@@ -124,7 +124,7 @@ TEST_CASE("a ray that passes a glowing field gathers exp(-d / width) of its colo
   wall.glow = "[0.5, 0.25, 1]";
   wall.lights = R"({"type": "ambient", "intensity": 0})";
   wall.floor = floor_below;
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const double a : {0.1, 0.25}) {
       wall.camera = fmt::format(R"("position": [{0}, 1.2, 0], "target": [{0}, 0, 0])", a);
       const glm::dvec3 seen = scenes::pixel_on(device, scene_of(wall));
@@ -138,7 +138,7 @@ TEST_CASE("a field's colour is the palette at its trap, blended between the stop
   Wanted floor;
   floor.distance = "p.y";
   floor.floor = R"(, {"type": "plane", "material": "white", "point": [0, -9, 0]})";
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const double a : {0.25, 0.45}) {
       floor.camera = fmt::format(R"("position": [{0}, 1.2, 0], "target": [{0}, 0, 0])", a);
       floor.coloring = R"("palette": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "scale": 2, "offset": 0.05)";
@@ -164,7 +164,7 @@ TEST_CASE(
   floor.coloring = R"("palette": [[0, 0, 0], [1, 1, 1]])";  // below a half, twice the trap
   const std::pair<const char*, double> traps[] = {
       {"point", std::hypot(0.45, 0.3, 0.2)}, {"plane", 0.2}, {"axis", std::hypot(0.3, 0.2)}};
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const auto& [by, trap] : traps) {
       floor.color_by = by;
       INFO(by);
@@ -180,7 +180,7 @@ TEST_CASE("repeated, thickened and hollow fields have the sizes that they are gi
     return fmt::format(R"({{"type": "sphere", "center": [{}, 0, 0], "radius": {}, "material": "white"}})", x,
                        radius);
   };
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     if (!is_quick(device)) return;  // a program each
     check_same(
         device,

@@ -44,7 +44,7 @@ double share_beyond(Filter filter, double radius, double x) {
 TEST_CASE("an edge is drawn as the filter's integral, each filter's own, and a plain picture stays plain") {
   for (const Filter filter :
        {Filter::box, Filter::tent, Filter::gaussian, Filter::blackman_harris, Filter::mitchell})
-    on_every_device([&](const DeviceInfo& info) {
+    on_picture_devices([&](const DeviceInfo& info) {
       const SceneDescription scene = edge_scene(filter, 256);
       const Image image = scenes::render_on(info, scene).image;
       const double radius = filter_radius(scene.render);

@@ -38,7 +38,7 @@ TEST_CASE("a highlight of exponent 0 is seen from everywhere, any other not beyo
                           Case{0.5, false, 0.3}, Case{1, true, 0.3 + 0.25 * 0.6});
   const SceneDescription scene = against_the_light(c.exponent, c.blinn);
   CHECK(double(render_plain(compile(scene)).data.at(0)) == Approx(c.light).epsilon(1e-5));
-  for (const DeviceInfo& device : test_devices())
+  for (const DeviceInfo& device : picture_devices())
     DYNAMIC_SECTION(device.label() << ", exponent " << c.exponent << (c.blinn ? ", Blinn" : "")) {
       CHECK(scenes::pixel_on(device, scene).x == Approx(c.light).epsilon(1e-5));
     }

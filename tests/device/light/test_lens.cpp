@@ -50,7 +50,7 @@ Spread spread_along(const Image& image, double x, double y) {
 TEST_CASE("the circle of confusion is as large as geometry has it, and what is at the focus is sharp") {
   SceneDescription scene = ball_ahead();
   const double scale = pixels_a_unit(scene), ball = 0.02 / 8 * scale;
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const Spread sharp = spread_along(scenes::render_on(device, scene).image, 1, 0);
     SceneDescription blurred = scene;
     blurred.camera.lens = {.radius = 0.3, .focus = 4};
@@ -83,7 +83,7 @@ TEST_CASE("a moving camera makes of an edge a ramp as wide as it moves") {
                 glm::translate(glm::dmat4(1), {50, 0, -6}));  // from x = 0 to the right, at the depth 5
   scene.camera.moves_to = View{{0.5, 0, 0}, {0.5, 0, -5}};
   const double ramp = 0.5 / 5 * pixels_a_unit(scene);
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const Image image = scenes::render_on(device, scene).image;
     for (int column = 0; column < size; ++column) {
       double mean = 0;

@@ -27,7 +27,7 @@ TEST_CASE("a light falls off by 1 / (c + l d + q d^2), d from the surface") {
   LightDescription light;
   light.position = {3, 4, 0};
   light.falloff = {0.5, 0.25, 0.1};
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     CHECK(scenes::pixel_on(device, floor_under(light)).x ==
           Approx(0.8 / (0.5 + 0.25 * 5 + 0.1 * 25)).epsilon(1e-5));
   });
@@ -39,7 +39,7 @@ TEST_CASE("a spot's light is full within the inner cone, none beyond the outer, 
   light.position = {0, 2, 0};
   light.inner_angle = 20;
   light.outer_angle = 40;
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const double degrees : {0.0, 19.0, 25.0, 33.0, 41.0}) {
       const double angle = glm::radians(degrees), inner = std::cos(glm::radians(20.0)),
                    outer = std::cos(glm::radians(40.0));
@@ -53,7 +53,7 @@ TEST_CASE("a spot's light is full within the inner cone, none beyond the outer, 
 
 TEST_CASE("a light behind a surface does not shine on it, nor one whose way is blocked behind half of it") {
   LightDescription light;
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     light.position = {3, -4, 0};
     CHECK(scenes::pixel_on(device, floor_under(light)).x == 0);
     light.position = {3, 4, 0};
@@ -78,7 +78,7 @@ TEST_CASE("total reflection of a plain material returns kr + kt") {
   scene.image.background_bottom = {1, 1, 1};  // the camera's side of the surface reflects to below
   scene.image.background_top = {1, 1, 1};
   scenes::place(scene, PlaneShape{}, glass);
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const dvec3 seen = scenes::pixel_on(device, scene);
     CHECK(seen.x == Approx(0.8).epsilon(1e-5));
     CHECK(seen.y == Approx(0.3).epsilon(1e-5));
@@ -93,7 +93,7 @@ TEST_CASE("a ray ends when its throughput is below the cutoff, not sooner") {
   scenes::place(scene, PlaneShape{}, mirror);
   scenes::place(scene, PlaneShape{}, mirror, glm::translate(glm::dmat4(1), {0, 1, 0}));
   scene.render.max_depth = 12;
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     scene.render.cutoff = 0.1;  // 1, 0.5, 0.25 and 0.125 continue
     CHECK(scenes::pixel_on(device, scene).x == Approx(1.875).epsilon(1e-5));
     scene.render.cutoff = 0.2;
@@ -110,7 +110,7 @@ TEST_CASE("a camera inside of several media is in the innermost, and out of them
     scenes::place(scene, SphereShape{1.0 + i}, scenes::add_dielectric(scene, 1, absorption));
   }
   scene.image.background_bottom = scene.image.background_top = {1, 1, 1};
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const dvec3 seen = scenes::pixel_on(device, scene);
     for (int i = 0; i < 3; ++i) CHECK(seen[i] == Approx(std::exp(-0.3 - 0.1 * i)).epsilon(1e-5));
   });
@@ -133,7 +133,7 @@ TEST_CASE("extra images hold depth along the view, the blended normal and the al
   scenes::place(scene, MeshShape{0}, white);
   RenderOptions options;
   options.aovs = {"depth", "normal", "albedo"};
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const RenderResult result = scenes::render_on(device, scene, options);
     for (const float depth : result.aovs.at("depth").data) REQUIRE(depth == Approx(3).epsilon(1e-5));
     const std::vector<float>&normals = result.aovs.at("normal").data, &albedo = result.aovs.at("albedo").data;

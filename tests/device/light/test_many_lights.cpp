@@ -49,7 +49,7 @@ Mean mean_of(const Image& image) {
 }  // namespace
 
 TEST_CASE("chosen lights bring as much light as all of them do") {
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     SceneDescription scene = floor_under(40);
     const RenderResult all = scenes::render_on(device, scene);
     for (const int samples : {1, 8}) {
@@ -71,7 +71,7 @@ TEST_CASE("a thousand lights need no more rays than are asked for") {
   LightDescription point;
   point.position = {0, 2, 0};
   scene.lights.push_back(point);  // sends one of its own
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const RenderResult result = scenes::render_on(device, scene);
     CHECK(result.counts[COUNT_SHADOW] <= 144u * 5u);
     CHECK(mean_of(result.image).value > 1);

@@ -68,7 +68,7 @@ TEST_CASE("a matched-index interface vanishes to the last bit") {
   scenes::place(filled, SphereShape{0.8}, nothing);
   scenes::place(filled, BoxShape{{0.5, 0.5, 0.5}}, nothing, at({0.6, 0.2, 0.5}));
   scenes::place(filled, TorusShape{1, 0.3}, nothing, at({0, 0.3, 0}));
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     REQUIRE(scenes::render_on(device, bare).image.data == scenes::render_on(device, filled).image.data);
   });
 }
@@ -79,7 +79,7 @@ TEST_CASE("a solid inside one of the same medium vanishes") {
   scenes::place(bare, SphereShape{0.9}, glass);
   SceneDescription filled = bare;
   scenes::place(filled, SphereShape{0.4}, glass, at({0.1, 0.2, 0.1}));
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     // A ray that crosses what it cannot see waits for others, so a pixel's sum may be made in another order.
     const std::vector<float> without = scenes::render_on(device, bare).image.data,
                              with = scenes::render_on(device, filled).image.data;
@@ -95,7 +95,7 @@ TEST_CASE("where solids overlap the higher priority wins, whatever was entered f
   const bool swapped = GENERATE(false, true);
   // Echoes between the faces add less than the tolerance: each is the product of two reflectances.
   const auto near = [](double expected) { return Approx(expected).margin(6e-3); };
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     CHECK(scenes::pixel_on(device, looking_through(1.5, 2, 1.2, 1, swapped)).x ==
           near(passed({1, 1.5, 1.2, 1})));
     CHECK(scenes::pixel_on(device, looking_through(1.5, 1, 1.2, 2, swapped)).x ==
@@ -111,7 +111,7 @@ TEST_CASE("priority decides how far each medium reaches") {
     scene.media[1].absorption = dvec3(0.5);
     scene.media[2].absorption = dvec3(0.125);
     const double expected = first_wins ? std::exp(-0.5 * 4 - 0.125 * 2) : std::exp(-0.5 * 2 - 0.125 * 4);
-    on_every_device([&](const DeviceInfo& device) {
+    on_picture_devices([&](const DeviceInfo& device) {
       CHECK(scenes::pixel_on(device, scene).x == Approx(expected).epsilon(1e-5));
     });
   }
@@ -121,7 +121,7 @@ TEST_CASE("without priorities the solid entered last counts") {
   SceneDescription scene = looking_through(1, 0, 1, 0, GENERATE(false, true));
   scene.media[1].absorption = dvec3(0.5);
   scene.media[2].absorption = dvec3(0.125);
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     CHECK(scenes::pixel_on(device, scene).x == Approx(std::exp(-0.5 * 2 - 0.125 * 4)).epsilon(1e-5));
   });
 }
@@ -136,7 +136,7 @@ TEST_CASE("media work in any order of the objects in the file") {
   scenes::place(scene, SphereShape{0.8}, water, at({0.1, -0.1, 0.9}));
   scenes::place(scene, SphereShape{0.2}, air, at({0.1, -0.1, 1.1}));
   std::vector<Object> objects = scene.objects;
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const std::vector<float> reference = scenes::render_on(device, scene).image.data;
     for (int turn = 0; turn < 4; ++turn) {
       std::rotate(objects.begin(), objects.begin() + 1, objects.end());

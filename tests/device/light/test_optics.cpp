@@ -35,13 +35,13 @@ TEST_CASE("Snell: a ray into a half-space of glass meets the small disk where th
   scenes::place(scene, PlaneShape{}, glass);
   SECTION("at the predicted place") {
     scenes::place(scene, DiskShape{1e-4, 0}, glow, at({meets, -depth, 0}));
-    on_every_device([&](const DeviceInfo& device) {
+    on_picture_devices([&](const DeviceInfo& device) {
       REQUIRE(scenes::pixel_on(device, scene).x == Approx(1 - fresnel(incidence, n)).epsilon(1e-5));
     });
   }
   SECTION("and not beside it") {
     scenes::place(scene, DiskShape{1e-4, 0}, glow, at({meets + 3e-4, -depth, 0}));
-    on_every_device([&](const DeviceInfo& device) { REQUIRE(scenes::pixel_on(device, scene).x == 0.0); });
+    on_picture_devices([&](const DeviceInfo& device) { REQUIRE(scenes::pixel_on(device, scene).x == 0.0); });
   }
 }
 
@@ -50,7 +50,7 @@ TEST_CASE("Fresnel at normal incidence reflects ((n - 1) / (n + 1))^2") {
     SceneDescription scene = scenes::line_of_sight({0, 5, 0}, {0, 0, 0}, {0, 0, 1});
     scenes::place(scene, PlaneShape{}, scenes::add_dielectric(scene, n));
     scenes::place(scene, PlaneShape{}, scenes::add_glow(scene, {1, 1, 1}), at({0, 10, 0}));
-    on_every_device([&](const DeviceInfo& device) {
+    on_picture_devices([&](const DeviceInfo& device) {
       REQUIRE(scenes::pixel_on(device, scene).x == Approx(normal_reflectance(n)).epsilon(1e-5));
     });
   }
@@ -64,7 +64,7 @@ TEST_CASE("beyond the critical angle everything is reflected, below it the Fresn
     scenes::place(scene, PlaneShape{}, scenes::add_dielectric(scene, n));
     scenes::place(scene, PlaneShape{}, scenes::add_glow(scene, {1, 1, 1}), at({0, -4, 0}));
     const double expected = angle > critical ? 1.0 : fresnel(angle, 1 / n);
-    on_every_device([&](const DeviceInfo& device) {
+    on_picture_devices([&](const DeviceInfo& device) {
       REQUIRE(scenes::pixel_on(device, scene).x == Approx(expected).epsilon(1e-4));
     });
   }
@@ -75,7 +75,7 @@ TEST_CASE("Beer-Lambert: a slab of matched index absorbs exp(-a d)") {
   SceneDescription scene = scenes::line_of_sight({0, 0, 9}, {0, 0, 0});
   scene.image.background_bottom = scene.image.background_top = {1, 1, 1};
   scenes::place(scene, BoxShape{{3, 3, 0.75}}, scenes::add_dielectric(scene, 1, a));
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const dvec3 seen = scenes::pixel_on(device, scene);
     for (int i = 0; i < 3; ++i) REQUIRE(seen[i] == Approx(std::exp(-a[i] * 1.5)).epsilon(1e-5));
   });
@@ -92,7 +92,7 @@ TEST_CASE("Beer-Lambert: a light and the camera inside the medium") {
   scene.lights.push_back(point);
   scenes::place(scene, SphereShape{20}, scenes::add_dielectric(scene, 1.2, a));
   scenes::place(scene, DiskShape{1, 0}, scenes::add_white(scene));
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const dvec3 seen = scenes::pixel_on(device, scene);
     for (int i = 0; i < 3; ++i) REQUIRE(seen[i] == Approx(0.8 * std::exp(-a[i] * (2 + 5))).epsilon(1e-5));
   });
@@ -109,7 +109,7 @@ TEST_CASE("a light inside a medium shines out through the interface, filtered") 
   scene.lights.push_back(point);
   scenes::place(scene, SphereShape{1}, scenes::add_dielectric(scene, n, dvec3(a)), at({0, 4, 0}));
   scenes::place(scene, PlaneShape{}, scenes::add_white(scene));
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     REQUIRE(scenes::pixel_on(device, scene).x ==
             Approx(std::exp(-a) * (1 - normal_reflectance(n))).epsilon(1e-4));
   });
@@ -122,7 +122,7 @@ TEST_CASE("mirror in mirror: the glow is met once for each level, to the exact d
     const int mirror = scenes::add_mirror(scene, 1, {1, 0.5, 0.25});
     scenes::place(scene, PlaneShape{}, mirror);
     scenes::place(scene, PlaneShape{}, mirror, at({0, 2, 0}));
-    on_every_device([&](const DeviceInfo& device) {
+    on_picture_devices([&](const DeviceInfo& device) {
       const RenderResult result = scenes::render_on(device, scene);
       REQUIRE(result.image.data[0] == static_cast<float>(depth));
       REQUIRE(result.counts[COUNT_REFLECTION] == static_cast<std::uint64_t>(depth - 1));
@@ -136,7 +136,7 @@ TEST_CASE("a mirror returns its share of the energy at each bounce") {
   SceneDescription scene = scenes::line_of_sight({0, 3, 3}, {0, 0, 0});
   scene.image.background_bottom = scene.image.background_top = {1, 1, 1};
   scenes::place(scene, PlaneShape{}, scenes::add_mirror(scene, 0.6));
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     REQUIRE(scenes::pixel_on(device, scene).x == Approx(0.6).epsilon(1e-6));
   });
 }
@@ -147,7 +147,7 @@ TEST_CASE("in a furnace of white light clear glass is as white, whatever the ind
     scene.image.background_bottom = scene.image.background_top = {1, 1, 1};
     scene.render.max_depth = 30;
     scenes::place(scene, SphereShape{1}, scenes::add_dielectric(scene, n));
-    on_every_device([&](const DeviceInfo& device) {
+    on_picture_devices([&](const DeviceInfo& device) {
       REQUIRE(scenes::pixel_on(device, scene).x == Approx(1.0).epsilon(2e-5));
     });
   }

@@ -81,10 +81,6 @@ int add_room(SceneDescription& scene) {
   return static_cast<int>(scene.meshes.size()) - 1;
 }
 
-/// Kernels that trace paths take long to compile on some devices, one for each kind of scene: most tests are
-/// of the first device alone.
-void on_first_device(const auto& body) { body(test_devices().front()); }
-
 }  // namespace
 
 TEST_CASE(
@@ -94,7 +90,7 @@ TEST_CASE(
   const double x = a / h, y = b / h, rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
   const double rectangle = 4 / (2 * pi) * (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry));
   const double ball = 0.3 * 0.3 / (1.1 * 1.1);
-  on_first_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const bool visible : {true, false})
       for (const u32 strategy : {STRATEGY_MIS, STRATEGY_LIGHTS, STRATEGY_SURFACES}) {
         if (!visible && strategy == STRATEGY_SURFACES) continue;  // then rays cannot meet them
@@ -123,7 +119,7 @@ TEST_CASE("in a white furnace white things are white for paths too, whether the 
     return mirror;
   };
   const auto glass = [](SceneDescription& scene) { return scenes::add_dielectric(scene, 1.5); };
-  on_first_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const bool chosen : {false, true}) {
       const auto seen = [&](auto material) {
         SceneDescription scene = path_scene({0, 0, 4}, {0.3, 0.2, 0});
@@ -150,7 +146,7 @@ TEST_CASE("in a white furnace white things are white for paths too, whether the 
 
 TEST_CASE("a closed room that shines has the sum of all its reflections, with and without roulette") {
   const double albedo = 0.7, shine = 0.3;
-  on_first_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const int roulette : {1, 5, 65}) {
       SceneDescription scene = path_scene({0.2, -0.1, 0.3}, {0.9, 0.4, -0.2}, 32);
       scene.render.roulette = roulette;
@@ -185,7 +181,7 @@ TEST_CASE("light from within nested media is absorbed by each, and loses radianc
     scenes::place(scene, PlaneShape{}, add_matte(scene, 0.5), glm::translate(glm::dmat4(1), {0, -3, 0}));
     return scene;
   };
-  on_first_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const double kept = std::exp(-0.5 * (1 - r) - 0.3);
     check_mean(mean_on(device, nested(1, {0, 0, 9}, {0, 0, 0})), radiance * kept);
     const double n = 1.5, through = 4 * n / ((n + 1) * (n + 1));
@@ -204,7 +200,7 @@ TEST_CASE("light from within nested media is absorbed by each, and loses radianc
 
 TEST_CASE("paths choose among lamps, points, suns and an environment, and add up all of them") {
   const double albedo = 0.8;
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     SceneDescription scene = path_scene({0, 0.6, 3}, {0, 0, 0}, 64);
     scenes::place(scene, PlaneShape{}, add_matte(scene, albedo));
     scene.environment.type = EnvironmentType::gradient;
@@ -233,7 +229,7 @@ TEST_CASE("a mesh that shines lights a plane as the rectangle of its shape does,
   const double a = 0.6, b = 0.35, h = 0.8, albedo = 0.6;
   const double x = a / h, y = b / h, rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
   const double seen = 4 / (2 * pi) * (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry));
-  on_first_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const char* integrator : {"path", "whitted"})
       for (const double mirrored : {1.0, -1.0}) {
         SceneDescription scene = path_scene({0, 0.6, 3}, {0, 0, 0});

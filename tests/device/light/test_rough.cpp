@@ -36,7 +36,7 @@ int glass(SceneDescription& scene) { return scenes::add_dielectric(scene, 1.5); 
 }  // namespace
 
 TEST_CASE("in a white furnace rough metal is white at every roughness, as its lost light is given back") {
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const double roughness : {0.2, 0.5, 0.8, 1.0})
       for (const dvec3& at : {dvec3(0.1, 0, 0), dvec3(0.85, 0.2, 0)}) {
         INFO(roughness << " at " << at.x);
@@ -47,7 +47,7 @@ TEST_CASE("in a white furnace rough metal is white at every roughness, as its lo
 }
 
 TEST_CASE("in a white furnace rough glass loses at most what facets hide, and never gains") {
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     for (const double roughness : {0.1, 0.3, 0.6}) {
       const double mean = mean_of(scenes::render_on(device, furnace(glass, roughness, {0.3, 0.1, 0})).image);
       INFO(roughness << ": " << mean);
@@ -69,7 +69,7 @@ TEST_CASE("a rough floor shows a lamp blurred by its roughness, a smooth one sha
                   glm::translate(glm::dmat4(1), {0, 1, -3}));
     return mean_of(scenes::render_on(device, scene).image);
   };
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     CHECK(seen(device, 0, 0) == Approx(1).epsilon(1e-4));
     CHECK(seen(device, 0, 0.8) == 0);
     const double middle = seen(device, 0.4, 0), side = seen(device, 0.4, 0.8);

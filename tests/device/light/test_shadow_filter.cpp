@@ -52,7 +52,7 @@ TEST_CASE("an absorbing world dims what lies between a light and an opaque scene
   scenes::place(shaded, SphereShape{0.1}, scenes::add_white(shaded),
                 glm::translate(glm::dmat4(1), {0.375, 0.5, 0}));
   check_dimmed(plain_pixel(scene));
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     check_dimmed(scenes::pixel_on(device, scene));
     CHECK(scenes::pixel_on(device, shaded) == glm::dvec3(0));
   });
@@ -64,7 +64,7 @@ TEST_CASE("a medium whose surface stops shadow rays dims the lights inside of it
   scene.materials[static_cast<std::size_t>(glass)].shadow_opaque = true;
   scenes::place(scene, BoxShape{{4, 4, 4}}, glass);
   check_dimmed(plain_pixel(scene));
-  on_every_device([&](const DeviceInfo& device) { check_dimmed(scenes::pixel_on(device, scene)); });
+  on_picture_devices([&](const DeviceInfo& device) { check_dimmed(scenes::pixel_on(device, scene)); });
 }
 
 TEST_CASE("a pane of glass at any slant dims a light by what its two faces reflect") {
@@ -78,7 +78,7 @@ TEST_CASE("a pane of glass at any slant dims a light by what its two faces refle
   sun.direction = {std::sin(glm::radians(degrees)), -std::cos(glm::radians(degrees)), 0};
   scene.lights.push_back(sun);
   const double passed = 1 - reflectance(degrees, 1.5);
-  for (const DeviceInfo& device : test_devices())
+  for (const DeviceInfo& device : picture_devices())
     DYNAMIC_SECTION(device.label() << ", " << degrees << " degrees") {
       CHECK(scenes::pixel_on(device, scene).x ==
             Approx(std::cos(glm::radians(degrees)) * passed * passed).epsilon(1e-4));
@@ -94,7 +94,7 @@ TEST_CASE("a directional light along an axis is stopped by what stands in its wa
   sun.type = LightType::directional;
   sun.direction = {0, -1, 0};  // towards it: (-0, 1, -0)
   scene.lights.push_back(sun);
-  on_every_device([&](const DeviceInfo& device) { CHECK(scenes::pixel_on(device, scene).x == 0); });
+  on_picture_devices([&](const DeviceInfo& device) { CHECK(scenes::pixel_on(device, scene).x == 0); });
 }
 
 TEST_CASE("a shadow ray that passes too many panes is given up, and counted") {
@@ -111,7 +111,7 @@ TEST_CASE("a shadow ray that passes too many panes is given up, and counted") {
       scenes::place(scene, DiskShape{1, 0}, clear, glm::translate(glm::dmat4(1), {0, 1 + 0.1 * i, 0}));
     return scene;
   };
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const RenderResult few = scenes::render_on(device, under(60)),
                        many = scenes::render_on(device, under(80));
     CHECK(few.image.data.at(0) == Approx(1).epsilon(1e-5));

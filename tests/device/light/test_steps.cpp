@@ -68,7 +68,7 @@ TEST_CASE("vertex colours are blended by the weights of their own corners") {
   SceneDescription scene = one_triangle();
   scene.meshes.front().colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   material_of(scene).vertex_color = true;
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label()) {
       SceneDescription glowing = scene;
       material_of(glowing).ambient = {1, 1, 1};
       check_color(device, glowing, weights);
@@ -87,7 +87,7 @@ TEST_CASE("vertex normals are blended by the weights of their own corners, and t
   SceneDescription scene = one_triangle(to_light);
   scene.meshes.front().normals = {a, b, c};
   material_of(scene).diffuse = {1, 1, 1};
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label()) {
       check_color(device, scene, dvec3(glm::dot(normal, to_light)));
       SceneDescription behind = scene;  // seen and lit from the other side
       behind.camera.position.z = -5;
@@ -109,7 +109,7 @@ TEST_CASE("highlights are about the blended normal, not the triangle's") {
       material_of(scene).blinn = blinn;
       // The viewer is at angle 0, the mirrored light at 2 tilt - light_angle, the half vector between them.
       const double angle = blinn ? 0.5 * light_angle - tilt : 2 * tilt - light_angle;
-      for (const DeviceInfo& device : test_devices())
+      for (const DeviceInfo& device : picture_devices())
         DYNAMIC_SECTION(device.label() << ", " << light_angle << (blinn ? ", Blinn" : ", Phong")) {
           check_color(device, scene, std::pow(std::cos(angle), 8) * material_of(scene).specular);
         }
@@ -123,7 +123,7 @@ TEST_CASE("near and far clip by depth along the view, the same in every pixel") 
     float seen;
   };
   const Case c = GENERATE(Case{1.99, 2, 9, 0}, Case{2.01, 2, 9, 1}, Case{2.99, 0, 3, 1}, Case{3.01, 0, 3, 0});
-  for (const DeviceInfo& device : test_devices())
+  for (const DeviceInfo& device : picture_devices())
     DYNAMIC_SECTION(device.label() << ", " << c.depth << " of " << c.near << " to " << c.far) {
       const Image image = scenes::render_on(device, wall_at(c.depth, c.near, c.far)).image;
       for (std::size_t i = 0; i < image.data.size(); i += 4) REQUIRE(image.data[i] == Approx(c.seen));
@@ -137,7 +137,7 @@ TEST_CASE("fog takes exp(-density d) of what lies behind it and adds the rest in
   scene.image.background_bottom = scene.image.background_top = {1, 1, 1};
   material_of(scene).ambient = glow;
   const double clear = std::exp(-0.13 * 5);
-  for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label()) {
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label()) {
       check_color(device, scene, clear * glow + (1 - clear) * fog);
       SceneDescription away = scene;  // nothing is behind it: all fog
       away.camera.target = met + dvec3(0, 0, 9);
@@ -153,7 +153,7 @@ TEST_CASE("the background goes from bottom to top with the sine of the elevation
     scene.image.background_bottom = bottom;
     scene.image.background_top = top;
     const double share = 0.5 + 0.5 * std::sin(elevation);
-    for (const DeviceInfo& device : test_devices()) DYNAMIC_SECTION(device.label() << elevation) {
+    for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label() << elevation) {
         check_color(device, scene, (1 - share) * bottom + share * top);
       }
   }

@@ -33,17 +33,10 @@ void cut(const Piece& whole, std::mt19937& random, std::vector<Piece>& pieces) {
   cut(second, random, pieces);
 }
 
-/// The devices that have vectors: the others are slow, above all their compilers. All where there is none.
-std::vector<DeviceInfo> quick_devices() {
-  std::vector<DeviceInfo> devices = test_devices();
-  std::erase_if(devices, [](const DeviceInfo& device) { return device.native_vector_width <= 1; });
-  return devices.empty() ? test_devices() : devices;
-}
-
-/// Calls body(device, tracer) for each tracer of the quick devices.
+/// Calls body(device, tracer) for each tracer.
 template <class Body>
 void with_each_tracer(Body body) {
-  for (const DeviceInfo& device : quick_devices())
+  for (const DeviceInfo& device : picture_devices())
     for (const Tracer tracer : {Tracer::wide, Tracer::compact}) {
       if (device.native_vector_width <= 1 && tracer == Tracer::wide) continue;
       DYNAMIC_SECTION(device.label() << (tracer == Tracer::wide ? ", wide" : ", compact")) {
@@ -161,7 +154,7 @@ TEST_CASE("faces just before the nearest hit, by rounding, are crossed with it")
                            : place == 1 ? dvec3(0, 0, 0.2)
                                         : dvec3(0, 0.1, -0.2);
   }
-  for (const DeviceInfo& device : quick_devices()) DYNAMIC_SECTION(device.label() << ", place " << place) {
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label() << ", place " << place) {
       CHECK(scenes::render_on(device, parts).counts[COUNT_STRAY_EXIT] == 0);
     }
 }
@@ -203,7 +196,7 @@ TEST_CASE("where two media touch there is one interface") {
   if (GENERATE(false, true)) std::reverse(scene.objects.begin(), scene.objects.end());
   scenes::place(scene, DiskShape{1, 0}, scenes::add_glow(scene, {1, 1, 1}),
                 glm::rotate(at({0, 0, -5}), glm::radians(90.0), dvec3(1, 0, 0)));
-  for (const DeviceInfo& device : quick_devices()) DYNAMIC_SECTION(device.label()) {
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label()) {
       CHECK(scenes::pixel_on(device, scene).x ==
             Approx(passed(1, 1.5) * passed(1.5, 1.2) * passed(1.2, 1)).epsilon(1e-5));
     }
@@ -220,7 +213,7 @@ TEST_CASE("a film between touching solids, thinner than rounding, is entered and
   place_pieces(scene, {{{-5, -4, -3}, {5, 5, -thickness}}}, second);
   scenes::place(scene, DiskShape{1, 0}, scenes::add_glow(scene, {1, 1, 1}),
                 glm::rotate(at({0, 0, -5}), glm::radians(90.0), dvec3(1, 0, 0)));
-  for (const DeviceInfo& device : quick_devices()) DYNAMIC_SECTION(device.label()) {
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label()) {
       CHECK(scenes::pixel_on(device, scene).x ==
             Approx(passed(1, 1.5) * passed(1.5, 1.2) * passed(1.2, 1)).epsilon(1e-5));
     }
@@ -235,7 +228,7 @@ TEST_CASE("where a clear face and a shining one touch, the shining one is seen")
   scene.materials[static_cast<std::size_t>(swapped ? one : other)].ambient = {0.5, 0.25, 0.125};
   place_pieces(scene, {{{-5, -4, 0}, {5, 5, 2}}}, swapped ? other : one);
   place_pieces(scene, {{{-5, -4, -3}, {5, 5, 0}}}, swapped ? one : other);
-  for (const DeviceInfo& device : quick_devices()) DYNAMIC_SECTION(device.label() << swapped) {
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label() << swapped) {
       const dvec3 light = scenes::pixel_on(device, scene);
       // Its far face shines too; the other box, or it, absorbs.
       const double both = passed(1, 1.2) * std::exp(swapped ? -0.2 : 0) * (1 + std::exp(swapped ? 0 : -0.3));
@@ -253,7 +246,7 @@ TEST_CASE("every device crosses faces that lie in one place once") {
                glass);
   scenes::place(scene, PlaneShape{}, scenes::add_glow(scene, {1, 1, 1}),
                 glm::rotate(at({0, 0, -5}), glm::radians(90.0), dvec3(1, 0, 0)));
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     CHECK(scenes::pixel_on(device, scene).x == Approx(0.96 * 0.96).epsilon(1e-5));
   });
 }
@@ -269,7 +262,8 @@ TEST_CASE("light that comes slantwise through touching media bends as their indi
   place_pieces(halves, {{{-9, -2, -9}, {9, 0, 9}}, {{-9, 0, -9}, {9, 2, 9}}}, glass);
   for (const double height : {6.0, 2.01}) {
     whole.camera.position.y = halves.camera.position.y = height;
-    for (const DeviceInfo& device : quick_devices()) DYNAMIC_SECTION(device.label() << ", from " << height) {
+    for (const DeviceInfo& device : picture_devices())
+      DYNAMIC_SECTION(device.label() << ", from " << height) {
         const dvec3 a = scenes::pixel_on(device, whole), b = scenes::pixel_on(device, halves);
         CHECK(a.x > 0.01);
         CHECK(glm::length(a - b) <= 1e-6);
@@ -290,7 +284,7 @@ TEST_CASE("a light is filtered by one interface where two media touch") {
   place_pieces(scene, {{{-2, 1, -2}, {2, 2, 2}}}, first);
   place_pieces(scene, {{{-2, 2, -2}, {2, 3, 2}}}, second);
   const double clear = passed(1, 1.5) * passed(1.5, 1.2) * passed(1.2, 1);
-  for (const DeviceInfo& device : quick_devices()) DYNAMIC_SECTION(device.label()) {
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label()) {
       const dvec3 light = scenes::pixel_on(device, scene);
       CHECK(light.x == Approx(clear * std::exp(-0.3)).epsilon(1e-5));
       CHECK(light.y == Approx(clear * std::exp(-0.4)).epsilon(1e-5));
@@ -320,7 +314,7 @@ TEST_CASE("liquid that is flush with the rim of its glass has one surface") {
   if (GENERATE(false, true)) std::reverse(scene.objects.begin(), scene.objects.end());
   scenes::place(scene, PlaneShape{}, scenes::add_glow(scene, {1, 1, 1}), at({0, -2, 0}));
   const double clear = passed(1, 1.3) * passed(1.3, 1.5) * passed(1.5, 1);
-  for (const DeviceInfo& device : quick_devices()) DYNAMIC_SECTION(device.label()) {
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label()) {
       const dvec3 light = scenes::pixel_on(device, scene);
       CHECK(light.x == Approx(clear * std::exp(-0.5 * 1.5)).epsilon(1e-5));
       CHECK(light.z == Approx(clear * std::exp(-0.1 * 1.5)).epsilon(1e-5));

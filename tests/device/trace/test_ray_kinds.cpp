@@ -45,7 +45,7 @@ TEST_CASE("a ray a lane sees every light, also more of them than shadow rays may
   SceneDescription scene = balls_under_lights(lights, glass);
   scene.render.tracer = Tracer::compact;
   const Image expected = render_plain(compile(scene));
-  for (const DeviceInfo& device : test_devices())
+  for (const DeviceInfo& device : picture_devices())
     DYNAMIC_SECTION(device.label() << ", " << lights << (glass ? " lights, glass" : " lights, opaque")) {
       CHECK(plain_difference(expected, scenes::render_on(device, scene).image) == "");
     }
@@ -55,7 +55,7 @@ TEST_CASE(
     "a ray a lane gives the same bits for every work-group, in one dimension and in two, and every tile") {
   SceneDescription scene = balls_under_lights(3, true);
   scene.render.tracer = Tracer::compact;
-  on_every_device([&](const DeviceInfo& device) {
+  on_picture_devices([&](const DeviceInfo& device) {
     const Image reference = scenes::render_on(device, scene).image;
     const auto check = [&](const RenderOptions& options) {
       const Image image = scenes::render_on(device, scene, options).image;
