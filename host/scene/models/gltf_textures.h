@@ -35,7 +35,7 @@ class GltfTextures {
     bool basis = false;          // it has one of KHR_texture_basisu alone
   };
   Entry read_texture(const JsonAt& at) const;
-  std::optional<ImageDescription> load(std::size_t image, Model& model) const;
+  std::optional<ImageDescription> load(std::size_t index, Model& model) const;
 
   const GltfAccessors& accessors_;
   std::vector<JsonAt> images_;
