@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "compile/pack.h"
+#include "compile/spectra.h"
 #include "compile/textures.h"
 #include "scene/integrators.h"
 #include "scene/kinds.h"
@@ -28,15 +29,19 @@ Medium make_medium(const MediumDescription& medium) {
 }
 
 bool same(const Medium& a, const Medium& b) {
-  return a.absorption == b.absorption && a.priority == b.priority;
+  return a.absorption == b.absorption && a.priority == b.priority && a.spectrum == b.spectrum;
 }
 
 /// The media without duplicates, and for each of the description its index there.
-std::vector<u32> add_media(const SceneDescription& scene, std::vector<Medium>& media) {
+std::vector<u32> add_media(const SceneDescription& scene, CompiledScene& out) {
+  std::vector<Medium>& media = out.media.edit();
+  SpectraMaker spectra(scene);
   media.push_back(make_medium(scene.media.empty() ? MediumDescription{} : scene.media[0]));
+  if (!scene.media.empty()) media[0].spectrum = spectra.add(scene.media[0].dispersion);
   std::vector<u32> index_of(scene.media.size(), 0);
   for (std::size_t i = 1; i < scene.media.size(); ++i) {
-    const Medium medium = make_medium(scene.media[i]);
+    Medium medium = make_medium(scene.media[i]);
+    medium.spectrum = spectra.add(scene.media[i].dispersion);
     auto found =
         std::find_if(media.begin() + 1, media.end(), [&](const Medium& m) { return same(m, medium); });
     if (found == media.end()) found = media.insert(found, medium);
@@ -48,12 +53,16 @@ std::vector<u32> add_media(const SceneDescription& scene, std::vector<Medium>& m
               MAX_MEDIA));
     index_of[i] = static_cast<u32>(found - media.begin());
   }
+  out.spectra = spectra.take_table();
+  out.features.dispersion = !out.spectra.empty();
   return index_of;
 }
 
 /// Whether light is bent where some media of the scene meet.
 bool bends_light(const std::vector<Medium>& media) {
-  return std::ranges::any_of(media, [&](const Medium& m) { return m.absorption.w != media[0].absorption.w; });
+  return std::ranges::any_of(media, [&](const Medium& m) {
+    return m.absorption.w != media[0].absorption.w || m.spectrum != media[0].spectrum;
+  });
 }
 
 /// Whether shadow rays stop at a material. Paths find by themselves what lights send through bending
@@ -201,7 +210,7 @@ bool lacks_materials(const SceneDescription& scene) {
 }
 
 u32 add_materials(const SceneDescription& scene, CompiledScene& out) {
-  const std::vector<u32> media = add_media(scene, out.media.edit());
+  const std::vector<u32> media = add_media(scene, out);
   const bool bends = bends_light(out.media);
   for (const MaterialDescription& material : scene.materials) {
     Material packed = make_material(material, media);

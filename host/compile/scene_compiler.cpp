@@ -15,6 +15,7 @@
 #include "compile/lobe_energy.h"
 #include "compile/local_origin.h"
 #include "compile/mesh_lights.h"
+#include "compile/pack.h"
 #include "compile/parts/parts.h"
 #include "scene/integrators.h"
 
@@ -66,11 +67,16 @@ void set_view(const SceneDescription& scene, CompiledScene& out) {
   out.features.filter = !out.filter.empty();
   out.info.roulette_depth = static_cast<u32>(scene.render.roulette);
   out.info.light_strategy = scene.render.light_strategy;
+  if (traces_paths(scene.render.integrator))
+    for (const Guide& guide : scene.render.guides)
+      out.guides.push_back(pack(guide.center - out.origin, guide.radius));
+  out.features.guides = !out.guides.empty();
 }
 
 void set_counts(CompiledScene& out) {
   out.info.light_count = static_cast<u32>(out.light_rays.size());
   out.info.table_lights = static_cast<u32>(out.lights.size());
+  out.info.guide_count = static_cast<u32>(out.guides.size());
   out.info.material_count = static_cast<u32>(out.materials.size());
   out.info.medium_count = static_cast<u32>(out.media.size());
   out.info.camera_inside = out.features.camera_inside ? 1 : 0;

@@ -13,6 +13,7 @@
 #include "base/image.h"
 #include "base/tone_map.h"
 #include "scene/formula/sdf.h"
+#include "scene/spectra/refraction.h"
 #include "scene/texture_description.h"
 #include "shared/lights.h"
 #include "shared/sampler.h"
@@ -67,6 +68,12 @@ struct Sampling {
   bool progressive = false;         // samples double pass by pass: 1, 2, 4...
 };
 
+/// A ball that matte surfaces send paths to, because light comes from there.
+struct Guide {
+  dvec3 center{0};
+  double radius = 1;
+};
+
 enum class Filter { box, tent, gaussian, blackman_harris, mitchell };
 
 struct RenderSettings {
@@ -78,6 +85,7 @@ struct RenderSettings {
   std::string integrator = "whitted";
   int roulette = 5;                   // path: ray from which on paths end by chance, 1..65; 65: none
   u32 light_strategy = STRATEGY_MIS;  // path: a STRATEGY_* constant
+  std::vector<Guide> guides;          // path
   u32 sampler = SAMPLER_AUTO;         // a SAMPLER_* constant
   Filter filter = Filter::box;
   double filter_radius = 0;  // in pixels; 0: the filter's own
@@ -132,9 +140,10 @@ inline constexpr int world_priority = -1'000'000;
 
 struct MediumDescription {
   std::string name;
-  double ior = 1;
+  double ior = 1;             // at the d line
   dvec3 absorption{0, 0, 0};  // per unit of world length
   int priority = 0;
+  Dispersion dispersion{};  // path tracing: the index by the wavelength
 };
 
 enum class MaterialType { phong, dielectric };

@@ -45,7 +45,7 @@ NEVER_INLINE MASK begin_samples(const Scene* scene, const Launch* launch, __glob
   if (!any_lane(begun)) return begun;
   const Rays camera = sampled_camera_rays(info, x, y, &samples);
   const SceneRays first = scene_rays(&camera, around);
-  const Walks fresh = start_walks(&at);
+  const Walks fresh = start_walks(scene, &at, begun);
   join_rays(rays, &first, begun);
   join_walks(walks, &fresh, begun);
   return begun;
@@ -61,7 +61,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
   for (u32 lane = 0; lane < BATCH; ++lane) work.next[lane] = launch->first_sample;
   const LaneSamples nowhere = {NO_LANES, NO_LANES, NO_LANES};
   const Rays none = camera_rays(scene->info, (REAL)(0.0f), (REAL)(0.0f));
-  Walks walks = start_walks(&nowhere);
+  Walks walks = start_walks(scene, &nowhere, NO_LANES);
   SceneRays rays = scene_rays(&none, around);
   MASK lanes = NO_LANES;
   for (;;) {
@@ -71,9 +71,12 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     counts[COUNT_PRIMARY] += lane_count(begun);
     start_marching(counts);
     lanes = step_walks(scene, &walks, &rays, going, !any_lane(lanes), counts);
-    for (u32 bits = lane_bits(going & ~lanes); bits; bits &= bits - 1u) {
+    const MASK over = going & ~lanes;
+    if (!any_lane(over)) continue;
+    const REAL3 seen = carry_seen(scene, &walks.wavelengths, &walks.light, over);
+    for (u32 bits = lane_bits(over); bits; bits &= bits - 1u) {
       const u32 lane = lowest_bit(bits);
-      const float4 radiance = (float4)(get3(&walks.light, lane), MASK_LANE(walks.met, lane) ? 1.0f : 0.0f);
+      const float4 radiance = (float4)(get3(&seen, lane), MASK_LANE(walks.met, lane) ? 1.0f : 0.0f);
       store_lane(launch, item, lane, radiance, work.sign[lane], film, weights, counts);
     }
   }

@@ -48,7 +48,8 @@ SUNDOG_SHARED_SIZE(Material, 144)
 typedef struct Medium {
   float4 absorption;  // Beer-Lambert, per unit of world length; w = index of refraction
   i32 priority;       // the highest wins in an overlap; if equal, the last entered (Schmidt, Budge 2002)
-  u32 pad0, pad1, pad2;
+  u32 spectrum;  // path tracing: where its indices begin in the table `spectra`; NO_SPECTRUM: absorption.w
+  u32 pad0, pad1;
 } Medium;
 SUNDOG_SHARED_SIZE(Medium, 32)
 
@@ -98,7 +99,8 @@ typedef struct SceneInfo {
   // Path tracing:
   u32 roulette_depth;  // from this ray on paths end by chance
   u32 light_strategy;  // STRATEGY_*
-  u32 pad0, pad1;
+  u32 guide_count;     // rows of the table `guides`: balls, w = radius
+  u32 pad0;
 } SceneInfo;
 SUNDOG_SHARED_SIZE(SceneInfo, 384)
 

@@ -10,6 +10,7 @@
 #include "shared/environment.h"
 #include "shared/scene.h"
 #include "shared/sdf.h"
+#include "shared/spectra.h"
 #include "shared/textures.h"
 
 #define SCENE_TABLES(TABLE)                                              \
@@ -25,6 +26,8 @@
   TABLE(LightNode, LightNode, light_nodes, "nodes over lights")          \
   TABLE(u32, u32, light_leaves, "leaves of lights")                      \
   TABLE(float, float, lobe_energy, "energy of lobes")                    \
+  TABLE(float, float, spectra, "spectra")                                \
+  TABLE(float4, float4, guides, "guides of paths")                       \
   TABLE(Environment, Environment, environments, "environments")          \
   TABLE(float4, float4, environment, "environment's pixels")             \
   TABLE(float, float, environment_shares, "environment's shares")        \

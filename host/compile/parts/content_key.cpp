@@ -150,9 +150,10 @@ KeyMaker& KeyMaker::add(const EnvironmentDescription& environment) {
 }
 
 KeyMaker& KeyMaker::add(const MediumDescription& medium) {
-  const auto& [name, ior, absorption, priority] = medium;
+  const auto& [name, ior, absorption, priority, dispersion] = medium;
   (void)name;
-  return add_each(ior, absorption, priority);
+  for (const double coefficient : dispersion.coefficients) add(coefficient);
+  return add_each(ior, dispersion.kind, absorption, priority);
 }
 
 KeyMaker& KeyMaker::add(const ImageDescription& image) {

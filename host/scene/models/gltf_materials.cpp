@@ -1,5 +1,5 @@
 // Metallic-roughness materials and their extensions (glTF 2.0, section 3.9; KHR_materials_ior, _transmission,
-// _volume).
+// _volume, _dispersion).
 #include "scene/models/gltf_materials.h"
 
 #include <algorithm>
@@ -48,6 +48,13 @@ Volume read_volume(const JsonAt& at) {
     volume.color = extension->vector("attenuationColor", volume.color, unit_range);
   }
   return volume;
+}
+
+/// KHR_materials_dispersion: 20 over Abbe's number, which is not below 1 here.
+Dispersion read_dispersion(const JsonAt& at, double ior) {
+  const auto extension = at.extension("KHR_materials_dispersion");
+  const double dispersion = extension ? extension->number("dispersion", 0, not_negative) : 0;
+  return dispersion > 0 ? cauchy_of_abbe(ior, std::max(20 / dispersion, 1.0)) : Dispersion{};
 }
 
 }  // namespace
@@ -124,6 +131,7 @@ void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double 
     entry.has_medium = true;
     entry.medium.name = m.name;
     entry.medium.ior = ior;
+    entry.medium.dispersion = read_dispersion(at, ior);
     // A channel of 0 would absorb without bound.
     if (std::isfinite(volume.distance))
       entry.medium.absorption = -glm::log(glm::max(volume.color, dvec3(1e-6))) / volume.distance;

@@ -55,7 +55,7 @@ constexpr std::array material_extensions{
     Named{"KHR_materials_specular", nullptr},
     Named{"KHR_materials_iridescence", "iridescence"},
     Named{"KHR_materials_anisotropy", "anisotropy"},
-    Named{"KHR_materials_dispersion", "dispersion"},
+    Named{"KHR_materials_dispersion", nullptr},
     Named{"KHR_materials_diffuse_transmission", "diffuse transmission"},
     Named{"KHR_materials_unlit", nullptr},
     Named{"KHR_materials_pbrSpecularGlossiness", "specular-glossiness materials"}};

@@ -38,6 +38,70 @@ dvec3 read_absorption(const JsonValue& value) {
   });
 }
 
+/// Checks that a formula has an index at every wavelength that a path may carry.
+void check_indices(const JsonValue& value, MediumDescription& medium) {
+  for (double wavelength = 380; wavelength <= 780; wavelength += 5) {
+    const double index = index_at(medium.dispersion, medium.ior, wavelength);
+    if (!(index >= ior_range.low && index <= ior_range.high))
+      value.fail(fmt::format("the index of refraction at {} nm is {:.4g}, and should be from {} to {}",
+                             wavelength, index, ior_range.low, ior_range.high));
+  }
+  medium.ior = index_at(medium.dispersion, medium.ior, line_d);
+}
+
+Dispersion read_substance(const JsonValue& value) {
+  const std::string name = value.text();
+  if (const auto found = find_substance(name)) return *found;
+  std::vector<std::string> known;
+  for (const Substance& substance : substances()) known.emplace_back(substance.name);
+  value.wanted(fmt::format("an index of refraction or one of \"{}\"", fmt::join(known, "\", \"")));
+}
+
+/// Cauchy's three coefficients, or Sellmeier's pairs.
+Dispersion read_formula(const JsonValue& value, DispersionKind kind) {
+  const bool cauchy = kind == DispersionKind::cauchy;
+  const auto items = value.items(cauchy ? "2 or 3 numbers" : "2, 4, 6 or 8 numbers");
+  const bool good = cauchy ? items.size() == 2 || items.size() == 3
+                           : items.size() >= 2 && items.size() <= 8 && items.size() % 2 == 0;
+  if (!good) value.wanted(cauchy ? "an array of 2 or 3 numbers" : "an array of 2, 4, 6 or 8 numbers");
+  Dispersion dispersion{kind, {}};
+  for (std::size_t i = 0; i < items.size(); ++i)
+    dispersion.coefficients[i] = items[i].number({.low = -1e3, .high = 1e3});
+  return dispersion;
+}
+
+/// "ior", a number or the name of a substance, and with a number "abbe".
+void read_ior(JsonObject& object, MediumDescription& medium) {
+  const auto ior = object.find("ior"), abbe = object.find("abbe");
+  if (abbe && !ior) abbe->fail("wanted an \"ior\" beside it: the index of refraction at 587.6 nm");
+  if (!ior) return;
+  if (ior->json().is_string()) {
+    if (abbe) abbe->fail("the \"ior\" is a substance's, which has its own dispersion");
+    medium.dispersion = read_substance(*ior);
+    check_indices(*ior, medium);
+    return;
+  }
+  medium.ior = ior->number(ior_range);
+  if (!abbe) return;
+  medium.dispersion = cauchy_of_abbe(medium.ior, abbe->number({.low = 1, .high = 1e4}));
+  check_indices(*abbe, medium);
+}
+
+/// "ior" as above, or "cauchy", or "sellmeier".
+void read_index(JsonObject& object, MediumDescription& medium) {
+  object.not_both("ior", "cauchy");
+  object.not_both("ior", "sellmeier");
+  object.not_both("cauchy", "sellmeier");
+  read_ior(object, medium);
+  static constexpr std::pair<std::string_view, DispersionKind> formulas[] = {
+      {"cauchy", DispersionKind::cauchy}, {"sellmeier", DispersionKind::sellmeier}};
+  for (const auto& [key, kind] : formulas)
+    if (const auto formula = object.find(key)) {
+      medium.dispersion = read_formula(*formula, kind);
+      check_indices(*formula, medium);
+    }
+}
+
 /// A colour, or the name of a texture.
 Pattern read_plain_color(const JsonValue& value, TextureLibrary& textures, const Range& range = color_range) {
   if (value.json().is_string()) return {dvec3(1), dvec3(1), textures.use(value, TextureUse::color)};
@@ -132,11 +196,14 @@ void read_local_terms(JsonObject& object, MaterialDescription& material, Texture
 void read_interior(JsonObject& object, MaterialDescription& material, const NameTable& names,
                    std::vector<MediumDescription>& media) {
   object.not_both("medium", "ior");
+  object.not_both("medium", "abbe");
   if (const auto medium = object.find("medium")) {
     material.medium = find_name(*medium, names, "medium");
-  } else if (const auto ior = object.find("ior")) {
+  } else if (object.has("ior") || object.has("abbe")) {
     material.medium = static_cast<int>(media.size());
-    media.push_back({.name = material.name, .ior = ior->number(ior_range)});
+    MediumDescription inside{.name = material.name};
+    read_ior(object, inside);
+    media.push_back(inside);
   } else if (material.type == MaterialType::dielectric) {
     object.at("ior", "a dielectric's index of refraction, or \"medium\" and a medium's name");
   }
@@ -216,7 +283,7 @@ int find_name(const JsonValue& name, const NameTable& table, std::string_view wh
 MediumDescription read_medium(const JsonValue& value, std::string name) {
   return value.object("medium", [&](JsonObject& object) {
     MediumDescription medium{.name = std::move(name)};
-    medium.ior = object.number("ior", medium.ior, ior_range);
+    read_index(object, medium);
     if (const auto absorption = object.find("absorption")) medium.absorption = read_absorption(*absorption);
     medium.priority = object.integer("priority", medium.priority, -1000, 1000);
     return medium;

@@ -118,11 +118,25 @@ void read_filter(JsonObject& object, RenderSettings& render) {
                                     least, render.samples));
 }
 
+constexpr std::size_t most_guides = 64;  // each costs every surface of a path
+
+Guide read_guide(const JsonValue& value) {
+  return value.object("guide", [](JsonObject& object) {
+    const dvec3 center = object.at("center", "a point [x, y, z]").vec3();
+    return Guide{center, object.at("radius", "a length").number({.low = 1e-15, .high = 1e15})};
+  });
+}
+
 void read_path(JsonObject& object, RenderSettings& render) {
   static constexpr std::string_view strategies[] = {LIGHT_STRATEGIES};
   render.roulette = object.integer("roulette", render.roulette, 1, 65);
   const std::string strategy = object.choice("lights", std::string(strategies[0]), strategies);
   render.light_strategy = static_cast<u32>(std::ranges::find(strategies, strategy) - strategies);
+  const auto guides = object.find("guides");
+  if (!guides) return;
+  const auto balls = guides->items("balls");
+  if (balls.size() > most_guides) guides->wanted(fmt::format("at most {} balls", most_guides));
+  for (const JsonValue& ball : balls) render.guides.push_back(read_guide(ball));
 }
 
 void read_adaptive(JsonObject& object, Sampling& sampling) {

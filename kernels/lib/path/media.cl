@@ -57,6 +57,11 @@ static inline REAL3 absorb(__global const Medium* restrict media, MASK medium, R
   return kept;
 }
 
+// Whether light of no wavelength is bent from one to the other.
+static inline bool same_index(__global const Medium* a, __global const Medium* b) {
+  return a->absorption.w == b->absorption.w && (!HAS_DISPERSION || a->spectrum == b->spectrum);
+}
+
 // Index of refraction of the medium of each lane of `lanes`, 1 elsewhere.
 static inline REAL refraction_index(__global const Medium* restrict media, MASK medium, MASK lanes) {
   REAL index = (REAL)(1.0f);

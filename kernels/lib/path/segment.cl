@@ -53,7 +53,7 @@ static inline bool cross_if_unseen(__global const Medium* restrict media, SceneR
   MASK_LANE(met->after, i) = (int)after;
   set_behind(met, i, crossed);
   const bool clear = (u32)MASK_LANE(met->face.flags, i) & MATERIAL_CLEAR;
-  const bool unseen = after == before || (clear && media[after].absorption.w == media[before].absorption.w);
+  const bool unseen = after == before || (clear && same_index(media + after, media + before));
   if (!unseen || MASK_LANE(rays->crossings, i) >= MAX_CROSSINGS) return false;
   set_media(rays, i, crossed);
   return true;

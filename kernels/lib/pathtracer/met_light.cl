@@ -98,16 +98,17 @@ static inline REAL3 met_sky(const Scene* scene, const Walks* walks, REAL3 d, MAS
 
 // The world's fog, for rays of `lanes` that were not inside anything: what it adds, and what it takes from
 // all behind it.
-static inline REAL3 met_fog(const Scene* scene, const Encounters* met, MASK lanes, REAL3* throughput) {
+static inline Carried met_fog(const Scene* scene, const Encounters* met, MASK lanes, Walks* walks) {
 #if HAS_FOG
   const MASK foggy = lanes & MASK_OF(met->before == 0);
   const float4 fog = scene->info->fog;
   const REAL clear = select((REAL)(1.0f), real_exp(-fog.w * met->hit.t), foggy);
-  const REAL3 light = multiply3(scale3(*throughput, 1.0f - clear), all3(fog.xyz));
-  *throughput = scale3(*throughput, clear);
+  const Carried color = carry_color(&walks->wavelengths, all3(fog.xyz));
+  const Carried light = carry_multiply(carry_scale(walks->throughput, 1.0f - clear), color);
+  walks->throughput = carry_scale(walks->throughput, clear);
   return light;
 #else
-  return all3((float3)(0.0f));
+  return carry_all(0.0f);
 #endif
 }
 

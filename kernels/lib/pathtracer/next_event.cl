@@ -3,6 +3,7 @@
 #define SUNDOG_LIB_NEXT_EVENT_CL
 #include "lib/light/shadow.cl"
 #include "lib/light/shadow_rays.cl"
+#include "lib/pathtracer/guides.cl"
 #include "lib/pathtracer/walk_state.cl"
 #include "lib/shade/bsdf_sample.cl"
 
@@ -71,33 +72,53 @@ static inline SceneRays rays_to_light(const Scene* scene, const SceneRays* rays,
   return to_light;
 }
 
+// What of `light` arrives at the ends of shadow rays.
+#if HAS_DISPERSION
+static inline Carried carried_to_light(const Scene* scene, const Wavelengths* w, SceneRays* rays,
+                                       Carried light, MASK lanes, u32* counts) {
+  const REAL3 kept = light_arriving(scene, rays, all3((float3)(1.0f)), lanes, counts);
+  const MASK some = MASK_OF(greatest3(kept) > 0.0f);
+  return carry_select(carry_all(0.0f), carry_multiply(light, carry_kept(w, kept)), some);
+}
+#else
+static inline Carried carried_to_light(const Scene* scene, const Wavelengths* w, SceneRays* rays,
+                                       Carried light, MASK lanes, u32* counts) {
+  return light_arriving(scene, rays, light, lanes, counts);
+}
+#endif
+
 // What lights send to the surfaces of `lanes`, times what those make of it.
-NEVER_INLINE REAL3 next_event(const Scene* scene, const Walks* walks, const SceneRays* rays,
-                              const Encounters* met, const Shading* at, const Lobes* lobes,
-                              const FourNumbers* u, MASK lanes, u32* counts) {
+NEVER_INLINE Carried next_event(const Scene* scene, const Walks* walks, const SceneRays* rays,
+                                const Encounters* met, const Shading* at, const Lobes* lobes,
+                                const FourNumbers* u, MASK lanes, u32* counts) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
-  const REAL3 none = all3((float3)(0.0f)), wo = negate3(rays->d);
+  const Carried none = carry_all(0.0f);
+  const REAL3 wo = negate3(rays->d);
   const SurfaceInteractions* s = &at->s;
   MASK seen;
   const LightSamples light = choose_one(scene, s->p, u, lanes, &seen);
   REAL scattered;
-  REAL3 possible = bsdf_scatter(scene, &at->bsdf, lobes, wo, light.wi, lanes, &scattered);
+  const REAL3 scattering = bsdf_scatter(scene, &at->bsdf, lobes, wo, light.wi, lanes, &scattered);
+  scattered = guided_density(scene, lobes, s->p, light.wi, scattered, lanes);
+  Carried possible = carry_color(&walks->wavelengths, scattering);
   const REAL weight = weight_of_chosen(scene, light.density, select(zero, scattered, seen));
   const REAL over = select(1.0f / (M_PI_F * light.density), one / light.density, light.delta);
-  possible = scale3(multiply3(possible, light.radiance), weight * over);
+  possible = carry_multiply(possible, carry_color(&walks->wavelengths, light.radiance));
+  possible = carry_scale(possible, weight * over);
   const MASK below = lanes & MASK_OF(dot3(s->ng, light.wi) < 0.0f);
-  if (HAS_RELIEF) possible = scale3(possible, select(terminator(s, light.wi), one, below));
-  if (HAS_PARALLAX) possible = scale3(possible, relief_visibility(scene, s, light.wi, lanes));
+  if (HAS_RELIEF) possible = carry_scale(possible, select(terminator(s, light.wi), one, below));
+  if (HAS_PARALLAX) possible = carry_scale(possible, relief_visibility(scene, s, light.wi, lanes));
   if (HAS_MEDIA && any_lane(below)) {
     const REAL eta = lobes->split.eta;
-    possible = scale3(possible, select(one, 1.0f / (eta * eta), below));
+    possible = carry_scale(possible, select(one, 1.0f / (eta * eta), below));
   }
-  possible = multiply3(possible, walks->throughput);
-  const MASK lit = lanes & MASK_OF(greatest3(possible) >= FLT_MIN) & MASK_OF(light.distance > 0.0f);
+  possible = carry_multiply(possible, walks->throughput);
+  const MASK lit = lanes & MASK_OF(carry_greatest(possible) >= FLT_MIN) & MASK_OF(light.distance > 0.0f);
   if (!any_lane(lit)) return none;
   counts[COUNT_SHADOW] += lane_count(lit);
   SceneRays to_light = rays_to_light(scene, rays, met, at, &light, below, lit);
-  return select3(none, light_arriving(scene, &to_light, possible, lit, counts), lit);
+  return carry_select(none, carried_to_light(scene, &walks->wavelengths, &to_light, possible, lit, counts),
+                      lit);
 }
 
 #endif

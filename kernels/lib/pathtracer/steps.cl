@@ -2,23 +2,32 @@
 // chosen there, and the ray that continues. Nothing waits: a path is its one ray and its Walks.
 #ifndef SUNDOG_LIB_PATH_STEPS_CL
 #define SUNDOG_LIB_PATH_STEPS_CL
+#include "lib/pathtracer/guides.cl"
 #include "lib/pathtracer/met_light.cl"
 #include "lib/pathtracer/next_event.cl"
 
 // The spread of the cone of what a surface scatters, at least.
 #define SCATTERED_SPREAD 0.2f
 
-static inline Walks start_walks(const LaneSamples* at) {
+static inline Walks start_walks(const Scene* scene, const LaneSamples* at, MASK lanes) {
   const REAL3 none = all3((float3)(0.0f));
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
-  const Walks walks = {all3((float3)(1.0f)), none, none, zero, one, (MASK)(1), NO_LANES, *at};
+  const Walks walks = {carry_all(1.0f),
+                       carry_all(0.0f),
+                       none,
+                       zero,
+                       one,
+                       (MASK)(1),
+                       NO_LANES,
+                       *at,
+                       choose_wavelengths(scene, at, lanes)};
   return walks;
 }
 
 // The lanes of `lanes` become those of `other`.
 static inline void join_walks(Walks* walks, const Walks* other, MASK lanes) {
-  walks->throughput = select3(walks->throughput, other->throughput, lanes);
-  walks->light = select3(walks->light, other->light, lanes);
+  walks->throughput = carry_select(walks->throughput, other->throughput, lanes);
+  walks->light = carry_select(walks->light, other->light, lanes);
   walks->from = select3(walks->from, other->from, lanes);
   walks->density = select(walks->density, other->density, lanes);
   walks->spread = select(walks->spread, other->spread, lanes);
@@ -27,6 +36,7 @@ static inline void join_walks(Walks* walks, const Walks* other, MASK lanes) {
   walks->at.x = select(walks->at.x, other->at.x, lanes);
   walks->at.y = select(walks->at.y, other->at.y, lanes);
   walks->at.sample = select(walks->at.sample, other->at.sample, lanes);
+  join_wavelengths(&walks->wavelengths, &other->wavelengths, lanes);
 }
 static inline void join_rays(SceneRays* rays, const SceneRays* others, MASK lanes) {
   rays->o = select3(rays->o, others->o, lanes);
@@ -59,9 +69,9 @@ static inline void join_rays(SceneRays* rays, const SceneRays* others, MASK lane
 // worth.
 static inline MASK play_roulette(const Scene* scene, Walks* walks, REAL u, MASK lanes) {
   const MASK playing = lanes & MASK_OF(walks->depth >= (int)scene->info->roulette_depth);
-  const REAL worth = greatest3(walks->throughput) * walks->spread;
+  const REAL worth = carry_worth(walks->throughput) * walks->spread;
   const REAL chance = select((REAL)(1.0f), real_min(worth, (REAL)(0.95f)), playing);
-  walks->throughput = scale3(walks->throughput, 1.0f / real_max(chance, (REAL)(1e-20f)));
+  walks->throughput = carry_scale(walks->throughput, 1.0f / real_max(chance, (REAL)(1e-20f)));
   return lanes & MASK_OF(u < chance);
 }
 
@@ -86,6 +96,46 @@ static inline void leave_surfaces(const Scene* scene, const Encounters* met, con
   join_rays(rays, &child, lanes);
 }
 
+// Wavelengths part where interfaces that disperse let light through, or scatter it. Where they mirror it all
+// go on, each with its own part of the light.
+#if HAS_DISPERSION
+static inline MASK parting_surfaces(const Scene* scene, const Shading* at, const SpecularSplits* split,
+                                    MASK lanes) {
+  const MASK bends = lanes & split->transmits & MASK_OF((at->bsdf.flags & (int)MATERIAL_THIN) == 0);
+  return disperses(scene, at->bsdf.before, at->bsdf.after, bends);
+}
+
+NEVER_INLINE void part_wavelengths(const Scene* scene, const Shading* at, const SpecularSplits* split,
+                                   Walks* walks, MASK lanes, MASK mirror) {
+  Wavelengths* w = &walks->wavelengths;
+  const Bsdfs* bsdf = &at->bsdf;
+  const MASK parting = parting_surfaces(scene, at, split, lanes);
+  if (!any_lane(parting)) return;
+  const MASK mirrored = parting & mirror & ~w->alone & MASK_OF(split->f > 0.0f);
+  leave_hero(w, &walks->throughput, parting & ~mirrored);
+  if (!any_lane(mirrored)) return;
+  for (u32 i = 1; i < WAVELENGTHS; ++i) {
+    const REAL eta =
+        relative_index_at(scene, bsdf->before, bsdf->after, wavelength_row(w->hero, i), mirrored);
+    const REAL f = fresnel_reflectance(split->cos_i, refracted_cosine(split->cos_i, eta), eta);
+    walks->throughput.of[i] =
+        select(walks->throughput.of[i], walks->throughput.of[i] * f / split->f, mirrored);
+  }
+}
+
+// Light that such surfaces of `lanes` have from a lamp: the hero's alone.
+static inline void keep_hero(const Scene* scene, const Shading* at, const SpecularSplits* split,
+                             const Walks* walks, Carried* light, MASK lanes) {
+  Wavelengths parted = walks->wavelengths;
+  leave_hero(&parted, light, parting_surfaces(scene, at, split, lanes));
+}
+#else
+static inline void keep_hero(const Scene* scene, const Shading* at, const SpecularSplits* split,
+                             const Walks* walks, Carried* light, MASK lanes) {}
+static inline void part_wavelengths(const Scene* scene, const Shading* at, const SpecularSplits* split,
+                                    Walks* walks, MASK lanes, MASK mirror) {}
+#endif
+
 // Surfaces of `lanes` scatter: the paths' next rays. Returns the paths that continue.
 NEVER_INLINE MASK scatter(const Scene* scene, const Encounters* met, const Shading* at, const Lobes* lobes,
                           Walks* walks, SceneRays* rays, MASK lanes, u32* counts) {
@@ -93,16 +143,20 @@ NEVER_INLINE MASK scatter(const Scene* scene, const Encounters* met, const Shadi
   const FourNumbers u = sample_lanes(
       &walks->at, (walks->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + BOUNCE_DIRECTION));
   const REAL3 wo = negate3(rays->d);
-  const BsdfSamples sample = sample_lobes(scene, &at->bsdf, lobes, wo, u.z, u.x, u.y, lanes);
+  const BsdfSamples sample =
+      sample_guided(scene, &at->bsdf, lobes, at->s.p, wo, u.z, u.x, u.y, lanes, &walks->spread);
   const MASK some = lanes & MASK_OF(greatest3(sample.weight) > 0.0f);
   const MASK below = some & MASK_OF(dot3(at->s.ng, sample.wi) < 0.0f);
-  walks->throughput = select3(walks->throughput, multiply3(walks->throughput, sample.weight), lanes);
+  walks->throughput =
+      carry_select(walks->throughput,
+                   carry_multiply(walks->throughput, carry_color(&walks->wavelengths, sample.weight)), lanes);
+  part_wavelengths(scene, at, &lobes->split, walks, some, some & sample.specular & ~below);
   if (HAS_RELIEF)
-    walks->throughput = scale3(walks->throughput,
-                               select(one, terminator(&at->s, sample.wi), lanes & ~below & ~sample.specular));
+    walks->throughput = carry_scale(
+        walks->throughput, select(one, terminator(&at->s, sample.wi), lanes & ~below & ~sample.specular));
   if (HAS_MEDIA) {
     const REAL eta = select(one, lobes->split.eta, below), square = eta * eta;
-    walks->throughput = scale3(walks->throughput, 1.0f / square);
+    walks->throughput = carry_scale(walks->throughput, 1.0f / square);
     walks->spread *= square;
   }
   // Shadow rays go through filters as the path does: what it was about to find, it still is.
@@ -128,18 +182,20 @@ NEVER_INLINE MASK step_walks(const Scene* scene, Walks* walks, SceneRays* rays, 
   const MASK unseen = next_interfaces(scene, rays, lanes, coherent, &met, counts);
   if (HAS_GLOW)
     walks->light =
-        select3(walks->light, add3(walks->light, multiply3(walks->throughput, emitted(rays))), lanes);
+        carry_select(walks->light, carry_add(walks->light, carried_color(walks, emitted(rays))), lanes);
   forget_glow(rays);
-  walks->throughput = select3(walks->throughput, multiply3(walks->throughput, met.absorbed), lanes);
+  walks->throughput =
+      carry_select(walks->throughput,
+                   carry_multiply(walks->throughput, carry_kept(&walks->wavelengths, met.absorbed)), lanes);
   // An interface that cannot be seen may stop shadow rays all the same.
   walks->density = select(walks->density, (REAL)(0.0f),
                           unseen & MASK_OF((met.face.flags & (int)MATERIAL_SHADOW_OPAQUE) != 0));
   const MASK ended = lanes & ~unseen, hit = ended & hit_anything(&met.hit), lost = ended & ~hit;
-  REAL3 light = all3((float3)(0.0f));
-  if (HAS_FOG) light = met_fog(scene, &met, ended, &walks->throughput);
+  Carried light = carry_all(0.0f);
+  if (HAS_FOG) light = met_fog(scene, &met, ended, walks);
   if (any_lane(lost))
-    light =
-        select3(light, add3(light, multiply3(walks->throughput, met_sky(scene, walks, rays->d, lost))), lost);
+    light = carry_select(light, carry_add(light, carried_color(walks, met_sky(scene, walks, rays->d, lost))),
+                         lost);
   MASK going = unseen;
   if (any_lane(hit)) {
     Shading at;
@@ -147,20 +203,24 @@ NEVER_INLINE MASK step_walks(const Scene* scene, Walks* walks, SceneRays* rays, 
     counts[COUNT_PRIMARY_HIT] += lane_count(first);
     walks->met |= first;
     shade_hits(scene, rays, &met, hit, &at);
-    light = select3(
-        light, add3(light, multiply3(walks->throughput, met_surface(scene, walks, rays, &met.hit, &at, hit))),
-        hit);
+#if HAS_DISPERSION
+    at.bsdf.row = wavelength_row(walks->wavelengths.hero, 0);
+#endif
+    const REAL3 shining = met_surface(scene, walks, rays, &met.hit, &at, hit);
+    light = carry_select(light, carry_add(light, carried_color(walks, shining)), hit);
     const MASK scattering = hit & MASK_OF(walks->depth <= (int)scene->info->max_depth);
     const Lobes lobes = make_lobes(scene, &at.bsdf, negate3(rays->d), scattering);
     const MASK open = scattering & MASK_OF(lobes.matte + lobes.glossy + lobes.facets > 0.0f);
     if (scene->info->light_count && any_lane(open)) {
       const FourNumbers u = sample_lanes(&walks->at, (walks->depth - 1) * (int)DIMENSIONS_A_BOUNCE +
                                                          (int)(DIMENSION_BOUNCE + BOUNCE_LIGHT_POINT));
-      light = add3(light, next_event(scene, walks, rays, &met, &at, &lobes, &u, open, counts));
+      Carried chosen = next_event(scene, walks, rays, &met, &at, &lobes, &u, open, counts);
+      keep_hero(scene, &at, &lobes.split, walks, &chosen, open);
+      light = carry_add(light, chosen);
     }
     if (any_lane(scattering)) going |= scatter(scene, &met, &at, &lobes, walks, rays, scattering, counts);
   }
-  walks->light = select3(walks->light, add3(walks->light, light), ended);
+  walks->light = carry_select(walks->light, carry_add(walks->light, light), ended);
   return going;
 }
 

@@ -6,17 +6,26 @@
 #include "lib/core/sampler_lanes.cl"
 #include "lib/light/choose_light.cl"
 #include "lib/light/light.cl"
+#include "lib/pathtracer/carried.cl"
 
 typedef struct Walks {
-  REAL3 throughput;
-  REAL3 light;   // gathered so far
-  REAL3 from;    // the surface that chose the ray's direction, with the density `density`
-  REAL density;  // 0: no light that is chosen at surfaces counts twice on this ray
-  REAL spread;   // of radiance by refraction since the camera, squared index by squared index
-  MASK depth;    // of the ray: the camera's has 1
-  MASK met;      // the camera's ray has hit something
+  Carried throughput;
+  Carried light;  // gathered so far
+  REAL3 from;     // the surface that chose the ray's direction, with the density `density`
+  REAL density;   // 0: no light that is chosen at surfaces counts twice on this ray
+  // What of the throughput is no measure of the path's worth: radiance spread by refraction since the camera
+  // (squared index by squared index), and paths drawn to guides.
+  REAL spread;
+  MASK depth;  // of the ray: the camera's has 1
+  MASK met;    // the camera's ray has hit something
   LaneSamples at;
+  Wavelengths wavelengths;
 } Walks;
+
+// Light of a colour that a path has met, as it gets to the camera.
+static inline Carried carried_color(const Walks* walks, REAL3 color) {
+  return carry_multiply(walks->throughput, carry_color(&walks->wavelengths, color));
+}
 
 // The weight of a sample of density `own` where another way finds the same light with density `other`.
 static inline REAL power_heuristic(REAL own, REAL other) {

@@ -5,6 +5,7 @@
 #define SUNDOG_LIB_BSDF_CL
 #include "lib/core/optics.cl"
 #include "lib/path/media.cl"
+#include "lib/shade/dispersion.cl"
 #include "lib/shade/interaction.cl"
 #include "lib/shade/maps.cl"
 
@@ -13,6 +14,9 @@ typedef struct Bsdfs {
   REAL3 ambient, diffuse;  // ka and kd, with pattern and colour
   MASK material, flags;    // index; of the material
   MASK before, after;      // media on the viewer's side and behind
+#if HAS_DISPERSION
+  REAL row;  // of the wavelength that decides where light goes, in the table `spectra`
+#endif
 #if HAS_MAPS
   REAL3 specular, reflection, transmission;  // with textures
   REAL3 emission;                            // a factor on the material's
@@ -92,6 +96,9 @@ static inline Bsdfs make_bsdfs(const Scene* scene, const SurfaceInteractions* s,
   bsdf.flags = s->flags;
   bsdf.before = before;
   bsdf.after = after;
+#if HAS_DISPERSION
+  bsdf.row = (REAL)(0.0f);
+#endif
   u32 index;
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(s->material, &left, &index);
@@ -172,6 +179,7 @@ typedef struct SpecularSplits {
   REAL3 kr, kt;
   MASK branches, transmits;  // does either; transmits
   REAL eta, cos_i, cos_t;    // index behind over index before; cosines to ns, 1 where nothing bends
+  REAL f;                    // Fresnel's reflectance of a dielectric, 0 of others
 } SpecularSplits;
 
 #if HAS_MAPS
@@ -193,7 +201,7 @@ static inline REAL3 transmission_of(const Bsdfs* bsdf, __global const Material* 
 static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes) {
   const REAL3 none = all3((float3)(0.0f));
   const REAL one = (REAL)(1.0f), zero = (REAL)(0.0f);
-  SpecularSplits split = {none, none, NO_LANES, NO_LANES, one, one, one};
+  SpecularSplits split = {none, none, NO_LANES, NO_LANES, one, one, one, zero};
   MASK dielectric = NO_LANES;
   u32 index;
   while (any_lane(lanes)) {
@@ -209,9 +217,14 @@ static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf
   if (!any_lane(split.transmits | dielectric)) return split;
   const MASK bends = split.transmits & MASK_OF((bsdf->flags & (int)MATERIAL_THIN) == 0);
   split.cos_i = real_clamp(dot3(bsdf->ns, wo), zero, one);
+#if HAS_DISPERSION
+  split.eta = relative_index_at(scene, bsdf->before, bsdf->after, bsdf->row, bends);
+#else
   split.eta = relative_index(scene->media, bsdf->before, bsdf->after, bends);
+#endif
   split.cos_t = refracted_cosine(split.cos_i, split.eta);
   const REAL f = select(zero, fresnel_reflectance(split.cos_i, split.cos_t, split.eta), bends);
+  split.f = select(zero, f, dielectric);
   // Total internal reflection turns everything into reflection.
   const MASK total = split.transmits & ~dielectric & MASK_OF(split.cos_t <= 0.0f);
   split.kr = select3(split.kr, add3(split.kr, split.kt), total);

@@ -30,7 +30,7 @@ const std::vector<Group>& groups() {
       {"The scene", "", {"scene"}},
       {"Picture",
        "",
-       {"camera", "lens", "view", "image", "tone_map", "gradient", "render", "path", "adaptive", "subsample",
+       {"camera", "lens", "view", "image", "tone_map", "gradient", "render", "path", "guide", "adaptive", "subsample",
         "world", "fog"}},
       {"Lights",
        "An entry of `lights` has one of these types.",

@@ -66,6 +66,28 @@ TEST_CASE("transmission with a volume is a dielectric with an absorbing medium, 
   }
 }
 
+TEST_CASE("Dispersion: KHR_materials_dispersion is 20 over Abbe's number", "[models]") {
+  const auto medium_of = [](const std::string& dispersion) {
+    Model model;
+    material_of(R"({"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{
+      "KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_ior":{"ior":1.6},
+      "KHR_materials_volume":{"thicknessFactor":1},"KHR_materials_dispersion":)" +
+                    dispersion + "}}",
+                &model);
+    CHECK(model.warnings.empty());
+    return model.media.at(0);
+  };
+  const MediumDescription medium = medium_of(R"({"dispersion":0.5})");
+  const auto index = [&](double wavelength) { return index_at(medium.dispersion, medium.ior, wavelength); };
+  CHECK(index(line_d) == Approx(1.6));
+  CHECK((index(line_d) - 1) / (index(line_F) - index(line_C)) == Approx(40));
+  CHECK(medium_of("{}").dispersion.kind == DispersionKind::none);
+  CHECK(medium_of(R"({"dispersion":0})").dispersion.kind == DispersionKind::none);
+  // Beyond what any substance does, the index stays above 1.
+  const MediumDescription wild = medium_of(R"({"dispersion":1e9})");
+  CHECK(index_at(wild.dispersion, wild.ior, 780) > 1);
+}
+
 TEST_CASE("a metal transmits nothing, whatever its transmission factor", "[models]") {
   const MaterialDescription metal =
       material_of(R"({"extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})");

@@ -77,7 +77,8 @@ std::string line(const SdfDescription& f) {
 }
 
 std::string line(const MediumDescription& m) {
-  return fmt::format("medium {} {} {} {}\n", m.name, m.ior, text(m.absorption), m.priority);
+  return fmt::format("medium {} {} {} {} {} {}\n", m.name, m.ior, text(m.absorption), m.priority,
+                     static_cast<int>(m.dispersion.kind), fmt::join(m.dispersion.coefficients, " "));
 }
 
 std::string line(const MaterialDescription& m) {

@@ -134,6 +134,34 @@ TEST_CASE("media are read, and absorption may be a colour at a distance") {
   CHECK(!std::signbit(scene.media[2].absorption.x));
 }
 
+TEST_CASE("Dispersion: media disperse by a name, by Abbe's number or by a formula") {
+  const SceneDescription scene = load_scene_text(scene_with(R"("media": {
+    "plain": {"ior": 1.5},
+    "named": {"ior": "BK7", "priority": 3},
+    "abbe": {"ior": 1.6, "abbe": 40},
+    "cauchy": {"cauchy": [1.5, 0.004]},
+    "sellmeier": {"sellmeier": [1.25, 0.01]}},
+    "materials": {"m": {"type": "dielectric", "ior": "diamond"}, "n": {"type": "dielectric", "ior": 1.7, "abbe": 30}})"));
+  const auto medium = [&](std::string_view name) {
+    return *std::ranges::find(scene.media, name, &MediumDescription::name);
+  };
+  const auto index = [&](std::string_view name, double wavelength) {
+    const MediumDescription found = medium(name);
+    return index_at(found.dispersion, found.ior, wavelength);
+  };
+  CHECK(medium("plain").dispersion.kind == DispersionKind::none);
+  CHECK(medium("named").ior == Approx(1.5168).epsilon(1e-5));
+  CHECK(medium("named").priority == 3);
+  CHECK(index("named", line_F) == Approx(1.52238).epsilon(1e-5));
+  CHECK(medium("abbe").ior == Approx(1.6));
+  CHECK(index("abbe", line_F) - index("abbe", line_C) == Approx(0.6 / 40));
+  CHECK(index("cauchy", 500) == Approx(1.516));
+  CHECK(medium("cauchy").ior == Approx(1.5 + 0.004 / 0.345229).epsilon(1e-5));
+  CHECK(index("sellmeier", 500) == Approx(std::sqrt(1 + 1.25 * 0.25 / 0.24)));
+  CHECK(medium("m").ior == Approx(2.4175).epsilon(1e-4));
+  CHECK(index("n", line_d) == Approx(1.7));
+}
+
 TEST_CASE("the world's medium gives way to all others") {
   const SceneDescription scene = load_scene_text(
       scene_with(R"("world": {"medium": "sea"}, "media": {"air": {}, "sea": {"ior": 1.33, "priority": 7}},

@@ -1,0 +1,161 @@
+// What a path carries: red, green and blue, or in scenes where a medium disperses four wavelengths, of which
+// the first, the hero, decides where the path goes (Wilkie and others 2014, "Hero Wavelength Spectral
+// Sampling"). The others lie evenly between, by the density of shared/spectra.h, and go along until the
+// wavelengths part: from there on the hero stands for them. Colours become spectra by three fixed ones that
+// together are white (host/scene/spectra/upsample.h). A path a lane.
+#ifndef SUNDOG_LIB_CARRIED_CL
+#define SUNDOG_LIB_CARRIED_CL
+#include "lib/core/lanes.h"
+#include "lib/core/sampler_lanes.cl"
+#include "lib/shade/dispersion.cl"
+
+#if HAS_DISPERSION
+typedef struct Carried {
+  REAL of[WAVELENGTHS];
+} Carried;
+#define EACH_WAVELENGTH(i) for (u32 i = 0; i < WAVELENGTHS; ++i)
+
+// The wavelengths of paths: the hero's number in [0, 1), and the parts of red and blue that each has.
+typedef struct Wavelengths {
+  REAL hero;
+  REAL red[WAVELENGTHS], blue[WAVELENGTHS];
+  MASK alone;  // the hero is
+} Wavelengths;
+
+// tanh((wavelength - WAVELENGTH_MIDDLE) / WAVELENGTH_SCALE) of wavelength i; it is spread evenly.
+static inline REAL wavelength_tanh(REAL hero, u32 i) {
+  const REAL u = hero + (float)i / (float)WAVELENGTHS;
+  return fma(u - floor(u), (REAL)(WAVELENGTH_HIGH - WAVELENGTH_LOW), (REAL)(WAVELENGTH_LOW));
+}
+
+// Where wavelength i lies among the rows of the table.
+static inline REAL wavelength_row(REAL hero, u32 i) {
+  const REAL t = wavelength_tanh(hero, i);
+  const REAL row = fma(real_log((1.0f + t) / (1.0f - t)), (REAL)(0.5f * WAVELENGTH_SCALE / SPECTRUM_STEP),
+                       (REAL)((WAVELENGTH_MIDDLE - SPECTRUM_FIRST) / SPECTRUM_STEP));
+  return real_clamp(row, (REAL)(0.0f), (REAL)((float)(SPECTRUM_ROWS - 1u)));
+}
+
+static inline Wavelengths choose_wavelengths(const Scene* scene, const LaneSamples* at, MASK lanes) {
+  Wavelengths chosen;
+  chosen.hero = sample_lanes(at, (MASK)((int)(DIMENSION_TIME))).y;
+  chosen.alone = NO_LANES;
+  EACH_WAVELENGTH(i) {
+    const REAL row = wavelength_row(chosen.hero, i);
+    chosen.red[i] = spectrum_at(scene, SPECTRUM_OF_RED * SPECTRUM_ROWS, row, lanes);
+    chosen.blue[i] = spectrum_at(scene, SPECTRUM_OF_BLUE * SPECTRUM_ROWS, row, lanes);
+  }
+  return chosen;
+}
+
+static inline void join_wavelengths(Wavelengths* mine, const Wavelengths* others, MASK lanes) {
+  mine->hero = select(mine->hero, others->hero, lanes);
+  mine->alone = select(mine->alone, others->alone, lanes);
+  EACH_WAVELENGTH(i) {
+    mine->red[i] = select(mine->red[i], others->red[i], lanes);
+    mine->blue[i] = select(mine->blue[i], others->blue[i], lanes);
+  }
+}
+
+static inline Carried carry_all(float value) {
+  Carried all;
+  EACH_WAVELENGTH(i) all.of[i] = (REAL)(value);
+  return all;
+}
+static inline Carried carry_select(Carried a, Carried b, MASK m) {
+  EACH_WAVELENGTH(i) a.of[i] = select(a.of[i], b.of[i], m);
+  return a;
+}
+static inline Carried carry_add(Carried a, Carried b) {
+  EACH_WAVELENGTH(i) a.of[i] += b.of[i];
+  return a;
+}
+static inline Carried carry_multiply(Carried a, Carried b) {
+  EACH_WAVELENGTH(i) a.of[i] *= b.of[i];
+  return a;
+}
+static inline Carried carry_scale(Carried a, REAL s) {
+  EACH_WAVELENGTH(i) a.of[i] *= s;
+  return a;
+}
+static inline REAL carry_greatest(Carried a) {
+  return real_max(real_max(a.of[0], a.of[1]), real_max(a.of[2], a.of[3]));
+}
+// What the wavelengths are worth together.
+static inline REAL carry_worth(Carried a) {
+  return (1.0f / (float)WAVELENGTHS) * ((a.of[0] + a.of[1]) + (a.of[2] + a.of[3]));
+}
+
+// The spectrum of a colour.
+static inline Carried carry_color(const Wavelengths* w, REAL3 color) {
+  Carried made;
+  EACH_WAVELENGTH(i)
+  made.of[i] = fma(w->red[i], color.x - color.y, fma(w->blue[i], color.z - color.y, color.y));
+  return made;
+}
+
+// The spectrum of what absorption leaves: of the optical depth, so that two lengths of a medium leave what
+// they leave one after the other.
+static inline Carried carry_kept(const Wavelengths* w, REAL3 kept) {
+#if HAS_ABSORPTION
+  const REAL least = (REAL)(1e-30f);
+  const REAL3 depth = real3(real_log(real_max(kept.x, least)), real_log(real_max(kept.y, least)),
+                            real_log(real_max(kept.z, least)));
+  Carried made = carry_color(w, depth);
+  EACH_WAVELENGTH(i) made.of[i] = real_exp(made.of[i]);
+  return made;
+#else
+  return carry_color(w, kept);
+#endif
+}
+
+// The wavelengths of `lanes` part: the hero stands for all.
+static inline void leave_hero(Wavelengths* w, Carried* carried, MASK lanes) {
+  const MASK parting = lanes & ~w->alone;
+  carried->of[0] = select(carried->of[0], carried->of[0] * (float)WAVELENGTHS, parting);
+  for (u32 i = 1; i < WAVELENGTHS; ++i) carried->of[i] = select(carried->of[i], (REAL)(0.0f), parting);
+  w->alone |= lanes;
+}
+
+// What paths have gathered, as linear RGB.
+NEVER_INLINE REAL3 carry_seen(const Scene* scene, const Wavelengths* w, const Carried* light, MASK lanes) {
+  REAL3 seen = all3((float3)(0.0f));
+  EACH_WAVELENGTH(i) {
+    const REAL t = wavelength_tanh(w->hero, i), row = wavelength_row(w->hero, i);
+    // The density's inverse, and each wavelength is one of all.
+    const REAL span =
+        (WAVELENGTH_HIGH - WAVELENGTH_LOW) * WAVELENGTH_SCALE / (float)WAVELENGTHS / fma(-t, t, (REAL)(1.0f));
+    const REAL3 weight = real3(spectrum_at(scene, SPECTRUM_RED * SPECTRUM_ROWS, row, lanes),
+                               spectrum_at(scene, (SPECTRUM_RED + 1u) * SPECTRUM_ROWS, row, lanes),
+                               spectrum_at(scene, (SPECTRUM_RED + 2u) * SPECTRUM_ROWS, row, lanes));
+    seen = along3(seen, light->of[i] * span, weight);
+  }
+  return seen;
+}
+
+#else
+typedef REAL3 Carried;
+typedef struct Wavelengths {
+  MASK unused;
+} Wavelengths;
+static inline Wavelengths choose_wavelengths(const Scene* scene, const LaneSamples* at, MASK lanes) {
+  const Wavelengths none = {NO_LANES};
+  return none;
+}
+static inline void join_wavelengths(Wavelengths* mine, const Wavelengths* others, MASK lanes) {}
+static inline Carried carry_all(float value) { return all3((float3)(value)); }
+static inline Carried carry_select(Carried a, Carried b, MASK m) { return select3(a, b, m); }
+static inline Carried carry_add(Carried a, Carried b) { return add3(a, b); }
+static inline Carried carry_multiply(Carried a, Carried b) { return multiply3(a, b); }
+static inline Carried carry_scale(Carried a, REAL s) { return scale3(a, s); }
+static inline REAL carry_greatest(Carried a) { return greatest3(a); }
+static inline REAL carry_worth(Carried a) { return greatest3(a); }
+static inline Carried carry_color(const Wavelengths* w, REAL3 color) { return color; }
+static inline Carried carry_kept(const Wavelengths* w, REAL3 kept) { return kept; }
+static inline void leave_hero(Wavelengths* w, Carried* carried, MASK lanes) {}
+static inline REAL3 carry_seen(const Scene* scene, const Wavelengths* w, const Carried* light, MASK lanes) {
+  return *light;
+}
+#endif
+
+#endif
