@@ -250,3 +250,58 @@ TEST_CASE("every kind of solid stands beside a field") {
     CHECK(*std::max_element(image.data.begin(), image.data.end()) > 0.3f);
   });
 }
+
+TEST_CASE("paths through a field of glass lose what its medium absorbs and nothing else") {
+  const DeviceInfo device = test_devices().front();
+  SceneDescription ink = absorbing_ball("2");
+  ink.render.integrator = "path";
+  ink.render.samples = 4;
+  const glm::dvec3 seen = scenes::pixel_on(device, ink);
+  CHECK(seen.x == Approx(std::exp(-1.4)).epsilon(1e-3));
+  CHECK(seen.y == Approx(1));
+  // In a white furnace clear glass cannot be seen; the mean does not depend on roulette.
+  for (const int roulette : {2, 65}) {
+    SceneDescription glass = absorbing_ball("2");
+    glass.render.integrator = "path";
+    glass.render.roulette = roulette;
+    glass.render.samples = 64;
+    glass.render.max_depth = 64;
+    glass.image.width = glass.image.height = 8;
+    glass.camera.fov = 15;
+    glass.media.back().absorption = dvec3(0);
+    glass.media.back().ior = 1.5;
+    const Image image = scenes::render_on(device, glass).image;
+    double sum = 0;
+    for (std::size_t i = 0; i < image.data.size(); i += 4) sum += static_cast<double>(image.data[i]);
+    INFO("roulette from ray " << roulette);
+    CHECK(sum / 64 == Approx(1).epsilon(0.01));
+  }
+}
+
+TEST_CASE("paths find a lamp through a ball of glass as a field as through the exact one") {
+  const auto below = [](const std::string& ball) {
+    return scene_of_text(
+        R"({"image": {"width": 16, "height": 16}, "render": {"integrator": "path", "samples": 128},
+      "camera": {"position": [0, 1.2, 3.5], "target": [0, -1, 0], "fov": 14},
+      "lights": [{"type": "sphere", "position": [0, 3, 0], "radius": 0.6, "intensity": 4}],
+      "materials": {"glass": {"type": "dielectric", "ior": 1.5}, "floor": {"diffuse": 0.8}},
+      "objects": [{"type": "plane", "point": [0, -1, 0], "material": "floor"}, {"material": "glass", )" +
+        ball + "}]}");
+  };
+  const DeviceInfo device = test_devices().front();
+  const Image solid = scenes::render_on(device, below(R"("type": "sphere", "radius": 0.6)")).image;
+  const Image field =
+      scenes::render_on(device, below(R"("type": "formula", "distance": "length(p) - 0.6")")).image;
+  double sum = 0, squares = 0, all = 0;
+  for (std::size_t i = 0; i < solid.data.size(); i += 4) {
+    const double off = static_cast<double>(field.data[i]) - static_cast<double>(solid.data[i]);
+    sum += off;
+    squares += off * off;
+    all += static_cast<double>(solid.data[i]);
+  }
+  const double count = double(solid.data.size()) / 4, mean = sum / count;
+  const double error = std::sqrt(std::max(squares / count - mean * mean, 0.0) / count);
+  INFO(mean << " +- " << error << " of " << all / count);
+  CHECK(all / count > 0.05);
+  CHECK(std::abs(mean) < 3 * error + 2e-3 * all / count);
+}

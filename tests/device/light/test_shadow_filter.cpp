@@ -120,3 +120,29 @@ TEST_CASE("a shadow ray that passes too many panes is given up, and counted") {
     CHECK(many.counts[COUNT_SHADOW_LIMIT] == 1);
   });
 }
+
+TEST_CASE(
+    "paths see a light straight through glass whose shadow is a filter, and not at all through other glass") {
+  for (const double degrees : {0.0, 60.0}) {
+    SceneDescription scene = scenes::line_of_sight({0, 0.9, 3}, {0, 0, 0});
+    scene.render.integrator = "path";
+    scene.render.max_depth = 1;  // the light itself, without what floor and pane throw at each other
+    scenes::place(scene, PlaneShape{}, scenes::add_white(scene));
+    const int pane = scenes::add_dielectric(scene, 1.5, {0.2, 0, 0.4});
+    scenes::place(scene, BoxShape{{1000, 0.1, 1000}}, pane, glm::translate(glm::dmat4(1), {0, 2, 0}));
+    const double slant = std::cos(glm::radians(degrees));
+    LightDescription sun;
+    sun.type = LightType::directional;
+    sun.direction = {std::sin(glm::radians(degrees)), -slant, 0};
+    scene.lights = {sun};
+    const DeviceInfo device = test_devices().front();
+    INFO(degrees << " degrees");
+    CHECK(scenes::pixel_on(device, scene) == glm::dvec3(0));
+    scene.materials[static_cast<std::size_t>(pane)].shadow_filter = true;
+    const glm::dvec3 seen = scenes::pixel_on(device, scene);
+    const double passed = 1 - reflectance(degrees, 1.5), way = 0.2 / slant;
+    CHECK(seen.x == Approx(slant * passed * passed * std::exp(-0.2 * way)).epsilon(1e-4));
+    CHECK(seen.y == Approx(slant * passed * passed).epsilon(1e-4));
+    CHECK(seen.z == Approx(slant * passed * passed * std::exp(-0.4 * way)).epsilon(1e-4));
+  }
+}
