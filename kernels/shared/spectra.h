@@ -24,7 +24,7 @@ SUNDOG_SHARED_BEGIN
 #define WAVELENGTHS 4u  // of a path
 #define WAVELENGTH_MIDDLE 545.0f
 #define WAVELENGTH_SCALE 110.0f
-#define WAVELENGTH_LOW -0.905148253645f  // tanh of that quotient, of the first wavelength and the last
+#define WAVELENGTH_LOW (-0.905148253645f)  // tanh of that quotient, of the first wavelength and the last
 #define WAVELENGTH_HIGH 0.972496100271f
 
 SUNDOG_SHARED_END

@@ -253,7 +253,7 @@ TEST_CASE("every kind of solid stands beside a field") {
 
 TEST_CASE("paths through a field of glass lose what its medium absorbs and nothing else") {
   const DeviceInfo device = test_devices().front();
-  SceneDescription ink = absorbing_ball("2");
+  SceneDescription ink = absorbing_ball(R"({"min": [-2, -2, -2], "max": [2, 2, 2]})");
   ink.render.integrator = "path";
   ink.render.samples = 4;
   const glm::dvec3 seen = scenes::pixel_on(device, ink);
@@ -261,7 +261,7 @@ TEST_CASE("paths through a field of glass lose what its medium absorbs and nothi
   CHECK(seen.y == Approx(1));
   // In a white furnace clear glass cannot be seen; the mean does not depend on roulette.
   for (const int roulette : {2, 65}) {
-    SceneDescription glass = absorbing_ball("2");
+    SceneDescription glass = absorbing_ball(R"({"min": [-2, -2, -2], "max": [2, 2, 2]})");
     glass.render.integrator = "path";
     glass.render.roulette = roulette;
     glass.render.samples = 64;
