@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/image_codecs.h"
+#include "base/limits.h"
 
 namespace sundog {
 namespace {
@@ -95,8 +96,7 @@ class Reader {
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
     // No compression of EXR packs 2000 pixels into a byte: the header of a broken file must not make this
     // process ask for all the memory.
-    if (width <= 0 || height <= 0 || width > (1 << 24) || height > (1 << 24) ||
-        width * height / 2000 > static_cast<std::int64_t>(bytes.size()))
+    if (!is_frame_size(width, height) || width * height / 2000 > static_cast<std::int64_t>(bytes.size()))
       throw std::runtime_error(
           fmt::format("the EXR file says {}x{} pixels in {} bytes", width, height, bytes.size()));
     width_ = static_cast<int>(width);

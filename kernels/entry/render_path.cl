@@ -1,6 +1,8 @@
 // One stage: the path-traced image of a rectangle of pixels, by unidirectional paths (Kajiya 1986, "The
 // Rendering Equation"). A work-item takes TILE_W x TILE_H pixels, a pixel a lane; a lane whose path has ended
 // takes its pixel's next sample, so lanes are seldom idle, and a pixel's samples stay in their order.
+// Shadow rays see what paths that meet lights by chance would.
+#define SHADOWS_AS_PATHS 1
 #include "lib/core/counters.cl"
 #include "lib/core/filter.cl"
 #include "lib/core/sampler.cl"

@@ -108,6 +108,7 @@ GltfMaterials::Entry GltfMaterials::read(const JsonAt& at) const {
   transmit(at, entry, base * (1 - metallic), ior);
   entry.two_sided = at.boolean("doubleSided", false);
   read_textures(at, entry);
+  add_specular_textures(at, entry);
   add_clearcoat(at, m);
   read_unlit(at, entry, base);
   blend(at, entry, alpha);
@@ -115,15 +116,22 @@ GltfMaterials::Entry GltfMaterials::read(const JsonAt& at) const {
 }
 
 // `base` is the colour of what is no metal: metals let nothing through.
-void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double ior) {
+void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double ior) const {
   const Volume volume = read_volume(at);
   const auto extension = at.extension("KHR_materials_transmission");
   const double factor = extension ? extension->number("transmissionFactor", 0, unit_range) : 0;
   const dvec3 passed = base * factor;
   if (passed == dvec3(0)) return;
   MaterialDescription& m = entry.material;
-  m.diffuse = glm::max(m.diffuse - passed, dvec3(0));
-  m.ambient = 0.1 * m.diffuse;
+  if (const auto texture = extension->find("transmissionTexture")) {
+    // The diffuse term has what is left, texel by texel: use_transmission().
+    entry.transmission = textures_.read(*texture);
+    entry.transmission->channel = 0;
+    entry.transmitted = std::min(factor * (1 - entry.values.metalness), 1.0);
+  } else {
+    m.diffuse = glm::max(m.diffuse - passed, dvec3(0));
+    m.ambient = 0.1 * m.diffuse;
+  }
   if (volume.thickness > 0 && ior >= 1) {
     m.type = MaterialType::dielectric;
     m.reflection = dvec3(1);
@@ -177,6 +185,18 @@ void GltfMaterials::read_unlit(const JsonAt& at, Entry& entry, dvec3 base) {
   entry.normal = entry.occlusion = std::nullopt;
 }
 
+/// The textures of KHR_materials_specular: alpha of the one, colour of the other. What is no metal has them.
+void GltfMaterials::add_specular_textures(const JsonAt& at, Entry& entry) const {
+  const auto extension = at.extension("KHR_materials_specular");
+  if (!extension || (!entry.by_values && entry.values.metalness > 0)) return;
+  if (const auto strength = extension->find("specularTexture")) {
+    entry.specular = textures_.read(*strength);
+    entry.specular->channel = 3;
+  }
+  if (const auto color = extension->find("specularColorTexture"))
+    entry.specular_color = textures_.read(*color);
+}
+
 /// KHR_materials_clearcoat as a mirror of 4 % above the rest, as far as it is smooth.
 void GltfMaterials::add_clearcoat(const JsonAt& at, MaterialDescription& material) {
   const auto extension = at.extension("KHR_materials_clearcoat");
@@ -218,15 +238,38 @@ void GltfMaterials::use_textures(const Entry& entry, MaterialDescription& materi
     if (material.transmission != dvec3(0)) to.transmission = to.diffuse;
     if (entry.values.metalness == 1) to.specular = to.diffuse;
   }
+  if (entry.transmission && !entry.unlit) use_transmission(entry, material, model);
   if (entry.by_values) {
     material.metal_rough = entry.values;
     to.ambient = to.reflection = to.specular = -1;
     if (entry.metal_rough) to.metal_rough = textures_.use(*entry.metal_rough, false, model);
   }
+  if (!entry.unlit) use_specular(entry, material, model);
   if (entry.opacity) to.opacity = textures_.use(*entry.opacity, true, model);
   if (entry.emission) to.emission = textures_.use(*entry.emission, true, model);
   if (entry.normal) to.normal = textures_.use(*entry.normal, false, model);
   if (entry.occlusion) to.occlusion = textures_.use(*entry.occlusion, false, model);
+}
+
+/// With a texture t of the share f that passes: the transmission times t, the diffuse term times 1 - f t.
+void GltfMaterials::use_transmission(const Entry& entry, MaterialDescription& material, Model& model) {
+  MaterialTextures& to = material.textures;
+  const int passing = textures_.use(*entry.transmission, false, model);
+  if (passing < 0) return;
+  TextureDescription rest = model.textures[static_cast<std::size_t>(passing)];
+  rest.factor = glm::dvec4(-entry.transmitted);
+  rest.offset = glm::dvec4(1);
+  model.textures.push_back(rest);
+  const int remaining = static_cast<int>(model.textures.size()) - 1;
+  to.transmission = GltfTextures::product(passing, to.transmission, model);
+  to.ambient = to.diffuse = GltfTextures::product(remaining, to.diffuse, model);
+}
+
+void GltfMaterials::use_specular(const Entry& entry, MaterialDescription& material, Model& model) {
+  const int strength = entry.specular ? textures_.use(*entry.specular, false, model) : -1;
+  const int color = entry.specular_color ? textures_.use(*entry.specular_color, true, model) : -1;
+  const int both = GltfTextures::product(strength, color, model);
+  if (both >= 0) material.textures.specular = both;
 }
 
 int GltfMaterials::use(std::size_t index, bool vertex_color, Model& model) {

@@ -34,7 +34,9 @@ class GltfMaterials {
     MediumDescription medium;
     bool has_medium = false;
     std::optional<TextureDescription> base, opacity, emission, metal_rough, normal, occlusion;
+    std::optional<TextureDescription> transmission, specular, specular_color;
     MetalRough values;
+    double transmitted = 0;  // of what is no metal, the share that a transmission texture is a factor on
     bool two_sided = false, unlit = false,
          by_values = false;  // by_values: textures change metalness or roughness
   };
@@ -43,8 +45,11 @@ class GltfMaterials {
   void settle_sides();
   static void read_unlit(const JsonAt& at, Entry& entry, glm::dvec3 base);
   static void add_clearcoat(const JsonAt& at, MaterialDescription& material);
+  void add_specular_textures(const JsonAt& at, Entry& entry) const;
   void use_textures(const Entry& entry, MaterialDescription& material, Model& model);
-  static void transmit(const JsonAt& at, Entry& entry, glm::dvec3 base, double ior);
+  void use_transmission(const Entry& entry, MaterialDescription& material, Model& model);
+  void use_specular(const Entry& entry, MaterialDescription& material, Model& model);
+  void transmit(const JsonAt& at, Entry& entry, glm::dvec3 base, double ior) const;
   static void blend(const JsonAt& at, Entry& entry, double alpha);
 
   GltfTextures& textures_;

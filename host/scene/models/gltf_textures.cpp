@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -139,6 +140,16 @@ int GltfTextures::use(const TextureDescription& texture, bool srgb, Model& model
   if (found->second < 0) return -1;
   model.textures.push_back(texture);
   model.textures.back().image = found->second;
+  return static_cast<int>(model.textures.size()) - 1;
+}
+
+int GltfTextures::product(int a, int b, Model& model) {
+  if (a < 0 || b < 0) return std::max(a, b);
+  TextureDescription both;
+  both.kind = TEXTURE_PRODUCT;
+  both.of[0] = a;
+  both.of[1] = b;
+  model.textures.push_back(both);
   return static_cast<int>(model.textures.size()) - 1;
 }
 

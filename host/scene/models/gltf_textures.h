@@ -27,6 +27,9 @@ class GltfTextures {
   /// -1, and a warning, where the image's file is missing.
   int use(const TextureDescription& texture, bool srgb, Model& model);
 
+  /// Adds the product of two of a model's textures; where one is -1 the other is it.
+  static int product(int a, int b, Model& model);
+
  private:
   struct Entry {
     std::size_t image = 0;

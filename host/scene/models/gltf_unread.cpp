@@ -38,12 +38,12 @@ constexpr std::array textures{Named{"baseColorTexture", nullptr},  // read
                               Named{"metallicRoughnessTexture", nullptr},
                               Named{"normalTexture", nullptr},
                               Named{"occlusionTexture", nullptr},
-                              Named{"transmissionTexture", "transmission textures"},
+                              Named{"transmissionTexture", nullptr},
                               Named{"clearcoatTexture", "clearcoat textures"},
                               Named{"clearcoatRoughnessTexture", "clearcoat textures"},
                               Named{"clearcoatNormalTexture", "clearcoat textures"},
-                              Named{"specularTexture", "specular textures"},
-                              Named{"specularColorTexture", "specular textures"}};
+                              Named{"specularTexture", nullptr},
+                              Named{"specularColorTexture", nullptr}};
 
 constexpr std::array material_extensions{
     Named{"KHR_materials_ior", nullptr},  // read

@@ -40,11 +40,9 @@ std::optional<dvec3> read_color(TextReader& text) {
 
 /// Statements that would change the picture.
 constexpr std::string_view read_maps[] = {"map_Kd",   "map_Ka",   "map_Ks", "map_Ke", "map_d",
-                                          "map_Bump", "map_bump", "bump",   "norm",   "map_Kn"};
-constexpr std::pair<std::string_view, const char*> unread_properties[] = {{"map_Ns", "specular textures"},
-                                                                          {"map_Tr", "alpha of textures"},
-                                                                          {"disp", "displacement"},
-                                                                          {"map_disp", "displacement"},
+                                          "map_Bump", "map_bump", "bump",   "norm",   "map_Kn",
+                                          "disp",     "map_disp", "map_Ns"};
+constexpr std::pair<std::string_view, const char*> unread_properties[] = {{"map_Tr", "alpha of textures"},
                                                                           {"decal", "decals"},
                                                                           {"refl", "reflection maps"},
                                                                           {"map_refl", "reflection maps"},
@@ -90,6 +88,28 @@ void read_statement(TextReader& text, std::string_view key, Statements& m) {
     m.illumination = static_cast<int>(std::clamp<std::int64_t>(text.integer("illum"), 0, 10));
 }
 
+/// Displacement: with -bm true displacement by so many of the model's units, else heights for the shading, as
+/// of a bump map: files rarely say how high they are.
+void add_displacement(const Statements& m, const Source& obj, const fs::path& library, MtlTextures& textures,
+                      MaterialDescription& out) {
+  for (const char* key : {"map_disp", "disp"})
+    if (const auto found = m.maps.find(key); found != m.maps.end()) {
+      MtlMap map = found->second;
+      if (map.channel < 0) map.channel = 0;
+      if (!map.has_bump && out.textures.height >= 0) continue;
+      const int heights = textures.use(map, false, obj, library);
+      if (heights < 0) continue;
+      if (map.has_bump) {
+        out.displaced_by = heights;
+        out.displacement = map.bump;
+      } else {
+        out.textures.height = heights;
+        out.bump = 0;
+        out.bump_uv = 0.01;
+      }
+    }
+}
+
 /// Heights and normals. The format gives heights no unit: here a height of 1 is a hundredth of a unit of u
 /// and v, times -bm.
 void add_relief_maps(const Statements& m, const Source& obj, const fs::path& library, MtlTextures& textures,
@@ -122,7 +142,10 @@ void add_maps(const Statements& m, const Source& obj, const fs::path& library, M
   if (to.diffuse >= 0 && !m.diffuse) out.diffuse = dvec3(1);
   if (to.specular >= 0 && !m.specular) out.specular = dvec3(1);
   if (to.emission >= 0 && !m.emission) out.emission = dvec3(1);
+  if (const auto shine = m.maps.find("map_Ns"); shine != m.maps.end())
+    to.exponent = textures.use(shine->second, false, obj, library);
   add_relief_maps(m, obj, library, textures, out);
+  add_displacement(m, obj, library, textures, out);
   const auto alpha = m.maps.find("map_d");
   if (alpha == m.maps.end() || out.medium >= 0) return;
   MtlMap map = alpha->second;

@@ -43,6 +43,7 @@ void read_option(TextReader& text, std::string_view option, MtlMap& map) {
     if (option == "-s") map.scale = glm::dvec2(values);
   } else if (option == "-bm") {
     map.bump = std::clamp(text.number("-bm"), -1e6, 1e6);
+    map.has_bump = true;
   } else if (option == "-mm") {
     text.number("-mm"), text.number("-mm");
   } else if (option == "-clamp") {

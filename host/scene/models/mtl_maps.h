@@ -16,6 +16,7 @@ struct MtlMap {
   glm::dvec2 offset{0}, scale{1};  // -o, -s: texture coordinates times scale plus offset
   bool clamp = false;              // -clamp
   double bump = 1;                 // -bm
+  bool has_bump = false;           // it is there
   int channel = -1;                // -imfchan
   std::size_t line = 0;
 };

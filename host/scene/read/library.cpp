@@ -12,13 +12,15 @@ void append(std::vector<Value>& to, std::vector<Value>& from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
-void shift_textures(MaterialTextures& textures, int by) {
-  const auto shift = [by](int& texture) {
-    if (texture >= 0) texture += by;
-  };
-#define SUNDOG_SHIFT_MAP(constant, name) shift(textures.name);
+void shift(int& index, int by) {
+  if (index >= 0) index += by;
+}
+
+void shift_textures(MaterialDescription& material, int by) {
+#define SUNDOG_SHIFT_MAP(constant, name) shift(material.textures.name, by);
   MAP_SLOTS(SUNDOG_SHIFT_MAP)
 #undef SUNDOG_SHIFT_MAP
+  shift(material.displaced_by, by);
 }
 
 /// The same file by whatever path it is named.
@@ -46,9 +48,11 @@ ModelLibrary::Parts ModelLibrary::add(Model model, const std::string& name) {
   if (model.objects.empty()) scene_.warnings.push_back(fmt::format("{}: holds no surfaces", name));
   const int first_texture = static_cast<int>(scene_.textures.size());
   const int first_image = static_cast<int>(scene_.images.size());
-  for (TextureDescription& texture : model.textures)
-    if (texture.image >= 0) texture.image += first_image;
-  for (MaterialDescription& material : model.materials) shift_textures(material.textures, first_texture);
+  for (TextureDescription& texture : model.textures) {
+    shift(texture.image, first_image);
+    for (int& other : texture.of) shift(other, first_texture);
+  }
+  for (MaterialDescription& material : model.materials) shift_textures(material, first_texture);
   append(scene_.images, model.images);
   append(scene_.textures, model.textures);
   append(scene_.media, model.media);

@@ -10,6 +10,12 @@
 
 #define MAX_FILTERS 64
 
+// Which side of a surface of one side a shadow ray sees: where paths meet lights by chance as well, the one
+// that it comes to, as those do; else the one that the light comes to.
+#ifndef SHADOWS_AS_PATHS
+#define SHADOWS_AS_PATHS 0
+#endif
+
 #if HAS_SHADOW_FILTERS
 // A dielectric's part of light that straight shadow rays let through. The straight ray stands for one that
 // bends, whose slant is this one in the rarer medium: a pane at any angle then loses (1 - F)^2, and nothing
@@ -45,7 +51,7 @@ NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, con
     map_term(maps, &values, MAP_TRANSMISSION, mine, &transmission);
     REAL opacity = opacity_of(maps, &values);
     if (scene->materials[index].flags & MATERIAL_ONE_SIDED)
-      opacity = select((REAL)(0.0f), opacity, faces->entering);
+      opacity = select((REAL)(0.0f), opacity, SHADOWS_AS_PATHS ? faces->entering : ~faces->entering);
     const REAL behind = 1.0f - opacity;
     transmission =
         select3(transmission, add3(scale3(transmission, opacity), real3(behind, behind, behind)), mine);

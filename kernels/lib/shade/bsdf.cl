@@ -73,6 +73,9 @@ static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MA
     if (material->maps != NO_MAPS) mapped |= mine;
   }
   if (any_lane(mapped)) map_terms(scene, s, mapped, &terms);
+#if HAS_RELIEF
+  widen_highlights(s->even, &terms.exponent, &terms.specular);
+#endif
   bsdf->ambient = terms.ambient;
   bsdf->diffuse = terms.diffuse;
   bsdf->specular = terms.specular;

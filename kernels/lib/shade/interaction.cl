@@ -27,6 +27,7 @@ typedef struct SurfaceInteractions {
 #endif
 #if HAS_RELIEF
   MASK bent;  // ns is not the geometry's
+  REAL even;  // length of the mean of the normal map's normals in the footprint, 1 where they are alike
 #endif
 #if HAS_PARALLAX
   REAL3 shift;  // along the surface to where the ray meets the relief below it; u and v are those there

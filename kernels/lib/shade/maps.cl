@@ -111,10 +111,13 @@ static inline void metal_rough_terms(__global const MaterialMaps* maps, const Sl
   const REAL mirror = metal_mirror(metalness, roughness);
   const REAL3 base = multiply3(multiply3(real3(color.x, color.y, color.z), all3(maps->base.xyz)), tint);
   const REAL3 diffuse = scale3(base, 1.0f - mirror);
+  // A texture of the highlight is that of what is no metal.
+  const REAL4 shine = has_slot(maps, MAP_SPECULAR) ? values->of[MAP_SPECULAR] : white;
   const REAL plain = maps->reflectance * (1.0f - metalness);
   terms->diffuse = select3(terms->diffuse, diffuse, lanes);
   terms->ambient = select3(terms->ambient, scale3(diffuse, (REAL)(0.1f)), lanes);
-  terms->specular = select3(terms->specular, along3(real3(plain, plain, plain), metalness, base), lanes);
+  terms->specular = select3(terms->specular,
+                            along3(scale3(real3(shine.x, shine.y, shine.z), plain), metalness, base), lanes);
   terms->reflection = select3(terms->reflection, scale3(base, mirror), lanes);
   terms->exponent = select(terms->exponent, rough_exponent(roughness), lanes);
 }
@@ -158,7 +161,7 @@ static inline void map_material(const Scene* scene, __global const MaterialMaps*
   SlotValues values;
   read_slots(scene, maps, wanted, at, lanes, &values);
   map_colors(maps, &values, metal, shared, s->color, lanes, terms);
-  map_term(maps, &values, MAP_SPECULAR, lanes, &terms->specular);
+  if (!metal) map_term(maps, &values, MAP_SPECULAR, lanes, &terms->specular);
   map_term(maps, &values, MAP_REFLECTION, lanes, &terms->reflection);
   map_term(maps, &values, MAP_TRANSMISSION, lanes, &terms->transmission);
   map_term(maps, &values, MAP_EMISSION, lanes, &terms->emission);
@@ -174,6 +177,17 @@ static inline void map_material(const Scene* scene, __global const MaterialMaps*
   const REAL opacity = opacity_of(maps, &values);
   map_opacity(one_sided ? select((REAL)(0.0f), opacity, s->entering) : opacity, lanes, terms);
 }
+
+#if HAS_RELIEF
+// A highlight on normals that differ within the footprint is as wide as theirs together, and as much weaker
+// (Toksvig 2005, "Mipmapping Normal Maps").
+static inline void widen_highlights(REAL even, REAL* exponent, REAL3* specular) {
+  const REAL e = *exponent, wide = e * even / nonzero(fma(e, 1.0f - even, even));
+  const MASK uneven = MASK_OF(even < 1.0f);
+  *specular = select3(*specular, scale3(*specular, (1.0f + wide) / (1.0f + e)), uneven);
+  *exponent = select(e, wide, uneven);
+}
+#endif
 
 // The same for all of `lanes`, which have MaterialMaps.
 NEVER_INLINE void map_terms(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Terms* terms) {

@@ -30,6 +30,8 @@ static inline void mesh_tangents(const Scene* scene, const SurfaceInteractions* 
   }
 }
 
+#define EVEN_ROUNDING 0.01f  // what bytes may take from a normal's length
+
 // The frames of surfaces: outward shading normal, tangent along u and bitangent along v, in the world, as a
 // normal map's baker had them.
 typedef struct TangentFrames {
@@ -68,11 +70,15 @@ static inline TangentFrames tangent_frames(const Scene* scene, const SurfaceInte
 
 // The normals of `lanes`, all of one material, by its normal map.
 static inline REAL3 mapped_normals(const Scene* scene, __global const MaterialMaps* maps,
-                                   const TexturePoints* at, const TangentFrames* frame, MASK lanes) {
+                                   const TexturePoints* at, const TangentFrames* frame, MASK lanes,
+                                   REAL* even) {
   const REAL4 value = slot_values(scene, maps, MAP_NORMAL, at, lanes);
   const REAL scale = (REAL)(2.0f * maps->normal_scale), half_scale = (REAL)(maps->normal_scale);
   const REAL x = fma(value.x, scale, -half_scale), y = fma(value.y, scale, -half_scale);
   const REAL z = fma(value.z, (REAL)(2.0f), (REAL)(-1.0f));
+  const REAL3 mean =
+      real3(fma(value.x, (REAL)(2.0f), (REAL)(-1.0f)), fma(value.y, (REAL)(2.0f), (REAL)(-1.0f)), z);
+  *even = select(*even, real_min(length3(mean) + EVEN_ROUNDING, (REAL)(1.0f)), lanes);
   return add3(add3(scale3(frame->tangent, x), scale3(frame->bitangent, y)), scale3(frame->normal, z));
 }
 
@@ -113,6 +119,7 @@ static inline REAL3 bumped_normals(const Scene* scene, __global const MaterialMa
 // that were.
 NEVER_INLINE void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {
   s->bent = NO_LANES;
+  s->even = (REAL)(1.0f);
   MASK mapped = NO_LANES;
   u32 index;
   for (MASK left = lanes; any_lane(left);) {
@@ -131,7 +138,7 @@ NEVER_INLINE void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInt
     const MASK mine = take_alike(s->material, &left, &index);
     __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
     if (maps->slot[MAP_NORMAL] != NO_TEXTURE)
-      normal = select3(normal, mapped_normals(scene, maps, &at, &frame, mine), mine);
+      normal = select3(normal, mapped_normals(scene, maps, &at, &frame, mine, &s->even), mine);
     if (maps->slot[MAP_HEIGHT] != NO_TEXTURE && (maps->bump != 0.0f || maps->bump_uv != 0.0f))
       normal = select3(normal, bumped_normals(scene, maps, s, &at, normal, mine), mine);
   }

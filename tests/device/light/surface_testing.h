@@ -16,7 +16,7 @@ namespace surfaces {
 using namespace sundog;
 
 /// What is computed: each is a program of its own, as small as can be, because some drivers compile for long.
-enum class Part { value, relief, metal_rough, parallax };
+enum class Part { value, relief, metal_rough, parallax, projected };
 
 /// A point of instance 0, whose outward normal is `n`, as a ray along `d` sees it, lit from `wi`.
 struct Point {
@@ -28,7 +28,8 @@ struct Point {
 
 /// What shading has of it; what is no matter of the part is zero.
 struct Shaded {
-  float4 value;   // of the first texture that material 0 has
+  float4 value;  // of the first texture that material 0 has; relief: x: how even the normals are, y and z: an
+                 // exponent of 50 and a highlight of 1 on them
   float4 normal;  // relief: the shading one; w: what the terminator keeps of the light
   float4 ambient, diffuse, specular, reflection;  // metal_rough; diffuse.w: the exponent
   float4 sunk;  // parallax: x: how deep the ray went, y: u there, z: the way along x, w: of light past it
@@ -75,7 +76,13 @@ __kernel void shade_points(SCENE_PARAMETERS, __global const float4* points, __gl
 #if PART == 1
   add_relief(&scene, d, lanes, &s);
   const REAL kept = terminator(&s, wi);
-  for (u32 i = 0; i < BATCH && first + i < count; ++i) out[7u * (first + i) + 1u] = lane4(&s.ns, kept, i);
+  REAL exponent = (REAL)(50.0f);
+  REAL3 shine = all3((float3)(1.0f));
+  widen_highlights(s.even, &exponent, &shine);
+  for (u32 i = 0; i < BATCH && first + i < count; ++i) {
+    out[7u * (first + i)] = (float4)(REAL_LANE(s.even, i), REAL_LANE(exponent, i), REAL_LANE(shine.x, i), 0.0f);
+    out[7u * (first + i) + 1u] = lane4(&s.ns, kept, i);
+  }
 #elif PART == 3
   add_parallax(&scene, d, lanes, &s);
   const REAL seen = relief_visibility(&scene, &s, wi, lanes);
@@ -84,7 +91,7 @@ __kernel void shade_points(SCENE_PARAMETERS, __global const float4* points, __gl
 #else
   TexturePoints at;
   texture_points(&scene, &s, lanes, &at);
-#if PART == 0
+#if PART == 0 || PART == 4
   const REAL4 value = value_of_texture(&scene, first_texture(&scene), &at, lanes);
   for (u32 i = 0; i < BATCH && first + i < count; ++i)
     out[7u * (first + i)] = (float4)(REAL_LANE(value.x, i), REAL_LANE(value.y, i), REAL_LANE(value.z, i), REAL_LANE(value.w, i));
@@ -126,7 +133,7 @@ inline KernelDefines defines_of(const DeviceInfo& info, Part part, bool images, 
   features.texture_kinds = images                ? 1u << TEXTURE_IMAGE
                            : part == Part::value ? patterns
                                                  : 1u << TEXTURE_GRADIENT;
-  features.texture_mappings = images ? 1 : 2;
+  features.texture_mappings = part == Part::projected ? 0x1C : images ? 1 : 2;
   features.texture_stack = !images && part == Part::value ? 4 : 1;
   const u32 few = 1u << TEXEL_GREY8 | 1u << TEXEL_RGBA8;
   features.texel_formats = !images ? 0 : part == Part::value ? 0xFFFF : few;

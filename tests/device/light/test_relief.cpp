@@ -90,6 +90,27 @@ TEST_CASE("bent normals leak no light from behind the surface, and end softly at
   });
 }
 
+TEST_CASE("normals that differ within a footprint make highlights wider and weaker, and their mean is unit") {
+  SceneDescription scene = white_plane();
+  ImageDescription image =
+      pixel({204, 128, 230, 255, 51, 128, 230, 255});  // (0.6, 0, 0.8) and (-0.6, 0, 0.8)
+  image.pixels.width = 2;
+  scene.materials[0].textures.normal = add_image(scene, image);
+  on_every_device([&](const DeviceInfo& info) {
+    const auto seen = [&](double footprint) {
+      return surfaces::shade(info, surfaces::Part::relief, scene, above(0.25, 0.5, footprint));
+    };
+    CHECK(double(seen(1e-3).value.x) == Approx(1).margin(1e-3));
+    CHECK(double(seen(1e-3).value.y) == Approx(50).epsilon(1e-3));
+    const surfaces::Shaded far = seen(20);
+    const double even = 230 / 127.5 - 1 + 0.01, wide = 50 * even / (even + 50 * (1 - even));
+    CHECK(double(far.value.x) == Approx(even).margin(5e-3));
+    CHECK(double(far.value.y) == Approx(wide).epsilon(0.05));
+    CHECK(double(far.value.z) == Approx((1 + wide) / 51).epsilon(0.05));
+    CHECK(glm::length(xyz(far.normal) - dvec3(0, 1, 0)) < 0.01);
+  });
+}
+
 TEST_CASE("heights bend the normal by their slope, whatever the object's size") {
   for (const double size : {1.0, 3.0}) {
     SceneDescription scene = white_plane();

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
 
 #include "catch.h"
 #include "compile/textures.h"
@@ -239,7 +240,7 @@ int add_halves(SceneDescription& scene, std::uint8_t left, std::uint8_t right) {
   return texture;
 }
 
-constexpr float leaf_at = 10, bent_at = 20, front_at = 30, wall_at = 40;
+constexpr float leaf_at = 10, bent_at = 20, front_at = 30, wall_at = 40, back_at = 50;
 
 void place_disk(SceneDescription& scene, const MaterialDescription& material, dvec3 at, double radius) {
   scene.materials.push_back(material);
@@ -279,6 +280,11 @@ SceneDescription many_disks() {
   front.ambient = dvec3(1), front.diffuse = dvec3(0);
   front.one_sided = true;
   place_disk(scene, front, {front_at, 1, 0}, 1);
+  // From above and from the sun only their backs would be seen, which are not there.
+  place_disk(scene, white, {back_at, 0.5, 0}, 3);
+  place_disk(scene, front, {back_at, 1, 0}, 1);
+  scene.objects.back().world_from_object =
+      glm::rotate(scene.objects.back().world_from_object, std::numbers::pi, dvec3(1, 0, 0));
   MaterialDescription wall = white;
   wall.textures.height = add_halves(scene, 0, 255);
   wall.bump = 0;
@@ -320,6 +326,7 @@ TEST_CASE("pictures have what textures make of surfaces") {
     CHECK(below(bent_at, 3).x == Approx(lit * (g + g * g - g * g * g)).margin(2e-3));
     CHECK(below(front_at, 3).x == Approx(1));
     CHECK(seen(info, scene, {front_at, 0.5, 0}, {front_at, 3, 0}).x == Approx(0.25));
+    CHECK(below(back_at, 3).x == Approx(0.8));
     // Left of the wall, which is 0.2 high, its shadow is 0.15 wide.
     CHECK(below(wall_at - 0.07, 3).x == Approx(0).margin(1e-6));
     CHECK(below(wall_at - 0.3, 3).x == Approx(0.8));

@@ -1,0 +1,88 @@
+// Damaged JPEG, WebP, EXR and HDR files: each prefix, and each byte changed. Each is an image within the
+// limits or an error; none crashes or takes long.
+#include <base/image_codecs.h>
+#include <base/limits.h>
+#include <base/pixels/stored_image.h>
+
+#include <string>
+
+#include "catch.h"
+
+using namespace sundog;
+
+namespace {
+
+/// 6x5 pixels, lossless and lossy, by libwebp's encoder.
+const char* const webp_lossless =
+    "5249464666000000574542505650384c590000002f05000100cd6444ff631311fd0f28adb51d3381244ae29744c9"
+    "008e094c208926904451fc1d42944c204a26308d4020119c7f80480402894914a30f1801372138368cd2074ee421"
+    "51fdd10c1086df18cb82e2c90d042e820400";
+const char* const webp_lossy =
+    "52494646640000005745425056503820580000001002009d012a060005000280422590027430494168d65498b000"
+    "ce39531f1bddd845e5aebebb73e6f2a5770d86cd480229b7f76b9ff357481a9d977c773f31c3e41bff83933f8378"
+    "924556bff000788ab203822ac0000000";
+
+std::string from_hex(const std::string& digits) {
+  std::string bytes;
+  for (std::size_t i = 0; i + 1 < digits.size(); i += 2)
+    bytes += static_cast<char>(std::stoi(digits.substr(i, 2), nullptr, 16));
+  return bytes;
+}
+
+Image small_image() {
+  Image image(9, 7, 4);
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    image.data[i] = i % 4 == 3 ? 1.0f : static_cast<float>(i * i % 97) / 97;
+  return image;
+}
+
+/// Decodes it, whatever comes of it; whether it is an image.
+bool decodes(const std::string& bytes) {
+  try {
+    const StoredImage image = decode_stored(bytes);
+    CHECK(is_frame_size(image.width, image.height));
+    CHECK(image.data.size() == image.pixel_count() * image.pixel_bytes());
+    return true;
+  } catch (const std::exception& error) {
+    CHECK(std::string(error.what()) != "");
+    return false;
+  }
+}
+
+/// `rows_may_lack`: what is decoded row by row may have its last ones missing.
+void damage(const std::string& good, bool rows_may_lack) {
+  REQUIRE(decodes(good));
+  for (std::size_t length = 0; length < good.size(); ++length) {
+    const bool some = decodes(good.substr(0, length));
+    if (!rows_may_lack && length < good.size() / 2) CHECK_FALSE(some);
+  }
+  for (std::size_t at = 0; at < good.size(); ++at)
+    for (const char change : {'\x01', '\x80', '\xff'}) {
+      std::string bad = good;
+      bad[at] = static_cast<char>(bad[at] ^ change);
+      decodes(bad);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("damaged JPEG files are images or errors") { damage(encode_jpeg(small_image()), false); }
+TEST_CASE("damaged WebP files are images or errors") {
+  damage(from_hex(webp_lossless), false);
+  damage(from_hex(webp_lossy), false);
+}
+TEST_CASE("damaged EXR files are images or errors") {
+  damage(encode_exr(small_image(), {}, ExrColor::half), true);
+}
+TEST_CASE("damaged HDR files are images or errors") { damage(encode_hdr(small_image()), false); }
+
+TEST_CASE("a JPEG or WebP header that lies about the size is an error") {
+  std::string jpeg = encode_jpeg(small_image());
+  const std::size_t frame = jpeg.find("\xff\xc0");
+  REQUIRE(frame != std::string::npos);
+  for (std::size_t i = 5; i < 9; ++i) jpeg[frame + i] = '\xff';  // 65535 x 65535
+  CHECK_FALSE(decodes(jpeg));
+  std::string webp = from_hex(webp_lossless);
+  for (std::size_t i = 21; i < 24; ++i) webp[i] = '\xff';  // 16384 x 16384
+  CHECK_FALSE(decodes(webp));
+}

@@ -1,0 +1,89 @@
+// Textures that models of other formats bring: glTF's extensions, MTL's displacement.
+#include <base/image_io.h>
+#include <compile/compiled_scene.h>
+#include <scene/load.h>
+#include <scene/model.h>
+
+#include "catch.h"
+#include "gltf_text.h"
+#include "temporary_folder.h"
+
+using namespace sundog;
+
+namespace {
+
+std::string two_pixels() {
+  Image two(2, 1, 3);
+  two.data = {1, 0, 0, 0, 0, 1};
+  return encode_image(two, "two.png");
+}
+
+/// The quad with a texture 0 and this material.
+SceneDescription quad_with(const std::string& material) {
+  const TemporaryFolder folder;
+  const std::string image = R"("images":[{"uri":"data:image/png;base64,)" + base64(two_pixels()) + R"("}])";
+  return load_scene(folder.write(
+      "a.gltf", quad(one_node + "," + image + R"(,"textures":[{"source":0}],"materials":[)" + material + "]",
+                     R"(,"material":0)")));
+}
+
+const TextureDescription& texture_of(const SceneDescription& scene, int index) {
+  return scene.textures.at(static_cast<std::size_t>(index));
+}
+
+}  // namespace
+
+TEST_CASE("a glTF's transmission texture divides the light between what passes and what is returned") {
+  const SceneDescription scene = quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":0,
+      "baseColorFactor":[0.5,1,1,1],"baseColorTexture":{"index":0}},
+      "extensions":{"KHR_materials_transmission":{"transmissionFactor":0.75,"transmissionTexture":{"index":0}}}})");
+  const MaterialDescription& m = scene.materials.at(0);
+  CHECK(m.diffuse.x == Approx(0.5));
+  CHECK(m.transmission.x == Approx(0.5 * 0.75 * 0.96));
+  const TextureDescription& passing = texture_of(scene, m.textures.transmission);
+  REQUIRE(passing.kind == TEXTURE_PRODUCT);
+  CHECK(texture_of(scene, passing.of[0]).channel == 0);
+  const TextureDescription& returned = texture_of(scene, m.textures.diffuse);
+  REQUIRE(returned.kind == TEXTURE_PRODUCT);
+  const TextureDescription& rest = texture_of(scene, returned.of[0]);
+  CHECK(rest.factor.x == Approx(-0.75));
+  CHECK(rest.offset.x == 1);
+  CHECK(texture_of(scene, returned.of[1]).kind == TEXTURE_IMAGE);
+  CHECK(compile(scene).features.texture_stack == 2);
+  CHECK(scene.warnings.empty());
+}
+
+TEST_CASE("a glTF's specular textures are factors on the highlight of what is no metal") {
+  const std::string specular =
+      R"("extensions":{"KHR_materials_specular":{"specularTexture":{"index":0},"specularColorTexture":{"index":0}}}})";
+  const SceneDescription scene = quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":0},)" + specular);
+  const TextureDescription& shine = texture_of(scene, scene.materials.at(0).textures.specular);
+  REQUIRE(shine.kind == TEXTURE_PRODUCT);
+  CHECK(texture_of(scene, shine.of[0]).channel == 3);
+  CHECK(texture_of(scene, shine.of[1]).channel == -1);
+  CHECK(scene.warnings.empty());
+  CHECK(quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":1},)" + specular)
+            .materials.at(0)
+            .textures.specular == -1);
+}
+
+TEST_CASE("an MTL's disp displaces by what -bm says, and bends normals without it") {
+  const TemporaryFolder folder;
+  folder.write("h.png", two_pixels());
+  folder.write("a.obj",
+               "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n");
+  folder.write("m.mtl", "newmtl a\ndisp -bm 0.25 h.png\nmap_Ns h.png\n");
+  const SceneDescription moved = load_scene(folder / "a.obj");
+  CHECK(moved.materials.at(0).displacement == 0.25);
+  CHECK(moved.materials[0].displaced_by >= 0);
+  CHECK(moved.materials[0].textures.exponent >= 0);
+  float highest = 0;
+  for (const Mesh& mesh : moved.meshes)
+    for (const glm::vec3& p : mesh.positions) highest = std::max(highest, std::abs(p.z));
+  CHECK(highest > 0.1f);
+  folder.write("m.mtl", "newmtl a\ndisp h.png\n");
+  const SceneDescription bent = load_scene(folder / "a.obj");
+  CHECK(bent.materials.at(0).displaced_by == -1);
+  CHECK(bent.materials[0].textures.height >= 0);
+  CHECK(bent.materials[0].bump_uv == 0.01);
+}
