@@ -14,6 +14,7 @@
 #include "app/commands/check_command.h"
 #include "app/commands/formulas_command.h"
 #include "app/commands/gallery_command.h"
+#include "app/commands/halo_command.h"
 #include "app/options/command_words.h"
 #include "app/options/commands.h"
 #include "app/options/option_helpers.h"
@@ -265,6 +266,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_merge(arguments, chosen);
   add_bake(arguments, chosen);
   add_gallery(arguments, chosen);
+  add_halo(arguments, chosen);
   add_serve(arguments, chosen);
   add_bench(arguments, chosen);
   const CommandWords words = words_of(root);

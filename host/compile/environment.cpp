@@ -6,6 +6,7 @@
 #include <numbers>
 #include <span>
 
+#include "compile/halo/halo_map.h"
 #include "compile/materials.h"
 #include "compile/pack.h"
 #include "compile/sky.h"
@@ -62,24 +63,68 @@ dvec3 sun_in_axes(const EnvironmentDescription& e) {
 
 Sky sky_of(const EnvironmentDescription& e) { return {e.turbidity, e.sun_altitude * pi / 180}; }
 
-Picture picture_of_sky(const EnvironmentDescription& e) {
-  const Sky sky = sky_of(e);
-  const dvec3 sun = sun_in_axes(e), factor = e.color * e.intensity;
-  Picture picture{sky_columns, sky_rows, std::vector<float4>(std::size_t{sky_columns} * sky_rows)};
+/// What of its light reaches the ground through crystals.
+double sun_share(const EnvironmentDescription& e) {
+  if (e.type != EnvironmentType::halo) return 1;
+  return std::exp(-e.halo.optical_depth / std::max(sun_in_axes(e).y, 0.01));
+}
+
+/// The light of `light_along(zenith, azimuth)` above the horizon, and of the ground below it.
+template <class Light>
+Picture picture_of_day(const EnvironmentDescription& e, int columns, int rows, const Light& light_along) {
+  const dvec3 factor = e.color * e.intensity;
+  Picture picture{u32(columns), u32(rows), std::vector<float4>(std::size_t(columns) * std::size_t(rows))};
   dvec3 level(0);  // irradiance of level ground, over pi
-  for (int y = 0; y < sky_rows / 2; ++y)
-    for (int x = 0; x < sky_columns; ++x) {
-      const double zenith = pi * (y + 0.5) / sky_rows, azimuth = 2 * pi * (x + 0.5) / sky_columns - pi;
-      const dvec3 d(std::sin(zenith) * std::sin(azimuth), std::cos(zenith),
-                    std::sin(zenith) * std::cos(azimuth));
-      const dvec3 light = sky.radiance(zenith, std::acos(std::clamp(glm::dot(d, sun), -1.0, 1.0)));
-      level += light * (std::cos(zenith) * std::sin(zenith) * 2 * pi / (sky_columns * double{sky_rows}));
-      picture.pixels[std::size_t(y) * sky_columns + std::size_t(x)] = pack(light * factor);
+  for (int y = 0; y < rows / 2; ++y)
+    for (int x = 0; x < columns; ++x) {
+      const double zenith = pi * (y + 0.5) / rows, azimuth = 2 * pi * (x + 0.5) / columns - pi;
+      const dvec3 light = light_along(zenith, azimuth);
+      level += light * (std::cos(zenith) * std::sin(zenith) * 2 * pi / (columns * double(rows)));
+      picture.pixels[std::size_t(y) * std::size_t(columns) + std::size_t(x)] = pack(light * factor);
     }
-  level += sky.sun_irradiance() * sun.y;
-  const auto horizon = picture.pixels.begin() + std::ptrdiff_t{sky_rows / 2} * sky_columns;
+  level += sky_of(e).sun_irradiance() * (sun_in_axes(e).y * sun_share(e));
+  const auto horizon = picture.pixels.begin() + std::ptrdiff_t{rows / 2} * columns;
   std::fill(horizon, picture.pixels.end(), pack(level * e.ground * factor));
   return picture;
+}
+
+Picture picture_of_sky(const EnvironmentDescription& e) {
+  const dvec3 sun = sun_in_axes(e);
+  return picture_of_day(e, sky_columns, sky_rows, [&, sky = sky_of(e)](double zenith, double azimuth) {
+    const dvec3 d(std::sin(zenith) * std::sin(azimuth), std::cos(zenith),
+                  std::sin(zenith) * std::cos(azimuth));
+    return sky.radiance(zenith, std::acos(std::clamp(glm::dot(d, sun), -1.0, 1.0)));
+  });
+}
+
+/// The sky behind the crystals is smooth: it is blended between the pixels of a coarse picture.
+Picture picture_of_halo(const EnvironmentDescription& e, const HaloMap& map) {
+  EnvironmentDescription plain = e;
+  plain.color = dvec3(1);
+  plain.intensity = 1;
+  const Picture behind = picture_of_sky(plain);
+  const dvec3 sun = sun_in_axes(e), irradiance = pi * sky_of(e).sun_irradiance();
+  const auto sky_along = [&](double zenith, double azimuth) {
+    const double across = (azimuth / (2 * pi) + 0.5) * sky_columns - 0.5, left = std::floor(across);
+    const double down = std::min(zenith / pi * sky_rows - 0.5, sky_rows / 2 - 1.0), top = std::floor(down);
+    dvec3 light(0);
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i < 2; ++i) {
+        const int row = std::clamp(int(top) + j, 0, sky_rows / 2 - 1);
+        const int column = (int(left) + i + sky_columns) % sky_columns;
+        const float4& p = behind.pixels[std::size_t(row) * sky_columns + std::size_t(column)];
+        light += (i ? across - left : 1 - across + left) * (j ? down - top : 1 - down + top) *
+                 dvec3(p.x, p.y, p.z);
+      }
+    return light;
+  };
+  return picture_of_day(e, 2 * e.halo.size, e.halo.size, [&](double zenith, double azimuth) {
+    const double turn = azimuth - e.sun_azimuth * pi / 180, side = std::sin(zenith), up = std::cos(zenith);
+    const dvec3 turned = halo_radiance(map, {side * std::cos(turn), side * std::sin(turn), up});
+    return glm::max(
+        sky_along(zenith, azimuth) + irradiance * turned * halo_depth(e.halo.optical_depth, sun.y, up),
+        dvec3(0));
+  });
 }
 
 double luminance(const float4& c) {
@@ -143,7 +188,7 @@ void add_sun(const SceneDescription& scene, const glm::dmat3& axes, CompiledScen
   LightDescription sun;
   sun.type = LightType::directional;
   sun.direction = -(axes * sun_in_axes(e));
-  sun.color = sky_of(e).sun_irradiance() * e.color;
+  sun.color = sky_of(e).sun_irradiance() * e.color * sun_share(e);
   sun.intensity = e.intensity;
   sun.angle = e.sun_size;
   sun.samples = e.samples;
@@ -153,12 +198,13 @@ void add_sun(const SceneDescription& scene, const glm::dmat3& axes, CompiledScen
 
 }  // namespace
 
-void add_environment(const SceneDescription& scene, CompiledScene& out) {
+void add_environment(const SceneDescription& scene, CompiledScene& out, const HaloMap* halo) {
   const EnvironmentDescription& e = scene.environment;
   if (e.type == EnvironmentType::none) return;
-  Picture picture = e.type == EnvironmentType::image      ? picture_of_image(e)
-                    : e.type == EnvironmentType::gradient ? picture_of_gradient(e)
-                                                          : picture_of_sky(e);
+  Picture picture = e.type == EnvironmentType::image          ? picture_of_image(e)
+                    : e.type == EnvironmentType::gradient     ? picture_of_gradient(e)
+                    : e.type == EnvironmentType::halo && halo ? picture_of_halo(e, *halo)
+                                                              : picture_of_sky(e);
   const glm::dmat3 axes = axes_of(e);
   Environment packed{};
   packed.right = pack(axes[0]);
@@ -177,7 +223,7 @@ void add_environment(const SceneDescription& scene, CompiledScene& out) {
   for (u32 ray = 0; ray < static_cast<u32>(e.samples); ++ray)
     out.light_rays.push_back({static_cast<u32>(out.lights.size()), ray, static_cast<u32>(e.samples), 0});
   out.lights.push_back(light);
-  if (e.type == EnvironmentType::sky) add_sun(scene, axes, out);
+  if (e.type == EnvironmentType::sky || e.type == EnvironmentType::halo) add_sun(scene, axes, out);
 }
 
 }  // namespace sundog

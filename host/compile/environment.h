@@ -5,6 +5,7 @@
 namespace sundog {
 
 /// Fills the tables of the environment, and adds its light and its sun to `out.lights`. Nothing without one.
-void add_environment(const SceneDescription& scene, CompiledScene& out);
+/// `halo`: the map of an environment with crystals.
+void add_environment(const SceneDescription& scene, CompiledScene& out, const HaloMap* halo = nullptr);
 
 }  // namespace sundog

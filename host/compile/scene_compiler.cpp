@@ -125,6 +125,7 @@ void take_part(const CompiledScene& part, CompiledScene& out) {
 }
 
 struct SceneCompiler::Parts {
+  HaloPart halo;
   ScenePart lights;
   SurfacesPart surfaces;
   MeshesPart meshes;
@@ -181,8 +182,9 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   set_view(scene, out);
 
   Parts& p = *parts_;
+  renew(p.halo, halo_key(scene), [&] { return make_halo(scene); });
   work_.lights +=
-      renew(p.lights, lights_key(scene, out.origin), [&] { return make_lights(scene, out.origin); });
+      renew(p.lights, lights_key(scene, out.origin), [&] { return make_lights(scene, out.origin, p.halo); });
   work_.surfaces += renew(p.surfaces, surfaces_key(scene), [&] { return make_surfaces(scene); });
   const bool new_meshes =
       renew(p.meshes, meshes_key(scene, p.surfaces), [&] { return make_meshes(scene, p.surfaces); });

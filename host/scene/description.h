@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -13,6 +14,7 @@
 #include "base/image.h"
 #include "base/tone_map.h"
 #include "scene/formula/sdf.h"
+#include "scene/halo.h"
 #include "scene/spectra/refraction.h"
 #include "scene/texture_description.h"
 #include "shared/lights.h"
@@ -115,7 +117,7 @@ struct LightDescription {
   bool visible = true;  // an extent: rays meet it (scene/lamps.h places what they meet)
 };
 
-enum class EnvironmentType { none, image, gradient, sky };
+enum class EnvironmentType { none, image, gradient, sky, halo };
 
 /// Light from all around, infinitely far away. Radiance is colour times intensity times that of the type.
 struct EnvironmentDescription {
@@ -128,10 +130,14 @@ struct EnvironmentDescription {
   bool visible = true;        // rays that meet nothing see it
   Image picture;              // image: equirectangular, the sky's top in row 0
   dvec3 bottom{0.3}, top{1};  // gradient: linear in the elevation's sine
-  double sun_altitude = 40, sun_azimuth = 60;  // sky: degrees, [0, 90], and from ahead to the right
-  double sun_size = 0.53;                      // sky: degrees across; 0: no sun
-  double turbidity = 3;                        // sky: 2 very clear .. 10 hazy
-  dvec3 ground{0.2};                           // sky: the part of light that the ground throws back
+  // Sky and halo, which is a sky with ice crystals in it:
+  double sun_altitude = 40, sun_azimuth = 60;  // degrees, [0, 90], and from ahead to the right
+  double sun_size = 0.53;                      // degrees across; 0: no sun
+  double turbidity = 3;                        // 2 very clear .. 10 hazy
+  dvec3 ground{0.2};                           // the part of light that the ground throws back
+  HaloDescription halo;
+  /// What a device has traced of the halo beforehand; without it compile() traces on the host, the same bits.
+  std::shared_ptr<const HaloMap> halo_map;
 };
 
 /// The world's medium gives way to every other where solids overlap; a scene file's priorities are

@@ -52,7 +52,10 @@ inline constexpr std::array light_types = {LightTypeFacts{.name = "ambient", .ty
 };
 
 /// By EnvironmentType, from image on.
-inline constexpr std::array<std::string_view, 3> environment_types = {"image", "gradient", "sky"};
+inline constexpr std::array<std::string_view, 4> environment_types = {"image", "gradient", "sky", "halo"};
+
+/// By HALO_* constant.
+inline constexpr std::array<std::string_view, HALO_RANDOM + 1> halo_shapes = {HALO_SHAPES};
 
 constexpr const LightTypeFacts& facts_of(LightType type) {
   return light_types.at(static_cast<std::size_t>(type));

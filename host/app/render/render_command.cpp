@@ -19,6 +19,7 @@
 #include "app/process/interrupt.h"
 #include "app/process/progress.h"
 #include "app/process/save_image.h"
+#include "app/process/trace_halo_map.h"
 #include "app/process/warnings.h"
 #include "app/render/render_result.h"
 #include "app/render/stats.h"
@@ -134,11 +135,29 @@ struct LoadedScene {
   std::shared_ptr<const CompiledScene> flat;
 };
 
-LoadedScene load_and_compile(const RenderCommand& command, TimeLedger& times) {
+std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job) {
+  if (job) return job_devices(*job, command);
+  return pick_devices(command.isolate ? enumerate_in_worker() : enumerate_devices(), command.devices,
+                      command.verbose && !command.quiet);
+}
+
+/// A halo is traced by the first of the devices. With workers, which compile the scene too, each process
+/// traces on the host: the map is the same.
+CompiledScene compile_traced(const RenderCommand& command, SceneDescription& scene, Setup& setup) {
+  if (scene.environment.type == EnvironmentType::halo && !command.isolate && !setup.job) {
+    if (setup.devices.empty()) setup.devices = choose_devices(command, setup.job);
+    TracedHalo traced = trace_halo_map(scene.environment, setup.devices, command.quiet);
+    scene.environment.halo_map = std::make_shared<const HaloMap>(std::move(traced.map));
+  }
+  return compile(scene);
+}
+
+LoadedScene load_and_compile(const RenderCommand& command, Setup& setup, TimeLedger& times) {
   LoadedScene scene;
   scene.description = timed(times.load, [&] { return load(command); });
-  scene.flat = timed(times.compile_scene,
-                     [&] { return std::make_shared<const CompiledScene>(compile(scene.description)); });
+  scene.flat = timed(times.compile_scene, [&] {
+    return std::make_shared<const CompiledScene>(compile_traced(command, scene.description, setup));
+  });
   check_frame_memory(static_cast<int>(scene.flat->info.width), static_cast<int>(scene.flat->info.height),
                      frame_output(command, in_passes(scene.flat->sampling)));
   return scene;
@@ -205,7 +224,7 @@ RenderCommand frame_command(const RenderCommand& command, int frame) {
   return one;
 }
 
-int render_frames(const RenderCommand& command, const Setup& setup) {
+int render_frames(const RenderCommand& command, Setup& setup) {
   FrameLog log(command.resume.empty() ? "" : command.resume + ".frames");
   print_warnings(log.warnings());
   if (!command.resume.empty()) remove_left_over(command.resume + ".frames");
@@ -214,7 +233,7 @@ int render_frames(const RenderCommand& command, const Setup& setup) {
     TimeLedger times;
     const RenderCommand one = frame_command(command, frame);
     stop_loses_nothing(one, setup);
-    const LoadedScene scene = load_and_compile(one, times);
+    const LoadedScene scene = load_and_compile(one, setup, times);
     if (frame == command.frames->first) print_warnings(scene.description.warnings);
     const std::uint64_t hash = hash_scene(*scene.flat);
     if (log.done({frame, static_cast<int>(scene.flat->info.width), static_cast<int>(scene.flat->info.height),
@@ -228,12 +247,6 @@ int render_frames(const RenderCommand& command, const Setup& setup) {
   return exit_done;
 }
 
-std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job) {
-  if (job) return job_devices(*job, command);
-  return pick_devices(command.isolate ? enumerate_in_worker() : enumerate_devices(), command.devices,
-                      command.verbose && !command.quiet);
-}
-
 /// Of this process, or of rank 0 of a job.
 int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox* job) {
   const Stopwatch clock;
@@ -245,11 +258,11 @@ int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox*
   std::optional<LoadedScene> scene;
   if (!command.frames) {
     stop_loses_nothing(command, setup);
-    scene = load_and_compile(command, times);
+    scene = load_and_compile(command, setup, times);
     print_warnings(scene->description.warnings);
   }
   if (const std::string why = cache_refusal(); !why.empty()) print_warnings({{why}});
-  setup.devices = choose_devices(command, job);
+  if (setup.devices.empty()) setup.devices = choose_devices(command, job);
   if (scene) return render_one(command, *scene, setup, clock, times);
   setup.pool = std::make_shared<DevicePool>();
   return render_frames(command, setup);

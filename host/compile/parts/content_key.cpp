@@ -142,10 +142,22 @@ KeyMaker& KeyMaker::add(const LightDescription& light) {
 
 KeyMaker& KeyMaker::add(const EnvironmentDescription& environment) {
   const auto& [type, color, intensity, up, rotate, samples, visible, picture, bottom, top, sun_altitude,
-               sun_azimuth, sun_size, turbidity, ground] = environment;
+               sun_azimuth, sun_size, turbidity, ground, halo, halo_map] = environment;
   add_each(type, color, intensity, up, rotate, samples, visible, bottom, top, sun_altitude, sun_azimuth,
-           sun_size, turbidity, ground, picture.width, picture.height, picture.channels);
+           sun_size, turbidity, ground, picture.width, picture.height, picture.channels, halo.optical_depth);
   add_rows(*this, picture.data);
+  (void)halo_map;  // follows from the rest
+  return add_halo(environment);
+}
+
+KeyMaker& KeyMaker::add_halo(const EnvironmentDescription& environment) {
+  const auto& [crystals, optical_depth, index, rays, size] = environment.halo;
+  (void)optical_depth;
+  add_each(environment.sun_altitude, environment.sun_size, index, rays, size, crystals.size());
+  for (const HaloCrystals& kind : crystals) {
+    const auto& [shape, ratio, tilt, roll, share] = kind;
+    add_each(shape, ratio, tilt, roll, share);
+  }
   return *this;
 }
 

@@ -41,6 +41,8 @@ class KeyMaker {
   KeyMaker& add(const Camera& camera);
   KeyMaker& add(const LightDescription& light);
   KeyMaker& add(const EnvironmentDescription& environment);
+  /// What a map of a halo is made of.
+  KeyMaker& add_halo(const EnvironmentDescription& environment);
   KeyMaker& add(const MediumDescription& medium);
   KeyMaker& add(const ImageDescription& image);
   KeyMaker& add(const TextureDescription& texture);

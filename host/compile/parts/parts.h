@@ -25,8 +25,18 @@ struct InstancesPart : ScenePart {
   std::vector<Bounds> boxes;  // of each instance
 };
 
+/// The map of a halo, where there is one.
+struct HaloPart {
+  ContentKey key;
+  std::shared_ptr<const HaloMap> map;
+};
+
+ContentKey halo_key(const SceneDescription& scene);
+/// The description's own map, or else one that is traced here.
+HaloPart make_halo(const SceneDescription& scene);
+
 ContentKey lights_key(const SceneDescription& scene, const dvec3& origin);
-ScenePart make_lights(const SceneDescription& scene, const dvec3& origin);
+ScenePart make_lights(const SceneDescription& scene, const dvec3& origin, const HaloPart& halo);
 
 ContentKey surfaces_key(const SceneDescription& scene);
 SurfacesPart make_surfaces(const SceneDescription& scene);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "compile/environment.h"
+#include "compile/halo/halo_map.h"
 #include "compile/materials.h"
 #include "compile/parts/parts.h"
 #include "compile/textures.h"
@@ -30,11 +31,26 @@ ContentKey lights_key(const SceneDescription& scene, const dvec3& origin) {
   return key.add(scene.fog.color).add(scene.fog.density).key();
 }
 
-ScenePart make_lights(const SceneDescription& scene, const dvec3& origin) {
+ContentKey halo_key(const SceneDescription& scene) {
+  KeyMaker key;
+  key.add(scene.environment.type);
+  if (scene.environment.type == EnvironmentType::halo) key.add_halo(scene.environment);
+  return key.key();
+}
+
+HaloPart make_halo(const SceneDescription& scene) {
+  HaloPart part;
+  const EnvironmentDescription& e = scene.environment;
+  if (e.type == EnvironmentType::halo)
+    part.map = e.halo_map ? e.halo_map : std::make_shared<const HaloMap>(trace_halo(plan_halo(e)));
+  return part;
+}
+
+ScenePart make_lights(const SceneDescription& scene, const dvec3& origin, const HaloPart& halo) {
   ScenePart part;
   part.made.origin = origin;
   add_lights(scene, part.made);
-  add_environment(scene, part.made);
+  add_environment(scene, part.made, halo.map.get());
   add_fog(scene, part.made);
   return part;
 }

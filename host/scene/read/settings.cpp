@@ -279,6 +279,34 @@ FogDescription read_fog(const JsonValue& value) {
   });
 }
 
+HaloCrystals read_crystals(const JsonValue& value) {
+  return value.object("crystals", [](JsonObject& object) {
+    HaloCrystals crystals;
+    const std::string shape = object.at("shape", list_names(halo_shapes)).choice(halo_shapes);
+    crystals.shape = static_cast<u32>(std::ranges::find(halo_shapes, shape) - halo_shapes.begin());
+    crystals.ratio = object.number("ratio", crystals.ratio, {.low = 0.001, .high = 1000});
+    crystals.tilt = object.number("tilt", crystals.tilt, {.low = 0, .high = 90});
+    crystals.roll = object.number("roll", crystals.roll, {.low = 0, .high = 90});
+    crystals.share = object.number("share", crystals.share, {.low = 0, .high = 1e6});
+    return crystals;
+  });
+}
+
+void read_halo(JsonObject& object, HaloDescription& halo) {
+  const JsonValue kinds = object.at("crystals", "an array of kinds of crystals");
+  double shares = 0;
+  for (const JsonValue& kind : kinds.items("kinds of crystals")) {
+    halo.crystals.push_back(read_crystals(kind));
+    shares += halo.crystals.back().share;
+  }
+  if (!(shares > 0) || halo.crystals.size() > 64)
+    kinds.fail("wanted 1 to 64 kinds of crystals, of a share above 0 in all");
+  halo.optical_depth = object.number("optical_depth", halo.optical_depth, {.low = 0, .high = 100});
+  if (const auto index = object.find("ior")) halo.index = index->number({.low = 1.01, .high = 2});
+  halo.rays = object.integer("rays", halo.rays, 1000, 400'000'000);
+  halo.size = object.integer("cells", halo.size, 64, 4096);
+}
+
 EnvironmentDescription read_environment(const JsonValue& value,
                                         const std::function<Image(const JsonValue&)>& read_picture) {
   const std::string type = value.member("type", list_names(environment_types)).choice(environment_types);
@@ -298,7 +326,8 @@ EnvironmentDescription read_environment(const JsonValue& value,
       e.bottom = object.color("bottom", e.bottom);
       e.top = object.color("top", e.top);
     } else {
-      e.type = EnvironmentType::sky;
+      e.type = type == "halo" ? EnvironmentType::halo : EnvironmentType::sky;
+      if (type == "halo") read_halo(object, e.halo);
       e.turbidity = object.number("turbidity", e.turbidity, {.low = 2, .high = 10});
       e.ground = object.color("ground", e.ground, zero_to_one);
       if (const auto sun = object.find("sun")) read_sun(*sun, e);

@@ -6,6 +6,7 @@
 #include "devices.h"
 #include "shared/bvh.h"
 #include "shared/environment.h"
+#include "shared/halo.h"
 #include "shared/launch.h"
 #include "shared/scene.h"
 #include "shared/sdf.h"
@@ -31,6 +32,7 @@ const Place places[] = {
 const std::string probe = R"(
 #include "shared/bvh.h"
 #include "shared/environment.h"
+#include "shared/halo.h"
 #include "shared/launch.h"
 #include "shared/scene.h"
 #include "shared/sdf.h"

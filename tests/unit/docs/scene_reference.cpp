@@ -38,7 +38,7 @@ const std::vector<Group>& groups() {
         "sphere_light", "falloff"}},
       {"Environment",
        "`environment` has one of these types.",
-       {"image_environment", "gradient_environment", "sky_environment", "sun"}},
+       {"image_environment", "gradient_environment", "sky_environment", "halo_environment", "crystals", "sun"}},
       {"Media and materials",
        "",
        {"medium", "absorption", "material", "normal_map", "bump_map", "parallax_map", "displacement_map",

@@ -134,7 +134,9 @@ TEST_CASE("the reader and the schema know the same keys") {
   std::map<std::string, std::set<std::string>, std::less<>> asked;
   json document = everything_document();
   read(document, &asked);
-  for (const char* environment : {R"({"type": "image", "file": "sky.pfm"})", R"({"type": "gradient"})"}) {
+  for (const char* environment :
+       {R"({"type": "image", "file": "sky.pfm"})", R"({"type": "gradient"})",
+        R"({"type": "halo", "crystals": [{"shape": "plate"}], "sun": {}, "ior": 1.31})"}) {
     document["environment"] = json::parse(environment);
     read(document, &asked);
     CHECK(schema_errors(scene_schema(), document).empty());

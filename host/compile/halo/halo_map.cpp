@@ -1,0 +1,197 @@
+// See halo_map.h.
+#include "compile/halo/halo_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace sundog {
+namespace {
+
+using glm::dvec3;
+
+constexpr double pi = std::numbers::pi;
+constexpr double first_wavelength = 390, last_wavelength = 710;  // nanometres
+constexpr int band_count = 16;
+constexpr u32 rays_a_launch = 1u << 18;
+
+/// A bell whose halves have widths of their own.
+double lobe(double x, double middle, double left, double right) {
+  const double t = (x - middle) / (x < middle ? left : right);
+  return std::exp(-0.5 * t * t);
+}
+
+/// The CIE's matching functions of 1931, as Wyman, Sloan and Shirley 2013 fit them.
+dvec3 matching(double nm) {
+  return {1.056 * lobe(nm, 599.8, 37.9, 31.0) + 0.362 * lobe(nm, 442.0, 16.0, 26.7) -
+              0.065 * lobe(nm, 501.1, 20.4, 26.2),
+          0.821 * lobe(nm, 568.8, 46.9, 40.5) + 0.286 * lobe(nm, 530.9, 16.3, 31.1),
+          1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8)};
+}
+
+/// Linear sRGB (IEC 61966-2-1).
+dvec3 rgb_of(const dvec3& xyz) {
+  return {3.2406 * xyz.x - 1.5372 * xyz.y - 0.4986 * xyz.z, -0.9689 * xyz.x + 1.8758 * xyz.y + 0.0415 * xyz.z,
+          0.0557 * xyz.x - 0.2040 * xyz.y + 1.0570 * xyz.z};
+}
+
+double edge_of(int band) {
+  return first_wavelength + (last_wavelength - first_wavelength) * band / band_count;
+}
+
+/// All bands are equally strong and white together: the sun's own colour comes with its irradiance.
+std::vector<dvec3> band_colors() {
+  std::vector<dvec3> colors(band_count);
+  dvec3 all(0);
+  for (int band = 0; band < band_count; ++band) {
+    constexpr int steps = 16;
+    for (int i = 0; i < steps; ++i)
+      colors[std::size_t(band)] +=
+          rgb_of(matching(edge_of(band) + (edge_of(1) - edge_of(0)) * (i + 0.5) / steps));
+    all += colors[std::size_t(band)];
+  }
+  for (dvec3& color : colors) color /= all;
+  return colors;
+}
+
+/// Rays 0 .. count - 1 in launches.
+void add_launches(HaloLaunch launch, u32 count, std::vector<HaloLaunch>& launches) {
+  for (u32 first = 0; first < count; first += rays_a_launch) {
+    launch.first = first;
+    launch.count = std::min(rays_a_launch, count - first);
+    launches.push_back(launch);
+  }
+}
+
+HaloLaunch launch_of(const EnvironmentDescription& e, const HaloCrystals& crystals, int band, u32 kind) {
+  const double height = e.sun_altitude * pi / 180, half = 2 / std::sqrt(3.0) * crystals.ratio;
+  // A face's area by its cosine, summed: at most that of a vector of the areas, as the three pairs of sides
+  // show no more than twice one.
+  const double basal = 2 * std::sqrt(3.0), side = 4 / std::sqrt(3.0) * half;
+  HaloLaunch launch{};
+  launch.shape = crystals.shape;
+  launch.seed = (static_cast<u32>(band) << 8 | kind) * 0x9e3779b9u + 0x51ed270bu;
+  launch.half_height = static_cast<float>(half);
+  launch.weight = static_cast<float>(1 / std::hypot(basal, 2 * side));
+  launch.tilt = static_cast<float>(crystals.tilt / 360);
+  launch.roll = static_cast<float>(crystals.roll / 360);
+  const double fixed = e.halo.index;
+  launch.index_low = static_cast<float>(fixed > 0 ? fixed : index_of_ice(edge_of(band)));
+  launch.index_high = static_cast<float>(fixed > 0 ? fixed : index_of_ice(edge_of(band + 1)));
+  launch.sun_x = static_cast<float>(std::cos(height));
+  launch.sun_z = static_cast<float>(std::sin(height));
+  launch.sun_radius = static_cast<float>(std::tan(e.sun_size * pi / 360));
+  launch.side = static_cast<u32>(e.halo.size);
+  return launch;
+}
+
+/// Of cells beyond the square's edges those that lie there on the sphere: an edge is folded about its middle.
+std::size_t cell_at(int side, int column, int row) {
+  if (column < 0 || column >= side) {
+    column = column < 0 ? -1 - column : 2 * side - 1 - column;
+    row = side - 1 - row;
+  }
+  if (row < 0 || row >= side) {
+    row = row < 0 ? -1 - row : 2 * side - 1 - row;
+    column = side - 1 - column;
+  }
+  return std::size_t(row) * std::size_t(side) + std::size_t(column);
+}
+
+/// As halo_cell() in kernels/lib/halo/sky_map.cl: the place in the square, [0, 1].
+glm::dvec2 place_of(const dvec3& d) {
+  const double x = std::abs(d.x), y = std::abs(d.y), radius = std::sqrt(std::max(1 - std::abs(d.z), 0.0));
+  const double v = radius * std::atan2(y, x) * 2 / pi, u = radius - v;
+  const glm::dvec2 place = d.z < 0 ? glm::dvec2(1 - v, 1 - u) : glm::dvec2(u, v);
+  return 0.5 + 0.5 * place * glm::dvec2(d.x < 0 ? -1 : 1, d.y < 0 ? -1 : 1);
+}
+
+double tally(std::span<const u32> tallies, u32 which) {
+  return (double(tallies[2 * which]) + 0x1p32 * double(tallies[2 * which + 1])) / double(HALO_TALLY_UNITS);
+}
+
+}  // namespace
+
+double index_of_ice(double wavelength) {
+  static constexpr int step = 10;
+  static constexpr double table[] = {1.3203, 1.3194, 1.3185, 1.3177, 1.3170, 1.3163, 1.3157, 1.3151, 1.3145,
+                                     1.3140, 1.3135, 1.3130, 1.3126, 1.3121, 1.3117, 1.3114, 1.3110, 1.3106,
+                                     1.3103, 1.3100, 1.3097, 1.3094, 1.3091, 1.3088, 1.3085, 1.3083, 1.3080,
+                                     1.3078, 1.3076, 1.3073, 1.3071, 1.3069, 1.3067};
+  const double at = std::clamp((wavelength - first_wavelength) / step, 0.0, double(std::size(table) - 1));
+  const auto low = std::min(std::size_t(at), std::size(table) - 2);
+  return std::lerp(table[low], table[low + 1], at - double(low));
+}
+
+HaloPlan plan_halo(const EnvironmentDescription& e) {
+  HaloPlan plan;
+  plan.side = e.halo.size;
+  plan.colors = band_colors();
+  double shares = 0;
+  for (const HaloCrystals& crystals : e.halo.crystals) shares += crystals.share;
+  for (int band = 0; band < band_count; ++band) {
+    std::vector<HaloLaunch> launches;
+    u32 kind = 0;
+    for (const HaloCrystals& crystals : e.halo.crystals) {
+      const double rays = shares > 0 ? e.halo.rays / double(band_count) * crystals.share / shares : 0;
+      add_launches(launch_of(e, crystals, band, kind++), static_cast<u32>(std::lround(rays)), launches);
+    }
+    for (const HaloLaunch& launch : launches) plan.rays += launch.count;
+    plan.bands.push_back(std::move(launches));
+  }
+  return plan;
+}
+
+HaloSum::HaloSum(const HaloPlan& plan)
+    : plan_(plan), sums_(std::size_t(plan.side) * std::size_t(plan.side), dvec3(0)) {}
+
+void HaloSum::add(std::size_t band, std::span<const u32> cells, std::span<const u32> tallies) {
+  std::uint64_t units = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    units += cells[i];
+    if (cells[i] > 0) sums_[i] += double(cells[i]) * plan_.colors[band];
+  }
+  units_ += static_cast<double>(units);
+  for (u32 which = 0; which < HALO_TALLIES; ++which) tallies_[which] += tally(tallies, which);
+}
+
+HaloMap HaloSum::map() const {
+  HaloMap map;
+  map.side = plan_.side;
+  map.cells.assign(3 * sums_.size(), 0.0f);
+  // What the sun's upright plane mirrors is as likely: half of the noise's square.
+  const double scale =
+      units_ > 0 ? 0.5 * double(sums_.size()) / (4 * pi) * double(plan_.bands.size()) / units_ : 0;
+  const auto side = static_cast<std::size_t>(map.side);
+  for (std::size_t row = 0; row < side; ++row)
+    for (std::size_t column = 0; column < side; ++column) {
+      const dvec3 both = sums_[row * side + column] + sums_[(side - 1 - row) * side + column];
+      for (int c = 0; c < 3; ++c)
+        map.cells[3 * (row * side + column) + std::size_t(c)] = static_cast<float>(both[c] * scale);
+    }
+  const double sent = std::max(tallies_[HALO_SENT], 1e-30);
+  map.passed = tallies_[HALO_PASSED] / sent;
+  map.turned = tallies_[HALO_TURNED] / sent;
+  map.kept = tallies_[HALO_KEPT] / sent;
+  return map;
+}
+
+dvec3 halo_radiance(const HaloMap& map, const dvec3& d) {
+  const glm::dvec2 place = place_of(d) * double(map.side) - 0.5, low = glm::floor(place), part = place - low;
+  dvec3 sum(0);
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      const float* cell = &map.cells[3 * cell_at(map.side, int(low.x) + i, int(low.y) + j)];
+      const double share = (i ? part.x : 1 - part.x) * (j ? part.y : 1 - part.y);
+      sum += share * dvec3(cell[0], cell[1], cell[2]);
+    }
+  return sum;
+}
+
+double halo_depth(double optical_depth, double sun, double direction) {
+  const double lowest = 0.01, a = std::max(sun, lowest), b = std::max(direction, lowest);
+  if (std::abs(a - b) < 1e-4 * a) return optical_depth / a * std::exp(-optical_depth / a);
+  return a / (a - b) * (std::exp(-optical_depth / a) - std::exp(-optical_depth / b));
+}
+
+}  // namespace sundog
