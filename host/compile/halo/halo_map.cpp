@@ -5,6 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/spectra/cie.h"
+#include "scene/spectra/refraction.h"
+
 namespace sundog {
 namespace {
 
@@ -15,39 +18,23 @@ constexpr double first_wavelength = 390, last_wavelength = 710;  // nanometres
 constexpr int band_count = 16;
 constexpr u32 rays_a_launch = 1u << 18;
 
-/// A bell whose halves have widths of their own.
-double lobe(double x, double middle, double left, double right) {
-  const double t = (x - middle) / (x < middle ? left : right);
-  return std::exp(-0.5 * t * t);
-}
-
-/// The CIE's matching functions of 1931, as Wyman, Sloan and Shirley 2013 fit them.
-dvec3 matching(double nm) {
-  return {1.056 * lobe(nm, 599.8, 37.9, 31.0) + 0.362 * lobe(nm, 442.0, 16.0, 26.7) -
-              0.065 * lobe(nm, 501.1, 20.4, 26.2),
-          0.821 * lobe(nm, 568.8, 46.9, 40.5) + 0.286 * lobe(nm, 530.9, 16.3, 31.1),
-          1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8)};
-}
-
-/// Linear sRGB (IEC 61966-2-1).
-dvec3 rgb_of(const dvec3& xyz) {
-  return {3.2406 * xyz.x - 1.5372 * xyz.y - 0.4986 * xyz.z, -0.9689 * xyz.x + 1.8758 * xyz.y + 0.0415 * xyz.z,
-          0.0557 * xyz.x - 0.2040 * xyz.y + 1.0570 * xyz.z};
+double index_of_ice(double wavelength) {
+  static const Dispersion ice = find_substance("ice").value();
+  return index_at(ice, 1, wavelength);
 }
 
 double edge_of(int band) {
   return first_wavelength + (last_wavelength - first_wavelength) * band / band_count;
 }
 
-/// All bands are equally strong and white together: the sun's own colour comes with its irradiance.
+/// The bands are white together: the sun's own colour comes with its irradiance.
 std::vector<dvec3> band_colors() {
   std::vector<dvec3> colors(band_count);
   dvec3 all(0);
   for (int band = 0; band < band_count; ++band) {
     constexpr int steps = 16;
     for (int i = 0; i < steps; ++i)
-      colors[std::size_t(band)] +=
-          rgb_of(matching(edge_of(band) + (edge_of(1) - edge_of(0)) * (i + 0.5) / steps));
+      colors[std::size_t(band)] += rgb_weight(edge_of(band) + (edge_of(1) - edge_of(0)) * (i + 0.5) / steps);
     all += colors[std::size_t(band)];
   }
   for (dvec3& color : colors) color /= all;
@@ -111,17 +98,6 @@ double tally(std::span<const u32> tallies, u32 which) {
 }
 
 }  // namespace
-
-double index_of_ice(double wavelength) {
-  static constexpr int step = 10;
-  static constexpr double table[] = {1.3203, 1.3194, 1.3185, 1.3177, 1.3170, 1.3163, 1.3157, 1.3151, 1.3145,
-                                     1.3140, 1.3135, 1.3130, 1.3126, 1.3121, 1.3117, 1.3114, 1.3110, 1.3106,
-                                     1.3103, 1.3100, 1.3097, 1.3094, 1.3091, 1.3088, 1.3085, 1.3083, 1.3080,
-                                     1.3078, 1.3076, 1.3073, 1.3071, 1.3069, 1.3067};
-  const double at = std::clamp((wavelength - first_wavelength) / step, 0.0, double(std::size(table) - 1));
-  const auto low = std::min(std::size_t(at), std::size(table) - 2);
-  return std::lerp(table[low], table[low + 1], at - double(low));
-}
 
 HaloPlan plan_halo(const EnvironmentDescription& e) {
   HaloPlan plan;

@@ -46,9 +46,6 @@ HaloMap trace_halo(const HaloPlan& plan, const std::function<bool(std::uint64_t)
 /// A steradian's light towards `d`, blended between cells; d: unit, the sun above +x, z up.
 glm::dvec3 halo_radiance(const HaloMap& map, const glm::dvec3& d);
 
-/// Ice's index of refraction by the wavelength in nanometres, 390 to 710 (Warren and Brandt 2008).
-double index_of_ice(double wavelength);
-
 /// The part of the cloud's sunlight that one steradian of full light sends from a height: single scattering
 /// in a level layer of this optical depth. Sines of the heights of sun and direction.
 double halo_depth(double optical_depth, double sun, double direction);

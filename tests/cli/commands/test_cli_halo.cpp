@@ -28,10 +28,10 @@ TEST_CASE("halo writes the sky in both views, the same bits again, with figures 
   REQUIRE(result.status == 0);
   const json figures = json::parse(result.out);
   CHECK(figures["schema"] == 1);
-  CHECK(figures["rays"].get<double>() == Catch::Approx(50000).epsilon(0.01));
+  CHECK(figures["rays"].get<double>() == Approx(50000).epsilon(0.01));
   CHECK(figures["rays_per_second"].get<double>() > 0);
   CHECK(figures["passed"].get<double>() + figures["turned"].get<double>() + figures["kept"].get<double>() ==
-        Catch::Approx(1).epsilon(1e-4));
+        Approx(1).epsilon(1e-4));
   const Image image = read_image(out);
   REQUIRE(image.width == 128);
   REQUIRE(image.height == 64);

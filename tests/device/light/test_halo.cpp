@@ -139,7 +139,7 @@ TEST_CASE("sundogs stand beside the sun as far as its height says, and vanish ab
     for (int i = 0; i < 6; ++i) {
       const double height = 10.0 * i * degree, n = 1.31;
       const double across = std::sqrt(n * n - std::pow(std::sin(height), 2)) / std::cos(height);
-      const std::vector<Seen> seen = meeting.seen(sky_with(HALO_PLATE, 10.0 * i, n, 0.3));
+      const std::vector<Seen> seen = meeting.seen(sky_with(HALO_PLATE, 10.0 * i, n, 8));
       const std::vector<double> from_sun = values(seen, crosses_sides, &Seen::from_sun);
       INFO("sun at " << 10 * i);
       REQUIRE(from_sun.size() > 100);
@@ -150,8 +150,8 @@ TEST_CASE("sundogs stand beside the sun as far as its height says, and vanish ab
       for (const double altitude : values(seen, crosses_sides, &Seen::altitude))
         REQUIRE(std::abs(altitude) == Approx(10.0 * i).margin(0.02));
     }
-    CHECK(!values(meeting.seen(sky_with(HALO_PLATE, 60.5, 1.31, 2)), crosses_sides, &Seen::azimuth).empty());
-    CHECK(values(meeting.seen(sky_with(HALO_PLATE, 60.9, 1.31, 2)), crosses_sides, &Seen::azimuth).empty());
+    CHECK(!values(meeting.seen(sky_with(HALO_PLATE, 60.5, 1.31, 30)), crosses_sides, &Seen::azimuth).empty());
+    CHECK(values(meeting.seen(sky_with(HALO_PLATE, 60.9, 1.31, 30)), crosses_sides, &Seen::azimuth).empty());
   });
 }
 
