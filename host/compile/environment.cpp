@@ -106,7 +106,7 @@ Picture picture_of_halo(const EnvironmentDescription& e, const HaloMap& map) {
   const dvec3 sun = sun_in_axes(e), irradiance = pi * sky_of(e).sun_irradiance();
   const auto sky_along = [&](double zenith, double azimuth) {
     const double across = (azimuth / (2 * pi) + 0.5) * sky_columns - 0.5, left = std::floor(across);
-    const double down = std::min(zenith / pi * sky_rows - 0.5, sky_rows / 2 - 1.0), top = std::floor(down);
+    const double down = std::min(zenith / pi * sky_rows - 0.5, 0.5 * sky_rows - 1), top = std::floor(down);
     dvec3 light(0);
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i) {

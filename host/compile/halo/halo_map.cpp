@@ -93,7 +93,7 @@ glm::dvec2 place_of(const dvec3& d) {
   return 0.5 + 0.5 * place * glm::dvec2(d.x < 0 ? -1 : 1, d.y < 0 ? -1 : 1);
 }
 
-double tally(std::span<const u32> tallies, u32 which) {
+double tally(std::span<const u32> tallies, std::size_t which) {
   return (double(tallies[2 * which]) + 0x1p32 * double(tallies[2 * which + 1])) / double(HALO_TALLY_UNITS);
 }
 
@@ -128,7 +128,7 @@ void HaloSum::add(std::size_t band, std::span<const u32> cells, std::span<const 
     if (cells[i] > 0) sums_[i] += double(cells[i]) * plan_.colors[band];
   }
   units_ += static_cast<double>(units);
-  for (u32 which = 0; which < HALO_TALLIES; ++which) tallies_[which] += tally(tallies, which);
+  for (std::size_t which = 0; which < HALO_TALLIES; ++which) tallies_[which] += tally(tallies, which);
 }
 
 HaloMap HaloSum::map() const {

@@ -10,6 +10,9 @@
 
 namespace sundog {
 
+/// Words of the tallies: pairs, low and high.
+inline constexpr std::size_t halo_tally_words = std::size_t{2} * HALO_TALLIES;
+
 /// Rays by bands of wavelengths, and the colours of these.
 struct HaloPlan {
   int side = 0;

@@ -17,7 +17,7 @@ struct Counts {
   std::vector<u32> cells, tallies;
 };
 
-void add_wide(std::span<u32> tallies, u32 which, u32 low, u32 high) {
+void add_wide(std::span<u32> tallies, std::size_t which, u32 low, u32 high) {
   tallies[2 * which] += low;
   tallies[2 * which + 1] += high + (tallies[2 * which] < low ? 1u : 0u);
 }
@@ -29,7 +29,7 @@ void trace_halo_launch(const HaloLaunch& launch, std::span<u32> cells, std::span
   for (u32 item = 0; item * rays_an_item < launch.count; ++item) {
     HaloSums sums{};
     halo_item(&launch, cells.data(), item, &sums);
-    for (u32 which = 0; which < HALO_TALLIES; ++which)
+    for (std::size_t which = 0; which < HALO_TALLIES; ++which)
       for (u32 lane = 0; lane < LANES; ++lane)
         add_wide(tallies, which, static_cast<u32>(MASK_LANE(sums.sum[which], lane)), 0);
   }
@@ -45,13 +45,13 @@ HaloMap trace_halo(const HaloPlan& plan, const std::function<bool(std::uint64_t)
     tbb::parallel_for(std::size_t{0}, launches.size(), [&](std::size_t i) {
       Counts& mine = counts.local();
       mine.cells.resize(cell_count);
-      mine.tallies.resize(2 * HALO_TALLIES);
+      mine.tallies.resize(halo_tally_words);
       trace_halo_launch(launches[i], mine.cells, mine.tallies);
     });
-    std::vector<u32> cells(cell_count), tallies(2 * HALO_TALLIES);
+    std::vector<u32> cells(cell_count), tallies(halo_tally_words);
     for (Counts& each : counts) {
       for (std::size_t i = 0; i < cell_count; ++i) cells[i] += each.cells[i];
-      for (u32 which = 0; which < HALO_TALLIES; ++which)
+      for (std::size_t which = 0; which < HALO_TALLIES; ++which)
         add_wide(tallies, which, each.tallies[2 * which], each.tallies[2 * which + 1]);
       std::ranges::fill(each.cells, 0u);
       std::ranges::fill(each.tallies, 0u);

@@ -41,8 +41,8 @@ HaloMap trace_halo_on(Device& device, const HaloPlan& plan,
   const unsigned lanes = sizes.lanes > 0 ? sizes.lanes : usual_lanes(device.info());
   auto kernel = build(device, lanes).kernel<Buffer<u32>, Buffer<u32>, HaloLaunch>("trace_halo");
   const auto cell_count = static_cast<std::size_t>(plan.side) * static_cast<std::size_t>(plan.side);
-  Band counts{device.make<u32>(cell_count), device.make<u32>(2 * HALO_TALLIES), std::vector<u32>(cell_count),
-              std::vector<u32>(2 * HALO_TALLIES)};
+  Band counts{device.make<u32>(cell_count), device.make<u32>(halo_tally_words), std::vector<u32>(cell_count),
+              std::vector<u32>(halo_tally_words)};
   HaloSum sum(plan);
   std::uint64_t done = 0;
   const std::size_t rays_an_item = std::size_t{lanes} * HALO_RAYS_A_LANE;

@@ -115,7 +115,8 @@ TEST_CASE("a scene's halo lights its sky, and a map that was traced beforehand c
   const CompiledScene without = compile(scene_under(clear));
   double more = 0;
   for (std::size_t i = 0; i < given.environment.size() / 2; ++i) {
-    REQUIRE(given.environment[i].y >= without.environment[i].y * 0.98f);  // colours purer than sRGB's take some away
+    REQUIRE(given.environment[i].y >=
+            without.environment[i].y * 0.98f);  // colours purer than sRGB's take some away
     more += double(given.environment[i].y - without.environment[i].y);
   }
   CHECK(more > 0);
