@@ -15,7 +15,7 @@ namespace {
 
 const char* const scene =
     R"({"environment": {"type": "halo", "crystals": [{"shape": "plate", "ratio": 0.3}], "cells": 128, "rays": 50000,
-  "sun": {"altitude": 20}}})";
+  "sun": {"altitude": 20}}, "objects": []})";
 
 }  // namespace
 
@@ -53,7 +53,7 @@ TEST_CASE("halo writes the sky in both views, the same bits again, with figures 
 TEST_CASE("halo refuses what it cannot do, with a mend") {
   TemporaryFolder folder;
   folder.write("sky.json", scene);
-  folder.write("dull.json", R"({"environment": {"type": "sky"}})");
+  folder.write("dull.json", R"({"environment": {"type": "sky"}, "objects": []})");
   const std::string file = (folder / "sky.json").string(), out = (folder / "sky.exr").string();
   const auto refused = [&](std::vector<std::string> arguments, int status, const std::string& words) {
     arguments.insert(arguments.begin(), "halo");
