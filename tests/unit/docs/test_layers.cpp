@@ -33,7 +33,8 @@ const std::map<std::string, std::vector<std::string>> folders = {
     {"host/render", {"values", "film", "plan", "frame", "device", "remote", "session"}},
     {"host/bench", {"plain", "report", "rays", "frames", "tune"}},
     {"host/app", {"process", "options", "job", "render", "bench", "bake", "commands", "serve"}},
-    {"kernels/lib", {"core", "halo", "solids", "sdf", "trace", "path", "shade", "light", "whitted", "pathtracer"}},
+    {"kernels/lib",
+     {"core", "halo", "solids", "sdf", "trace", "path", "shade", "light", "whitted", "pathtracer"}},
 };
 
 struct Include {
