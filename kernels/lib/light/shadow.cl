@@ -200,8 +200,8 @@ static inline Hits shadow_hits(const Scene* scene, SceneRays* rays, MASK lanes, 
 
 // What of `light` arrives at the ends of the shadow rays of `lanes`, taken all the way there.
 #if HAS_SHADOW_FILTERS
-static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 light, MASK lanes,
-                                   u32* counts) {
+static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 sent, MASK lanes, u32* counts) {
+  REAL3 light = sent;
   while (any_lane(lanes)) {
     Hits hits = shadow_hits(scene, rays, lanes, false, counts);
     const MASK passing = pass_filters(scene, rays, &hits, lanes, &light);
@@ -213,8 +213,8 @@ static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 li
   return light;
 }
 #else
-static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 light, MASK lanes,
-                                   u32* counts) {
+static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 sent, MASK lanes, u32* counts) {
+  REAL3 light = sent;
   const MASK arriving = lanes & ~any_hits(scene, rays, lanes, false, counts);
   if (HAS_MEDIA) {
     const MASK here = current_media(scene->media, rays, arriving);

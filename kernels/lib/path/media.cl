@@ -59,7 +59,8 @@ static inline REAL3 absorb(__global const Medium* restrict media, MASK medium, R
 
 // Whether light of no wavelength is bent from one to the other.
 static inline bool same_index(__global const Medium* a, __global const Medium* b) {
-  return a->absorption.w == b->absorption.w && (!HAS_DISPERSION || a->spectrum == b->spectrum);
+  if (HAS_DISPERSION && a->spectrum != b->spectrum) return false;
+  return a->absorption.w == b->absorption.w;
 }
 
 // Index of refraction of the medium of each lane of `lanes`, 1 elsewhere.

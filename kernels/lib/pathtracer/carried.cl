@@ -15,6 +15,9 @@ typedef struct Carried {
 } Carried;
 #define EACH_WAVELENGTH(i) for (u32 i = 0; i < WAVELENGTHS; ++i)
 
+// No function writes to a struct that it is given by value: some drivers (rusticl 22.3) hand over the
+// caller's own.
+
 // The wavelengths of paths: the hero's number in [0, 1), and the parts of red and blue that each has.
 typedef struct Wavelengths {
   REAL hero;
@@ -63,20 +66,24 @@ static inline Carried carry_all(float value) {
   return all;
 }
 static inline Carried carry_select(Carried a, Carried b, MASK m) {
-  EACH_WAVELENGTH(i) a.of[i] = select(a.of[i], b.of[i], m);
-  return a;
+  Carried made;
+  EACH_WAVELENGTH(i) made.of[i] = select(a.of[i], b.of[i], m);
+  return made;
 }
 static inline Carried carry_add(Carried a, Carried b) {
-  EACH_WAVELENGTH(i) a.of[i] += b.of[i];
-  return a;
+  Carried made;
+  EACH_WAVELENGTH(i) made.of[i] = a.of[i] + b.of[i];
+  return made;
 }
 static inline Carried carry_multiply(Carried a, Carried b) {
-  EACH_WAVELENGTH(i) a.of[i] *= b.of[i];
-  return a;
+  Carried made;
+  EACH_WAVELENGTH(i) made.of[i] = a.of[i] * b.of[i];
+  return made;
 }
 static inline Carried carry_scale(Carried a, REAL s) {
-  EACH_WAVELENGTH(i) a.of[i] *= s;
-  return a;
+  Carried made;
+  EACH_WAVELENGTH(i) made.of[i] = a.of[i] * s;
+  return made;
 }
 static inline REAL carry_greatest(Carried a) {
   return real_max(real_max(a.of[0], a.of[1]), real_max(a.of[2], a.of[3]));

@@ -86,9 +86,9 @@ static inline SdfSample thicken_sample(SdfSample s, SCALAR amount) {
   return s;
 }
 static inline SdfSample shell_sample(SdfSample s, SCALAR amount) {
-  s = select_sample(s, negated_sample(s), MASK_OF(s.distance < 0.0f));
-  s.distance -= 0.5f * amount;
-  return s;
+  SdfSample shell = select_sample(s, negated_sample(s), MASK_OF(s.distance < 0.0f));
+  shell.distance -= 0.5f * amount;
+  return shell;
 }
 
 #endif

@@ -51,14 +51,12 @@ static inline SdfSample no_sample(void) {
 // J^T J is m + 2 p cos(x), m the mean of the eigenvalues and p their spread (O. Smith, Eigenvalues of a
 // symmetric 3 x 3 matrix, 1961), here with cos(x) = 1. Exact where J keeps shapes.
 static inline REAL greatest_part(REAL3 a) { return real_max(fabs(a.x), real_max(fabs(a.y), fabs(a.z))); }
-static inline REAL stretch_of(REAL3 a, REAL3 b, REAL3 c, REAL3 d) {  // rows of J; the fourth is zero in space
-  const REAL size = real_max(real_max(greatest_part(a), greatest_part(b)),
-                             real_max(real_max(greatest_part(c), greatest_part(d)), (REAL)(1e-30f)));
+static inline REAL stretch_of(REAL3 j0, REAL3 j1, REAL3 j2,
+                              REAL3 j3) {  // rows of J; the fourth is zero in space
+  const REAL size = real_max(real_max(greatest_part(j0), greatest_part(j1)),
+                             real_max(real_max(greatest_part(j2), greatest_part(j3)), (REAL)(1e-30f)));
   const REAL k = 1.0f / size;  // the entries' fourth powers would not fit into a float
-  a = scale3(a, k);
-  b = scale3(b, k);
-  c = scale3(c, k);
-  d = scale3(d, k);
+  const REAL3 a = scale3(j0, k), b = scale3(j1, k), c = scale3(j2, k), d = scale3(j3, k);
   const REAL xx = fma(a.x, a.x, fma(b.x, b.x, fma(c.x, c.x, d.x * d.x)));
   const REAL yy = fma(a.y, a.y, fma(b.y, b.y, fma(c.y, c.y, d.y * d.y)));
   const REAL zz = fma(a.z, a.z, fma(b.z, b.z, fma(c.z, c.z, d.z * d.z)));

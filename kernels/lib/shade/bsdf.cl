@@ -139,8 +139,8 @@ static inline REAL highlight_cosine(u32 flags, REAL3 ns, REAL3 wo, REAL3 wi) {
 #if HAS_MAPS
 // Colour and exponent may come from textures, the exponent not whole.
 static inline REAL3 add_highlights(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes,
-                                   REAL3 sum) {
-  if (!any_lane(lanes & MASK_OF(greatest3(bsdf->specular) > 0.0f))) return sum;
+                                   REAL3 light) {
+  if (!any_lane(lanes & MASK_OF(greatest3(bsdf->specular) > 0.0f))) return light;
   REAL cosine = (REAL)(0.0f);
   u32 index;
   while (any_lane(lanes)) {
@@ -150,11 +150,12 @@ static inline REAL3 add_highlights(const Scene* scene, const Bsdfs* bsdf, REAL3 
   const REAL x = real_clamp(cosine, (REAL)(0.0f), (REAL)(1.0f));
   const REAL power = real_exp(bsdf->exponent * real_log(real_max(x, (REAL)(1e-37f))));
   const REAL shine = select(power, (REAL)(0.0f), MASK_OF(x < 1e-37f) & MASK_OF(bsdf->exponent > 0.0f));
-  return add3(sum, scale3(bsdf->specular, shine));
+  return add3(light, scale3(bsdf->specular, shine));
 }
 #else
 static inline REAL3 add_highlights(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes,
-                                   REAL3 sum) {
+                                   REAL3 light) {
+  REAL3 sum = light;
   u32 index;
   while (any_lane(lanes)) {
     const MASK mine = take_alike(bsdf->material, &lanes, &index);
