@@ -107,4 +107,6 @@ class MpiTransport : public Transport {
 }  // namespace
 }  // namespace sundog
 
-extern "C" sundog::Transport* sundog_open_transport() { return new sundog::MpiTransport; }
+extern "C" [[gnu::visibility("default")]] sundog::Transport* sundog_open_transport() {
+  return new sundog::MpiTransport;
+}

@@ -371,6 +371,7 @@ void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& pat
 }
 
 void run_frame(const std::shared_ptr<Frame>& frame, bool wait) {
+  look_for_stop(*frame);  // before a worker takes a tile
   std::vector<std::thread> threads;
   left_behind += static_cast<unsigned>(frame->servers.size());
   for (std::size_t i = 0; i < frame->servers.size(); ++i)

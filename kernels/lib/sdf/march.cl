@@ -3,8 +3,10 @@
 // et al. 2014), so a step is never longer than what the field's bound proves empty.
 #ifndef SUNDOG_LIB_SDF_MARCH_CL
 #define SUNDOG_LIB_SDF_MARCH_CL
-#include "lib/sdf/cut.cl"
+// First: fields in doubles rename what the files below define.
 #include "lib/sdf/near.cl"
+
+#include "lib/sdf/cut.cl"
 
 // Rays may step over a surface, and go back to where they crossed it.
 #define SDF_CROSSES (SDF_TWO_SIDED || SDF_HAS_NEAR)

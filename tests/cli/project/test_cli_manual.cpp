@@ -28,7 +28,9 @@ const std::map<std::string, std::string> pages{{"render", "command-line"},
                                                {"bench devices", "benchmarks"},
                                                {"bench rays", "benchmarks"},
                                                {"bench samples", "benchmarks"},
-                                               {"bench kernels", "benchmarks"}};
+                                               {"bench kernels", "benchmarks"},
+                                               {"bench textures", "benchmarks"},
+                                               {"halo", "halo"}};
 
 /// The long options in a text: "--size", as a whole.
 std::set<std::string> options_in(const std::string& text) {

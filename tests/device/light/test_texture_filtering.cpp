@@ -135,16 +135,17 @@ __kernel void run(__global const ConeIn* in, __global float4* out, u32 count) {
   const u32 i = get_global_id(0);
   if (i >= count) return;
   const REAL curvature = (REAL)(in[i].curvature), spread = (REAL)(in[i].spread);
-  SceneRays child;
-  child.cone_width = (REAL)(in[i].width);
-  child.cone_spread = spread;
+  SceneRays rays;
+  rays.cone_width = (REAL)(in[i].width);
+  rays.cone_spread = spread;
+  SceneRays child = rays;
   spread_reflected(curvature, &child);
   const float reflected = REAL_LANE(child.cone_spread, 0);
   SpecularSplits split;
   split.eta = (REAL)(in[i].eta);
   split.cos_i = (REAL)(in[i].cos_i);
   split.cos_t = (REAL)(in[i].cos_t);
-  spread_transmitted(curvature, &split, spread, &child);
+  spread_transmitted(curvature, &split, &rays, &child);
   out[i] = (float4)(reflected, REAL_LANE(child.cone_spread, 0), 0.0f, 0.0f);
 }
 )";
