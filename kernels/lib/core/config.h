@@ -19,7 +19,12 @@
 #endif
 
 // For the inner loops: a call there would save and restore every vector register.
+// Not without optimisation: Oclgrind does not know the marks that inlining leaves.
+#ifdef __NO_INLINE__
+#define ALWAYS_INLINE static inline
+#else
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
+#endif
 
 // For the body of a kernel: PoCL compiles what stands in a kernel three times (the kernel, and two loops over
 // its work-groups), a function once; and it keeps the private arrays of a kernel apart for each work-item of
