@@ -139,7 +139,7 @@ float overlap(int at, double low, double high) {
 
 /// Writes `text` in the middle of `width` pixels from `left` on.
 void write_label(Image& sheet, std::string text, int left, int top, int width) {
-  std::vector<Corner> corners(std::size_t{4 * 32} * text.size());
+  std::vector<Corner> corners(std::size_t{4} * 32 * text.size());
   const int quads = stb_easy_font_print(0, 0, text.data(), nullptr, corners.data(),
                                         static_cast<int>(corners.size() * sizeof(Corner)));
   const double start = left + (width - label_scale * stb_easy_font_width(text.data())) / 2, line = top + 4;

@@ -97,7 +97,7 @@ std::vector<float> make_lobe_energy(bool gains) {
   tbb::parallel_for(0u, LOBE_STEPS, [&](u32 row) {
     const Row of_row = gains_of(alpha_of(row));
     std::copy(of_row.begin(), of_row.end(),
-              table.begin() + std::ptrdiff_t{LOBE_GAINS} + std::ptrdiff_t{row} * std::ptrdiff_t{LOBE_STEPS});
+              table.begin() + static_cast<std::ptrdiff_t>(LOBE_GAINS + row * LOBE_STEPS));
   });
   return table;
 }

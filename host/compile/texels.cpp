@@ -32,8 +32,8 @@ void write_level(const StoredImage& image, const TexelLevel& level, std::vector<
         const u32 rows = std::min(TEXEL_TILE, level.height - tile_y * TEXEL_TILE);
         for (u32 y = 0; y < rows; ++y)
           std::memcpy(to + (tile * TEXEL_TILE + y) * TEXEL_TILE * bytes,
-                      image.data.data() + std::size_t{tile_y * TEXEL_TILE + y} * row +
-                          std::size_t{tile_x * TEXEL_TILE} * bytes,
+                      image.data.data() + (std::size_t{tile_y} * TEXEL_TILE + y) * row +
+                          std::size_t{tile_x} * TEXEL_TILE * bytes,
                       columns * bytes);
       }
   });
