@@ -14,7 +14,7 @@ static const char scene_text[] =
 static int show(uint64_t done, uint64_t total, double seconds, void* user) {
   *(unsigned*)user += 1;
   printf("%llu of %llu pixels after %.2f s\n", (unsigned long long)done, (unsigned long long)total, seconds);
-  return 0; /* go on */
+  return 0; /* continue */
 }
 
 int main(int argc, char** argv) {

@@ -298,7 +298,8 @@ NB_MODULE(_sundog, m) {
         nb::arg("aovs") = std::vector<std::string>(), nb::arg("work_group") = nb::none(), nb::arg("tile") = 0,
         nb::arg("time_limit") = 0.0, nb::arg("on_progress").none() = nb::none(),
         nb::arg("on_picture").none() = nb::none(), nb::arg("picture_seconds") = 1.0,
-        "Renders a Scene, a file or a dict, and waits; other threads go on. on_progress(pixels, of, seconds) "
+        "Renders a Scene, a file or a dict, and waits; other threads continue. on_progress(pixels, of, "
+        "seconds) "
         "may "
         "return False to stop; Ctrl-C stops too and raises KeyboardInterrupt.");
 }

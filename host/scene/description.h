@@ -182,7 +182,7 @@ struct MaterialDescription {
   double parallax = 0;             // above 0: how deep a 0 of the height texture is below a 1, object space
   int displaced_by = -1;           // index into textures: heights that move the vertices of meshes
   double displacement = 1;         // how far a 1 of them moves, object space
-  double displacement_middle = 0;  // what of them moves nothing
+  double displacement_middle = 0;  // the height that moves nothing
   double displacement_edge = 0;    // of the triangles, object space; 0: about a texel's
   double occlusion = 1;            // how much of the occlusion texture counts, [0, 1]
 };

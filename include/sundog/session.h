@@ -62,7 +62,7 @@ class SUNDOG_API Session {
 
   /// Draws this scene, as it is now, from now on: the newest one wins. Returns its generation once the scene
   /// is read; what is drawn then comes by snapshot(). Only the parts that differ from the scene before are
-  /// made anew. Throws Error (scene), and goes on with the scene before.
+  /// made anew. Throws Error (scene), and keeps the scene before.
   std::uint64_t start(const Scene& scene, const SessionOptions& options = {});
   /// Stops drawing; the picture so far stays.
   void cancel();

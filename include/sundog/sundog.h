@@ -78,7 +78,7 @@ SUNDOG_C_API void sundog_devices_free(sundog_devices* devices);
 
 /* --- renders ------------------------------------------------------------------------------------------ */
 
-/* Called some times a second by one thread at a time, not the caller's. 0: go on; else the render ends. */
+/* Called some times a second by one thread at a time, not the caller's. 0: continue; else the render ends. */
 typedef int (*sundog_progress)(uint64_t pixels_done, uint64_t pixels_total, double seconds, void* user);
 
 typedef struct sundog_options {

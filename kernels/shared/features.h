@@ -5,7 +5,8 @@
 #ifndef SUNDOG_SHARED_FEATURES_H
 #define SUNDOG_SHARED_FEATURES_H
 
-// clang-format off: a table
+// A table:
+// clang-format off
 #define SCENE_FEATURES(FEATURE)                                                                         \
   FEATURE(bool, HAS_SECONDARY, secondary_rays)      /* some material reflects or transmits */           \
   FEATURE(bool, HAS_MEDIA, media)                   /* some material has a medium, or the world absorbs */ \

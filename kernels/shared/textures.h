@@ -11,7 +11,8 @@ SUNDOG_SHARED_BEGIN
 // feature TEXTURE_KINDS is set where a scene has kind i. All but the first two give a number t, which mixes
 // two colours.
 //   TEXTURE(constant after TEXTURE_, name in scene files)
-// clang-format off: a table
+// A table:
+// clang-format off
 #define TEXTURES(TEXTURE)                                                                                   \
   TEXTURE(COLOR, color)       /* a constant: the node's offset */                                           \
   TEXTURE(IMAGE, image)       /* a sample of the image whose levels begin at `first` */                     \

@@ -82,7 +82,7 @@ for bad in (lambda: sundog.Scene({"objects": object()}), lambda: small().add_mes
     except TypeError:
         pass
 
-# Other threads go on while a frame is rendered; a callback stops it, and its exceptions come out.
+# Other threads run while a frame is rendered; a callback stops it, and its exceptions come out.
 turns = 0
 running = True
 

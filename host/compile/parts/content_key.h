@@ -16,13 +16,15 @@ struct ContentKey {
   friend bool operator==(const ContentKey&, const ContentKey&) = default;
 };
 
+template <class T>
+concept NumberOrEnum = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
 /// Mixes values into a key, in order. Numbers count by their bits: 0 and -0 differ.
 class KeyMaker {
  public:
   KeyMaker& bytes(const void* data, std::size_t count);
 
-  template <class T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  template <NumberOrEnum T>
   KeyMaker& add(const T& value) {
     return bytes(&value, sizeof value);
   }

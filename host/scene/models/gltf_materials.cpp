@@ -124,7 +124,7 @@ void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double 
   if (passed == dvec3(0)) return;
   MaterialDescription& m = entry.material;
   if (const auto texture = extension->find("transmissionTexture")) {
-    // The diffuse term has what is left, texel by texel: use_transmission().
+    // The diffuse term has the rest, texel by texel: use_transmission().
     entry.transmission = textures_.read(*texture);
     entry.transmission->channel = 0;
     entry.transmitted = std::min(factor * (1 - entry.values.metalness), 1.0);

@@ -13,7 +13,7 @@ ALWAYS_INLINE void halo_tally(HaloSums* sums, u32 which, REAL weight, MASK lanes
   sums->sum[which] += TO_MASK(weight * HALO_TALLY_UNITS + 0.5f) & lanes;
 }
 
-// Light that goes on as it came (through parallel faces) is no halo: it is in the sun's own place.
+// Light that leaves as it came (through parallel faces) is no halo: it is in the sun's own place.
 ALWAYS_INLINE void halo_leave(const HaloLaunch* launch, HALO_MAP map, HaloRays* rays, const HaloExits* exits,
                               MASK lanes, HaloSums* sums) {
   const MASK straight = MASK_OF(halo_dot(exits->d, rays->sunlight) > 0.999995f) & lanes;

@@ -46,7 +46,8 @@ typedef struct PathStates {
 #else
 #define STACKED_CONES(REALS, MASKS)
 #endif
-// clang-format off: a list
+// A list:
+// clang-format off
 #define STACKED(REALS, MASKS)                                                                               \
   REALS(rays->o.x) REALS(rays->o.y) REALS(rays->o.z) REALS(rays->d.x) REALS(rays->d.y) REALS(rays->d.z)     \
   REALS(rays->t_min) REALS(rays->t_max)                                                                     \

@@ -97,7 +97,7 @@ static inline void leave_surfaces(const Scene* scene, const Encounters* met, con
 }
 
 // Wavelengths part where interfaces that disperse let light through, or scatter it. Where they mirror it all
-// go on, each with its own part of the light.
+// remain, each with its own part of the light.
 #if HAS_DISPERSION
 static inline MASK parting_surfaces(const Scene* scene, const Shading* at, const SpecularSplits* split,
                                     MASK lanes) {

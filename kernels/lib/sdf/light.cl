@@ -35,7 +35,8 @@ static inline REAL sdf_soft_shadow(const Scene* scene, u32 index, REAL3 p, REAL3
   clip_to_interval(field, p, wi, &enter, &leave);
   active &= MASK_OF(enter <= leave);
   REAL t = enter, open = (REAL)(1.0f);
-  for (u32 i = 0; i < field->step_limit && *steps_left > 0u && any_lane(active); ++i) {
+  const u32 limit = min(field->step_limit, *steps_left);
+  for (u32 i = 0; i < limit && any_lane(active); ++i) {
     *steps_left -= 1u;
     const REAL d = sdf_distance(index, along3(p, t, wi), active, scene->sdf_parameters) * field->safety;
     REAL beside = d;

@@ -105,8 +105,8 @@ bool crosses_sides(const Seen& s) { return s.entered != basal && s.left != basal
 bool crosses_edge(const Seen& s) { return (s.entered == basal) != (s.left == basal); }
 bool from_basal(const Seen& s) { return s.entered == basal && s.left != basal; }
 
-template <class Which>
-std::vector<double> values(const std::vector<Seen>& seen, const Which& which, double Seen::* member) {
+template <class Which, class Member>
+std::vector<double> values(const std::vector<Seen>& seen, const Which& which, const Member& member) {
   std::vector<double> found;
   for (const Seen& s : seen)
     if (which(s)) found.push_back(s.*member);

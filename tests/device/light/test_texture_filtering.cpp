@@ -1,4 +1,4 @@
-// How images are spread over things without coordinates, what is left of patterns too fine for the pixels,
+// How images are spread over things without coordinates, the means of patterns too fine for the pixels,
 // and the cones that choose levels against neighbouring rays in double precision.
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
