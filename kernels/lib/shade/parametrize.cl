@@ -1,10 +1,10 @@
 // Coordinates on surfaces: u and v, and how the point moves with them (dpdu and dpdv, world space), from
-// which tangent frames are made. Longitudes start at +x and turn towards +z, latitudes and heights go up with
-// y:
+// which tangent frames are made. Longitudes start at +x and turn towards -z, latitudes and heights go up with
+// y: a picture on any solid reads from left to right for who looks at its outside:
 //   sphere          u longitude, v latitude, both over [0, 1]
 //   cylinder, cone  u longitude, v height; caps as disks
-//   disk            u along x, v along z, [0, 1] over the square round it
-//   plane           u = x, v = z
+//   disk            u along x, v along -z (bottom caps: +z), [0, 1] over the square round it
+//   plane           u = x, v = -z
 //   torus           u longitude, v the angle round the tube from its outer equator, both over [0, 1]
 //   box, round box  each face from outside: u to the right, v upwards, [0, 1]
 //   mesh            the vertices' u and v; without them as a field

@@ -147,12 +147,15 @@ NEVER_INLINE void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInt
 }
 
 // What of light from wi the bent normals of `lanes` return: none from behind the surface, and near its
-// terminator less, smoothly (Chiang and others 2019, "Taming the Shadow Terminator").
+// terminator less, as microfacets of the bend's slope hide each other (Conty Estevez and others 2019, "A
+// Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem"; against others:
+// docs/textures.md).
 static inline REAL terminator(const SurfaceInteractions* s, REAL3 wi) {
-  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
-  const REAL geometric = dot3(s->ng, wi), shading = dot3(s->ns, wi), between = dot3(s->ng, s->ns);
-  const REAL g = real_clamp(geometric / nonzero(real_max(shading * between, (REAL)(1e-6f))), zero, one);
-  const REAL soft = g * fma(g, 1.0f - g, one);  // -g^3 + g^2 + g
+  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), least = (REAL)(1e-6f);
+  const REAL geometric = dot3(s->ng, wi), between = dot3(s->ng, s->ns);
+  const REAL g2 = real_max(geometric * geometric, least), b2 = real_max(between * between, least);
+  const REAL alpha2 = real_min(0.125f * real_max(1.0f - b2, zero) / b2, one);
+  const REAL soft = 2.0f / (1.0f + real_sqrt(fma(alpha2, real_max(1.0f - g2, zero) / g2, one)));
   return select(one, select(zero, soft, MASK_OF(geometric > 0.0f)), s->bent);
 }
 #else

@@ -83,12 +83,15 @@ static inline MappedPoints map_points(const Scene* scene, __global const Texture
   const REAL3 q = rows_times(node, at->p);
 #if HAS_MAPPING(2) || HAS_MAPPING(3)
   if (mapping == MAPPING_SPHERICAL || mapping == MAPPING_CYLINDRICAL) {
-    const REAL r = radius_about_y(q), u = turns(q.x, q.z);
+    const REAL r = radius_about_y(q), u = turns(q.x, -q.z);
     const bool sphere = mapping == MAPPING_SPHERICAL;
     const REAL v = sphere ? 0.5f + 2.0f * copysign(turns(r, fabs(q.y)), q.y) : q.y;
     const REAL area = sphere ? 2.0f * M_PI_F * M_PI_F * r * length3(q) : 2.0f * M_PI_F * r;
     return map_uv(node, u, v, at->scale * real_rsqrt(real_max(area, (REAL)(1e-12f))));
   }
+#endif
+#if TEXEL_FORMATS
+  if (node->kind == TEXTURE_IMAGE) return map_uv(node, q.x, q.y, at->scale);
 #endif
   // A pattern's placement turns and scales alike along all axes, so that normals go with it as vectors do.
   const float4 x = node->rows[0], y = node->rows[1], z = node->rows[2];

@@ -15,7 +15,7 @@ static inline void closest_in_sphere(float4 parameters, REAL3 o, REAL3 d, REAL t
 static inline SurfacePoints points_on_sphere(float4 parameters, REAL3 p, MASK part) {
   const REAL r = radius_about_y(p), zero = (REAL)(0.0f);
   SurfacePoints at;
-  at.u = turns(p.x, p.z);
+  at.u = turns(p.x, -p.z);
   at.v = 0.5f + 2.0f * copysign(turns(r, fabs(p.y)), p.y);
   at.dpdu = round_tangents(p);
   at.dpdv = scale3(along3(real3(zero, r, zero), -p.y, away_from_axis(p, r)), (REAL)(M_PI_F));
@@ -30,7 +30,7 @@ static inline void closest_in_plane(float4 parameters, REAL3 o, REAL3 d, REAL t_
 }
 
 static inline SurfacePoints points_on_plane(float4 parameters, REAL3 p, MASK part) {
-  const SurfacePoints at = {p.x, p.z, all3((float3)(1.0f, 0.0f, 0.0f)), all3((float3)(0.0f, 0.0f, 1.0f))};
+  const SurfacePoints at = {p.x, -p.z, all3((float3)(1.0f, 0.0f, 0.0f)), all3((float3)(0.0f, 0.0f, -1.0f))};
   return at;
 }
 
@@ -51,15 +51,16 @@ static inline void closest_in_disk(float4 parameters, REAL3 o, REAL3 d, REAL t_m
   offer_ring(o, d, 0.0f, parameters.x, 1.0f, 1.0f, 0, t_min, active, hits);
 }
 
-// Of the square round a unit disk.
-static inline SurfacePoints points_in_plane(REAL3 p) {
-  const SurfacePoints at = {0.5f + 0.5f * p.x, 0.5f + 0.5f * p.z, all3((float3)(2.0f, 0.0f, 0.0f)),
-                            all3((float3)(0.0f, 0.0f, 2.0f))};
+// Of the square round a unit disk, which is looked at from above, or from below.
+static inline SurfacePoints points_in_plane(REAL3 p, MASK below) {
+  const REAL zero = (REAL)(0.0f), up = select((REAL)(-1.0f), (REAL)(1.0f), below);
+  const SurfacePoints at = {0.5f + 0.5f * p.x, fma(0.5f * up, p.z, (REAL)(0.5f)),
+                            all3((float3)(2.0f, 0.0f, 0.0f)), real3(zero, zero, 2.0f * up)};
   return at;
 }
 
 static inline SurfacePoints points_on_disk(float4 parameters, REAL3 p, MASK part) {
-  return points_in_plane(p);
+  return points_in_plane(p, NO_LANES);
 }
 static inline REAL curvature_of_disk(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
 
@@ -67,7 +68,7 @@ static inline REAL curvature_of_disk(float4 parameters, REAL3 p, MASK part) { re
 static inline SurfacePoints on_tube(REAL3 p, float growth) {
   const REAL3 up = all3((float3)(0.0f, 1.0f, 0.0f));
   SurfacePoints at;
-  at.u = turns(p.x, p.z);
+  at.u = turns(p.x, -p.z);
   at.v = 0.5f + 0.5f * p.y;
   at.dpdu = round_tangents(p);
   at.dpdv = scale3(along3(up, (REAL)(growth), away_from_axis(p, radius_about_y(p))), (REAL)(2.0f));
@@ -96,7 +97,7 @@ static inline void closest_in_cylinder(float4 parameters, REAL3 o, REAL3 d, REAL
 }
 
 static inline SurfacePoints points_on_cylinder(float4 parameters, REAL3 p, MASK part) {
-  return select_points(on_tube(p, 0.0f), points_in_plane(p), MASK_OF(part != 0));
+  return select_points(on_tube(p, 0.0f), points_in_plane(p, MASK_OF(part == 2)), MASK_OF(part != 0));
 }
 static inline REAL curvature_of_cylinder(float4 parameters, REAL3 p, MASK part) {
   return tube_curvature(p, part);
@@ -131,8 +132,8 @@ static inline void closest_in_cone(float4 parameters, REAL3 o, REAL3 d, REAL t_m
 }
 
 static inline SurfacePoints points_on_cone(float4 parameters, REAL3 p, MASK part) {
-  return select_points(on_tube(p, 0.5f * (parameters.y - parameters.x)), points_in_plane(p),
-                       MASK_OF(part != 0));
+  return select_points(on_tube(p, 0.5f * (parameters.y - parameters.x)),
+                       points_in_plane(p, MASK_OF(part == 2)), MASK_OF(part != 0));
 }
 static inline REAL curvature_of_cone(float4 parameters, REAL3 p, MASK part) {
   return tube_curvature(p, part);

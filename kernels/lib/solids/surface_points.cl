@@ -29,8 +29,9 @@ static inline REAL turns(REAL x, REAL y) {
   turn = select(turn, 0.5f - turn, MASK_OF(x < 0.0f));
   return select(turn, real_min(1.0f - turn, (REAL)(0x1.fffffep-1f)), MASK_OF(y < 0.0f));
 }
+// How points move with their longitude, which turns from +x to -z.
 static inline REAL3 round_tangents(REAL3 p) {
-  return scale3(real3(-p.z, (REAL)(0.0f), p.x), (REAL)(2.0f * M_PI_F));
+  return scale3(real3(p.z, (REAL)(0.0f), -p.x), (REAL)(2.0f * M_PI_F));
 }
 static inline REAL radius_about_y(REAL3 p) { return real_sqrt(fma(p.x, p.x, p.z * p.z)); }
 

@@ -71,7 +71,7 @@ static inline void closest_in_torus(float4 parameters, REAL3 o, REAL3 d, REAL t_
 static inline SurfacePoints points_on_torus(float4 parameters, REAL3 p, MASK part) {
   const REAL r = radius_about_y(p), zero = (REAL)(0.0f);
   SurfacePoints at;
-  at.u = turns(p.x, p.z);
+  at.u = turns(p.x, -p.z);
   at.v = turns(r - 1.0f, p.y);
   at.dpdu = round_tangents(p);
   at.dpdv = scale3(along3(real3(zero, r - 1.0f, zero), -p.y, away_from_axis(p, r)), (REAL)(2.0f * M_PI_F));

@@ -30,7 +30,7 @@ struct Chart {
 };
 
 dvec3 about(double u, double radius, double y) {
-  return {radius * std::cos(2 * pi * u), y, radius * std::sin(2 * pi * u)};
+  return {radius * std::cos(2 * pi * u), y, -radius * std::sin(2 * pi * u)};
 }
 
 std::vector<Chart> charts() {
@@ -47,23 +47,28 @@ std::vector<Chart> charts() {
   std::vector<Chart> all{
       {"sphere", SHAPE_SPHERE, 0, none,
        [](double u, double v) { return about(u, std::sin(pi * v), -std::cos(pi * v)); }},
-      {"plane", SHAPE_PLANE, 0, none, [](double u, double v) { return dvec3(u, 0, v); }},
+      {"plane", SHAPE_PLANE, 0, none, [](double u, double v) { return dvec3(u, 0, -v); }},
       {"cylinder",
        SHAPE_CYLINDER,
        0,
        {1, 0, 0, 0},
        [](double u, double v) { return about(u, 1, 2 * v - 1); }},
+      {"lower cap of a cylinder",
+       SHAPE_CYLINDER,
+       2,
+       {1, 0, 0, 0},
+       [](double u, double v) { return dvec3(2 * u - 1, -1, 2 * v - 1); }},
       {"cap of a cylinder",
        SHAPE_CYLINDER,
        1,
        {1, 0, 0, 0},
-       [](double u, double v) { return dvec3(2 * u - 1, 1, 2 * v - 1); }},
+       [](double u, double v) { return dvec3(2 * u - 1, 1, 1 - 2 * v); }},
       {"cone",
        SHAPE_CONE,
        0,
        {1, 0.25f, 1, 0},
        [](double u, double v) { return about(u, 1 - 0.75 * v, 2 * v - 1); }},
-      {"disk", SHAPE_DISK, 0, none, [](double u, double v) { return dvec3(2 * u - 1, 0, 2 * v - 1); }},
+      {"disk", SHAPE_DISK, 0, none, [](double u, double v) { return dvec3(2 * u - 1, 0, 1 - 2 * v); }},
       {"torus", SHAPE_TORUS, 0, {0.25f, 0, 0, 0}, [](double u, double v) {
          return about(u, 1 + 0.25 * std::cos(2 * pi * v), 0.25 * std::sin(2 * pi * v));
        }}};
@@ -153,6 +158,20 @@ TEST_CASE("each kind of solid has points whose coordinates are known") {
   }
 }
 
+TEST_CASE("who looks at the outside of a solid sees u to the right of v") {
+  for (const Chart& chart : charts()) {
+    INFO(chart.name);
+    const double h = 1e-4, u = 0.3, v = 0.6;
+    const dvec3 p = chart.point(u, v), along_u = chart.point(u + h, v) - p,
+                along_v = chart.point(u, v + h) - p;
+    // Away from the middle of the solid, or of a torus's tube; flat ones are looked at from above.
+    dvec3 outside = p;
+    if (chart.shape == SHAPE_PLANE || chart.shape == SHAPE_DISK) outside = {0, 1, 0};
+    if (chart.shape == SHAPE_TORUS) outside -= about(u, 1, 0);
+    CHECK(glm::dot(glm::cross(along_u, along_v), outside) > 0);
+  }
+}
+
 TEST_CASE("points on solids have the coordinates that they were made from, and dpdu is their derivative") {
   on_every_device([&](const DeviceInfo& info) {
     Device device(info);
@@ -197,10 +216,10 @@ TEST_CASE("hits on a placed sphere have coordinates of its own space and dpdu in
     for (const Found& found : look(device, scene, rays_down())) {
       const dvec3 p = dvec3(glm::inverse(place) * glm::dvec4(found.p, 1));
       REQUIRE(glm::length(p) == Approx(1).epsilon(1e-4));
-      const double turn = std::atan2(p.z, p.x) / (2 * pi);
+      const double turn = std::atan2(-p.z, p.x) / (2 * pi);
       CHECK(found.uv.x == Approx(turn - std::floor(turn)).margin(1e-4));
       CHECK(found.uv.y == Approx(0.5 + std::asin(p.y) / pi).margin(1e-4));
-      const dvec3 expected = glm::dmat3(place) * (2 * pi * dvec3(-p.z, 0, p.x));
+      const dvec3 expected = glm::dmat3(place) * (2 * pi * dvec3(p.z, 0, -p.x));
       CHECK(glm::distance(found.dpdu, expected) < 1e-3);
     }
   });

@@ -1,5 +1,8 @@
 // How images are spread over things without coordinates, the means of patterns too fine for the pixels,
 // and the cones that choose levels against neighbouring rays in double precision.
+#include <base/image_io.h>
+
+#include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
@@ -10,6 +13,7 @@
 #include "scene/load.h"
 #include "scenes.h"
 #include "surface_testing.h"
+#include "temporary_folder.h"
 
 using namespace sundog;
 
@@ -91,16 +95,79 @@ TEST_CASE("images are projected along longitude and latitude, longitude and heig
   };
   on_every_device([&](const DeviceInfo& info) {
     check(info, Mapping::spherical, [](const dvec3& p, const dvec3&) {
-      return glm::dvec2(turns_of(p.x, p.z), 0.5 + std::asin(p.y / glm::length(p)) / pi);
+      return glm::dvec2(turns_of(p.x, -p.z), 0.5 + std::asin(p.y / glm::length(p)) / pi);
     });
     check(info, Mapping::cylindrical,
-          [](const dvec3& p, const dvec3&) { return glm::dvec2(turns_of(p.x, p.z), p.y); });
+          [](const dvec3& p, const dvec3&) { return glm::dvec2(turns_of(p.x, -p.z), p.y); });
     check(info, Mapping::box, [](const dvec3& p, const dvec3& n) {
       if (n.x != 0) return glm::dvec2(-n.x * p.z, p.y);
       if (n.y != 0) return glm::dvec2(p.x, -n.y * p.z);
       return glm::dvec2(n.z * p.x, p.y);
     });
   });
+}
+
+// Whoever looks at the outside of things reads the picture: its colours by quarter are those of quarters.png.
+TEST_CASE("a picture on solids and by projections reads from left to right") {
+  const TemporaryFolder folder;
+  Image quarters(2, 2, 3);
+  quarters.data = {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1};  // red and green above blue and white
+  write_image(quarters, folder / "quarters.png");
+  const auto image = [](const std::string& rest) {
+    return R"({"type":"image","file":"quarters.png","filter":"nearest",)" + rest + "}";
+  };
+  // Half of the longitudes are seen, the third and the fourth quarter of them.
+  const std::string half = R"("scale":[0.5,1],"offset":[0.5,0])";
+  const std::string plane = R"("type":"plane")";  // behind the others
+  const auto things = std::to_array<std::array<std::string, 3>>(
+      {{image(half), R"("type":"sphere","radius":0.9)", ""},
+       {image(half + R"(,"projection":"spherical")"), R"("type":"sphere","radius":0.9)", ""},
+       {image(R"("projection":"cylindrical","scale":[0.5,2],"offset":[0.5,-1])"),
+        R"("type":"sphere","radius":0.9)", ""},
+       {image(half), R"("type":"cylinder","radius":0.9,"height":1.8)", ""},
+       {image(half), R"("type":"cone","bottom_radius":0.9,"top_radius":0.4,"height":1.8)", ""},
+       {image(R"("scale":1)"), R"("type":"cylinder","radius":0.9,"height":1.8)", "90"},
+       {image(R"("scale":1)"), R"("type":"cylinder","radius":0.9,"height":1.8)", "-90"},
+       {image(R"("scale":[0.5,1],"offset":[0.5,0.5])"),
+        R"("type":"torus","major_radius":0.6,"minor_radius":0.3)", ""},
+       {image(R"("scale":1)"), R"("type":"disk","radius":0.9)", "90"},
+       {image(R"("scale":1)"), R"("type":"box","half":[0.9,0.9,0.9])", ""},
+       {image(R"("projection":"box","scale":2,"offset":[-1,-1])"), R"("type":"box","half":[0.9,0.9,0.9])",
+        "90"},
+       {image(R"("projection":"object","scale":2,"offset":[-1,-1])"), R"("type":"sphere","radius":0.9)", ""},
+       {image(R"("scale":2,"offset":[-1,-1])"), plane, "90"}});
+  std::string textures, materials, objects;
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    const auto& [texture, shape, turn] = things[i];
+    const std::string name = '"' + std::to_string(i) + '"', comma = i ? "," : "";
+    const std::string turned = turn.empty() ? "" : R"({"rotate":{"axis":[1,0,0],"degrees":)" + turn + "}},";
+    textures += comma + name + ":" + texture;
+    materials += comma + name + R"(:{"color":[0,0,0],"emission":)" + name + "}";
+    objects += comma + "{" + shape + R"(,"material":)" + name + R"(,"transform":[)" + turned +
+               R"({"translate":[)" + std::to_string(2 * i) + (shape == plane ? ",0,-1]}]}" : ",0,0]}]}");
+  }
+  SceneDescription scene =
+      load_scene(folder.write("a.json", R"({"textures":{)" + textures + R"(},"materials":{)" + materials +
+                                            R"(},"objects":[)" + objects + R"(],"lights":[]})"));
+  scene.image.width = scene.image.height = 8;
+  const DeviceInfo& info = test_devices().front();
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    INFO(i << ": " << things[i][1] << ", " << things[i][0]);
+    const double x = 2.0 * static_cast<double>(i);
+    scene.camera.position = {x, 0, 200};
+    scene.camera.target = {x, 0, 0};
+    scene.camera.fov = 0.8 / 200 * 180 / pi;  // 0.8 across: each quarter has 4x4 of the pixels
+    const Image seen = scenes::render_on(info, scene).image;
+    const auto at = [&](int column, int row) {
+      const float* rgb = &seen.data[static_cast<std::size_t>(8 * row + column) * 4];
+      return dvec3(rgb[0], rgb[1], rgb[2]);
+    };
+    // The torus shows its outer equator, which is narrower.
+    CHECK(at(1, 2) == dvec3(1, 0, 0));
+    CHECK(at(6, 2) == dvec3(0, 1, 0));
+    CHECK(at(1, 5) == dvec3(0, 0, 1));
+    CHECK(at(6, 5) == dvec3(1, 1, 1));
+  }
 }
 
 TEST_CASE("a zone plate shows no moire: what is finer than the pixels is grey") {
