@@ -4,10 +4,7 @@
 // Shadow rays see what paths that meet lights by chance would.
 #define SHADOWS_AS_PATHS 1
 #include "lib/core/counters.cl"
-#include "lib/core/filter.cl"
-#include "lib/core/sampler.cl"
-#include "lib/path/lens.cl"
-#include "lib/path/tile.cl"
+#include "lib/path/camera_samples.cl"
 #include "lib/pathtracer/steps.cl"
 #include "shared/launch.h"
 
@@ -18,39 +15,28 @@ typedef struct LaneWork {
 } LaneWork;
 
 // The lanes of `idle` whose pixels have samples left begin with them. Returns those lanes.
-NEVER_INLINE MASK begin_samples(const Scene* scene, const Launch* launch, __global const u32* restrict pixels,
-                                u32 item, MediaStack around, MASK idle, LaneWork* work, Walks* walks,
-                                SceneRays* rays) {
-  __global const SceneInfo* restrict info = scene->info;
+NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
+                                  __global const u32* restrict pixels, u32 item, MediaStack around, MASK idle,
+                                  LaneWork* work, Walks* walks, SceneRays* rays) {
   const u32 last = launch->first_sample + launch->sample_count;
-  MASK begun = NO_LANES;
-  REAL x = (REAL)(0.0f), y = (REAL)(0.0f);
+  BegunSamples begun = no_samples();
   LaneSamples at = {NO_LANES, NO_LANES, NO_LANES};
-  CameraSamples samples = {.sample = 0u};
   for (u32 bits = lane_bits(idle); bits; bits &= bits - 1u) {
-    const u32 lane = lowest_bit(bits);
+    const u32 lane = lowest_bit(bits), sample = work->next[lane];
     uint2 pixel;
-    if (work->next[lane] >= last) continue;
-    if (!image_pixel(launch, pixels, lane_pixel(launch, item, lane), &pixel)) continue;
-    const u32 sample = work->next[lane]++;
-    float2 in_pixel = pixel_sample(pixel, sample, info->samples);
-    work->sign[lane] = filter_place(scene->filter, info->samples, &in_pixel);
-    REAL_LANE(x, lane) = (float)pixel.x + in_pixel.x;
-    REAL_LANE(y, lane) = (float)pixel.y + in_pixel.y;
-    MASK_LANE(begun, lane) = -1;
+    if (sample >= last) continue;
+    if (!begin_sample(scene, launch, pixels, item, lane, sample, &begun, &pixel, &work->sign[lane])) continue;
+    work->next[lane] = sample + 1u;
     MASK_LANE(at.x, lane) = (int)pixel.x;
     MASK_LANE(at.y, lane) = (int)pixel.y;
     MASK_LANE(at.sample, lane) = (int)sample;
-    samples.sample = sample;
-    set_camera_sample(&samples, lane, pixel);
   }
-  if (!any_lane(begun)) return begun;
-  const Rays camera = sampled_camera_rays(info, x, y, &samples);
-  const SceneRays first = scene_rays(&camera, around);
-  const Walks fresh = start_walks(scene, &at, begun);
-  join_rays(rays, &first, begun);
-  join_walks(walks, &fresh, begun);
-  return begun;
+  if (!any_lane(begun.lanes)) return NO_LANES;
+  const SceneRays first = begun_rays(scene, &begun, around);
+  const Walks fresh = start_walks(scene, &at, begun.lanes);
+  join_rays(rays, &first, begun.lanes);
+  join_walks(walks, &fresh, begun.lanes);
+  return begun.lanes;
 }
 
 // One work-item of the kernel below.
@@ -67,7 +53,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
   SceneRays rays = scene_rays(&none, around);
   MASK lanes = NO_LANES;
   for (;;) {
-    const MASK begun = begin_samples(scene, launch, pixels, item, around, ~lanes, &work, &walks, &rays);
+    const MASK begun = fill_idle_lanes(scene, launch, pixels, item, around, ~lanes, &work, &walks, &rays);
     const MASK going = lanes | begun;
     if (!any_lane(going)) break;
     counts[COUNT_PRIMARY] += lane_count(begun);

@@ -2,10 +2,7 @@
 // place in the image is a multiple of the tile, so that the pixels it works on together are the same however
 // the frame is cut.
 #include "lib/core/counters.cl"
-#include "lib/core/filter.cl"
-#include "lib/core/sampler.cl"
-#include "lib/path/lens.cl"
-#include "lib/path/tile.cl"
+#include "lib/path/camera_samples.cl"
 #include "lib/whitted/whitted.cl"
 #include "shared/launch.h"
 
@@ -13,25 +10,15 @@
 static inline MASK start_rays(const Scene* scene, const Launch* launch, __global const u32* restrict pixels,
                               u32 item, u32 sample, MediaStack around, SceneRays* rays, float* signs,
                               TileSamples* tile) {
-  __global const SceneInfo* restrict info = scene->info;
-  MASK lanes = NO_LANES;
+  BegunSamples begun = no_samples();
   tile->sample = sample;
-  REAL x = (REAL)(0.0f), y = (REAL)(0.0f);
-  CameraSamples samples = {.sample = sample};
   for (u32 lane = 0; lane < BATCH; ++lane) {
     uint2 pixel;
-    if (!image_pixel(launch, pixels, lane_pixel(launch, item, lane), &pixel)) continue;
-    float2 in_pixel = pixel_sample(pixel, sample, info->samples);
-    signs[lane] = filter_place(scene->filter, info->samples, &in_pixel);
-    REAL_LANE(x, lane) = (float)pixel.x + in_pixel.x;
-    REAL_LANE(y, lane) = (float)pixel.y + in_pixel.y;
-    MASK_LANE(lanes, lane) = -1;
-    set_tile_pixel(tile, lane, pixel);
-    set_camera_sample(&samples, lane, pixel);
+    if (begin_sample(scene, launch, pixels, item, lane, sample, &begun, &pixel, &signs[lane]))
+      set_tile_pixel(tile, lane, pixel);
   }
-  const Rays camera = sampled_camera_rays(info, x, y, &samples);
-  *rays = scene_rays(&camera, around);
-  return lanes;
+  *rays = begun_rays(scene, &begun, around);
+  return begun.lanes;
 }
 
 // One work-item of the kernel below.

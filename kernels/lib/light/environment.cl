@@ -107,6 +107,18 @@ static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL
   return sample;
 }
 
+// The density of a sun that is chosen with `chance`, whose disk's size is 1 minus the cosine of its radius.
+static inline float sun_density(__global const Light* sun, float chance) {
+  return chance / (2.0f * M_PI_F * fabs(sun->direction.w));
+}
+
+// Whether directions lie in a sun that is seen. The square of the chord from its middle is twice 1 minus the
+// cosine, with more digits.
+static inline MASK in_sun(__global const Light* sun, REAL3 d) {
+  const REAL3 chord = add3(d, all3(sun->direction.xyz));
+  return MASK_OF(dot3(chord, chord) <= 2.0f * sun->direction.w);
+}
+
 // Directions to a sun, uniform in its disk in the sky.
 static inline LightSamples sample_sun(__global const Light* light, REAL u_x, REAL u_y) {
   const float cap = fabs(light->direction.w);
@@ -114,27 +126,28 @@ static inline LightSamples sample_sun(__global const Light* light, REAL u_x, REA
   LightSamples sample;
   sample.wi = direction_at(all3(-light->direction.xyz), 1.0f - drop, real_sqrt(sine2), u_y);
   sample.distance = (REAL)(INFINITY);
-  sample.density = (REAL)(1.0f / (2.0f * M_PI_F * cap));
+  sample.density = (REAL)(sun_density(light, 1.0f));
   sample.delta = NO_LANES;
   sample.radiance = all3(light->color.xyz);
   return sample;
 }
 
-// What the rays of `lanes` see, which meet nothing: the environment, or else the background; and suns in
-// front of it. The square of the chord from a sun's middle is twice 1 minus the cosine, with more digits.
+// What lies behind everything: the environment where rays see it, else the background.
+static inline bool sees_environment(const Scene* scene) {
+  return HAS_ENVIRONMENT && scene->info->sees_environment;
+}
+static inline REAL3 distant_along(const Scene* scene, REAL3 d, MASK lanes) {
+  return sees_environment(scene) ? environment_along(scene, d, lanes) : background_along(scene->info, d);
+}
+
+// What the rays of `lanes` see, which meet nothing: that, and the suns in front of it.
 static inline REAL3 sky_along(const Scene* scene, REAL3 d, MASK lanes) {
   if (!HAS_SKY) return background_along(scene->info, d);
-  REAL3 light;
-  if (HAS_ENVIRONMENT && scene->info->sees_environment)
-    light = environment_along(scene, d, lanes);
-  else
-    light = background_along(scene->info, d);
+  REAL3 light = distant_along(scene, d, lanes);
   for (u32 index = 0; index < scene->info->table_lights; ++index) {
     __global const Light* sun = scene->lights + index;
     if (sun->kind != LIGHT_SUN) continue;
-    const REAL3 chord = add3(d, all3(sun->direction.xyz));
-    const MASK inside = MASK_OF(dot3(chord, chord) <= 2.0f * sun->direction.w);
-    light = select3(light, add3(light, all3(sun->color.xyz)), inside);
+    light = select3(light, add3(light, all3(sun->color.xyz)), in_sun(sun, d));
   }
   return light;
 }

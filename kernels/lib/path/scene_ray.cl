@@ -32,17 +32,26 @@ typedef struct SceneRays {
 #endif
 } SceneRays;
 
-// What rays carry in some scenes only, from their start and past surfaces; without the feature nothing.
+// What rays carry in some scenes only, from their start and past surfaces, and as others in their lanes;
+// without the feature nothing.
 #if HAS_MEDIA
 static inline void start_in_medium(SceneRays* rays) { rays->since = (REAL)(0.0f); }
+static inline void join_medium(SceneRays* rays, const SceneRays* others, MASK lanes) {
+  rays->since = select(rays->since, others->since, lanes);
+}
 #else
 static inline void start_in_medium(SceneRays* rays) {}
+static inline void join_medium(SceneRays* rays, const SceneRays* others, MASK lanes) {}
 #endif
 
 #if RAYS_CROSS
 static inline void forget_crossings(SceneRays* rays) { rays->crossings = NO_LANES; }
 static inline void count_crossings(SceneRays* rays, MASK lanes) { rays->crossings -= lanes; }
+static inline void join_crossings(SceneRays* rays, const SceneRays* others, MASK lanes) {
+  rays->crossings = select(rays->crossings, others->crossings, lanes);
+}
 #else
+static inline void join_crossings(SceneRays* rays, const SceneRays* others, MASK lanes) {}
 static inline void forget_crossings(SceneRays* rays) {}
 static inline void count_crossings(SceneRays* rays, MASK lanes) {}
 #endif
@@ -63,7 +72,12 @@ static inline void start_on_hits(__global const SceneInfo* restrict info, SceneR
   const MASK from = select((MASK)(FROM_NOWHERE), hits->instance * 2 - inside, on_field);
   rays->from = select(rays->from, from, lanes);
 }
+static inline void join_footprints(SceneRays* rays, const SceneRays* others, MASK lanes) {
+  rays->from = select(rays->from, others->from, lanes);
+  rays->footprint = select(rays->footprint, others->footprint, lanes);
+}
 #else
+static inline void join_footprints(SceneRays* rays, const SceneRays* others, MASK lanes) {}
 static inline void start_off_fields(SceneRays* rays) {}
 static inline void widen_footprints(__global const SceneInfo* restrict info, SceneRays* rays, REAL t,
                                     MASK lanes) {}
@@ -72,6 +86,14 @@ static inline void start_on_hits(__global const SceneInfo* restrict info, SceneR
 #endif
 
 #if HAS_CONES
+#define SCATTERED_SPREAD 0.2f  // of the cone of what a surface scatters, at least
+static inline void spread_scattered(SceneRays* rays, MASK lanes) {
+  rays->cone_spread = select(rays->cone_spread, real_max(rays->cone_spread, (REAL)(SCATTERED_SPREAD)), lanes);
+}
+static inline void join_cones(SceneRays* rays, const SceneRays* others, MASK lanes) {
+  rays->cone_width = select(rays->cone_width, others->cone_width, lanes);
+  rays->cone_spread = select(rays->cone_spread, others->cone_spread, lanes);
+}
 static inline void start_camera_cones(SceneRays* rays, const Rays* camera) {
   rays->cone_width = (REAL)(0.0f);
   rays->cone_spread = camera->spread;
@@ -80,13 +102,19 @@ static inline void widen_cones(SceneRays* rays, REAL t, MASK lanes) {
   rays->cone_width = select(rays->cone_width, fma(t, rays->cone_spread, rays->cone_width), lanes);
 }
 #else
+static inline void spread_scattered(SceneRays* rays, MASK lanes) {}
+static inline void join_cones(SceneRays* rays, const SceneRays* others, MASK lanes) {}
 static inline void start_camera_cones(SceneRays* rays, const Rays* camera) {}
 static inline void widen_cones(SceneRays* rays, REAL t, MASK lanes) {}
 #endif
 
 #if HAS_GLOW
 static inline void forget_glow(SceneRays* rays) { rays->glow = all3((float3)(0.0f)); }
+static inline void join_glow(SceneRays* rays, const SceneRays* others, MASK lanes) {
+  rays->glow = select3(rays->glow, others->glow, lanes);
+}
 #else
+static inline void join_glow(SceneRays* rays, const SceneRays* others, MASK lanes) {}
 static inline void forget_glow(SceneRays* rays) {}
 #endif
 

@@ -21,6 +21,13 @@ typedef struct Encounters {
 #endif
 } Encounters;
 
+// The part of light from the rays' ends that the world's fog lets through, of the rays of `lanes` that were
+// not inside anything.
+static inline REAL clear_of_fog(const Scene* scene, const Encounters* met, MASK lanes) {
+  const MASK foggy = lanes & MASK_OF(met->before == 0);
+  return select((REAL)(1.0f), real_exp(-scene->info->fog.w * met->hit.t), foggy);
+}
+
 #if HAS_TOUCHING
 static inline void set_behind(Encounters* met, u32 i, MediaStack stack) {
   MASK_LANE(met->behind_low, i) = (int)stack;

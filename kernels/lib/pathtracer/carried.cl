@@ -104,16 +104,13 @@ static inline Carried carry_color(const Wavelengths* w, REAL3 color) {
 // The spectrum of what absorption leaves: of the optical depth, so that two lengths of a medium leave what
 // they leave one after the other.
 static inline Carried carry_kept(const Wavelengths* w, REAL3 kept) {
-#if HAS_ABSORPTION
+  if (!HAS_ABSORPTION) return carry_color(w, kept);
   const REAL least = (REAL)(1e-30f);
   const REAL3 depth = real3(real_log(real_max(kept.x, least)), real_log(real_max(kept.y, least)),
                             real_log(real_max(kept.z, least)));
   Carried made = carry_color(w, depth);
   EACH_WAVELENGTH(i) made.of[i] = real_exp(made.of[i]);
   return made;
-#else
-  return carry_color(w, kept);
-#endif
 }
 
 // The wavelengths of `lanes` part: the hero stands for all.

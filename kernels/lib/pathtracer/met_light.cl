@@ -4,9 +4,27 @@
 #include "lib/light/shadow_rays.cl"
 #include "lib/pathtracer/walk_state.cl"
 
+#if HAS_AREA_LIGHTS
+// What the choice by the tree, from the surfaces walks->from, makes of the density of the light `index`.
+#if HAS_LIGHT_TREE
+static inline REAL density_in_tree(const Scene* scene, const Walks* walks, u32 index, REAL density,
+                                   MASK lanes) {
+  REAL chosen = density;
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    REAL_LANE(chosen, i) *= light_probability(scene, scene->light_leaves[index], get3(&walks->from, i));
+  }
+  return chosen;
+}
+#else
+static inline REAL density_in_tree(const Scene* scene, const Walks* walks, u32 index, REAL density,
+                                   MASK lanes) {
+  return density;
+}
+#endif
+
 // The density with which the surfaces walks->from choose the lights `light` at the points p, which the rays
 // met in the directions d.
-#if HAS_AREA_LIGHTS
 NEVER_INLINE REAL chosen_density(const Scene* scene, const Walks* walks, REAL3 d, REAL3 p, MASK light,
                                  MASK lanes) {
   const REAL3 way = subtract3(p, walks->from);
@@ -18,16 +36,10 @@ NEVER_INLINE REAL chosen_density(const Scene* scene, const Walks* walks, REAL3 d
     __global const Light* lamp = scene->lights + index;
     if (lamp->position.w != 0.0f) continue;
     density = select(density, area_light_density(lamp, walks->from, d, distance), mine);
-#if HAS_LIGHT_TREE
-    for (u32 bits = lane_bits(mine); bits; bits &= bits - 1u) {
-      const u32 i = lowest_bit(bits);
-      REAL_LANE(density, i) *= light_probability(scene, scene->light_leaves[index], get3(&walks->from, i));
-    }
-#endif
+    density = density_in_tree(scene, walks, index, density, mine);
   }
   return density / (float)scene->info->light_count;
 }
-#endif
 
 // The lights that an instance shows where it was hit: a mesh may have one a triangle.
 static inline MASK light_of_instance(const Scene* scene, u32 index, MASK prim) {
@@ -36,11 +48,32 @@ static inline MASK light_of_instance(const Scene* scene, u32 index, MASK prim) {
   return prim + (int)(first - scene->instances[index].first_prim);
 }
 
+// The light of the surfaces of `lanes` with the weight that it has where they are lights to choose, too.
+static inline REAL3 weighed_emission(const Scene* scene, const Walks* walks, REAL3 d, const Hits* hits,
+                                     const Shading* at, REAL3 light, MASK lanes) {
+  MASK lamp = NO_LANES;
+  u32 index;
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(at->s.instance, &left, &index);
+    lamp = select(lamp, light_of_instance(scene, index, hits->prim), mine);
+  }
+  const MASK chosen = lanes & MASK_OF(lamp != (int)NO_LIGHT) & MASK_OF(walks->density > 0.0f);
+  if (!any_lane(chosen)) return light;
+  const REAL weight = weight_of_met(scene, walks, chosen_density(scene, walks, d, at->s.p, lamp, chosen));
+  return select3(light, scale3(light, weight), chosen);
+}
+#else
+static inline REAL3 weighed_emission(const Scene* scene, const Walks* walks, REAL3 d, const Hits* hits,
+                                     const Shading* at, REAL3 light, MASK lanes) {
+  return light;
+}
+#endif
+
 // What surfaces of `lanes` shine by themselves, on their outsides.
 static inline REAL3 met_surface(const Scene* scene, const Walks* walks, const SceneRays* rays,
                                 const Hits* hits, const Shading* at, MASK lanes) {
   REAL3 light = all3((float3)(0.0f));
-#if HAS_EMISSION
+  if (!HAS_EMISSION) return light;
   MASK shining = NO_LANES;
   u32 index;
   for (MASK left = lanes & at->s.entering; any_lane(left);) {
@@ -50,66 +83,34 @@ static inline REAL3 met_surface(const Scene* scene, const Walks* walks, const Sc
     if (emission.x + emission.y + emission.z > 0.0f) shining |= mine;
   }
   if (!any_lane(shining)) return light;
-#if HAS_MAPS
-  light = multiply3(light, at->bsdf.emission);
-#endif
-#if HAS_AREA_LIGHTS
-  MASK lamp = NO_LANES;
-  for (MASK left = shining; any_lane(left);) {
-    const MASK mine = take_alike(at->s.instance, &left, &index);
-    lamp = select(lamp, light_of_instance(scene, index, hits->prim), mine);
-  }
-  const MASK chosen = shining & MASK_OF(lamp != (int)NO_LIGHT) & MASK_OF(walks->density > 0.0f);
-  if (any_lane(chosen)) {
-    const REAL weight =
-        weight_of_met(scene, walks, chosen_density(scene, walks, rays->d, at->s.p, lamp, chosen));
-    light = select3(light, scale3(light, weight), chosen);
-  }
-#endif
-#endif
-  return light;
+  return weighed_emission(scene, walks, rays->d, hits, at, mapped_emission(&at->bsdf, light), shining);
 }
 
 // What rays of `lanes` see that meet nothing: sky_along() with the weight of each part.
 static inline REAL3 met_sky(const Scene* scene, const Walks* walks, REAL3 d, MASK lanes) {
-#if HAS_SKY
+  if (!HAS_SKY) return background_along(scene->info, d);
   const float chance = 1.0f / (float)max(scene->info->light_count, 1u);
-  REAL3 light;
-#if HAS_ENVIRONMENT
-  if (scene->info->sees_environment) {
-    const REAL density = environment_density(scene, d, lanes) * chance;
-    light = scale3(environment_along(scene, d, lanes), weight_of_met(scene, walks, density));
-  } else
-#endif
-    light = background_along(scene->info, d);
+  REAL3 light = distant_along(scene, d, lanes);
+  if (sees_environment(scene))
+    light = scale3(light, weight_of_met(scene, walks, environment_density(scene, d, lanes) * chance));
   for (u32 index = 0; index < scene->info->table_lights; ++index) {
     __global const Light* sun = scene->lights + index;
     if (sun->kind != LIGHT_SUN) continue;
-    const REAL3 chord = add3(d, all3(sun->direction.xyz));
-    const MASK inside = MASK_OF(dot3(chord, chord) <= 2.0f * sun->direction.w);
-    const REAL density = (REAL)(chance / (2.0f * M_PI_F * fabs(sun->direction.w)));
-    light = select3(light, along3(light, weight_of_met(scene, walks, density), all3(sun->color.xyz)), inside);
+    const REAL weight = weight_of_met(scene, walks, (REAL)(sun_density(sun, chance)));
+    light = select3(light, along3(light, weight, all3(sun->color.xyz)), in_sun(sun, d));
   }
   return light;
-#else
-  return background_along(scene->info, d);
-#endif
 }
 
 // The world's fog, for rays of `lanes` that were not inside anything: what it adds, and what it takes from
 // all behind it.
 static inline Carried met_fog(const Scene* scene, const Encounters* met, MASK lanes, Walks* walks) {
-#if HAS_FOG
-  const MASK foggy = lanes & MASK_OF(met->before == 0);
-  const float4 fog = scene->info->fog;
-  const REAL clear = select((REAL)(1.0f), real_exp(-fog.w * met->hit.t), foggy);
-  const Carried color = carry_color(&walks->wavelengths, all3(fog.xyz));
+  if (!HAS_FOG) return carry_all(0.0f);
+  const REAL clear = clear_of_fog(scene, met, lanes);
+  const Carried color = carry_color(&walks->wavelengths, all3(scene->info->fog.xyz));
   const Carried light = carry_multiply(carry_scale(walks->throughput, 1.0f - clear), color);
   walks->throughput = carry_scale(walks->throughput, clear);
   return light;
-#else
-  return carry_all(0.0f);
-#endif
 }
 
 #endif

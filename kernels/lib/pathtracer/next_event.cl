@@ -7,6 +7,23 @@
 #include "lib/pathtracer/walk_state.cl"
 #include "lib/shade/bsdf_sample.cl"
 
+// The lanes of `lanes` that drew the tree's lights choose one of them, by the number u in [0, 1); its
+// probability goes into the chance that they chose it with.
+#if HAS_LIGHT_TREE
+static inline void choose_in_tree(const Scene* scene, REAL3 p, REAL u, MASK lanes, MASK* chosen,
+                                  REAL* chance) {
+  const MASK among = lanes & MASK_OF(*chosen == (int)LIGHT_CHOSEN);
+  if (!any_lane(among)) return;
+  REAL probability;
+  const MASK leaf = choose_lights(scene, p, u, among, &probability);
+  *chosen = select(*chosen, leaf, among);
+  *chance = select(*chance, *chance * probability, among);
+}
+#else
+static inline void choose_in_tree(const Scene* scene, REAL3 p, REAL u, MASK lanes, MASK* chosen,
+                                  REAL* chance) {}
+#endif
+
 // A way to one of the lights for each of the points p, with its density among all; `seen`: rays may meet it.
 static inline LightSamples choose_one(const Scene* scene, REAL3 p, const FourNumbers* u, MASK lanes,
                                       MASK* seen) {
@@ -19,15 +36,7 @@ static inline LightSamples choose_one(const Scene* scene, REAL3 p, const FourNum
     const MASK mine = take_alike(slots, &left, &index);
     chosen = select(chosen, (MASK)((int)scene->light_rays[index].light), mine);
   }
-#if HAS_LIGHT_TREE
-  const MASK among = lanes & MASK_OF(chosen == (int)LIGHT_CHOSEN);
-  if (any_lane(among)) {
-    REAL probability;
-    const MASK leaf = choose_lights(scene, p, turn - slot, among, &probability);
-    chosen = select(chosen, leaf, among);
-    chance = select(chance, chance * probability, among);
-  }
-#endif
+  choose_in_tree(scene, p, turn - slot, lanes, &chosen, &chance);
   LightSamples light;
   light.wi = all3((float3)(0.0f));
   light.distance = (REAL)(0.0f);

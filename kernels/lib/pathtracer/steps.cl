@@ -6,9 +6,6 @@
 #include "lib/pathtracer/met_light.cl"
 #include "lib/pathtracer/next_event.cl"
 
-// The spread of the cone of what a surface scatters, at least.
-#define SCATTERED_SPREAD 0.2f
-
 static inline Walks start_walks(const Scene* scene, const LaneSamples* at, MASK lanes) {
   const REAL3 none = all3((float3)(0.0f));
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
@@ -45,23 +42,11 @@ static inline void join_rays(SceneRays* rays, const SceneRays* others, MASK lane
   rays->t_max = select(rays->t_max, others->t_max, lanes);
   rays->media_low = select(rays->media_low, others->media_low, lanes);
   rays->media_high = select(rays->media_high, others->media_high, lanes);
-#if HAS_MEDIA
-  rays->since = select(rays->since, others->since, lanes);
-#endif
-#if RAYS_CROSS
-  rays->crossings = select(rays->crossings, others->crossings, lanes);
-#endif
-#if HAS_SDF
-  rays->from = select(rays->from, others->from, lanes);
-  rays->footprint = select(rays->footprint, others->footprint, lanes);
-#endif
-#if HAS_CONES
-  rays->cone_width = select(rays->cone_width, others->cone_width, lanes);
-  rays->cone_spread = select(rays->cone_spread, others->cone_spread, lanes);
-#endif
-#if HAS_GLOW
-  rays->glow = select3(rays->glow, others->glow, lanes);
-#endif
+  join_medium(rays, others, lanes);
+  join_crossings(rays, others, lanes);
+  join_footprints(rays, others, lanes);
+  join_cones(rays, others, lanes);
+  join_glow(rays, others, lanes);
 }
 
 // Paths of `lanes` that continue after Russian roulette: they stand for those that end.
@@ -85,10 +70,7 @@ static inline void leave_surfaces(const Scene* scene, const Encounters* met, con
   child.t_max = (REAL)(INFINITY);
   child.d = sample->wi;
   child.o = along3(s->p, select(s->offset, -s->offset, below), s->ng);
-#if HAS_CONES
-  child.cone_spread =
-      select(real_max(child.cone_spread, (REAL)(SCATTERED_SPREAD)), child.cone_spread, sample->specular);
-#endif
+  spread_scattered(&child, ~sample->specular);
   if (any_lane(below)) {
     start_on_hits(scene->info, &child, &met->hit, s->entering, below);
     enter_behind(met, rays, below, &child);
@@ -96,9 +78,13 @@ static inline void leave_surfaces(const Scene* scene, const Encounters* met, con
   join_rays(rays, &child, lanes);
 }
 
-// Wavelengths part where interfaces that disperse let light through, or scatter it. Where they mirror it all
-// remain, each with its own part of the light.
+// The hero decides where surfaces send light. Wavelengths part where interfaces that disperse let light
+// through, or scatter it. Where they mirror it all remain, each with its own part of the light.
 #if HAS_DISPERSION
+static inline void follow_hero(const Wavelengths* w, Bsdfs* bsdf) {
+  set_wavelength_row(bsdf, wavelength_row(w->hero, 0));
+}
+
 static inline MASK parting_surfaces(const Scene* scene, const Shading* at, const SpecularSplits* split,
                                     MASK lanes) {
   const MASK bends = lanes & split->transmits & MASK_OF((at->bsdf.flags & (int)MATERIAL_THIN) == 0);
@@ -130,6 +116,7 @@ static inline void keep_hero(const Scene* scene, const Shading* at, const Specul
   leave_hero(&parted, light, parting_surfaces(scene, at, split, lanes));
 }
 #else
+static inline void follow_hero(const Wavelengths* w, Bsdfs* bsdf) {}
 static inline void keep_hero(const Scene* scene, const Shading* at, const SpecularSplits* split,
                              const Walks* walks, Carried* light, MASK lanes) {}
 static inline void part_wavelengths(const Scene* scene, const Shading* at, const SpecularSplits* split,
@@ -203,9 +190,7 @@ NEVER_INLINE MASK step_walks(const Scene* scene, Walks* walks, SceneRays* rays, 
     counts[COUNT_PRIMARY_HIT] += lane_count(first);
     walks->met |= first;
     shade_hits(scene, rays, &met, hit, &at);
-#if HAS_DISPERSION
-    at.bsdf.row = wavelength_row(walks->wavelengths.hero, 0);
-#endif
+    follow_hero(&walks->wavelengths, &at.bsdf);
     const REAL3 shining = met_surface(scene, walks, rays, &met.hit, &at, hit);
     light = carry_select(light, carry_add(light, carried_color(walks, shining)), hit);
     const MASK scattering = hit & MASK_OF(walks->depth <= (int)scene->info->max_depth);

@@ -33,6 +33,20 @@ static inline REAL3 mapped_emission(const Bsdfs* bsdf, REAL3 light) {
 static inline REAL3 mapped_emission(const Bsdfs* bsdf, REAL3 light) { return light; }
 #endif
 
+// Sets the wavelength that decides where light goes, as a row of the table `spectra`; and the index behind
+// surfaces of `lanes` over the index before them at that wavelength.
+#if HAS_DISPERSION
+static inline void set_wavelength_row(Bsdfs* bsdf, REAL row) { bsdf->row = row; }
+static inline REAL index_behind(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
+  return relative_index_at(scene, bsdf->before, bsdf->after, bsdf->row, lanes);
+}
+#else
+static inline void set_wavelength_row(Bsdfs* bsdf, REAL row) {}
+static inline REAL index_behind(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
+  return relative_index(scene->media, bsdf->before, bsdf->after, lanes);
+}
+#endif
+
 // Whether points, in units of the pattern, lie in odd cells of the checker.
 static inline MASK odd_cell(REAL3 p, float frequency) {
   // Half a cell in 2^16 off the lattice, so that a face on a cell's border is one colour.
@@ -57,8 +71,8 @@ static inline void add_checker(const Scene* scene, __global const Material* mate
 }
 
 // The terms that textures change, for the lanes of `lanes`.
-static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
 #if HAS_MAPS
+static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
   const REAL3 none = all3((float3)(0.0f));
   Terms terms = {bsdf->ambient, bsdf->diffuse, none, none, none, all3((float3)(1.0f)), (REAL)(0.0f)};
   MASK mapped = NO_LANES;
@@ -73,9 +87,7 @@ static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MA
     if (material->maps != NO_MAPS) mapped |= mine;
   }
   if (any_lane(mapped)) map_terms(scene, s, mapped, &terms);
-#if HAS_RELIEF
-  widen_highlights(s->even, &terms.exponent, &terms.specular);
-#endif
+  even_highlights(s, &terms);
   bsdf->ambient = terms.ambient;
   bsdf->diffuse = terms.diffuse;
   bsdf->specular = terms.specular;
@@ -83,8 +95,10 @@ static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MA
   bsdf->transmission = terms.transmission;
   bsdf->emission = terms.emission;
   bsdf->exponent = terms.exponent;
-#endif
 }
+#else
+static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {}
+#endif
 
 // The Bsdfs of the surfaces of `lanes`, between the media `before` and `after`.
 static inline Bsdfs make_bsdfs(const Scene* scene, const SurfaceInteractions* s, MASK before, MASK after,
@@ -99,9 +113,7 @@ static inline Bsdfs make_bsdfs(const Scene* scene, const SurfaceInteractions* s,
   bsdf.flags = s->flags;
   bsdf.before = before;
   bsdf.after = after;
-#if HAS_DISPERSION
-  bsdf.row = (REAL)(0.0f);
-#endif
+  set_wavelength_row(&bsdf, (REAL)(0.0f));
   u32 index;
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(s->material, &left, &index);
@@ -221,11 +233,7 @@ static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf
   if (!any_lane(split.transmits | dielectric)) return split;
   const MASK bends = split.transmits & MASK_OF((bsdf->flags & (int)MATERIAL_THIN) == 0);
   split.cos_i = real_clamp(dot3(bsdf->ns, wo), zero, one);
-#if HAS_DISPERSION
-  split.eta = relative_index_at(scene, bsdf->before, bsdf->after, bsdf->row, bends);
-#else
-  split.eta = relative_index(scene->media, bsdf->before, bsdf->after, bends);
-#endif
+  split.eta = index_behind(scene, bsdf, bends);
   split.cos_t = refracted_cosine(split.cos_i, split.eta);
   const REAL f = select(zero, fresnel_reflectance(split.cos_i, split.cos_t, split.eta), bends);
   split.f = select(zero, f, dielectric);

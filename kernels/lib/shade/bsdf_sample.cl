@@ -42,13 +42,15 @@ static inline REAL highlight_density(const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK
 }
 
 // The greatest part of ks and its exponent of the materials of `lanes`.
+#if HAS_MAPS
 static inline void find_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes, REAL* size,
                                    REAL* exponent) {
-#if HAS_MAPS
   *size = greatest3(bsdf->specular);
   *exponent = bsdf->exponent;
-  return;
-#endif
+}
+#else
+static inline void find_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes, REAL* size,
+                                   REAL* exponent) {
   u32 index;
   while (any_lane(lanes)) {
     const MASK mine = take_alike(bsdf->material, &lanes, &index);
@@ -57,6 +59,47 @@ static inline void find_highlights(const Scene* scene, const Bsdfs* bsdf, MASK l
     *exponent = select(*exponent, (REAL)(specular.w), mine);
   }
 }
+#endif
+
+// What facets change of lobes; what they scatter, added to the light and the density of the others; and the
+// directions that they send the samples of `lanes` to, by the number `u_term` in [0, lobes->facets). Returns
+// those that go through the surface.
+#if HAS_ROUGH
+static inline void add_facets(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes, Lobes* lobes) {
+  const REAL zero = (REAL)(0.0f);
+  lobes->rough = make_microfacets(scene, bsdf, &lobes->split, wo, lanes);
+  // What does not bend goes straight through, whatever the facets.
+  const REAL of_facets = lobes->mirror + select(zero, lobes->through, lobes->rough.bends);
+  lobes->facets = select(zero, of_facets, lobes->rough.rough);
+  lobes->mirror = select(lobes->mirror, zero, lobes->rough.rough);
+  lobes->through = select(lobes->through, zero, lobes->rough.bends);
+}
+static inline void add_facet_scatter(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
+                                     REAL3 wi, MASK lanes, REAL3* value, REAL* chosen) {
+  if (!any_lane(lanes & lobes->rough.rough)) return;
+  REAL of_facets;
+  *value =
+      add3(*value, facet_scatter(scene, bsdf, &lobes->rough, lobes->split.eta, wo, wi, lanes, &of_facets));
+  *chosen += lobes->facets * of_facets;
+}
+static inline MASK send_by_facets(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
+                                  REAL u_term, REAL u_x, REAL u_y, MASK lanes, REAL3* wi) {
+  if (!any_lane(lanes)) return NO_LANES;
+  const REAL u_side = u_term / select((REAL)(1.0f), lobes->facets, lanes);
+  MASK through;
+  *wi =
+      select3(*wi, facet_direction(scene, bsdf, &lobes->rough, wo, u_side, u_x, u_y, lanes, &through), lanes);
+  return lanes & through;
+}
+#else
+static inline void add_facets(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes, Lobes* lobes) {}
+static inline void add_facet_scatter(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
+                                     REAL3 wi, MASK lanes, REAL3* value, REAL* chosen) {}
+static inline MASK send_by_facets(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
+                                  REAL u_term, REAL u_x, REAL u_y, MASK lanes, REAL3* wi) {
+  return NO_LANES;
+}
+#endif
 
 // The lobes of the surfaces of `lanes`, seen from wo.
 static inline Lobes make_lobes(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes) {
@@ -71,14 +114,7 @@ static inline Lobes make_lobes(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, 
   lobes.facets = zero;
   lobes.matte = greatest3(bsdf->diffuse);
   lobes.all = lobes.mirror + lobes.through + lobes.matte + lobes.glossy;
-#if HAS_ROUGH
-  lobes.rough = make_microfacets(scene, bsdf, &lobes.split, wo, lanes);
-  // What does not bend goes straight through, whatever the facets.
-  const REAL of_facets = lobes.mirror + select(zero, lobes.through, lobes.rough.bends);
-  lobes.facets = select(zero, of_facets, lobes.rough.rough);
-  lobes.mirror = select(lobes.mirror, zero, lobes.rough.rough);
-  lobes.through = select(lobes.through, zero, lobes.rough.bends);
-#endif
+  add_facets(scene, bsdf, wo, lanes, &lobes);
   return lobes;
 }
 
@@ -93,14 +129,7 @@ static inline REAL3 bsdf_scatter(const Scene* scene, const Bsdfs* bsdf, const Lo
     chosen += lobes->glossy * highlight_density(bsdf, wo, wi, lobes->blinn, lobes->exponent);
   chosen = select(zero, chosen, above);
   REAL3 value = select3(all3((float3)(0.0f)), bsdf_eval(scene, bsdf, wo, wi, above), above);
-#if HAS_ROUGH
-  if (any_lane(lanes & lobes->rough.rough)) {
-    REAL of_facets;
-    value =
-        add3(value, facet_scatter(scene, bsdf, &lobes->rough, lobes->split.eta, wo, wi, lanes, &of_facets));
-    chosen += lobes->facets * of_facets;
-  }
-#endif
+  add_facet_scatter(scene, bsdf, lobes, wo, wi, lanes, &value, &chosen);
   *density = chosen / select((REAL)(1.0f), lobes->all, MASK_OF(lobes->all > 0.0f));
   return value;
 }
@@ -130,18 +159,9 @@ static inline BsdfSamples sample_lobes(const Scene* scene, const Bsdfs* bsdf, co
   BsdfSamples sample;
   sample.specular = specular;
   sample.wi = local_direction(bsdf, lobes, wo, u_x, u_y, matte | ~lanes);
-  MASK below = NO_LANES;  // where the term sends light to; what leaves on the other side is none of its
-#if HAS_ROUGH
-  const MASK facets = ~specular & MASK_OF(at < perfect + lobes->facets);
-  if (any_lane(lanes & facets)) {
-    const REAL u_side = (at - perfect) / select(one, lobes->facets, facets);
-    MASK through;
-    const REAL3 sent =
-        facet_direction(scene, bsdf, &lobes->rough, wo, u_side, u_x, u_y, lanes & facets, &through);
-    sample.wi = select3(sample.wi, sent, facets);
-    below = facets & through;
-  }
-#endif
+  // Lanes whose term sends light through the surface; what leaves on the other side is none of the term's.
+  const MASK facets = lanes & ~specular & MASK_OF(at < perfect + lobes->facets);
+  const MASK below = send_by_facets(scene, bsdf, lobes, wo, at - perfect, u_x, u_y, facets, &sample.wi);
   const REAL3 value = bsdf_scatter(scene, bsdf, lobes, wo, sample.wi, lanes & ~specular, &sample.density);
   const MASK strays = below ^ MASK_OF(dot3(bsdf->ns, sample.wi) <= 0.0f);
   sample.density = select(sample.density, zero, strays);

@@ -17,6 +17,24 @@ typedef struct Terms {
 // Textures ask for the place on an object, not for u and v alone; heights for its size.
 #define TEXTURES_PLACED (HAS_RELIEF || (TEXTURE_MAPPINGS & ~1u))
 
+// What surfaces know in some scenes only: their coordinates, and where their heights put a point.
+#if HAS_UV
+static inline void take_coordinates(const SurfaceInteractions* s, TexturePoints* at) {
+  at->u = s->at.u;
+  at->v = s->at.v;
+  at->uv_length = s->at.length;
+}
+#else
+static inline void take_coordinates(const SurfaceInteractions* s, TexturePoints* at) {
+  at->u = at->v = at->uv_length = (REAL)(0.0f);
+}
+#endif
+#if HAS_PARALLAX
+static inline REAL3 shifted_points(const SurfaceInteractions* s) { return add3(s->p, s->shift); }
+#else
+static inline REAL3 shifted_points(const SurfaceInteractions* s) { return s->p; }
+#endif
+
 // The surfaces of `lanes` as textures see them.
 static inline void texture_points(const Scene* scene, const SurfaceInteractions* s, MASK lanes,
                                   TexturePoints* at) {
@@ -25,20 +43,12 @@ static inline void texture_points(const Scene* scene, const SurfaceInteractions*
   at->b = s->b;
   at->c = s->c;
   at->footprint = s->footprint;
-  at->u = at->v = at->uv_length = (REAL)(0.0f);
-#if HAS_UV
-  at->u = s->at.u;
-  at->v = s->at.v;
-  at->uv_length = s->at.length;
-#endif
-  REAL3 p = s->p;
-#if HAS_PARALLAX
-  p = add3(p, s->shift);
-#endif
+  take_coordinates(s, at);
+  const REAL3 p = shifted_points(s);
   at->p = p;
   at->n = s->ns;
   at->scale = (REAL)(1.0f);
-#if TEXTURES_PLACED
+  if (!TEXTURES_PLACED) return;
   u32 index;
   while (any_lane(lanes)) {
     const MASK mine = take_alike(s->instance, &lanes, &index);
@@ -48,16 +58,17 @@ static inline void texture_points(const Scene* scene, const SurfaceInteractions*
     at->scale = select(at->scale, (REAL)(scale.w), mine);
     at->n = select3(at->n, multiply3(object_vectors(instance, s->ng), all3(scale.xyz)), mine);
   }
-#endif
+}
+
+static inline bool has_slot(__global const MaterialMaps* maps, u32 slot) {
+  return TEXTURE_KINDS && maps->slot[slot] != NO_TEXTURE;
 }
 
 // The values of a slot, 1 where it has no texture.
 static inline REAL4 slot_values(const Scene* scene, __global const MaterialMaps* maps, u32 slot,
                                 const TexturePoints* at, MASK lanes) {
   const REAL one = (REAL)(1.0f);
-#if TEXTURE_KINDS
-  if (maps->slot[slot] != NO_TEXTURE) return value_of_texture(scene, maps->slot[slot], at, lanes);
-#endif
+  if (has_slot(maps, slot)) return value_of_texture(scene, maps->slot[slot], at, lanes);
   return real4(one, one, one, one);
 }
 
@@ -70,14 +81,9 @@ typedef struct SlotValues {
 // texture's code wherever it is called.
 static inline void read_slots(const Scene* scene, __global const MaterialMaps* maps, u32 wanted,
                               const TexturePoints* at, MASK lanes, SlotValues* values) {
-#if TEXTURE_KINDS
   for (u32 slot = 0; slot < MAP_COUNT; ++slot)
-    if (wanted >> slot & 1u && maps->slot[slot] != NO_TEXTURE)
+    if (wanted >> slot & 1u && has_slot(maps, slot))
       values->of[slot] = value_of_texture(scene, maps->slot[slot], at, lanes);
-#endif
-}
-static inline bool has_slot(__global const MaterialMaps* maps, u32 slot) {
-  return TEXTURE_KINDS && maps->slot[slot] != NO_TEXTURE;
 }
 static inline REAL first_value(__global const MaterialMaps* maps, const SlotValues* values, u32 slot) {
   return has_slot(maps, slot) ? values->of[slot].x : (REAL)(1.0f);
@@ -98,7 +104,6 @@ static inline void map_term(__global const MaterialMaps* maps, const SlotValues*
   if (has_slot(maps, slot)) scale_term(term, values->of[slot], lanes);
 }
 
-#if HAS_METAL_ROUGH
 // The terms of `lanes`, all of one material by metalness and roughness (shared/metal_rough.h).
 static inline void metal_rough_terms(__global const MaterialMaps* maps, const SlotValues* values, REAL3 tint,
                                      MASK lanes, Terms* terms) {
@@ -121,17 +126,14 @@ static inline void metal_rough_terms(__global const MaterialMaps* maps, const Sl
   terms->reflection = select3(terms->reflection, scale3(base, mirror), lanes);
   terms->exponent = select(terms->exponent, rough_exponent(roughness), lanes);
 }
-#endif
 
 // The ambient and diffuse terms, which often share a texture, and those that metalness and roughness make.
 static inline void map_colors(__global const MaterialMaps* maps, const SlotValues* values, bool metal,
                               bool shared, REAL3 tint, MASK lanes, Terms* terms) {
-#if HAS_METAL_ROUGH
-  if (metal) {
+  if (HAS_METAL_ROUGH && metal) {
     metal_rough_terms(maps, values, tint, lanes, terms);
     return;
   }
-#endif
   map_term(maps, values, MAP_DIFFUSE, lanes, &terms->diffuse);
   map_term(maps, values, shared ? MAP_DIFFUSE : MAP_AMBIENT, lanes, &terms->ambient);
 }
@@ -187,6 +189,11 @@ static inline void widen_highlights(REAL even, REAL* exponent, REAL3* specular) 
   *specular = select3(*specular, scale3(*specular, (1.0f + wide) / (1.0f + e)), uneven);
   *exponent = select(e, wide, uneven);
 }
+static inline void even_highlights(const SurfaceInteractions* s, Terms* terms) {
+  widen_highlights(s->even, &terms->exponent, &terms->specular);
+}
+#else
+static inline void even_highlights(const SurfaceInteractions* s, Terms* terms) {}
 #endif
 
 // The same for all of `lanes`, which have MaterialMaps.

@@ -38,6 +38,32 @@ typedef struct TangentFrames {
   REAL3 normal, tangent, bitangent;
 } TangentFrames;
 
+#if HAS_MESH
+// Those of `lanes` on meshes by the meshes' tangents.
+static inline void mesh_frames(const Scene* scene, const SurfaceInteractions* s, MASK lanes,
+                               TangentFrames* frame) {
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(s->instance, &lanes, &index);
+    __global const Instance* instance = scene->instances + index;
+    if (instance->shape != SHAPE_MESH) continue;
+    REAL3 tangent = frame->tangent;
+    REAL sign = (REAL)(1.0f);
+    mesh_tangents(scene, s, mine, &tangent, &sign);
+    tangent = world_vectors(instance, tangent);
+    // Mirrored instances turn the frame round.
+    const float3 r0 = instance->object_from_world[0].xyz, r1 = instance->object_from_world[1].xyz,
+                 r2 = instance->object_from_world[2].xyz;
+    if (dot(cross(r0, r1), r2) < 0.0f) sign = -sign;
+    frame->tangent = select3(frame->tangent, safe_unit3(tangent), mine);
+    frame->bitangent = select3(frame->bitangent, scale3(cross3(frame->normal, frame->tangent), sign), mine);
+  }
+}
+#else
+static inline void mesh_frames(const Scene* scene, const SurfaceInteractions* s, MASK lanes,
+                               TangentFrames* frame) {}
+#endif
+
 static inline TangentFrames tangent_frames(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
   TangentFrames frame;
   const REAL3 outward = select3(negate3(s->ns), s->ns, s->entering);
@@ -47,24 +73,7 @@ static inline TangentFrames tangent_frames(const Scene* scene, const SurfaceInte
   const REAL3 up = cross3(outward, frame.tangent);
   const REAL one = (REAL)(1.0f);
   frame.bitangent = scale3(up, select(one, -one, MASK_OF(dot3(up, s->at.dpdv) < 0.0f)));
-#if HAS_MESH
-  u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(s->instance, &lanes, &index);
-    __global const Instance* instance = scene->instances + index;
-    if (instance->shape != SHAPE_MESH) continue;
-    REAL3 tangent = frame.tangent;
-    REAL sign = one;
-    mesh_tangents(scene, s, mine, &tangent, &sign);
-    tangent = world_vectors(instance, tangent);
-    // Mirrored instances turn the frame round.
-    const float3 r0 = instance->object_from_world[0].xyz, r1 = instance->object_from_world[1].xyz,
-                 r2 = instance->object_from_world[2].xyz;
-    if (dot(cross(r0, r1), r2) < 0.0f) sign = -sign;
-    frame.tangent = select3(frame.tangent, safe_unit3(tangent), mine);
-    frame.bitangent = select3(frame.bitangent, scale3(cross3(outward, frame.tangent), sign), mine);
-  }
-#endif
+  mesh_frames(scene, s, lanes, &frame);
   return frame;
 }
 

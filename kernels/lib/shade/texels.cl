@@ -23,10 +23,11 @@ static inline REAL4 select4(REAL4 a, REAL4 b, MASK m) {
 
 #if TEXEL_FORMATS
 #define HAS_FORMAT(format) (TEXEL_FORMATS & (1u << (format)))
+#define HAS_WIDE_TEXELS (HAS_FORMAT(TEXEL_RGBA16) || HAS_FORMAT(TEXEL_RGBA_HALF))  // of 8 bytes
 
-// Word `word` of the texels that begin at `unit`.
-static inline MASK texel_words(const Scene* scene, MASK unit, u32 word, MASK lanes) {
 #if HAS_TEXEL_PAGES
+// Word `word` of the texels that begin at `unit`, the same of all lanes.
+static inline MASK paged_words(const Scene* scene, MASK unit, u32 word, MASK lanes) {
   const int page = (int)scene->info->texel_page;
   __global const u32* pages[TEXEL_PAGES] = {scene->texels0, scene->texels1, scene->texels2, scene->texels3};
   MASK words = NO_LANES;
@@ -38,10 +39,21 @@ static inline MASK texel_words(const Scene* scene, MASK unit, u32 word, MASK lan
     unit -= page;
   }
   return words;
-#else
-  return gather_words(scene->texels0, unit * (int)(TEXEL_UNIT / 4u) + (int)word, lanes);
-#endif
 }
+// The words `word`, of 0 to 3, of the texels that begin at `unit`.
+static inline MASK texel_words(const Scene* scene, MASK unit, MASK word, MASK lanes) {
+  MASK words = NO_LANES;
+  for (u32 k = 0; k < 4u; ++k) {
+    const MASK mine = lanes & MASK_OF(word == (int)k);
+    if (any_lane(mine)) words |= paged_words(scene, unit, k, mine);
+  }
+  return words;
+}
+#else
+static inline MASK texel_words(const Scene* scene, MASK unit, MASK word, MASK lanes) {
+  return gather_words(scene->texels0, unit * (int)(TEXEL_UNIT / 4u) + word, lanes);
+}
+#endif
 
 // Halves, which are finite, in the low bits of words.
 static inline REAL floats_of_halves(MASK bits) {
@@ -61,15 +73,13 @@ typedef struct TexelLevels {
 
 static inline TexelLevels levels_of_image(const Scene* scene, __global const TextureNode* node, MASK number,
                                           MASK lanes) {
-#if LANES > 1
   // Most batches see one level. Numbers are right in lanes that are not asked for too.
   const u32 bits = lane_bits(lanes), one = (u32)MASK_LANE(number, lowest_bit(bits ? bits : 1u));
-  if (!any_lane(lanes & MASK_OF(number != (MASK)((int)one)))) {
+  if (LANES > 1 && !any_lane(lanes & MASK_OF(number != (MASK)((int)one)))) {
     __global const TexelLevel* same = scene->texel_levels + node->first + one;
     const TexelLevels level = {(MASK)((int)same->first), (MASK)((int)same->width), (MASK)((int)same->height)};
     return level;
   }
-#endif
   __global const u32* levels = (__global const u32*)(scene->texel_levels + node->first);
   const TexelLevels level = {gather_words(levels, 4 * number, lanes),
                              gather_words(levels, 4 * number + 1, lanes),
@@ -92,25 +102,8 @@ static inline StoredTexels fetch_texels(const Scene* scene, const TexelLevels* l
   const MASK byte = in_tile << size;
   const MASK unit = level->first + (tile << size) + (byte >> 4), word = (byte >> 2) & 3;
   StoredTexels texels = {NO_LANES, NO_LANES, byte};
-#if HAS_TEXEL_PAGES
-  for (u32 k = 0; k < 4u; ++k) {
-    const MASK mine = lanes & MASK_OF(word == (int)k);
-    if (any_lane(mine)) texels.words |= texel_words(scene, unit, k, mine);
-  }
-#else
-  texels.words = gather_words(scene->texels0, unit * 4 + word, lanes);
-#endif
-#if HAS_FORMAT(TEXEL_RGBA16) || HAS_FORMAT(TEXEL_RGBA_HALF)
-  if (size < 3) return texels;
-#if HAS_TEXEL_PAGES
-  for (u32 k = 1; k < 4u; k += 2u) {
-    const MASK mine = lanes & MASK_OF(word + 1 == (int)k);
-    if (any_lane(mine)) texels.more |= texel_words(scene, unit, k, mine);
-  }
-#else
-  texels.more = gather_words(scene->texels0, unit * 4 + word + 1, lanes);
-#endif
-#endif
+  texels.words = texel_words(scene, unit, word, lanes);
+  if (HAS_WIDE_TEXELS && size == 3) texels.more = texel_words(scene, unit, word + 1, lanes);
   return texels;
 }
 
@@ -120,31 +113,22 @@ static inline REAL4 decode_texels(const Scene* scene, const StoredTexels* texels
   const bool srgb = flags & TEXTURE_SRGB;
   const REAL one = (REAL)(1.0f);
   const MASK words = texels->words;
-#if HAS_FORMAT(TEXEL_RGBA8)
-  if (format == TEXEL_RGBA8)
+  if (HAS_FORMAT(TEXEL_RGBA8) && format == TEXEL_RGBA8)
     return real4(floats_of_bytes(scene, words & 0xFF, srgb, lanes),
                  floats_of_bytes(scene, words >> 8 & 0xFF, srgb, lanes),
                  floats_of_bytes(scene, words >> 16 & 0xFF, srgb, lanes),
                  TO_REAL(words >> 24 & 0xFF) * (1.0f / 255.0f));
-#endif
-#if HAS_FORMAT(TEXEL_GREY8)
-  if (format == TEXEL_GREY8) {
+  if (HAS_FORMAT(TEXEL_GREY8) && format == TEXEL_GREY8) {
     const REAL grey = floats_of_bytes(scene, words >> ((texels->byte & 3) * 8) & 0xFF, srgb, lanes);
     return real4(grey, grey, grey, one);
   }
-#endif
-#if HAS_FORMAT(TEXEL_GREY16) || HAS_FORMAT(TEXEL_GREY_HALF)
-  if ((format & TEXEL_SIZE_MASK) == 1u) {
+  if ((HAS_FORMAT(TEXEL_GREY16) || HAS_FORMAT(TEXEL_GREY_HALF)) && (format & TEXEL_SIZE_MASK) == 1u) {
     const REAL grey = floats_of_words(words >> ((texels->byte & 2) * 8), format);
     return real4(grey, grey, grey, one);
   }
-#endif
-#if HAS_FORMAT(TEXEL_RGBA16) || HAS_FORMAT(TEXEL_RGBA_HALF)
+  if (!HAS_WIDE_TEXELS) return real4(one, one, one, one);
   return real4(floats_of_words(words, format), floats_of_words(words >> 16 & 0xFFFF, format),
                floats_of_words(texels->more, format), floats_of_words(texels->more >> 16 & 0xFFFF, format));
-#else
-  return real4(one, one, one, one);
-#endif
 }
 
 // Coordinates in [0, 1] for ones that repeat or are mirrored. What is not a number becomes 0.

@@ -31,9 +31,9 @@ typedef struct MappedPoints {
 } MappedPoints;
 
 // u, v and their unit's length of the set `set` for triangles; solids have the first set alone.
+#if EXTRA_UVS && HAS_MESH
 static inline REAL3 coordinates_of_set(const Scene* scene, const TexturePoints* at, u32 set, MASK lanes) {
   REAL3 coordinates = real3(at->u, at->v, at->uv_length);
-#if EXTRA_UVS && HAS_MESH
   if (set == 0u) return coordinates;
   __global const float* uvs = scene->extra_uvs + 2u * (set - 1u);
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
@@ -52,9 +52,13 @@ static inline REAL3 coordinates_of_set(const Scene* scene, const TexturePoints* 
     set3(&coordinates, i,
          (float3)(uv, area > 0.0f ? REAL_LANE(at->uv_length, i) * sqrt(known / area) : 0.0f));
   }
-#endif
   return coordinates;
 }
+#else
+static inline REAL3 coordinates_of_set(const Scene* scene, const TexturePoints* at, u32 set, MASK lanes) {
+  return real3(at->u, at->v, at->uv_length);
+}
+#endif
 
 static inline REAL row_times(float4 row, REAL3 p) {
   return fma((REAL)(row.x), p.x, fma((REAL)(row.y), p.y, fma((REAL)(row.z), p.z, (REAL)(row.w))));
@@ -81,18 +85,15 @@ static inline MappedPoints map_points(const Scene* scene, __global const Texture
     return map_uv(node, set.x, set.y, select(zero, 1.0f / nonzero(set.z), MASK_OF(set.z > 0.0f)));
   }
   const REAL3 q = rows_times(node, at->p);
-#if HAS_MAPPING(2) || HAS_MAPPING(3)
-  if (mapping == MAPPING_SPHERICAL || mapping == MAPPING_CYLINDRICAL) {
+  if ((HAS_MAPPING(2) || HAS_MAPPING(3)) &&
+      (mapping == MAPPING_SPHERICAL || mapping == MAPPING_CYLINDRICAL)) {
     const REAL r = radius_about_y(q), u = turns(q.x, -q.z);
     const bool sphere = mapping == MAPPING_SPHERICAL;
     const REAL v = sphere ? 0.5f + 2.0f * copysign(turns(r, fabs(q.y)), q.y) : q.y;
     const REAL area = sphere ? 2.0f * M_PI_F * M_PI_F * r * length3(q) : 2.0f * M_PI_F * r;
     return map_uv(node, u, v, at->scale * real_rsqrt(real_max(area, (REAL)(1e-12f))));
   }
-#endif
-#if TEXEL_FORMATS
-  if (node->kind == TEXTURE_IMAGE) return map_uv(node, q.x, q.y, at->scale);
-#endif
+  if (TEXEL_FORMATS && node->kind == TEXTURE_IMAGE) return map_uv(node, q.x, q.y, at->scale);
   // A pattern's placement turns and scales alike along all axes, so that normals go with it as vectors do.
   const float4 x = node->rows[0], y = node->rows[1], z = node->rows[2];
   const REAL3 n = unit3(real3(dot3(all3(x.xyz), at->n), dot3(all3(y.xyz), at->n), dot3(all3(z.xyz), at->n)));
@@ -109,7 +110,6 @@ static inline REAL4 mapped_image(const Scene* scene, __global const TextureNode*
   return sample_image(scene, node, mapped.q.x, mapped.q.y, at->footprint * mapped.density, lanes);
 }
 
-#if HAS_MAPPING(4)
 // The image on the six sides of a box, mixed by how far the normal faces them.
 static inline REAL4 image_on_box(const Scene* scene, __global const TextureNode* node,
                                  const TexturePoints* at, MASK lanes) {
@@ -130,7 +130,18 @@ static inline REAL4 image_on_box(const Scene* scene, __global const TextureNode*
   }
   return mixed;
 }
-#endif
+
+static inline REAL4 image_values(const Scene* scene, __global const TextureNode* node,
+                                 const TexturePoints* at, MASK lanes) {
+  if (HAS_MAPPING(4) && (node->mapping & MAPPING_KIND) == MAPPING_BOX)
+    return image_on_box(scene, node, at, lanes);
+  return mapped_image(scene, node, at, map_points(scene, node, at, lanes), lanes);
+}
+#else
+static inline REAL4 image_values(const Scene* scene, __global const TextureNode* node,
+                                 const TexturePoints* at, MASK lanes) {
+  return real4((REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f));
+}
 #endif
 
 // The number that a pattern gives.
@@ -153,14 +164,7 @@ static inline REAL4 node_values(const Scene* scene, __global const TextureNode* 
                                 MASK lanes) {
   const REAL zero = (REAL)(0.0f);
   if (node->kind == TEXTURE_COLOR) return real4(zero, zero, zero, zero);
-#if TEXEL_FORMATS
-#if HAS_MAPPING(4)
-  if (node->kind == TEXTURE_IMAGE && (node->mapping & MAPPING_KIND) == MAPPING_BOX)
-    return image_on_box(scene, node, at, lanes);
-#endif
-  if (node->kind == TEXTURE_IMAGE)
-    return mapped_image(scene, node, at, map_points(scene, node, at, lanes), lanes);
-#endif
+  if (TEXEL_FORMATS && node->kind == TEXTURE_IMAGE) return image_values(scene, node, at, lanes);
   const MappedPoints mapped = map_points(scene, node, at, lanes);
   const REAL t = pattern_value(node, mapped, at->footprint * mapped.density);
   return real4(t, t, t, t);
@@ -190,41 +194,58 @@ static inline REAL4 scale_value(REAL4 value, float4 factor, float4 offset) {
       fma(value.z, (REAL)(factor.z), (REAL)(offset.z)), fma(value.w, (REAL)(factor.w), (REAL)(offset.w)));
 }
 
+// The values that wait for the nodes which take them, and a node's own with theirs.
+#if TEXTURE_STACK > 1
+typedef struct ValueStack {
+  REAL4 value[TEXTURE_STACK];
+  u32 count;
+} ValueStack;
+
+static inline void keep_value(ValueStack* stack, REAL4 value) { stack->value[stack->count++] = value; }
+
+static inline REAL4 combined_values(const Scene* scene, __global const TextureNode* node,
+                                    const TexturePoints* at, MASK lanes, ValueStack* stack) {
+  REAL4 value;
+  if (node->kind == TEXTURE_RAMP) {
+    value = ramp_color(scene, node, stack->value[--stack->count].x);
+  } else if (node->kind == TEXTURE_PRODUCT) {
+    stack->count -= 2u;
+    const REAL4 a = stack->value[stack->count], b = stack->value[stack->count + 1u];
+    value = real4(a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w);
+  } else {
+    value = node_values(scene, node, at, lanes);
+  }
+  if (!(node->flags & TEXTURE_MIXES)) return scale_value(value, node->factor, node->offset);
+  stack->count -= 2u;
+  return mix4(stack->value[stack->count], stack->value[stack->count + 1u], value.x);
+}
+#else
+typedef struct ValueStack {
+  u32 count;
+} ValueStack;
+static inline void keep_value(ValueStack* stack, REAL4 value) {}
+static inline REAL4 combined_values(const Scene* scene, __global const TextureNode* node,
+                                    const TexturePoints* at, MASK lanes, ValueStack* stack) {
+  return scale_value(node_values(scene, node, at, lanes), node->factor, node->offset);
+}
+#endif
+
 // A texture's values at the points of `lanes`; `first` is its first node.
 static REAL4 value_of_texture(const Scene* scene, u32 first, const TexturePoints* at, MASK lanes) {
-#if TEXTURE_STACK > 1
-  REAL4 stack[TEXTURE_STACK];
-  u32 depth = 0;
-#endif
+  ValueStack stack;
+  stack.count = 0;
   for (u32 i = first;; ++i) {
     __global const TextureNode* node = scene->texture_nodes + i;
-    REAL4 value;
-#if TEXTURE_STACK > 1
-    if (node->kind == TEXTURE_RAMP) {
-      value = ramp_color(scene, node, stack[--depth].x);
-    } else if (node->kind == TEXTURE_PRODUCT) {
-      depth -= 2u;
-      const REAL4 a = stack[depth], b = stack[depth + 1u];
-      value = real4(a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w);
-    } else {
-      value = node_values(scene, node, at, lanes);
-    }
-    if (node->flags & TEXTURE_MIXES) {
-      depth -= 2u;
-      value = mix4(stack[depth], stack[depth + 1u], value.x);
-    } else {
-      value = scale_value(value, node->factor, node->offset);
-    }
-#else
-    value = scale_value(node_values(scene, node, at, lanes), node->factor, node->offset);
-#endif
+    REAL4 value = combined_values(scene, node, at, lanes, &stack);
     if (node->flags & TEXTURE_ONE_CHANNEL)
       value = one_channel(value, node->flags >> TEXTURE_CHANNEL_SHIFT & 3u);
     if (node->flags & TEXTURE_LAST) return value;
-#if TEXTURE_STACK > 1
-    stack[depth++] = value;
-#endif
+    keep_value(&stack, value);
   }
+}
+#else
+static inline REAL4 value_of_texture(const Scene* scene, u32 first, const TexturePoints* at, MASK lanes) {
+  return real4((REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f));
 }
 #endif
 #endif

@@ -17,10 +17,8 @@ static inline REAL3 see_glow(const SceneRays* rays, const PathStates* paths) {
 // all behind it.
 static inline REAL3 see_fog(const Scene* scene, const Encounters* met, MASK ended, PathStates* paths) {
   if (!HAS_FOG) return all3((float3)(0.0f));
-  const MASK foggy = ended & MASK_OF(met->before == 0);
-  const float4 fog = scene->info->fog;
-  const REAL clear = select((REAL)(1.0f), real_exp(-fog.w * met->hit.t), foggy);
-  const REAL3 light = multiply3(scale3(paths->throughput, 1.0f - clear), all3(fog.xyz));
+  const REAL clear = clear_of_fog(scene, met, ended);
+  const REAL3 light = multiply3(scale3(paths->throughput, 1.0f - clear), all3(scene->info->fog.xyz));
   paths->throughput = scale3(paths->throughput, clear);
   return light;
 }
