@@ -28,10 +28,11 @@ static inline REAL straight_transmittance(__global const Medium* restrict media,
   return 1.0f - fresnel_reflectance(cos_i, refracted_cosine(cos_i, eta), eta);
 }
 
-// What the surfaces of `lanes` let through, by their textures.
+// What the surfaces of `lanes` let through, where `plain` is that without their textures.
 #if HAS_MAPS
 NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
-                                  const Faces* faces, MASK lanes, REAL3 transmission) {
+                                  const Faces* faces, MASK lanes, REAL3 plain) {
+  REAL3 transmission = plain;
   SurfaceInteractions s;
   s.p = along3(rays->o, hits->t, rays->d);
   s.ng = safe_unit3(faces->outward);
@@ -60,8 +61,8 @@ NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, con
 }
 #else
 static inline REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
-                                   const Faces* faces, MASK lanes, REAL3 transmission) {
-  return transmission;
+                                   const Faces* faces, MASK lanes, REAL3 plain) {
+  return plain;
 }
 #endif
 

@@ -19,9 +19,10 @@ static inline REAL3 out_of_child(REAL3 g, SDF_TABLE q) {
 
 static inline REAL out_of_child_distance(REAL d, SDF_TABLE q) { return d * q[12]; }
 static inline SdfSample out_of_child_sample(SdfSample s, SDF_TABLE q) {
-  s.distance *= q[12];
-  s.gradient = out_of_child(s.gradient, q);
-  return s;
+  SdfSample out = s;
+  out.distance *= q[12];
+  out.gradient = out_of_child(s.gradient, q);
+  return out;
 }
 
 // Place in the nearest cell (neighbour = 0) or in the next nearest along the axis, so that a child which fits
@@ -59,9 +60,10 @@ static inline REAL intersect(REAL a, REAL b, SCALAR smooth) { return -unite(-a, 
 static inline REAL subtract_from(REAL a, REAL b, SCALAR smooth) { return -unite(-a, b, smooth); }
 
 static inline SdfSample negated_sample(SdfSample a) {
-  a.distance = -a.distance;
-  a.gradient = negate3(a.gradient);
-  return a;
+  SdfSample negated = a;
+  negated.distance = -a.distance;
+  negated.gradient = negate3(a.gradient);
+  return negated;
 }
 // Exact for closed forms, whose gradients are those of their distances; of fractals they are not used.
 static inline SdfSample unite_samples(SdfSample a, SdfSample b, SCALAR smooth) {
@@ -82,8 +84,9 @@ static inline SdfSample subtract_samples(SdfSample a, SdfSample b, SCALAR smooth
 static inline REAL thicken(REAL d, SCALAR amount) { return d - amount; }
 static inline REAL shell(REAL d, SCALAR amount) { return fabs(d) - 0.5f * amount; }
 static inline SdfSample thicken_sample(SdfSample s, SCALAR amount) {
-  s.distance -= amount;
-  return s;
+  SdfSample thick = s;
+  thick.distance -= amount;
+  return thick;
 }
 static inline SdfSample shell_sample(SdfSample s, SCALAR amount) {
   SdfSample shell = select_sample(s, negated_sample(s), MASK_OF(s.distance < 0.0f));

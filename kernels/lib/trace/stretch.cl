@@ -55,10 +55,11 @@ static inline void note_exit(__global const Instance* restrict instances, u32 in
   const float3 outward = world_normal(instances + index, (float3)(hit.ng_x, hit.ng_y, hit.ng_z));
   if (dot(outward, stretch->d) >= 0.0f) return;
   if (next_hit(instances, index, stretch, hit.t, INFINITY).instance != NO_INSTANCE) return;
-  hit.ng_x = -hit.ng_x;
-  hit.ng_y = -hit.ng_y;
-  hit.ng_z = -hit.ng_z;
-  stretch->hits[stretch->count++] = hit;
+  Hit behind = hit;
+  behind.ng_x = -hit.ng_x;
+  behind.ng_y = -hit.ng_y;
+  behind.ng_z = -hit.ng_z;
+  stretch->hits[stretch->count++] = behind;
 }
 
 static inline void note_solid(__global const Instance* restrict instances, u32 index, Stretch* stretch) {
