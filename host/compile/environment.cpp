@@ -14,7 +14,7 @@
 namespace sundog {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr u32 most_columns = 1024, most_rows = 512;  // cells
 constexpr int gradient_rows = 256, sky_columns = 512, sky_rows = 256;
 

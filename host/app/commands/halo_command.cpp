@@ -25,7 +25,7 @@
 namespace sundog {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct HaloOptions {
   PictureOptions picture;

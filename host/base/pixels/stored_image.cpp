@@ -15,7 +15,7 @@
 namespace sundog {
 namespace {
 
-StoredImage halves_of(const Image& image) {
+StoredImage stored_halves(const Image& image) {
   StoredImage stored;
   stored.width = image.width;
   stored.height = image.height;
@@ -62,9 +62,9 @@ StoredImage decode_stored(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return decode_png(bytes);
   if (bytes.starts_with("\xff\xd8")) return decode_jpeg(bytes);
   if (bytes.starts_with("RIFF")) return decode_webp(bytes);
-  if (bytes.starts_with("\x76\x2f\x31\x01")) return halves_of(decode_exr(bytes));
-  if (bytes.starts_with("#?")) return halves_of(decode_hdr(bytes));
-  if (bytes.starts_with("PF") || bytes.starts_with("Pf")) return halves_of(decode_pfm(bytes));
+  if (bytes.starts_with("\x76\x2f\x31\x01")) return stored_halves(decode_exr(bytes));
+  if (bytes.starts_with("#?")) return stored_halves(decode_hdr(bytes));
+  if (bytes.starts_with("PF") || bytes.starts_with("Pf")) return stored_halves(decode_pfm(bytes));
   throw std::runtime_error("wanted a PNG, JPEG, WebP, EXR, HDR or PFM image, found another file");
 }
 

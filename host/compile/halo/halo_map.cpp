@@ -13,7 +13,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double first_wavelength = 390, last_wavelength = 710;  // nanometres
 constexpr int band_count = 16;
 constexpr u32 rays_a_launch = 1u << 18;
