@@ -16,7 +16,7 @@ of BUILD (default: build/release) with it: first those that the change names, th
   --check          only see that each change fits its file
 
 A line for each change: noticed, NOT NOTICED, harmless (not noticed, and the list says why), MISJUDGED (noticed, though
-the list calls it harmless) or DOES NOT BUILD. Exit status: 0 when all are noticed or harmless, else 6; 2 wrong usage.
+the list calls it harmless), DOES NOT BUILD or NO SUCH TEST. Exit status: 0 when all are noticed or harmless, else 6; 2 wrong usage.
 END
 }
 
@@ -44,9 +44,12 @@ trap 'rm -rf "$folder"' EXIT
 export SUNDOG_KERNEL_DIR=$folder/kernels XDG_CACHE_HOME=$folder/cache SUNDOG_TEST_DEVICES=$devices
 cp -r kernels "$SUNDOG_KERNEL_DIR"
 
-# Whether the tests of $1 pass; 2: a kernel does not build. Their output stays in $folder/out.
+# Whether the tests of $1 pass; 2: a kernel does not build; 3: there are no such tests. Their output stays in $folder/out.
 passes() {
-  timeout "$limit" "$tests" -\# --abort "$1" > "$folder/out" 2>&1 && return 0
+  timeout "$limit" "$tests" -\# --abort "$1" > "$folder/out" 2>&1
+  local status=$?
+  grep -q "No test cases matched\|No tests ran" "$folder/out" && return 3
+  [ $status = 0 ] && return 0
   grep -q "did not build on" "$folder/out" && return 2
   return 1
 }
@@ -75,6 +78,7 @@ try_change() {
   case $result in
     0) if [ -n "$harmless" ]; then result=harmless; else result="NOT NOTICED" bad=$((bad + 1)); fi ;;
     2) result="DOES NOT BUILD" bad=$((bad + 1)) ;;
+    3) result="NO SUCH TEST" bad=$((bad + 1)) ;;
     *) if [ -n "$harmless" ]; then result=MISJUDGED bad=$((bad + 1)); else result=noticed noticed=$((noticed + 1)); fi ;;
   esac
   printf '%-14s %s: %s\n' "$result" "$file" "$what"
