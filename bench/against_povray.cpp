@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "base/arguments.h"
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/image_compare.h"
@@ -19,6 +20,7 @@
 #include "bench_scenes.h"
 #include "compile/compiled_scene.h"
 #include "device/devices.h"
+#include "parse_arguments.h"
 #include "povray_from_scene.h"
 #include "povray_run.h"
 #include "scene/load.h"
@@ -169,7 +171,7 @@ void print(const Measured& m, bool with_povray) {
 
 // The default device, or a part of it that has as many compute units as POV-Ray gets threads.
 DeviceInfo choose_device(unsigned threads) {
-  DeviceInfo device = select_devices(enumerate_devices(), {}).at(0);
+  DeviceInfo device = select_devices(enumerate_devices(plain_environment()), {}).at(0);
   if (threads < device.compute_units) device.sub_units = threads;
   return device;
 }
@@ -242,7 +244,7 @@ int main(int argc, char** argv) {
   app.add_flag("--media", options.media,
                "absorption as POV-Ray's media: right everywhere, but slower than fading");
   app.add_flag("--wall", options.wall, "wall clock; without it processor time over threads");
-  app.parse_or_exit(argc, argv);
+  parse_or_exit(app, argc, argv);
   if (side > 0) options.width = options.height = side;
   try {
     return sundog::run(options);

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/environment.h"
 #include "base/image_compare.h"
 #include "base/image_io.h"
 #include "bench/frames/frame_runner.h"
@@ -134,7 +135,7 @@ SceneDescription frame_scene(const Options& options, const std::string& model) {
 nlohmann::json compare_frames(const Options& options, const std::string& model) {
   const SceneDescription description = frame_scene(options, model);
   const CompiledScene scene = compile(description);
-  const DeviceInfo whole = select_devices(enumerate_devices(), {options.device}).at(0);
+  const DeviceInfo whole = select_devices(enumerate_devices(plain_environment()), {options.device}).at(0);
   PlainProgram theirs(description, scene);
   fmt::print("{}: {} triangles, {}x{}, depth {}, {} shadows, {}, {} clock\n", model, scene.figures.triangles,
              options.size, options.size, options.depth, options.filtered ? "filtered" : "opaque",

@@ -9,12 +9,14 @@
 #include <nlohmann/json.hpp>
 
 #include "base/arguments.h"
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "bench/report/samples.h"
 #include "compile/fields/sdf.h"
 #include "device/device.h"
 #include "mandelbulb_peer.h"
+#include "parse_arguments.h"
 #include "scene/formula/list.h"
 
 using namespace sundog;
@@ -171,7 +173,7 @@ void tell_times(const Times& times, nlohmann::json& report) {
 
 int run(const Options& options) {
   const Picture picture = make_picture(options);
-  Device device(select_devices(enumerate_devices(), {options.device}).at(0));
+  Device device(select_devices(enumerate_devices(plain_environment()), {options.device}).at(0));
   const std::size_t pixels =
       static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
   std::map<std::string, Render> contenders;
@@ -217,7 +219,7 @@ int main(int argc, char** argv) {
   app.add_flag("--exact", options.exact,
                "the kernels use the derivative that is a proven bound (their picture then differs, and is "
                "not held against)");
-  app.parse_or_exit(argc, argv);
+  parse_or_exit(app, argc, argv);
   try {
     return run(options);
   } catch (const std::exception& error) {

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/environment.h"
 #include "bench_scenes.h"
 #include "crowd.h"
 #include "render/device/kernel_config.h"
@@ -24,7 +25,7 @@ CompiledScene compiled(const SceneDescription& description, const std::string& t
 
 /// A GPU is compared as a whole.
 DeviceInfo chosen_device(const RayOptions& options) {
-  DeviceInfo info = select_devices(enumerate_devices(), {options.device}).at(0);
+  DeviceInfo info = select_devices(enumerate_devices(plain_environment()), {options.device}).at(0);
   info.sub_units = info.type == "cpu" && options.threads < info.compute_units ? options.threads : 0;
   return info;
 }

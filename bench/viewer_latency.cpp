@@ -9,9 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "base/arguments.h"
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "device/devices.h"
+#include "parse_arguments.h"
 #include "render/device/tuning.h"
 #include "render/session/render_session.h"
 #include "scene/load.h"
@@ -101,7 +103,8 @@ nlohmann::json figures(const std::string& scene, const char* edit, const Times& 
 }
 
 nlohmann::json measure(const Options& options) {
-  const std::vector<DeviceInfo> devices = select_devices(enumerate_devices(), options.devices);
+  const std::vector<DeviceInfo> devices =
+      select_devices(enumerate_devices(plain_environment()), options.devices);
   RenderSession session(devices);
   nlohmann::json rows = nlohmann::json::array();
   fmt::print("{}, {} x {}, {} samples, {} edits of a kind; ms: median, 95th percentile\n", devices[0].label(),
@@ -136,7 +139,7 @@ int main(int argc, char** argv) {
   app.add_option("--samples", options.samples, "of a pixel")->range(1, 65536);
   app.add_option("--repeats", options.repeats, "edits of each kind")->range(1, 10000);
   app.add_option("--json", options.json, "file for the figures");
-  app.parse_or_exit(argc, argv);
+  parse_or_exit(app, argc, argv);
   try {
     const nlohmann::json rows = measure(options);
     if (!options.json.empty()) write_file(options.json, rows.dump(2) + "\n");

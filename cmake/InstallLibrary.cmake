@@ -6,7 +6,8 @@ add_library(sundog_shared SHARED $<TARGET_OBJECTS:sundog_api>)
 target_link_libraries(sundog_shared PRIVATE sundog_render)
 # Templates of other libraries are visible in spite of the compiler's options: the linker exports the public names alone.
 set(symbols ${PROJECT_SOURCE_DIR}/host/api/symbols.map)
-target_link_options(sundog_shared PRIVATE -Wl,--version-script=${symbols} -Wl,--no-undefined)
+# Two copies in a process, each brought by a plug-in, call their own functions.
+target_link_options(sundog_shared PRIVATE -Wl,--version-script=${symbols} -Wl,--no-undefined -Wl,-Bsymbolic-functions)
 set_target_properties(sundog_shared PROPERTIES LINK_DEPENDS ${symbols} VERSION ${PROJECT_VERSION}
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 

@@ -37,6 +37,20 @@ void add_mesh(sundog::Scene& scene, const std::string& name, const Floats3& posi
   if (normals) mesh.normals = groups<3>(*normals);
   if (uvs) mesh.uvs = groups<2>(*uvs);
   if (colors) mesh.colors = groups<3>(*colors);
+  // The scene reads the arrays where they are. The last that holds them may be a thread of its own.
+  struct Held {
+    Floats3 positions;
+    Indices triangles;
+    std::optional<Floats3> normals;
+    std::optional<Floats2> uvs;
+    std::optional<Floats3> colors;
+  };
+  mesh.owner =
+      std::shared_ptr<const Held>(new Held{positions, triangles, normals, uvs, colors}, [](const Held* held) {
+        if (!Py_IsInitialized()) return;
+        const nb::gil_scoped_acquire lock;
+        delete held;
+      });
   scene.add_mesh(name, mesh);
 }
 

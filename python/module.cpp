@@ -189,12 +189,15 @@ void add_scene(nb::module_& m) {
           nb::arg("source").none() = nb::none(), "Of a dict, a file or another Scene; empty without.")
       .def_static(
           "load",
-          [](const std::string& file, std::optional<double> frame, bool native_code, bool outside_files) {
-            return Scene::load(file,
-                               {.frame = frame, .native_code = native_code, .outside_files = outside_files});
+          [](const std::string& file, std::optional<double> frame, bool native_code, bool outside_files,
+             std::array<int, 2> size) {
+            return Scene::load(
+                file,
+                {.frame = frame, .native_code = native_code, .outside_files = outside_files, .size = size});
           },
           nb::arg("file"), nb::arg("frame") = nb::none(), nb::arg("native_code") = false,
-          nb::arg("outside_files") = false)
+          nb::arg("outside_files") = false, nb::arg("size") = std::array{0, 0},
+          "A scene or model file; `size` is the picture's (width, height), which a model's camera fits.")
       .def("to_dict", [](const Scene& scene) { return value_of(scene.to_json()); })
       .def(
           "__getitem__", [](const Scene& scene, const std::string& at) { return value_of(scene.get(at)); },
@@ -206,9 +209,11 @@ void add_scene(nb::module_& m) {
       .def("__copy__", [](const Scene& scene) { return Scene(scene); })
       .def("__deepcopy__", [](const Scene& scene, nb::handle) { return Scene(scene); })
       .def("copy", [](const Scene& scene) { return Scene(scene); })
-      .def("add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions"), nb::arg("triangles"),
-           nb::arg("normals") = nb::none(), nb::arg("uvs") = nb::none(), nb::arg("colors") = nb::none(),
-           "A mesh of arrays (n, 3), indices (m, 3), for objects {\"type\": \"mesh\", \"mesh\": name}.")
+      .def(
+          "add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions"), nb::arg("triangles"),
+          nb::arg("normals") = nb::none(), nb::arg("uvs") = nb::none(), nb::arg("colors") = nb::none(),
+          "A mesh of arrays (n, 3), indices (m, 3), for objects {\"type\": \"mesh\", \"mesh\": name}. Arrays "
+          "of float32 and uint32 in C order are held, not copied: leave them as they are.")
       .def(
           "add", [](Scene& scene, nb::handle object) { scene.set("/objects/-", json_of(object)); },
           nb::arg("object"), "Appends a dict to the objects.")

@@ -4,6 +4,7 @@
 #pragma once
 #include <nlohmann/json.hpp>
 
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/image_io.h"
 #include "base/tone_map.h"
@@ -11,6 +12,8 @@
 #include "device/devices.h"
 #include "render/device/tuning.h"
 #include "render/device/view_warnings.h"
+#include "render/film/frame_memory.h"
+#include "render/plan/passes.h"
 #include "render/render.h"
 #include "render/session/render_session.h"
 #include "scene/animate.h"
@@ -33,6 +36,7 @@ using sundog::DeviceError;
 using sundog::DeviceInfo;
 using sundog::encode_image;
 using sundog::enumerate_devices;
+using sundog::EnvironmentPtr;
 using sundog::Film;
 using sundog::Image;
 using sundog::IoError;

@@ -24,6 +24,12 @@ Device device_of(const core::DeviceInfo& info) {
   return device;
 }
 
+/// What the process's variables say, as docs/library.md lists them.
+const core::EnvironmentPtr& environment() {
+  static const core::EnvironmentPtr read = sundog::plain_environment();
+  return read;
+}
+
 std::vector<Device> devices_of_host(const std::vector<core::DeviceInfo>& all) {
   std::vector<Device> result;
   result.reserve(all.size());
@@ -34,19 +40,19 @@ std::vector<Device> devices_of_host(const std::vector<core::DeviceInfo>& all) {
 }  // namespace
 
 std::vector<Device> devices() {
-  return translated([] { return devices_of_host(core::enumerate_devices()); });
+  return translated([] { return devices_of_host(core::enumerate_devices(environment())); });
 }
 
 std::vector<Device> choose_devices(const std::vector<std::string>& specs,
                                    std::vector<std::string>* warnings) {
   return translated([&] {
-    const std::vector<core::DeviceInfo> all = core::enumerate_devices();
+    const std::vector<core::DeviceInfo> all = core::enumerate_devices(environment());
     return devices_of_host(core::select_devices(all, specs, warnings));
   });
 }
 
 std::vector<core::DeviceInfo> devices_of(const std::vector<Device>& devices) {
-  if (devices.empty()) return core::select_devices(core::enumerate_devices(), {});
+  if (devices.empty()) return core::select_devices(core::enumerate_devices(environment()), {});
   std::vector<core::DeviceInfo> infos;
   for (const Device& device : devices) {
     if (!device.handle) throw core::UsageError("a device wants to come from devices() or choose_devices()");
@@ -61,6 +67,12 @@ core::WorkGroup group_of(const WorkGroup& group) {
   if (group.x == 0) return {};
   if (group.y == 0) throw core::UsageError("a work-group wants one work-item or more each way");
   return {.kind = core::WorkGroup::Kind::fixed, .x = group.x, .y = group.y};
+}
+
+int tile_of(int tile) {
+  if (tile < 0)
+    throw core::UsageError("a tile wants an edge of 1 pixel or more, or 0 for one that is chosen");
+  return tile;
 }
 
 }  // namespace v0

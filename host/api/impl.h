@@ -74,5 +74,8 @@ std::vector<core::DeviceInfo> devices_of(const std::vector<Device>& devices);
 
 core::WorkGroup group_of(const WorkGroup& group);
 
+/// Throws UsageError for less than 0.
+int tile_of(int tile);
+
 }  // namespace v0
 }  // namespace sundog

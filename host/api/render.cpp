@@ -109,13 +109,16 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   const Stopwatch clock;
   const auto flat = std::make_shared<const core::CompiledScene>(core::compile(*description));
   const double compile_seconds = clock.seconds();
+  sundog::check_frame_memory(
+      static_cast<int>(flat->info.width), static_cast<int>(flat->info.height),
+      {.file = {}, .aovs = options.aovs, .tile = options.tile, .passes = sundog::in_passes(flat->sampling)});
   const std::vector<core::DeviceInfo> devices = devices_of(options.devices);
   film->warnings = description->warnings;
   for (std::string& warning : sundog::view_warnings(*flat, devices))
     film->warnings.push_back(std::move(warning));
   core::RenderOptions wanted;
   wanted.work_group = group_of(options.work_group);
-  wanted.tile = options.tile;
+  wanted.tile = tile_of(options.tile);
   wanted.aovs = options.aovs;
   wanted.time_limit = options.time_limit;
   wanted.picture_seconds = options.picture_seconds;

@@ -1,4 +1,6 @@
 // Scenes: a JSON document, with meshes from memory beside it.
+#include <utility>
+
 #include "api/impl.h"
 
 namespace sundog {
@@ -30,6 +32,7 @@ core::LoadOptions options_of(const LoadOptions& options) {
   result.frame = options.frame;
   result.native_code = options.native_code;
   result.outside_files = options.outside_files;
+  result.size = options.size;
   return result;
 }
 
@@ -45,14 +48,15 @@ Scene::Impl::Impl(const Impl& other)
 }
 
 void Scene::Impl::forget_description() {
+  std::shared_ptr<const core::SceneDescription> old;  // goes without the lock: a mesh's owner may do anything
   const std::lock_guard lock(mutex_);
-  described_ = nullptr;
+  old.swap(described_);
 }
 
 std::shared_ptr<const core::SceneDescription> Scene::Impl::describe() const {
+  std::shared_ptr<const core::SceneDescription> old, next;
   const std::lock_guard lock(mutex_);
   if (described_ && described_document_ == document) return described_;
-  std::shared_ptr<const core::SceneDescription> next;
   if (described_ && !options.frame) next = core::change_view(*described_, described_document_, document);
   if (!next) {
     json moved = document;
@@ -61,7 +65,7 @@ std::shared_ptr<const core::SceneDescription> Scene::Impl::describe() const {
         core::load_scene_document(moved, file, options, meshes));
   }
   described_document_ = document;
-  described_ = std::move(next);
+  old = std::exchange(described_, std::move(next));
   return described_;
 }
 

@@ -16,15 +16,21 @@ void put_placement(json& object, const Placement& placement) {
   if (placement.transform != identity) object["transform"] = json::array({{{"matrix", placement.transform}}});
 }
 
-/// Appends to a list of the document, which it makes where there is none.
+/// A member of the document, made `empty` where there is none. Throws Error (usage) for one of another kind.
+json& member(json& document, const char* key, const json& empty) {
+  const std::string place = document.is_object() ? std::string("/") + key : "";
+  if (document.is_object() && !document.contains(key)) document[key] = empty;
+  if (!document.is_object() || document[key].type() != empty.type()) {
+    const std::string reason =
+        empty.is_array() && !place.empty() ? "wanted an array to add to" : "wanted an object to add to";
+    throw Error(ErrorKind::usage, place + ": " + reason,
+                {.file = {}, .place = place, .reason = reason, .log = {}});
+  }
+  return document[key];
+}
+
 void append(json& document, const char* list, json value) {
-  json& items = document[list];
-  if (items.is_null()) items = json::array();
-  if (!items.is_array())
-    throw Error(
-        ErrorKind::usage, std::string("/") + list + ": wanted an array to add to",
-        {.file = {}, .place = std::string("/") + list, .reason = "wanted an array to add to", .log = {}});
-  items.push_back(std::move(value));
+  member(document, list, json::array()).push_back(std::move(value));
 }
 
 json aimed(const Light& light) { return {{"position", light.position}, {"direction", light.direction}}; }
@@ -67,40 +73,48 @@ json material_json(const Material& material) {
   throw Error(ErrorKind::usage, "mesh \"" + name + "\": " + why);
 }
 
+/// The numbers where they are, held by their owner; of a view without one, a copy.
+template <class To, class From, std::size_t count>
+sundog::MeshArray<To> held(std::span<const std::array<From, count>> from, std::shared_ptr<const void> owner) {
+  static_assert(sizeof(To) == sizeof from[0] && alignof(To) == alignof(From));
+  if (!owner) {
+    auto copy = std::make_shared<const std::vector<std::array<From, count>>>(from.begin(), from.end());
+    from = *copy;
+    owner = std::move(copy);
+  }
+  return sundog::MeshArray<To>::held({reinterpret_cast<const To*>(from.data()), from.size()},
+                                     std::move(owner));
+}
+
 template <class To, std::size_t count>
-std::vector<To> copied(const std::string& name, const char* what,
-                       std::span<const std::array<float, count>> from, std::size_t wanted) {
+sundog::MeshArray<To> vertices(const std::string& name, const char* what,
+                               std::span<const std::array<float, count>> from, const MeshView& view) {
+  if (from.empty()) return {};
+  const std::size_t wanted = view.positions.size();
   if (from.size() != wanted)
     refuse(name, "wanted " + std::to_string(wanted) + " " + what + ", one a position, found " +
                      std::to_string(from.size()));
-  std::vector<To> to(from.size());
   for (std::size_t i = 0; i < from.size(); ++i)
-    for (std::size_t axis = 0; axis < count; ++axis) {
-      if (!std::isfinite(from[i][axis]))
-        refuse(name, std::string(what) + " " + std::to_string(i) + " is not finite");
-      to[i][static_cast<int>(axis)] = from[i][axis];
-    }
-  return to;
+    if (!std::ranges::all_of(from[i], [](float number) { return std::isfinite(number); }))
+      refuse(name, std::string(what) + " " + std::to_string(i) + " is not finite");
+  return held<To>(from, view.owner);
 }
 
 core::Mesh mesh_of(const std::string& name, const MeshView& view) {
   if (view.triangles.empty()) refuse(name, "wanted a triangle or more");
   core::Mesh mesh;
   mesh.name = name;
+  mesh.positions = vertices<glm::vec3>(name, "positions", view.positions, view);
+  mesh.normals = vertices<glm::vec3>(name, "normals", view.normals, view);
+  mesh.uvs = vertices<glm::vec2>(name, "uvs", view.uvs, view);
+  mesh.colors = vertices<glm::vec3>(name, "colors", view.colors, view);
   const std::size_t count = view.positions.size();
-  mesh.positions = copied<glm::vec3>(name, "positions", view.positions, count);
-  if (!view.normals.empty()) mesh.normals = copied<glm::vec3>(name, "normals", view.normals, count);
-  if (!view.uvs.empty()) mesh.uvs = copied<glm::vec2>(name, "uvs", view.uvs, count);
-  if (!view.colors.empty()) mesh.colors = copied<glm::vec3>(name, "colors", view.colors, count);
-  mesh.triangles.reserve(view.triangles.size());
-  for (std::size_t i = 0; i < view.triangles.size(); ++i) {
-    const auto& corners = view.triangles[i];
-    for (const std::uint32_t corner : corners)
+  for (std::size_t i = 0; i < view.triangles.size(); ++i)
+    for (const std::uint32_t corner : view.triangles[i])
       if (corner >= count)
         refuse(name, "triangle " + std::to_string(i) + " has the corner " + std::to_string(corner) +
                          "; wanted one of " + std::to_string(count) + " positions, counted from 0");
-    mesh.triangles.emplace_back(corners[0], corners[1], corners[2]);
-  }
+  mesh.triangles = held<glm::uvec3>(view.triangles, view.owner);
   mesh.source_vertex_count = count;
   return mesh;
 }
@@ -131,7 +145,7 @@ Scene& Scene::add_light(const Light& light) {
 }
 
 Scene& Scene::add_material(const std::string& name, const Material& material) {
-  impl_->document["materials"][name] = material_json(material);
+  member(impl_->document, "materials", json::object())[name] = material_json(material);
   return *this;
 }
 

@@ -33,11 +33,13 @@ Session& Session::operator=(Session&&) noexcept = default;
 std::uint64_t Session::start(const Scene& scene, const SessionOptions& options) {
   return translated([&] {
     auto description = scene.impl().describe();
+    sundog::check_frame_memory(description->image.width, description->image.height,
+                               {.file = {}, .aovs = {}, .passes = true});
     core::SessionSettings settings;
     settings.coarse = options.coarse;
     settings.patience = options.patience;
     settings.work_group = group_of(options.work_group);
-    settings.tile = options.tile;
+    settings.tile = tile_of(options.tile);
     const std::lock_guard lock(impl_->mutex);
     impl_->newest = description;
     return impl_->session.start(std::move(description), settings);

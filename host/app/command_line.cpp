@@ -19,11 +19,11 @@
 #include "app/options/commands.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
+#include "app/process/standard_streams.h"
 #include "app/serve/serve_command.h"
 #include "base/error.h"
 #include "base/image_io.h"
 #include "base/names.h"
-#include "base/standard_streams.h"
 #include "scene/integrators.h"
 #include "scene/kinds.h"
 

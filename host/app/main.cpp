@@ -14,7 +14,6 @@
 #include "app/options/commands.h"
 #include "app/process/exit_status.h"
 #include "base/error.h"
-#include "device/compile_process.h"
 #include "render/render.h"
 
 namespace sundog {
@@ -36,7 +35,6 @@ int run(const ShowText& command) {
 int run_command_line(int argc, char** argv) {
   const std::string_view name = argc > 1 ? argv[1] : "";
   if (name == "compile") return compile_command(argc, argv);
-  allow_compile_process();
   if (name == "worker") return worker_command(argc, argv);
   // All processes of a job have the same command line: its errors are reported once.
   Command command = ShowText{};

@@ -2,7 +2,6 @@
 #include "base/arguments.h"
 
 #include <CLI/CLI.hpp>
-#include <cstdlib>
 
 namespace sundog {
 
@@ -57,14 +56,6 @@ template Option* Arguments::add_option(const std::string&, std::vector<float>&, 
 
 Option* Arguments::add_flag(const std::string& name, bool& target, const std::string& help) {
   return keep(app_->add_flag(name, target, help));
-}
-
-void Arguments::parse_or_exit(int argc, const char* const* argv) {
-  try {
-    app_->parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    std::exit(app_->exit(error));
-  }
 }
 
 }  // namespace sundog

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include "base/error.h"
-#include "base/file.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -28,17 +27,15 @@ std::string refusal(const fs::path& folder) {
 
 }  // namespace
 
-std::string cache_refusal() {
-  const fs::path cache = cache_directory();
+std::string cache_refusal(const fs::path& cache) {
   if (cache.empty()) return "";
   for (const fs::path& folder : {cache, cache / "kernels", cache / "tuning", cache / "pocl"})
     if (const std::string why = refusal(folder); !why.empty()) return "the cache is not used: " + why;
   return "";
 }
 
-fs::path cache_folder(const std::string& name) {
-  const fs::path cache = cache_directory();
-  return cache.empty() || !cache_refusal().empty() ? fs::path() : cache / name;
+fs::path cache_folder(const fs::path& cache, const std::string& name) {
+  return cache.empty() || !cache_refusal(cache).empty() ? fs::path() : cache / name;
 }
 
 void make_cache_folder(const fs::path& folder) {

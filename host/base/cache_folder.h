@@ -5,12 +5,12 @@
 
 namespace sundog {
 
-/// Why the cache folder is not used: another user owns it or one of its folders, or others may write there.
-/// Empty when it is used, or when there is none to use.
-std::string cache_refusal();
+/// Why `cache` (HostEnvironment::cache) is not used: another user owns it or one of its folders, or others
+/// may write there. Empty when it is used, or when there is none to use.
+std::string cache_refusal(const std::filesystem::path& cache);
 
-/// The folder of that name in cache_directory(); empty when there is no cache folder, or it is refused.
-std::filesystem::path cache_folder(const std::string& name);
+/// The folder of that name in `cache`; empty when there is no cache folder, or it is refused.
+std::filesystem::path cache_folder(const std::filesystem::path& cache, const std::string& name);
 
 /// Makes a folder of the cache with the folders above it; those of sundog's own are for the user alone
 /// (0700). Throws IoError.

@@ -1,17 +1,15 @@
 #include "base/faults.h"
 
+#include <algorithm>
 #include <atomic>
-#include <cstdlib>
-#include <deque>
 #include <regex>
-#include <string>
+#include <utility>
 
 #include "base/error.h"
 
 namespace sundog {
-namespace {
 
-struct Fault {
+struct Faults::Fault {
   std::string kind, where;
   int value = 0;
   std::size_t above = 0;
@@ -20,6 +18,9 @@ struct Fault {
   std::atomic<std::size_t> occasions{0};
 };
 
+namespace {
+
+template <class Fault>
 void parse(const std::string& text, std::deque<Fault>& faults) {
   static const std::regex form(R"(([a-z]+)(=(-?\d{1,9}))?(>(\d{1,12}))?@([^#,]+)(#(\d{1,9}))?)");
   std::smatch match;
@@ -34,28 +35,35 @@ void parse(const std::string& text, std::deque<Fault>& faults) {
   if (match[8].matched) fault.only = std::stoull(match[8]);
 }
 
-std::deque<Fault> read_variable() {
-  std::deque<Fault> faults;
-  const char* variable = std::getenv("SUNDOG_FAULTS");
-  const std::string text = variable ? variable : "";
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find(',', at), text.size());
-    parse(text.substr(at, end - at), faults);
-    at = end + 1;
-  }
-  return faults;
-}
-
 }  // namespace
 
-std::optional<int> fault(std::string_view kind, std::string_view where, std::size_t size) {
-  static std::deque<Fault> faults = read_variable();
-  for (Fault& fault : faults) {
+Faults::Faults(const std::string& text, std::function<void(const std::string& kind)> end_process)
+    : end_process_(std::move(end_process)) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    parse(text.substr(at, end - at), faults_);
+    at = end + 1;
+  }
+}
+
+Faults::~Faults() = default;
+
+std::optional<int> Faults::strike(std::string_view kind, std::string_view where, std::size_t size) {
+  for (Fault& fault : faults_) {
     if (fault.kind != kind || fault.where != where || (!fault.any_size && size <= fault.above)) continue;
     const std::size_t occasion = ++fault.occasions;
     if (fault.only == 0 || fault.only == occasion) return fault.value;
   }
   return std::nullopt;
+}
+
+void Faults::end_process(const char* kind, std::string_view where, std::size_t size) {
+  if (strike(kind, where, size) && end_process_) end_process_(kind);
+}
+
+std::optional<int> fault(const std::shared_ptr<Faults>& faults, std::string_view kind, std::string_view where,
+                         std::size_t size) {
+  return faults ? faults->strike(kind, where, size) : std::nullopt;
 }
 
 }  // namespace sundog

@@ -1,12 +1,16 @@
-// Faults on demand, to test what is done about them. Without the variable SUNDOG_FAULTS there are none.
+// Faults on demand, to test what is done about them. A program hands them down (base/environment.h), or none.
 #pragma once
 #include <cstddef>
+#include <deque>
+#include <functional>
+#include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace sundog {
 
-/// SUNDOG_FAULTS holds faults separated by commas, each KIND[=VALUE][>SIZE]@WHERE[#N]: it strikes where KIND
+/// Faults are a text, separated by commas, each KIND[=VALUE][>SIZE]@WHERE[#N]: it strikes where KIND
 /// happens at WHERE with more than SIZE, at the Nth such occasion or at each. The kinds, and what asks for
 /// them:
 ///     build@P:D           the kernels do not build on the device
@@ -21,11 +25,31 @@ namespace sundog {
 ///     crash@P:D           a launch ends the process
 ///     kill@P:D            the process is killed (SIGKILL) at a launch
 ///     stop@P:D            a launch stops the process, as SIGSTOP from outside does
-///     write@NAME          a file of that name cannot be written, as on a full disk
+///     write@NAME          a picture, checkpoint or part of that name cannot be written, as on a full disk
 ///     room=KIBIBYTES@pocl no more can be written to the folder where PoCL writes
-///     hold@NAME           reading an opened file of that name never begins
-///     stall@NAME          writing a file of that name never ends
-/// Returns VALUE (0 without one) where a fault strikes now. Throws UsageError for a variable that is none.
-std::optional<int> fault(std::string_view kind, std::string_view where, std::size_t size = 0);
+///     hold@NAME           reading an opened scene file of that name never begins
+///     stall@NAME          writing one of that name never ends
+class Faults {
+ public:
+  /// `end_process` does what crash, kill and stop say. Throws UsageError for a text that is none.
+  explicit Faults(const std::string& text, std::function<void(const std::string& kind)> end_process = {});
+  ~Faults();
+  Faults(const Faults&) = delete;
+  Faults& operator=(const Faults&) = delete;
+
+  /// VALUE (0 without one) where a fault strikes now. Any thread.
+  std::optional<int> strike(std::string_view kind, std::string_view where, std::size_t size);
+  /// Ends or stops the process where a fault of that kind strikes now.
+  void end_process(const char* kind, std::string_view where, std::size_t size);
+
+ private:
+  struct Fault;
+  std::deque<Fault> faults_;
+  std::function<void(const std::string& kind)> end_process_;
+};
+
+/// strike(); null: nothing does.
+std::optional<int> fault(const std::shared_ptr<Faults>& faults, std::string_view kind, std::string_view where,
+                         std::size_t size = 0);
 
 }  // namespace sundog

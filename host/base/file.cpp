@@ -92,14 +92,14 @@ class Temporary {
 
 }  // namespace
 
-void write_file(const fs::path& path, std::string_view bytes) {
+void write_file(const fs::path& path, std::string_view bytes, const std::shared_ptr<Faults>& faults) {
   const auto fail = [&](int code) {
     throw IoError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(code ? code : EIO)));
   };
-  if (fault("write", path.filename().string())) fail(ENOSPC);
+  if (fault(faults, "write", path.filename().string())) fail(ENOSPC);
   Temporary temporary(path);
   if (!temporary.is_open()) fail(errno);
-  while (fault("stall", path.filename().string())) std::this_thread::sleep_for(std::chrono::hours(1));
+  while (fault(faults, "stall", path.filename().string())) std::this_thread::sleep_for(std::chrono::hours(1));
   if (!temporary.write(bytes) || !temporary.move_to(path)) fail(errno);
 }
 
@@ -130,12 +130,6 @@ void check_writable(const fs::path& path) {
   if (!fs::is_directory(folder, status)) fail(fmt::format("{} is not a folder", folder.string()));
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
     fail(fmt::format("folder {}: {}", folder.string(), std::strerror(errno)));
-}
-
-fs::path cache_directory() {
-  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg) return fs::path(xdg) / "sundog";
-  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache" / "sundog";
-  return {};
 }
 
 }  // namespace sundog

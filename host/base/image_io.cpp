@@ -70,14 +70,15 @@ void check_image_path(const fs::path& path, bool with_aovs) {
         fmt::format("{}: wanted an image file name that ends in .png, .jpg, .exr, .hdr or .pfm, found {}",
                     path.string(), extension.empty() ? "no extension" : extension));
   if (with_aovs)
-    throw UsageError(
-        fmt::format("{}: only .exr files hold AOVs; use an .exr name or no --aov", path.string()));
+    throw UsageError(fmt::format("{}: only .exr files hold AOVs; use an .exr name or no AOV", path.string()));
 }
 
 const std::vector<std::string>& image_formats() {
   static const std::vector<std::string> formats = {"png", "jpg", "jpeg", "exr", "hdr", "pfm"};
   return formats;
 }
+
+bool drops_alpha(const fs::path& path) { return path.extension() != ".exr" && path.extension() != ".EXR"; }
 
 bool has_eight_bits(const fs::path& path) {
   const std::string extension = lower_extension(path);

@@ -25,6 +25,9 @@ std::string encode_image(const Image& image, const std::filesystem::path& path, 
 /// The extensions that are written, without the dot.
 const std::vector<std::string>& image_formats();
 
+/// True where a program would show an alpha channel of coverage as holes.
+bool drops_alpha(const std::filesystem::path& path);
+
 /// Whether a file of this name has 8 bits a channel: .png, .jpg, .jpeg.
 bool has_eight_bits(const std::filesystem::path& path);
 

@@ -54,7 +54,8 @@ bool read_all(int descriptor, std::uintmax_t expected, std::uintmax_t most, std:
 
 }  // namespace
 
-std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t most) {
+std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t most,
+                              const std::shared_ptr<Faults>& faults) {
   const auto fail = [&](const std::string& what) {
     throw IoError(fmt::format("{}: {}", path.string(), what));
   };
@@ -68,16 +69,17 @@ std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t 
   const auto size = S_ISREG(found.st_mode) ? static_cast<std::uintmax_t>(found.st_size) : 0;
   if (size > most) fail(fmt::format("is larger than {}", size_text(most)));
   ::fcntl(file.descriptor, F_SETFL, 0);  // a stream is waited for
-  while (fault("hold", path.filename().string())) std::this_thread::sleep_for(std::chrono::hours(1));
+  while (fault(faults, "hold", path.filename().string())) std::this_thread::sleep_for(std::chrono::hours(1));
   std::string bytes;
   if (!read_all(file.descriptor, size, most, bytes)) unreadable();
   if (bytes.size() > most) fail(fmt::format("is larger than {}", size_text(most)));
   return bytes;
 }
 
-std::string read_input(const std::filesystem::path& path, std::uintmax_t most) {
+std::string read_input(const std::filesystem::path& path, std::uintmax_t most,
+                       const std::shared_ptr<Faults>& faults) {
   try {
-    return read_regular_file(path, most);
+    return read_regular_file(path, most, faults);
   } catch (const IoError& error) {  // its message opens with the path, as SceneError's does
     throw SceneError(path.string(), "", std::string(error.what()).substr(path.string().size() + 2));
   }

@@ -239,7 +239,7 @@ void add_further_uvs(const SceneDescription& scene, const std::vector<PlacedMesh
     if (!meshes[i].used) continue;
     const Mesh& mesh = scene.meshes[i];
     for (std::size_t set = 0; set < std::min(sets, mesh.further_uvs.size()); ++set) {
-      const std::vector<glm::vec2>& uvs = mesh.further_uvs[set];
+      const MeshArray<glm::vec2>& uvs = mesh.further_uvs[set];
       if (uvs.empty()) continue;
       const auto put = [&](std::size_t vertex, std::size_t from) {
         float* to = &table[2 * ((meshes[i].first_vertex + vertex) * sets + set)];

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -16,10 +15,10 @@
 #include <utility>
 
 #include "base/clock.h"
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/faults.h"
 #include "base/memory_file.h"
-#include "base/spawn_self.h"
 #include "device/cl_status.h"
 #include "device/device.h"
 #include "device/pocl_folder.h"
@@ -28,11 +27,6 @@ namespace sundog {
 namespace {
 
 constexpr double longest_wait = 30;  // seconds: something hangs
-
-std::atomic<bool>& allowed() {
-  static std::atomic<bool> value = false;
-  return value;
-}
 
 /// By name, as it is the habit of one driver that is got round here.
 bool reads_a_library(const DeviceInfo& device) { return is_pocl(device) && device.type == "cpu"; }
@@ -50,8 +44,8 @@ std::string contents(int file) {
   return text;
 }
 
-cl::Device device_at(const std::string& place) {
-  for (const DeviceInfo& info : enumerate_devices())
+cl::Device device_at(const EnvironmentPtr& environment, const std::string& place) {
+  for (const DeviceInfo& info : enumerate_devices(environment))
     if (info.usable() && place == fmt::format("{}:{}", info.platform, info.device))
       return cl::Device(static_cast<cl_device_id>(info.handle), true);
   throw DeviceError(fmt::format("no device {} to compile for", place));
@@ -67,18 +61,18 @@ void write_all(int file, const std::vector<unsigned char>& bytes) {
 
 }  // namespace
 
-void allow_compile_process() noexcept { allowed() = true; }
-
 std::optional<CompileProcess> CompileProcess::start(const DeviceInfo& device, const std::string& source,
                                                     const std::string& options) noexcept {
-  if (!allowed() || !reads_a_library(device) || std::thread::hardware_concurrency() < 2) return std::nullopt;
+  const StartProgram& start_program = value_of(device.environment).start_program;
+  if (!start_program || !reads_a_library(device) || std::thread::hardware_concurrency() < 2)
+    return std::nullopt;
   const int in = memory_file(options + "\n" + source), out = memory_file("");
   std::optional<CompileProcess> process;
   try {
     if (in >= 0 && out >= 0) {
       const std::string place = fmt::format("{}:{}", device.platform, device.device);
-      const pid_t started = spawn_self({"compile", place},
-                                       {{in, STDIN_FILENO}, {out, STDOUT_FILENO}, {nowhere, STDERR_FILENO}});
+      const pid_t started = start_program(
+          {"compile", place}, {{in, STDIN_FILENO}, {out, STDOUT_FILENO}, {nowhere, STDERR_FILENO}});
       process.emplace(CompileProcess(started, out));
     }
   } catch (const std::exception&) {
@@ -95,7 +89,7 @@ CompileProcess::CompileProcess(CompileProcess&& other) noexcept
 CompileProcess::~CompileProcess() {
   if (process_ > 0) {
     ::kill(process_, SIGKILL);
-    wait_for_end(process_);
+    while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) continue;
   }
   if (result_ >= 0) ::close(result_);
 }
@@ -113,11 +107,11 @@ std::string CompileProcess::wait() noexcept {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? contents(result_) : std::string();
 }
 
-void serve_compile(const std::string& place, int in, int out) {
-  if (fault("compile", place)) throw BuildError("a fault was asked for", "");
+void serve_compile(const EnvironmentPtr& environment, const std::string& place, int in, int out) {
+  if (fault(value_of(environment).faults, "compile", place)) throw BuildError("a fault was asked for", "");
   const std::string text = contents(in), options = text.substr(0, text.find('\n')),
                     source = text.substr(std::min(text.size(), options.size() + 1));
-  const cl::Device device = device_at(place);
+  const cl::Device device = device_at(environment, place);
   cl_int status = CL_SUCCESS;
   const cl::Context context(device, nullptr, nullptr, nullptr, &status);
   if (status != CL_SUCCESS) throw DeviceError("no context", status);

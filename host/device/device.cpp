@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/faults.h"
 #include "device/cl_status.h"
@@ -111,9 +112,9 @@ Program Device::build(const std::string& entry, const KernelDefines& defines, Bu
   result = {};
   KernelDefines all = defines;
   if (fma_) all.emplace("DEVICE_HAS_FMA", "1");
-  const std::string source = expand_kernel(entry, all, generated);
-  const auto built =
-      std::ranges::find_if(programs_, [&, options = all_build_options(wish_)](const auto& program) {
+  const std::string source = expand_kernel(entry, all, generated, value_of(info_.environment).kernels);
+  const auto built = std::ranges::find_if(
+      programs_, [&, options = all_build_options(value_of(info_.environment), wish_)](const auto& program) {
         return program->entry == entry && program->source == source && program->options == options;
       });
   if (built != programs_.end()) {
@@ -146,13 +147,13 @@ std::string place(const DeviceInfo& info) { return fmt::format("{}:{}", info.pla
 /// The faults that a test may ask for (base/faults.h).
 void inject_launch_faults(const DeviceInfo& info, const std::string& name, std::size_t items,
                           std::size_t group) {
-  while (fault("hang", place(info), items)) std::this_thread::sleep_for(std::chrono::hours(1));
-  if (fault("crash", place(info), items)) std::abort();
-  if (fault("kill", place(info), items)) ::raise(SIGKILL);
-  if (fault("stop", place(info), items)) ::raise(SIGSTOP);
-  if (const auto status = fault("launch", place(info), items))
+  const auto& faults = value_of(info.environment).faults;
+  if (!faults) return;
+  while (fault(faults, "hang", place(info), items)) std::this_thread::sleep_for(std::chrono::hours(1));
+  for (const char* kind : {"crash", "kill", "stop"}) faults->end_process(kind, place(info), items);
+  if (const auto status = fault(faults, "launch", place(info), items))
     check_cl(*status, info, fmt::format("launch of {}", name));
-  if (const auto status = fault("group", place(info), group))
+  if (const auto status = fault(faults, "group", place(info), group))
     check_cl(*status, info, fmt::format("launch of {} in groups of {}", name, group));
 }
 
@@ -185,7 +186,7 @@ KernelLimits Device::limits_of(const cl::Kernel& kernel) const {
   // Mesa's rusticl gives the size of a sub-group for any kernel, and runs larger groups all the same. Where
   // such a limit is meant, a launch fails and is made smaller.
   if (limits.work_group <= limits.preferred_multiple) limits.work_group = info_.max_work_group;
-  if (const auto most = fault("limit", place(info_)))
+  if (const auto most = fault(value_of(info_.environment).faults, "limit", place(info_)))
     limits.work_group = std::min(limits.work_group, static_cast<std::size_t>(*most));
   return limits;
 }
@@ -195,7 +196,7 @@ cl::Buffer Device::allocate(std::size_t bytes, const void* data) {
   if (bytes > info_.max_allocation)
     check_cl(CL_MEM_OBJECT_ALLOCATION_FAILURE, info_,
              fmt::format("a buffer of {} bytes where {} is the limit", bytes, info_.max_allocation));
-  if (const auto injected = fault("alloc", place(info_), bytes))
+  if (const auto injected = fault(value_of(info_.environment).faults, "alloc", place(info_), bytes))
     check_cl(*injected, info_, fmt::format("a buffer of {} bytes", bytes));
   cl_int status = CL_SUCCESS;
   const bool copy = bytes > 0 && data;

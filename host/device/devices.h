@@ -1,11 +1,14 @@
 // Which OpenCL devices there are, what each can do, and which ones a --device SPEC means.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace sundog {
+
+struct HostEnvironment;
 
 /// How a device wants to be fed (design: by what it reports, never by its name).
 enum class DeviceClass { cpu, gpu };  // explicit vectors in a work-item; one ray a lane
@@ -29,7 +32,8 @@ struct DeviceInfo {
   std::string identity;  // the same in every process that sees it: its UUID or place on the bus; often empty
   int rank = 0;          // of the process that has it, in a job of several
   std::string host;      // that process's machine; empty: there is only this process
-  void* handle = nullptr;  // cl_device_id
+  void* handle = nullptr;                                // cl_device_id
+  std::shared_ptr<const HostEnvironment> environment{};  // what enumerate_devices() was given
 
   bool usable() const { return problem.empty() && device >= 0; }
   /// "0:1 Portable Computing Language / pthread-...", with "/2" for a sub-device of two units, "/2@4" where
@@ -37,8 +41,9 @@ struct DeviceInfo {
   std::string label() const;
 };
 
-/// Every platform and device, each failure a row with its `problem`; never throws for one driver.
-std::vector<DeviceInfo> enumerate_devices();
+/// Every platform and device, each failure a row with its `problem`; never throws for one driver. Drivers'
+/// own settings are those of a process's first call.
+std::vector<DeviceInfo> enumerate_devices(const std::shared_ptr<const HostEnvironment>& environment);
 
 /// The devices that `specs` mean, in the order first matched, without doubles. No specs: the usable device
 /// with the greatest estimate. Grammar: P:D | cpu | gpu | accelerator | all | part of "platform/device" (any

@@ -4,16 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "base/file.h"
 
 namespace sundog {
 
-std::string embedded_kernel(const std::string& path) {
-  if (const char* folder = std::getenv("SUNDOG_KERNEL_DIR"); folder && *folder) {
+std::string embedded_kernel(const std::string& path, const std::filesystem::path& folder) {
+  if (!folder.empty()) {
     try {
-      return read_file(std::filesystem::path(folder) / path);
+      return read_file(folder / path);
     } catch (const IoError& error) {
       throw MissingKernelFile(fmt::format("{} (SUNDOG_KERNEL_DIR)", error.what()), "");
     }

@@ -1,5 +1,6 @@
 // The kernel files that the build embedded (cmake/EmbedKernels.cmake), by their path under kernels/.
 #pragma once
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,8 +21,8 @@ struct EmbeddedKernel {
 /// All of them, sorted by path.
 std::span<const EmbeddedKernel> embedded_kernels();
 
-/// The file's text. With SUNDOG_KERNEL_DIR set, files are read from that folder instead, for work on the
-/// kernels. Throws MissingKernelFile.
-std::string embedded_kernel(const std::string& path);
+/// The file's text, from `folder` instead where there is one, for work on the kernels. Throws
+/// MissingKernelFile.
+std::string embedded_kernel(const std::string& path, const std::filesystem::path& folder = {});
 
 }  // namespace sundog

@@ -12,6 +12,7 @@
 #include <mutex>
 #include <thread>
 
+#include "base/environment.h"
 #include "device/build_options.h"
 #include "device/cl_status.h"
 #include "device/devices.h"
@@ -162,7 +163,7 @@ void list_platform(DeviceInfo platform, cl_platform_id id, std::vector<DeviceInf
   cl_uint count = 0;
   cl_int status = clGetDeviceIDs(id, CL_DEVICE_TYPE_ALL, 0, nullptr, &count);
   if (status == CL_DEVICE_NOT_FOUND || (status == CL_SUCCESS && count == 0)) {
-    const std::string why = is_pocl(platform) ? pocl_folder_problem() : "";
+    const std::string why = is_pocl(platform) ? pocl_folder_problem(value_of(platform.environment)) : "";
     return problem("the platform has no device" + (why.empty() ? "" : ": " + why));
   }
   if (status != CL_SUCCESS) return problem("clGetDeviceIDs: " + cl_status_name(status));
@@ -189,29 +190,23 @@ void enlarge_thread_stacks() {
   pthread_attr_destroy(&attributes);
 }
 
-/// Drivers' settings that must stand before the first OpenCL call; what the user set stays.
-void prepare_drivers() {
+/// Drivers' settings that must stand before the first OpenCL call; what the user set stays. They know no
+/// other way than the process's own variables.
+void prepare_drivers(const HostEnvironment& environment) {
   static std::once_flag once;
-  std::call_once(once, [] {
-    // PoCL compiles a kernel for each local size and again for grids below 65536, and once more to give its
-    // binary out. One version for all was as fast in every kernel measured, so each kernel is compiled once.
-    setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
-    // Intel's driver compiles each kernel a second time, for 16 work-items at once. That is nine tenths of
-    // its compile time; pictures are the same to the bit, by the wide tracer as fast, by the compact one
-    // slower.
-    setenv("CL_CONFIG_USE_VECTORIZER", "False", 0);
-    setenv("PATH", "/usr/local/bin:/usr/bin:/bin", 0);  // PoCL ends a process in which it finds no linker
-    if (!build_log_folder().empty()) bypass_driver_caches();
-    give_pocl_a_folder();
-    describe_machine_to_drivers();
+  std::call_once(once, [&] {
+    for (const auto& [name, value] : environment.drivers) setenv(name.c_str(), value.c_str(), 0);
+    if (!environment.build_log.empty()) bypass_driver_caches();
+    give_pocl_a_folder(environment);
+    describe_machine_to_drivers(environment);
     enlarge_thread_stacks();
   });
 }
 
 }  // namespace
 
-std::vector<DeviceInfo> enumerate_devices() {
-  prepare_drivers();
+std::vector<DeviceInfo> enumerate_devices(const EnvironmentPtr& environment) {
+  prepare_drivers(value_of(environment));
   cl_uint count = 0;
   // No platform at all is an error status too (CL_PLATFORM_NOT_FOUND_KHR): an empty list says the same.
   if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};
@@ -220,6 +215,7 @@ std::vector<DeviceInfo> enumerate_devices() {
   std::vector<DeviceInfo> rows;
   for (cl_uint i = 0; i < count; ++i) {
     DeviceInfo platform;
+    platform.environment = environment;
     platform.platform = static_cast<int>(i);
     platform.platform_name = platform_text(platforms[i], CL_PLATFORM_NAME);
     platform.platform_version = platform_text(platforms[i], CL_PLATFORM_VERSION);

@@ -61,7 +61,8 @@ std::string guard_name(const std::string& path) {
 
 class Expander {
  public:
-  explicit Expander(const GeneratedFiles& generated) : generated_(generated) {}
+  Expander(const GeneratedFiles& generated, const std::filesystem::path& folder)
+      : generated_(generated), folder_(folder) {}
 
   /// `certain`: the compiler is sure to see this text, for no #if is open.
   void expand(const std::string& path, bool certain) {
@@ -81,7 +82,7 @@ class Expander {
  private:
   std::string file_text(const std::string& path) const {
     if (const auto found = generated_.find(path); found != generated_.end()) return found->second;
-    return embedded_kernel(path);
+    return embedded_kernel(path, folder_);
   }
 
   void expand_lines(const std::string& path, const std::string& text, bool certain, int guard_depth) {
@@ -115,6 +116,7 @@ class Expander {
   }
 
   const GeneratedFiles& generated_;
+  const std::filesystem::path& folder_;
   std::vector<std::string> open_;  // the files being expanded, outermost first
   std::set<std::string> done_;
 };
@@ -122,8 +124,8 @@ class Expander {
 }  // namespace
 
 std::string expand_kernel(const std::string& entry, const KernelDefines& defines,
-                          const GeneratedFiles& generated) {
-  Expander expander(generated);
+                          const GeneratedFiles& generated, const std::filesystem::path& folder) {
+  Expander expander(generated, folder);
   expander.out = "#line 1 \"defines\"\n";
   for (const auto& [name, value] : defines) expander.out += fmt::format("#define {} {}\n", name, value);
   expander.expand(entry, true);

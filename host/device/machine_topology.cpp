@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <thread>
 
+#include "base/environment.h"
+
 namespace sundog {
 namespace {
 
@@ -20,9 +22,9 @@ bool has_topology() {
   return false;
 }
 
-bool user_describes_machine() {
+bool user_describes_machine(const HostEnvironment& environment) {
   for (const char* variable : {"HWLOC_SYNTHETIC", "HWLOC_XMLFILE", "HWLOC_FSROOT"})
-    if (std::getenv(variable)) return true;
+    if (environment.drivers.contains(variable)) return true;
   return false;
 }
 
@@ -36,8 +38,8 @@ std::string synthetic_machine() {
 
 }  // namespace
 
-void describe_machine_to_drivers() {
-  if (!has_topology() && !user_describes_machine())
+void describe_machine_to_drivers(const HostEnvironment& environment) {
+  if (!has_topology() && !user_describes_machine(environment))
     ::setenv("HWLOC_SYNTHETIC", synthetic_machine().c_str(), 0);
 }
 

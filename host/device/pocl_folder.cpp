@@ -14,6 +14,7 @@
 #include <string>
 
 #include "base/cache_folder.h"
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/faults.h"
 #include "base/file.h"
@@ -58,8 +59,9 @@ void remove_left_over(const fs::path& root) {
 constexpr std::uintmax_t ample_room = std::uintmax_t{32} << 20, least_room = std::uintmax_t{3} << 20;
 
 /// Bytes that can be written there; none: nobody knows.
-std::optional<std::uintmax_t> room_in(const fs::path& folder) {
-  if (const auto kibibytes = fault("room", "pocl")) return std::uintmax_t(*kibibytes) << 10;
+std::optional<std::uintmax_t> room_in(const fs::path& folder, const HostEnvironment& environment) {
+  if (const auto kibibytes = fault(environment.faults, "room", "pocl"))
+    return std::uintmax_t(*kibibytes) << 10;
   std::error_code error;
   const fs::space_info space = fs::space(folder, error);
   if (error) return std::nullopt;
@@ -75,12 +77,12 @@ void try_to_make(const fs::path& folder) {
 
 /// A new folder in the cache, or where that cannot be written or is full, among the temporary files; empty:
 /// neither can.
-std::string make_folder() {
+std::string make_folder(const HostEnvironment& environment) {
   std::error_code error;
-  const fs::path root = cache_folder("pocl");
+  const fs::path root = cache_folder(environment.cache, "pocl");
   if (!root.empty()) try_to_make(root);
   if (!root.empty() && fs::is_directory(root, error)) remove_left_over(root);
-  if (!root.empty() && room_in(root).value_or(0) >= ample_room) {
+  if (!root.empty() && room_in(root, environment).value_or(0) >= ample_room) {
     std::string folder = (root / "XXXXXX").string();
     if (::mkdtemp(folder.data())) return folder;
   }
@@ -92,24 +94,24 @@ std::string make_folder() {
 
 bool is_pocl(const DeviceInfo& device) { return device.platform_name == "Portable Computing Language"; }
 
-std::string pocl_folder_problem() {
-  const char* folder = std::getenv("POCL_CACHE_DIR");
-  if (!folder)
+std::string pocl_folder_problem(const HostEnvironment& environment) {
+  const std::string users = environment.driver("POCL_CACHE_DIR"),
+                    folder = users.empty() ? own_folder() : users;
+  if (folder.empty())
     return "no folder can be made for what PoCL writes: name one that can be written by XDG_CACHE_HOME or "
            "TMPDIR";
-  const auto room = room_in(folder);
+  const auto room = room_in(folder, environment);
   if (!room || *room >= least_room) return "";
   return fmt::format(
       "{}, where PoCL writes, has room for {} KiB, and {} are needed: make room, or name another "
       "folder by {}",
-      folder, *room >> 10, least_room >> 10,
-      folder == own_folder() ? "XDG_CACHE_HOME or TMPDIR" : "POCL_CACHE_DIR");
+      folder, *room >> 10, least_room >> 10, users.empty() ? "XDG_CACHE_HOME or TMPDIR" : "POCL_CACHE_DIR");
 }
 
-void give_pocl_a_folder() noexcept {
+void give_pocl_a_folder(const HostEnvironment& environment) noexcept {
   try {
-    if (std::getenv("POCL_CACHE_DIR")) return;
-    const std::string folder = make_folder();
+    if (!environment.driver("POCL_CACHE_DIR").empty()) return;
+    const std::string folder = make_folder(environment);
     if (folder.empty() || lock_folder(folder, O_CREAT) < 0) return;
     own_folder() = folder;
     ::setenv("POCL_CACHE_DIR", folder.c_str(), 0);

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <sstream>
 
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/faults.h"
 #include "base/file.h"
@@ -24,10 +24,8 @@ std::string program_key(const DeviceInfo& info, const std::string& options, cons
   std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n", info.platform_name, info.platform_version,
                                 info.name, info.driver, info.version, options);
   for (const char* name : {"POCL_EXTRA_BUILD_FLAGS", "POCL_WORK_GROUP_METHOD",
-                           "POCL_WORK_GROUP_SPECIALIZATION", "CL_CONFIG_USE_VECTORIZER"}) {
-    const char* value = std::getenv(name);
-    key += fmt::format("{}={}\n", name, value ? value : "");
-  }
+                           "POCL_WORK_GROUP_SPECIALIZATION", "CL_CONFIG_USE_VECTORIZER"})
+    key += fmt::format("{}={}\n", name, value_of(info.environment).driver(name));
   return key + source;
 }
 
@@ -42,9 +40,8 @@ std::filesystem::path made_folder(const char* variable, const std::string& folde
 }
 
 /// SUNDOG_DUMP_KERNELS=folder keeps each program's final text there.
-void dump_source(const std::string& entry, const std::string& source) {
-  const char* folder = std::getenv("SUNDOG_DUMP_KERNELS");
-  if (!folder || !*folder) return;
+void dump_source(const std::string& folder, const std::string& entry, const std::string& source) {
+  if (folder.empty()) return;
   const std::string stem = std::filesystem::path(entry).stem().string();
   write_file(made_folder("SUNDOG_DUMP_KERNELS", folder) / fmt::format("{}-{:.8}.cl", stem, hash128(source)),
              source);
@@ -54,7 +51,7 @@ void dump_source(const std::string& entry, const std::string& source) {
 /// again with other options has a file for each.
 void keep_log(const ProgramRecord& record, const std::string& options, const std::string& log,
               cl_int status) {
-  const std::string folder = build_log_folder();
+  const std::string& folder = value_of(record.device.environment).build_log;
   if (folder.empty()) return;
   const std::string stem = std::filesystem::path(record.entry).stem().string();
   const DeviceInfo& info = record.device;
@@ -144,7 +141,7 @@ bool compile_beside(ProgramRecord& record, const cl::Context& context, const cl:
 
 /// Whether the build failed by the user's options: nothing at all can be built with them.
 bool options_are_bad(const ProgramRecord& record, const cl::Context& context, const cl::Device& device) {
-  return !user_build_options().empty() &&
+  return !value_of(record.device.environment).build_options.empty() &&
          build_nothing(context, device, hash128(record.key), record.options) != CL_SUCCESS;
 }
 
@@ -158,10 +155,10 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
   keep_log(record, options, report.log, status);
   if (status == CL_SUCCESS) return;
   if (options_are_bad(record, context, device))
-    throw BuildError(
-        fmt::format("SUNDOG_BUILD_OPTIONS '{}': {} builds nothing with them: {} ({})", user_build_options(),
-                    record.device.label(), cl_status_name(status), first_error(report.log)),
-        report.log);
+    throw BuildError(fmt::format("SUNDOG_BUILD_OPTIONS '{}': {} builds nothing with them: {} ({})",
+                                 value_of(record.device.environment).build_options, record.device.label(),
+                                 cl_status_name(status), first_error(report.log)),
+                     report.log);
   if (status != CL_BUILD_PROGRAM_FAILURE && report.log.empty())
     check_cl(status, record.device, fmt::format("{}: clBuildProgram", record.entry));
   throw BuildError(
@@ -179,7 +176,8 @@ void compile_to_kernels(ProgramRecord& record, const cl::Context& context, const
                         const std::string& source, BuildReport& report) {
   const auto makes_kernels = [&](const std::string& options) {
     compile(record, context, device, source, options, report);
-    return !fault("kernels", place_of(record.device)) && kernels_work(record.program);
+    return !fault(value_of(record.device.environment).faults, "kernels", place_of(record.device)) &&
+           kernels_work(record.program);
   };
   if (makes_kernels(record.options)) return;
   if (!makes_kernels(record.options + " -cl-opt-disable"))
@@ -199,20 +197,21 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
                                              const DeviceInfo& info, const std::string& entry,
                                              const std::string& source, const BuildWish& wish,
                                              BuildReport& report) {
-  dump_source(entry, source);
-  if (fault("build", place_of(info)))
+  const HostEnvironment& environment = value_of(info.environment);
+  dump_source(environment.dump_folder, entry, source);
+  if (fault(environment.faults, "build", place_of(info)))
     throw BuildError(fmt::format("{} did not build on {}: a fault was asked for", entry, info.label()), "");
-  if (is_pocl(info) && std::getenv("POCL_CACHE_DIR"))
-    if (const std::string problem = pocl_folder_problem(); !problem.empty())
+  if (is_pocl(info))
+    if (const std::string problem = pocl_folder_problem(environment); !problem.empty())
       throw BuildError(fmt::format("{} cannot be built on {}: {}", entry, info.label(), problem), "");
   auto record = std::make_shared<ProgramRecord>();
   record->device = info;
   record->entry = entry;
   record->source = source;
-  record->options = all_build_options(wish);
+  record->options = all_build_options(environment, wish);
   record->key = program_key(info, record->options, source);
-  record->cache_file = program_cache_file(record->key);
-  const bool from_source = wish.from_source || !build_log_folder().empty();
+  record->cache_file = program_cache_file(environment, record->key);
+  const bool from_source = wish.from_source || !environment.build_log.empty();
   const auto cached = from_source ? std::nullopt : load_program(record->cache_file, record->key);
   if (cached) {
     record->program = program_from_binary(context, device, cached->binary, record->options);

@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <sstream>
 #include <vector>
 
 #include "base/cache_folder.h"
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/input.h"
@@ -99,10 +99,9 @@ std::string hash128(std::string_view bytes) {
                      static_cast<std::uint64_t>(hash));
 }
 
-fs::path program_cache_file(const std::string& key) {
-  const char* setting = std::getenv("SUNDOG_KERNEL_CACHE");
-  const fs::path folder = cache_folder("kernels");
-  if (folder.empty() || (setting && std::string_view(setting) == "off")) return {};
+fs::path program_cache_file(const HostEnvironment& environment, const std::string& key) {
+  const fs::path folder = cache_folder(environment.cache, "kernels");
+  if (folder.empty() || !environment.kernel_cache) return {};
   return folder / (hash128(key) + ".bin");
 }
 

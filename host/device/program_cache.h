@@ -1,4 +1,4 @@
-// Compiled programs on disk: one file a program under cache_directory()/kernels, so that a warm start
+// Compiled programs on disk: one file a program under HostEnvironment::cache/kernels, so that a warm start
 // compiles nothing.
 #pragma once
 #include <filesystem>
@@ -7,6 +7,8 @@
 #include <string>
 
 namespace sundog {
+
+struct HostEnvironment;
 
 /// A file's content. `variants` are the launches (kernel and local size) whose machine code the binary holds:
 /// some drivers compile a kernel again for each local size, at its first launch.
@@ -18,8 +20,8 @@ struct CachedProgram {
 /// 128-bit FNV-1a as 32 hexadecimal digits.
 std::string hash128(std::string_view bytes);
 
-/// Where the program of `key` is kept; empty when SUNDOG_KERNEL_CACHE=off or there is no cache folder.
-std::filesystem::path program_cache_file(const std::string& key);
+/// Where the program of `key` is kept; empty without a cache folder, or where kernels are not to be kept.
+std::filesystem::path program_cache_file(const HostEnvironment& environment, const std::string& key);
 
 /// Makes the folder of `file` if need be; why nothing can be stored there, or nothing.
 std::optional<std::string> cannot_store(const std::filesystem::path& file);

@@ -44,19 +44,19 @@ Spec parse_spec(const std::string& text) {
     const std::string tail = spec.pattern.substr(slash + 1);
     if (const auto units = whole_number(tail)) {
       if (*units == 0)
-        throw UsageError(fmt::format("--device {}: /N wants 1 or more compute units, found 0", text));
+        throw UsageError(fmt::format("the device spec {}: /N wants 1 or more compute units, found 0", text));
       spec.sub_units = *units;
       spec.pattern.erase(slash);
     }
   }
   if (spec.pattern.empty())
-    throw UsageError(
-        fmt::format("--device \"{}\": wanted P:D, cpu, gpu, accelerator, all or part of \"platform/device\", "
-                    "found nothing",
-                    text));
+    throw UsageError(fmt::format(
+        "the device spec \"{}\": wanted P:D, cpu, gpu, accelerator, all or part of \"platform/device\", "
+        "found nothing",
+        text));
   if (spec.exclude && spec.sub_units > 0)
     throw UsageError(
-        fmt::format("--device {}: a sub-device cannot be taken away: write !{}", text, spec.pattern));
+        fmt::format("the device spec {}: a sub-device cannot be taken away: write !{}", text, spec.pattern));
   return spec;
 }
 
@@ -122,11 +122,11 @@ std::vector<DeviceInfo> matching(std::span<const DeviceInfo> all, const Spec& sp
   std::vector<DeviceInfo> found;
   for (const DeviceInfo& device : all)
     if (device.usable() && matches(spec, device)) found.push_back(device);
-  const char* several = spec.text.find(',') == std::string::npos
-                            ? ""
-                            : "several are chosen by several --device (commas are for SUNDOG_DEVICE); ";
+  const char* several =
+      spec.text.find(',') == std::string::npos ? "" : "several are chosen by several specs; ";
   if (found.empty())
-    throw DeviceError(fmt::format("--device {}: no such device; {}{}", spec.text, several, candidates(all)));
+    throw DeviceError(
+        fmt::format("the device spec {}: no such device; {}{}", spec.text, several, candidates(all)));
   return found;
 }
 
@@ -145,7 +145,7 @@ void add(Selection& selection, const Spec& spec, const std::vector<DeviceInfo>& 
       if (std::ranges::none_of(chosen, [&](const DeviceInfo& other) { return same_device(other, device); }))
         chosen.push_back(device);
     } else if (const std::string why = refusal(device, spec, chosen); !why.empty()) {
-      refused.push_back(fmt::format("--device {}: {}", spec.text, why));
+      refused.push_back(fmt::format("the device spec {}: {}", spec.text, why));
     } else {
       chosen.push_back(part(device, spec.sub_units, chosen));
     }
@@ -192,13 +192,13 @@ std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all, const st
     add(selection, spec, found);
   }
   if (selection.devices.empty())
-    throw DeviceError(fmt::format("--device: nothing is left after the exclusions; {}", candidates(all)));
+    throw DeviceError(fmt::format("no device is left after the exclusions; {}", candidates(all)));
   for (const Spec& spec : parsed)
     if (spec.exclude && std::ranges::none_of(all, [&](const DeviceInfo& device) {
           return device.device >= 0 && matches(spec, device);
         }))
-      selection.warnings.push_back(fmt::format("--device '{}' takes nothing away: no device matches it; {}",
-                                               spec.text, candidates(all)));
+      selection.warnings.push_back(fmt::format(
+          "the device spec '{}' takes nothing away: no device matches it; {}", spec.text, candidates(all)));
   if (warnings) *warnings = selection.warnings;
   return selection.devices;
 }

@@ -27,7 +27,7 @@ void check_shares(const Split& split, const std::vector<ServerPlan>& devices) {
   if (split.shares.empty() || split.shares.size() == devices.size()) return;
   std::vector<std::string> labels;
   for (const ServerPlan& device : devices) labels.push_back(device.info.label());
-  throw UsageError(fmt::format("--split {}: {} share{} for {} device{} ({}): give one share a device",
+  throw UsageError(fmt::format("the fixed split {}: {} share{} for {} device{} ({}): give one share a device",
                                fmt::join(split.shares, ","), split.shares.size(),
                                split.shares.size() == 1 ? "" : "s", devices.size(),
                                devices.size() == 1 ? "" : "s", fmt::join(labels, "; ")));
@@ -70,7 +70,7 @@ std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerP
                                    const RenderOptions& options, std::uint64_t key) {
   const bool has_passes = in_passes(scene->sampling);
   if (has_passes && options.part.count > 1)
-    throw UsageError("a frame that is adaptive, subsampled or progressive is made whole: leave --tiles out");
+    throw UsageError("a frame that is adaptive, subsampled or progressive is made whole: leave the part out");
   Film film;
   std::optional<FramePasses> passes;
   if (has_passes)

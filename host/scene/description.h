@@ -15,6 +15,7 @@
 #include "base/tone_map.h"
 #include "scene/formula/sdf.h"
 #include "scene/halo.h"
+#include "scene/mesh_array.h"
 #include "scene/spectra/refraction.h"
 #include "scene/texture_description.h"
 #include "shared/lights.h"
@@ -191,12 +192,12 @@ struct MaterialDescription {
 /// as `positions`; all colours linear.
 struct Mesh {
   std::string name;
-  std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;
-  std::vector<glm::vec2> uvs;                       // v up
-  std::vector<std::vector<glm::vec2>> further_uvs;  // sets 1, 2, ..., each empty or as long as `positions`
-  std::vector<glm::vec3> colors;
-  std::vector<glm::uvec3> triangles;
+  MeshArray<glm::vec3> positions;
+  MeshArray<glm::vec3> normals;
+  MeshArray<glm::vec2> uvs;                       // v up
+  std::vector<MeshArray<glm::vec2>> further_uvs;  // sets 1, 2, ..., each empty or as long as `positions`
+  MeshArray<glm::vec3> colors;
+  MeshArray<glm::uvec3> triangles;
   std::vector<int> materials;  // per triangle, index into SceneDescription::materials; empty: the object's
   std::size_t source_vertex_count = 0;  // as the file stores them: before vertices are split or dropped
 };

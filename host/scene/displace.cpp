@@ -37,7 +37,7 @@ class Middles {
 
  private:
   template <class Value>
-  static void add_mean(std::vector<Value>& values, u32 a, u32 b) {
+  static void add_mean(MeshArray<Value>& values, u32 a, u32 b) {
     if (!values.empty()) values.push_back(0.5f * (values[a] + values[b]));
   }
   void add(u32 a, u32 b) {

@@ -43,7 +43,10 @@ bool has_place(const json& document) {
 }
 
 json model_document(const fs::path& path, const LoadOptions& options) {
-  json document = make_model_scene(path, load_model(path, {.outside_files = options.outside_files}));
+  const auto [width, height] = options.size;
+  const std::optional<double> aspect =
+      width > 0 && height > 0 ? std::optional(static_cast<double>(width) / height) : std::nullopt;
+  json document = make_model_scene(path, load_model(path, {.outside_files = options.outside_files}), aspect);
   take_ground_above(document, document["camera"]["position"][1].get<double>());
   return document;
 }
@@ -52,10 +55,13 @@ json model_document(const fs::path& path, const LoadOptions& options) {
 
 json read_scene_document(const fs::path& path, const LoadOptions& options) {
   require_readable(path, path, "");
-  if (is_model_file(path)) return model_document(path, options);
-  if (path.extension() != ".json")
+  if (!is_model_file(path) && path.extension() != ".json")
     throw SceneError(path.string(), "", "wanted a scene (.json) or a model, found another extension");
-  return read_json_file(path);
+  json document = is_model_file(path) ? model_document(path, options) : read_json_file(path, options.faults);
+  const char* keys[] = {"width", "height"};
+  for (std::size_t i = 0; i < 2 && document.is_object(); ++i)
+    if (options.size[i] > 0) document["image"][keys[i]] = options.size[i];
+  return document;
 }
 
 SceneDescription load_scene_document(const json& document, const fs::path& file, const LoadOptions& options,

@@ -9,6 +9,6 @@ namespace sundog {
 bool leads_outside(const std::filesystem::path& file, const std::filesystem::path& named);
 
 /// The mend, as the end of a message.
-inline constexpr const char* outside_hint = "give --allow-outside-files if it is to be read all the same";
+inline constexpr const char* outside_hint = "allow files outside of it if it is to be read all the same";
 
 }  // namespace sundog

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "base/error.h"
-#include "base/standard_streams.h"
 #include "scene/animate.h"
 #include "scene/json/override.h"
 #include "scene/json/parse.h"
@@ -69,22 +68,21 @@ SceneDescription read_with_overrides(json document, const fs::path& file,
       for (const std::string& setting : overrides)
         if (concerns(setting, error.place))
           throw SceneError(error.file, error.place,
-                           fmt::format("{} (changed by --set {})", error.reason, setting));
+                           fmt::format("{} (changed by the setting {})", error.reason, setting));
     throw;
   }
 }
 
 }  // namespace
 
-std::string scene_file_name(const fs::path& path) {
-  return is_standard_stream(path) ? "standard input" : path.string();
-}
+std::string scene_file_name(const fs::path& path) { return path == "-" ? "standard input" : path.string(); }
 
 SceneDescription load_scene(const fs::path& path, const std::vector<std::string>& overrides,
                             const LoadOptions& options) {
-  if (is_standard_stream(path)) {
+  if (path == "-" && options.standard_input) {
     const fs::path name = scene_file_name(path);
-    return read_with_overrides(parse_json(standard_input(), name), name, overrides, options, std::nullopt);
+    return read_with_overrides(parse_json(options.standard_input(), name), name, overrides, options,
+                               std::nullopt);
   }
   require_readable(path, path, "");
   if (is_model_file(path)) {
@@ -97,7 +95,7 @@ SceneDescription load_scene(const fs::path& path, const std::vector<std::string>
         path.string(), "",
         "wanted a scene (.json) or a model (.gltf, .glb, .obj, .ply, .stl, .nff, each also .gz), found "
         "another extension");
-  return read_with_overrides(read_json_file(path), path, overrides, options, std::nullopt);
+  return read_with_overrides(read_json_file(path, options.faults), path, overrides, options, std::nullopt);
 }
 
 }  // namespace sundog

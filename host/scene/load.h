@@ -1,6 +1,9 @@
 // The one door into the scene layer: a file of any supported format becomes a SceneDescription.
 #pragma once
+#include <array>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,10 +12,15 @@
 
 namespace sundog {
 
+class Faults;
+
 struct LoadOptions {
   std::optional<double> frame = std::nullopt;  // of the animation; without it the scene is as it is written
   bool native_code = false;    // OpenCL C in the scene is taken: only for scenes that the user trusts
   bool outside_files = false;  // the scene, and the models in it, may name files outside their own folders
+  std::array<int, 2> size{};   // of the picture, for read_scene_document(); 0: as the file says
+  std::function<const std::string&()> standard_input{};  // a scene's text for "-"; empty: that is a file
+  std::shared_ptr<Faults> faults{};                      // of reading a scene file
 };
 
 /// The name that errors give a scene's file: "standard input" for "-", else the path.

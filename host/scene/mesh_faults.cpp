@@ -10,7 +10,7 @@ namespace sundog {
 namespace {
 
 /// For each vertex the first one at the same position.
-std::vector<std::uint32_t> weld(const std::vector<glm::vec3>& positions) {
+std::vector<std::uint32_t> weld(std::span<const glm::vec3> positions) {
   std::vector<std::uint32_t> order(positions.size()), first(positions.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto before = [&](std::uint32_t a, std::uint32_t b) {
@@ -62,7 +62,7 @@ struct Part {
   }
 };
 
-std::vector<Part> parts_of(const Mesh& mesh, const std::vector<glm::uvec3>& triangles) {
+std::vector<Part> parts_of(const Mesh& mesh, std::span<const glm::uvec3> triangles) {
   std::vector<std::uint32_t> parent(mesh.positions.size());
   std::iota(parent.begin(), parent.end(), 0u);
   for (const glm::uvec3& t : triangles) {

@@ -12,18 +12,22 @@ inline namespace v0 {
 
 /// What a device reports. Made by devices() and choose_devices(); copies are the same device.
 struct Device {
-  std::string label{};           // "0:1 Portable Computing Language / cpu-..."
-  int platform = 0, index = -1;  // as `clinfo -l` numbers them; index -1: a platform without a device
-  std::string platform_name{}, name{}, vendor{}, driver{};
-  std::string type{};               // "cpu", "gpu", "accelerator", "custom"
-  unsigned compute_units = 0;       // of a sub-device, those that it has
-  std::uint64_t global_memory = 0;  // bytes
-  double estimate = 0;              // relative speed, by which the default device is chosen
-  bool usable = false;
-  std::string problem{};  // why it is not usable
+  std::string label{};          ///< "0:1 Portable Computing Language / cpu-..."
+  int platform = 0;             ///< as `clinfo -l` numbers them, from 0
+  int index = -1;               ///< of the device in its platform, from 0; -1: a platform without a device
+  std::string platform_name{};  ///< as the platform reports it
+  std::string name{};           ///< as the device reports it
+  std::string vendor{};         ///< as the device reports it
+  std::string driver{};         ///< the driver's version
+  std::string type{};           ///< "cpu", "gpu", "accelerator", "custom"
+  unsigned compute_units = 0;   ///< of a sub-device, those that it has
+  std::uint64_t global_memory = 0;  ///< bytes
+  double estimate = 0;              ///< relative speed, by which the default device is chosen
+  bool usable = false;              ///< whether it can render; `problem` says why not
+  std::string problem{};            ///< why it is not usable; empty where it is
 
   struct Handle;
-  std::shared_ptr<const Handle> handle{};  // null: not made by this library
+  std::shared_ptr<const Handle> handle{};  ///< the library's own; null: not made by this library
 };
 
 /// Every device, and each platform that has none; one that fails has a `problem`. Any thread; the first call

@@ -8,30 +8,36 @@
 namespace sundog {
 inline namespace v0 {
 
+/// Whose fault it is.
 enum class ErrorKind {
-  usage,    // an argument is wrong, or does not fit the others
-  scene,    // the scene, or a file that it names, is bad: file(), place()
-  device,   // no such device, or every device failed: status()
-  build,    // a kernel does not build: log()
-  io,       // a file cannot be read or written
-  internal  // all others, such as a want of memory
+  usage,    ///< an argument is wrong, or does not fit the others
+  scene,    ///< the scene, or a file that it names, is bad: Error::file(), Error::place()
+  device,   ///< no such device, or every device failed: Error::status()
+  build,    ///< a kernel does not build: Error::log()
+  io,       ///< a file cannot be read or written
+  internal  ///< all others, such as a want of memory
 };
 
 /// What an Error knows beside its line; each may be empty.
 struct ErrorFacts {
-  std::string file, place, reason, log;
-  int status = 0;
+  std::string file{};    ///< the file at fault
+  std::string place{};   ///< in that file: a JSON pointer, "line 12" or "byte 80"
+  std::string reason{};  ///< the line without file and place
+  std::string log{};     ///< an OpenCL compiler's messages
+  int status = 0;        ///< OpenCL's error code; 0: none
 };
 
 /// The only exception of the library's own. what() is one line: the place, what was wanted, what was found.
-/// Exceptions of a program's callbacks pass through render() as they are.
+/// Exceptions of a program's callbacks pass through render() as they are. Immutable, but for assignment.
 class SUNDOG_API Error : public std::runtime_error {
  public:
+  /// `what` is the line; `facts` what is known beside it.
   Error(ErrorKind kind, const std::string& what, ErrorFacts facts = {});
-  Error(const Error&);
-  Error& operator=(const Error&);
+  Error(const Error&);             ///< the same error
+  Error& operator=(const Error&);  ///< the same error
   ~Error() override;
 
+  /// Whose fault it is.
   ErrorKind kind() const noexcept { return kind_; }
   /// The file at fault; empty where none is.
   const std::string& file() const noexcept { return facts_.file; }

@@ -13,9 +13,9 @@ inline namespace v0 {
 
 /// From linear colours to those of a screen, for files of 8 bits a channel.
 struct ToneMap {
-  std::string curve = "none";  // "none", "reinhard", "aces", "agx"
-  double exposure = 0;         // in stops, -32..32: each one doubles the brightness
-  double white_balance = 0;    // kelvin, 1667..25000: light of this temperature becomes white; 0: unchanged
+  std::string curve = "none";  ///< "none", "reinhard", "aces", "agx"
+  double exposure = 0;         ///< in stops, -32..32: each one doubles the brightness
+  double white_balance = 0;    ///< kelvin, 1667..25000: light of this temperature becomes white; 0: unchanged
 };
 
 /// Linear floats, immutable. A copy shares the pixels: it costs nothing, and any thread may use it.
@@ -27,10 +27,10 @@ class SUNDOG_API Image {
   /// side. Channels: 1, 3 or 4 (the last of four is coverage). Throws Error (usage) for another length.
   Image(int width, int height, int channels, std::span<const float> pixels);
 
-  int width() const noexcept;
-  int height() const noexcept;
-  int channels() const noexcept;
-  /// Valid while an Image shares them.
+  int width() const noexcept;     ///< in pixels; 0 without any
+  int height() const noexcept;    ///< in pixels; 0 without any
+  int channels() const noexcept;  ///< floats a pixel: 1, 3 or 4
+  /// width() * height() * channels() floats, row 0 at the top. Valid while an Image shares them.
   std::span<const float> pixels() const noexcept;
 
   /// The picture as a screen shows it, still linear. Throws Error (usage) for values out of range.
@@ -46,7 +46,8 @@ class SUNDOG_API Image {
   std::string encode(const std::string& extension) const;
 
   struct Impl;
-  explicit Image(std::shared_ptr<const Impl> impl) noexcept;
+  explicit Image(std::shared_ptr<const Impl> impl) noexcept;  ///< for the library itself
+  /// For the library itself.
   const std::shared_ptr<const Impl>& impl() const noexcept { return impl_; }
 
  private:

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/environment.h"
 #include "base/image_compare.h"
 #include "base/image_io.h"
 #include "catch.h"
@@ -44,7 +45,7 @@ SceneDescription load(const std::string& scene_name, std::vector<std::string> ov
 }
 
 Image our_picture(const SceneDescription& scene) {
-  return clamped(render(compile(scene), select_devices(enumerate_devices(), {})).image);
+  return clamped(render(compile(scene), select_devices(enumerate_devices(plain_environment()), {})).image);
 }
 
 Pictures render_both(const std::string& scene_name, const std::string& name,

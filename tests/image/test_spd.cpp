@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "assets.h"
+#include "base/environment.h"
 #include "catch.h"
 #include "compile/compiled_scene.h"
 #include "device/devices.h"
@@ -41,7 +42,7 @@ TEST_CASE("ray counts of the Standard Procedural Databases are the published one
     std::printf("no assets: the ray counts of the Standard Procedural Databases were not compared\n");
     return;
   }
-  const auto device = select_devices(enumerate_devices(), {});
+  const auto device = select_devices(enumerate_devices(plain_environment()), {});
   for (const Published& p : published) {
     const SceneDescription scene =
         load_scene(assets / "reference" / "spd" / (std::string(p.name) + ".nff.gz"),

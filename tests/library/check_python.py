@@ -56,6 +56,18 @@ del film
 assert np.allclose(pixels[12, 16, :3], [1, 0, 0], atol=1e-6) and pixels[0, 0, 2] == 1
 assert np.array_equal(sundog.Image(pixels).pixels, pixels)
 
+# Arrays of the right type are held where they are.
+corners, faces = np.zeros((3, 3), np.float32), np.array([[0, 1, 2]], np.uint32)
+corners[1, 0] = corners[2, 1] = 1
+before = sys.getrefcount(corners), sys.getrefcount(faces)
+scene = small()
+scene.add_mesh("held", corners, faces)
+assert sys.getrefcount(corners) > before[0] and sys.getrefcount(faces) > before[1]
+scene.add({"type": "mesh", "mesh": "held", "material": "red"})
+sundog.render(scene, devices=device)
+del scene
+assert (sys.getrefcount(corners), sys.getrefcount(faces)) == before
+
 # A file and a dict are scenes too, and have the same picture.
 loaded = sundog.Scene(sys.argv[1])
 loaded["/image/width"], loaded["/image/height"] = 40, 30

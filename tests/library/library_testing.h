@@ -4,15 +4,18 @@
 #include <sundog/sundog.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "catch.h"
 
-/// PoCL, or where it is not installed the default device.
+/// The first of SUNDOG_TEST_DEVICES; else PoCL, or where it is not installed the default device.
 inline const std::string& test_spec() {
   static const std::string spec = [] {
+    if (const char* listed = std::getenv("SUNDOG_TEST_DEVICES"))
+      return std::string(listed).substr(0, std::string(listed).find(','));
     try {
       return sundog::choose_devices({"portable"}).size() == 1 ? std::string("portable") : std::string();
     } catch (const sundog::Error&) {

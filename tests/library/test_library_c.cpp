@@ -122,6 +122,12 @@ TEST_CASE("every function of C reports its errors") {
   CHECK(scene == nullptr);
   CHECK(sundog_devices_choose("no such device", &devices) == SUNDOG_DEVICE);
   CHECK(sundog_devices_list(nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_devices_choose(nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_devices_count(nullptr) == 0);
+  CHECK(sundog_devices_label(nullptr, 0) == nullptr);
+  CHECK(sundog_devices_problem(nullptr, 0) == nullptr);
+  CHECK(sundog_scene_check(nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_scene_set(nullptr, "/camera", "1") == SUNDOG_USAGE);
   CHECK(devices == nullptr);
   CHECK(sundog_render(nullptr, nullptr, &film) == SUNDOG_USAGE);
   CHECK(sundog_film_pixels(nullptr, nullptr, nullptr, nullptr, nullptr, nullptr) == SUNDOG_USAGE);

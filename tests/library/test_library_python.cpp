@@ -1,6 +1,7 @@
 // The Python package: pip builds it over the installed library in a virtual environment of its own.
 #include <filesystem>
 
+#include "file_bytes.h"
 #include "installed.h"
 #include "library_testing.h"
 #include "run_command.h"
@@ -23,9 +24,10 @@ TEST_CASE("pip installs the Python package, which renders, stops for Ctrl-C and 
   const std::string python = (environment / "bin/python").string();
   CommandOptions patient;
   patient.timeout = 600;
-  const CommandResult fetched = run_command({python, "-m", "pip", "install", "--quiet", "--retries", "1",
-                                             "scikit-build-core", "nanobind", "ninja", "numpy"},
-                                            patient);
+  const CommandResult fetched =
+      run_command({python, "-m", "pip", "install", "--quiet", "--retries", "1", "--no-compile",
+                   "scikit-build-core", "nanobind", "ninja", "numpy", "matplotlib"},
+                  patient);
   if (fetched.status != 0) {
     WARN("pip cannot fetch what builds the package, so it is not tried: " << fetched.err);
     return;
@@ -34,7 +36,8 @@ TEST_CASE("pip installs the Python package, which renders, stops for Ctrl-C and 
   const std::string config = fs::path(find_below(prefix, "sundogConfig.cmake")).parent_path().string();
   const CommandResult built =
       run_command({python, "-m", "pip", "install", "--quiet", "--no-build-isolation", SUNDOG_SOURCE_DIR, "-C",
-                   "cmake.define.sundog_DIR=" + config, "-C", "build-dir=" + (folder / "build").string()},
+                   "cmake.define.sundog_DIR=" + config, "-C", "cmake.define.CMAKE_CXX_FLAGS_RELEASE=-O0",
+                   "-C", "build-dir=" + (folder / "build").string()},
                   patient);
   CAPTURE(built.out, built.err);
   REQUIRE(built.status == 0);
@@ -46,7 +49,15 @@ TEST_CASE("pip installs the Python package, which renders, stops for Ctrl-C and 
                                  "--size",
                                  "32x24",
                                  "--repeat",
-                                 "1"};
+                                 "1",
+                                 "--plot",
+                                 (folder / "plot.png").string()};
+  std::vector<std::string> notebook{python,
+                                    std::string(SUNDOG_SOURCE_DIR) + "/examples/work_groups.py",
+                                    shipped_scene("spheres").string(),
+                                    test_spec(),
+                                    "32x24",
+                                    "1"};
   if (!test_spec().empty()) {
     check.push_back(test_spec());
     sweep.insert(sweep.end(), {"--device", test_spec()});
@@ -58,5 +69,11 @@ TEST_CASE("pip installs the Python package, which renders, stops for Ctrl-C and 
   CAPTURE(swept.out, swept.err);
   CHECK(swept.status == 0);
   CHECK(swept.out.find("| 64x1 |") != std::string::npos);
+  CHECK(file_bytes(folder / "plot.png").starts_with("\x89PNG"));
+  patient.environment["MPLBACKEND"] = "Agg";
+  const CommandResult noted = run_command(notebook, patient);
+  CAPTURE(noted.out, noted.err);
+  CHECK(noted.status == 0);
+  CHECK(noted.out.find("| 16x16 |") != std::string::npos);
   CHECK(fs::exists(find_below(environment, "_sundog.pyi")));
 }

@@ -1,6 +1,7 @@
 // Renders through the public interface: the command line's bits, callbacks, cancellation, errors.
 #include <atomic>
 #include <chrono>
+#include <fstream>
 #include <stdexcept>
 #include <thread>
 
@@ -150,6 +151,7 @@ TEST_CASE("errors of a render have their kind") {
   };
   CHECK(kind_of({.devices = test_device(), .aovs = {"colour"}}) == ErrorKind::usage);
   CHECK(kind_of({.devices = test_device(), .work_group = {.x = 8, .y = 0}}) == ErrorKind::usage);
+  CHECK(kind_of({.devices = test_device(), .tile = -1}) == ErrorKind::usage);
   CHECK(kind_of({.devices = {sundog::Device{}}}) == ErrorKind::usage);
   sundog::Device broken = test_device().at(0);
   broken.usable = false;
@@ -162,6 +164,26 @@ TEST_CASE("errors of a render have their kind") {
   CHECK(error_of([&] { film.save(folder / "a.gif"); }).kind() == ErrorKind::usage);
   CHECK(error_of([&] { film.save(folder / "none" / "a.png"); }).kind() == ErrorKind::io);
   CHECK(error_of([&] { sundog::Film().save(folder / "a.png"); }).kind() == ErrorKind::usage);
+}
+
+TEST_CASE("a frame that takes more memory than there is is refused before anything is drawn") {
+  std::ifstream meminfo("/proc/meminfo");
+  double available = 0;  // KiB
+  for (std::string word; available == 0 && meminfo >> word;)
+    if (word == "MemAvailable:") meminfo >> available;
+  if (available > 32.0 * 1024 * 1024) {
+    WARN("there is room for the largest frame here: a want of memory is not tried");
+    return;
+  }
+  sundog::Scene scene = small_scene();
+  scene.set_size(16384, 16384).set("/render/progressive", "true");
+  const sundog::Error error = error_of([&] {
+    (void)sundog::render(scene, {.devices = test_device(), .aovs = {"normal", "position", "albedo"}});
+  });
+  CHECK(error.kind() == ErrorKind::internal);
+  CHECK(std::string(error.what()).find("16384x16384 pixels takes") != std::string::npos);
+  sundog::Session session(test_device());
+  CHECK(error_of([&] { session.start(scene); }).kind() == ErrorKind::internal);
 }
 
 TEST_CASE("devices are chosen as the command line chooses them") {

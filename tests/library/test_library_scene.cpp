@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "allocated_bytes.h"
 #include "library_testing.h"
 #include "temporary_folder.h"
 
@@ -57,6 +58,35 @@ TEST_CASE("pointers that lead nowhere are usage errors that name them") {
   CHECK(error_of([&] { scene.add_light({}); }).place() == "/lights");
 }
 
+TEST_CASE("what adds to a document refuses one of another shape") {
+  const auto kind_of = [](const char* text, const auto& add) {
+    sundog::Scene scene = sundog::Scene::from_json(text);
+    const sundog::Error error = error_of([&] { add(scene); });
+    CHECK(sundog::Scene::from_json(text).to_json() == scene.to_json());
+    return error.kind();
+  };
+  const auto add_material = [](sundog::Scene& scene) { scene.add_material("red", {}); };
+  CHECK(kind_of(R"({"materials": 3})", add_material) == ErrorKind::usage);
+  CHECK(kind_of("[]", add_material) == ErrorKind::usage);
+  CHECK(kind_of("[]", [](sundog::Scene& scene) { scene.add_light({}); }) == ErrorKind::usage);
+  CHECK(kind_of("[]", [](sundog::Scene& scene) { scene.set_size(2, 2); }) == ErrorKind::usage);
+  CHECK(kind_of("3", [](sundog::Scene& scene) { scene.set_camera({}); }) == ErrorKind::usage);
+  const char* objects = R"({"objects": {}})";
+  CHECK(kind_of(objects, [](sundog::Scene& scene) { scene.add_sphere({}, 1, {}); }) == ErrorKind::usage);
+  CHECK(kind_of(objects, [](sundog::Scene& scene) { scene.add_box({}, {1, 1, 1}, {}); }) == ErrorKind::usage);
+  CHECK(kind_of(objects, [](sundog::Scene& scene) { scene.add_plane({}, {0, 1, 0}, {}); }) ==
+        ErrorKind::usage);
+  CHECK(kind_of(objects, [](sundog::Scene& scene) { scene.add_instance("m", {}); }) == ErrorKind::usage);
+  CHECK(kind_of(objects, [](sundog::Scene& scene) { scene.add_formula({}, {}); }) == ErrorKind::usage);
+  CHECK(kind_of("3", [](sundog::Scene& scene) { scene.set_background({}, {}); }) == ErrorKind::usage);
+  CHECK(kind_of("3", [](sundog::Scene& scene) { scene.set_samples(1); }) == ErrorKind::usage);
+  CHECK(kind_of("{}", [](sundog::Scene& scene) { (void)scene.contains("no pointer"); }) == ErrorKind::usage);
+  sundog::Scene scene = small_scene();
+  scene.set_size(0, 10);
+  CHECK(error_of([&] { (void)scene.check(); }).place() == "/image/width");
+  CHECK(error_of([&] { (void)scene.set_size(10, 10).set_samples(0).check(); }).place() == "/render/samples");
+}
+
 TEST_CASE("what a scene's values do not fit is an error with file and place") {
   sundog::Scene scene = small_scene();
   scene.set("/camera/fov", 200);
@@ -79,6 +109,20 @@ TEST_CASE("scenes that cannot be read are errors that name the file") {
   CHECK(error.place().starts_with("line"));
   CHECK(error_of([&] { (void)sundog::Scene::from_json("{]"); }).kind() == ErrorKind::scene);
   CHECK(error_of([&] { (void)sundog::Scene::from_json("{}").check(); }).kind() == ErrorKind::scene);
+}
+
+TEST_CASE("the camera that is made up around a model fits the picture that is asked for") {
+  const TemporaryFolder folder;
+  const auto ball = folder.write("wide.obj", "v -4 0 0\nv 4 0 0\nv 4 1 0\nv -4 1 0\nf 1 2 3 4\n");
+  const sundog::Scene usual = sundog::Scene::load(ball),
+                      wide = sundog::Scene::load(ball, {.size = {400, 100}});
+  CHECK(usual.get("/image/width") == "640");
+  CHECK(wide.get("/image/width") == "400");
+  CHECK(wide.get("/image/height") == "100");
+  CHECK(std::stod(wide.get("/camera/position/2")) < 0.6 * std::stod(usual.get("/camera/position/2")));
+  CHECK(wide.check() == usual.check());
+  const auto json = folder.write("scene.json", R"({"objects": []})");
+  CHECK(sundog::Scene::load(json, {.size = {30, 20}}).get("/image/height") == "20");
 }
 
 TEST_CASE("names of files in a scene's text count from its folder") {
@@ -134,6 +178,43 @@ TEST_CASE("a mesh of spans that do not fit each other is refused, and nothing is
   CHECK(error_of([&] { (void)scene.check(); }).kind() == ErrorKind::scene);
   scene.add_mesh("solid", solid.view());
   CHECK(scene.check().empty());
+}
+
+TEST_CASE("a mesh that has an owner is held, not copied") {
+  constexpr std::size_t edge = 300;  // 1 MB of vertices, 2 MB of triangles
+  struct Grid {
+    std::vector<std::array<float, 3>> positions;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+  };
+  auto grid = std::make_shared<Grid>();
+  for (std::uint32_t i = 0; i < edge * edge; ++i) {
+    grid->positions.push_back({float(i % edge), float(i / edge), 0});
+    if (i % edge + 1 == edge || i / edge + 1 == edge) continue;
+    grid->triangles.push_back({i, i + 1, i + std::uint32_t(edge)});
+    grid->triangles.push_back({i + 1, i + std::uint32_t(edge) + 1, i + std::uint32_t(edge)});
+  }
+  sundog::MeshView view{.positions = grid->positions, .triangles = grid->triangles};
+  const std::size_t bytes = 12 * (grid->positions.size() + grid->triangles.size());
+  {
+    sundog::Scene scene = small_scene();
+    const auto added = [&] {
+      const AllocatedBytes allocated;
+      scene.add_mesh("grid", view);
+      return allocated.count();
+    };
+    CHECK(added() >= bytes);  // without an owner there is one copy
+    view.owner = grid;
+    CHECK(added() < bytes / 100);
+    scene.add_instance("grid", {.material = "red"});
+    const AllocatedBytes allocated;
+    CHECK(scene.check().empty());
+    const sundog::Scene copy = scene;
+    CHECK(copy.check().empty());
+    CHECK(allocated.count() < bytes / 10);
+    CHECK(grid.use_count() > 2);
+  }
+  view.owner = nullptr;
+  CHECK(grid.use_count() == 1);  // let go of
 }
 
 TEST_CASE("a mesh in memory and one of the document want two names") {

@@ -35,6 +35,38 @@ TEST_CASE("two sessions in one process at once have the command line's bits") {
   }
 }
 
+TEST_CASE("two sessions at once on different devices have the command line's bits") {
+  const std::string spec = test_spec().empty() ? "all" : test_spec();
+  std::vector<sundog::Device> devices;
+  try {
+    devices = sundog::choose_devices({spec + "/1", spec + "/1"});
+  } catch (
+      const sundog::Error&) {  // one unit, or a driver that splits none: the next device, if there is one
+    for (const sundog::Device& device : sundog::devices())
+      if (device.usable && devices.size() < 2) devices.push_back(device);
+  }
+  if (devices.size() < 2) {
+    WARN("there is but one device here, and it cannot be split: two at once are not tried");
+    return;
+  }
+  const TemporaryFolder folder;
+  sundog::Scene scene = sundog::Scene::load(shipped_scene("spheres")).set_size(48, 32);
+  std::vector<sundog::Session> sessions;
+  for (std::size_t i = 0; i < 2; ++i) sessions.emplace_back(std::vector{devices[i]});
+  for (const int intensity : {2, 1})  // an edit while both draw
+    for (sundog::Session& session : sessions) session.start(scene.set("/lights/0/intensity", intensity));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string ours = (folder / "ours.exr").string(), theirs = (folder / "theirs.exr").string();
+    sessions[i].finish().save(ours);
+    REQUIRE(run_sundog({"render", shipped_scene("spheres").string(), "-o", theirs, "--size", "48x32", "--set",
+                        "/lights/0/intensity=1", "--device",
+                        devices[i].label.substr(0, devices[i].label.find_first_of(" @"))})
+                .status == 0);
+    CAPTURE(devices[i].label);
+    CHECK(file_bytes(ours) == file_bytes(theirs));
+  }
+}
+
 TEST_CASE("an edit in a session draws the scene that it makes") {
   sundog::Scene scene = small_scene();
   sundog::Session session(test_device());
@@ -98,6 +130,7 @@ TEST_CASE("errors of a session have their kind, and leave it as it was") {
   CHECK(error_of([&] { session.start(sundog::Scene::from_json("{}")); }).kind() == ErrorKind::scene);
   CHECK(error_of([&] { session.start(small_scene(), {.work_group = {.x = 4, .y = 0}}); }).kind() ==
         ErrorKind::usage);
+  CHECK(error_of([&] { session.start(small_scene(), {.tile = -1}); }).kind() == ErrorKind::usage);
   CHECK(session.finish().width() == 64);
   sundog::Session moved = std::move(session);
   CHECK(moved.snapshot().generation == 1);

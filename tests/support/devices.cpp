@@ -4,6 +4,7 @@
 #include <sstream>
 #include <type_traits>
 
+#include "base/environment.h"
 #include "catch.h"
 #include "shared/features.h"
 #include "shared/sampler.h"
@@ -25,7 +26,7 @@ const std::vector<sundog::DeviceInfo>& test_devices() {
     std::istringstream in(listed ? listed : "all");
     std::vector<std::string> specs;
     for (std::string spec; std::getline(in, spec, ',');) specs.push_back(spec);
-    return sundog::select_devices(sundog::enumerate_devices(), specs);
+    return sundog::select_devices(sundog::enumerate_devices(sundog::plain_environment()), specs);
   }();
   return devices;
 }

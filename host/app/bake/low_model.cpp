@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/process/environment.h"
 #include "base/error.h"
 #include "compile/textures.h"
 #include "scene/json/parse.h"
@@ -107,7 +108,7 @@ SceneDescription load_geometry(const std::string& file, bool outside_files) {
     scene.meshes = std::move(model.meshes);
     scene.objects = std::move(model.objects);
   } else {
-    scene = load_scene(file, {}, {.outside_files = outside_files});
+    scene = load_scene(file, {}, with_streams({.outside_files = outside_files}));
   }
   for (const Object& object : scene.objects)
     if (std::holds_alternative<FieldShape>(object.shape))

@@ -16,6 +16,7 @@
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/options/pick_devices.h"
+#include "app/process/environment.h"
 #include "app/process/revision.h"
 #include "app/process/warnings.h"
 #include "base/cache_folder.h"
@@ -90,10 +91,11 @@ Report new_report(const std::string& name, const std::string& title, const Bench
       {{"sundog", SUNDOG_VERSION}, {"revision", build_revision()}, {"command", command_line()}});
   if (!options.overrides.empty())
     report.facts.emplace_back("--set", fmt::format("{}", fmt::join(options.overrides, " ")));
-  if (const std::string more = user_build_options(); !more.empty())
+  if (const std::string more = program_environment()->build_options; !more.empty())
     report.facts.emplace_back("SUNDOG_BUILD_OPTIONS", more);
   if (const std::string note = busy_note(); !note.empty()) report.notes.push_back(note);
-  if (const std::string why = cache_refusal(); !why.empty()) report.notes.push_back(why);
+  if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())
+    report.notes.push_back(why);
   return report;
 }
 
@@ -121,7 +123,7 @@ SceneDescription bench_description(const std::string& file, const BenchOptions& 
     for (const std::string& setting : parse_image_size(options.size)) overrides.push_back(setting);
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
   try {
-    return load_scene(file, overrides, {.outside_files = options.outside_files});
+    return load_scene(file, overrides, with_streams({.outside_files = options.outside_files}));
   } catch (const SceneError& error) {
     for (const std::string& setting : overrides)
       if (error.file == scene_file_name(file) && concerns(setting, error.place))
@@ -141,13 +143,13 @@ SceneDescription sized(SceneDescription scene, const BenchOptions& options) {
 }
 
 std::vector<DeviceInfo> bench_devices(const BenchOptions& options) {
-  return pick_devices(enumerate_devices(),
-                      options.devices.empty() ? devices_of_environment() : options.devices);
+  return pick_devices(list_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
 }
 
 void add_device_facts(Report& report, const std::vector<DeviceInfo>& devices) {
   for (const DeviceInfo& device : devices) report.facts.emplace_back("device", device_fact(device));
-  if (std::ranges::any_of(devices, is_pocl)) report.facts.emplace_back("PoCL", pocl_fact());
+  if (std::ranges::any_of(devices, is_pocl))
+    report.facts.emplace_back("PoCL", pocl_fact(*program_environment()));
 }
 
 std::vector<int> parse_list(const char* option, const std::string& text, int low, int high) {

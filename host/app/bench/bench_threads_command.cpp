@@ -10,6 +10,7 @@
 #include "app/bench/bench_options.h"
 #include "app/bench/bench_progress.h"
 #include "app/options/option_helpers.h"
+#include "app/process/environment.h"
 #include "app/process/progress.h"
 #include "base/error.h"
 #include "bench/frames/thread_budget.h"
@@ -38,7 +39,7 @@ DeviceInfo device_to_split(const BenchOptions& options) {
   if (asked) {
     devices = bench_devices(options);
   } else {
-    for (const DeviceInfo& row : enumerate_devices())
+    for (const DeviceInfo& row : list_devices())
       if (row.usable() && row.max_sub_devices > 0) devices.push_back(row);
     if (devices.empty())
       throw DeviceError(

@@ -11,6 +11,7 @@
 #include "app/bench/tune_devices.h"
 #include "app/options/commands.h"
 #include "app/options/option_helpers.h"
+#include "app/process/environment.h"
 #include "base/cache_folder.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 std::vector<fs::path> kept_files() {
   std::vector<fs::path> files;
   std::error_code none;
-  for (const auto& entry : fs::directory_iterator(tuning_folder(), none))
+  for (const auto& entry : fs::directory_iterator(tuning_folder(*program_environment()), none))
     if (entry.path().extension() == ".json") files.push_back(entry.path());
   std::ranges::sort(files);
   return files;
@@ -51,8 +52,9 @@ std::string label(const TuningFile& file) {
 
 int show() {
   const std::vector<TuningFile> files = kept();
-  if (files.empty()) fmt::print("There are no results in {}.\n", tuning_folder().string());
-  const std::string kernels = kernels_hash();
+  if (files.empty())
+    fmt::print("There are no results in {}.\n", tuning_folder(*program_environment()).string());
+  const std::string kernels = kernels_hash(*program_environment());
   for (const TuningFile& file : files) {
     fmt::print("{}, driver {}{}\n", label(file), file.driver,
                file.kernels == kernels ? "" : ": for other kernels, not used");
@@ -72,7 +74,8 @@ int forget(const TuneOptions& options) {
   }
   std::size_t removed = 0;
   for (const fs::path& file : files) removed += fs::remove(file);
-  fmt::print("{} file{} removed from {}\n", removed, removed == 1 ? "" : "s", tuning_folder().string());
+  fmt::print("{} file{} removed from {}\n", removed, removed == 1 ? "" : "s",
+             tuning_folder(*program_environment()).string());
   return exit_done;
 }
 
@@ -97,8 +100,8 @@ int import_all(const std::string& path) {
   std::vector<TuningFile> files;
   for (const JsonValue& value : JsonValue(list, context).items("what `sundog tune --export` writes"))
     files.push_back(read_tuning(value));
-  const std::string kernels = kernels_hash();
-  const std::vector<DeviceInfo> devices = enumerate_devices();
+  const std::string kernels = kernels_hash(*program_environment());
+  const std::vector<DeviceInfo> devices = list_devices();
   for (const TuningFile& file : files) {
     const auto here = std::ranges::find_if(devices, [&](const DeviceInfo& device) {
       return device.platform_name == file.platform && device.name == file.device &&
@@ -125,7 +128,7 @@ int run_tune(const TuneOptions& options) {
   if (options.forget) return forget(options);
   if (options.show) return show();
   if (!options.import_from.empty()) return exit_done;
-  if (const std::string why = cache_refusal(); !why.empty()) throw IoError(why);
+  if (const std::string why = cache_refusal(program_environment()->cache); !why.empty()) throw IoError(why);
   return options.worker.empty() ? tune_devices(options) : tune_one_device(options);
 }
 

@@ -13,11 +13,12 @@
 #include "app/bench/bench_progress.h"
 #include "app/options/commands.h"
 #include "app/process/child_process.h"
+#include "app/process/environment.h"
 #include "app/process/progress.h"
+#include "app/process/standard_streams.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/memory_file.h"
-#include "base/standard_streams.h"
 #include "bench/rays/self_check.h"
 #include "bench/report/report.h"
 #include "bench/tune/tuner.h"
@@ -190,7 +191,7 @@ int tune_devices(const TuneOptions& options) {
 int tune_one_device(const TuneOptions& options) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const Stopwatch clock;
-  const DeviceInfo device = select_devices(enumerate_devices(), {options.worker}).front();
+  const DeviceInfo device = select_devices(list_devices(), {options.worker}).front();
   TuneCosts costs;
   const auto left_out = tune_scenes(device, scenes_to_tune(options), options.budget, clock, costs);
   if (!left_out.empty())

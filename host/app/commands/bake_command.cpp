@@ -14,6 +14,7 @@
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/options/pick_devices.h"
+#include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/progress.h"
 #include "base/error.h"
@@ -102,7 +103,7 @@ int bake_map(const BakeOptions& options) {
                      "greater --size");
   warn_of_coverage(options, coverage);
   const std::vector<DeviceInfo> devices =
-      pick_devices(enumerate_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
+      pick_devices(list_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
   Device device(devices.front());
   RayTracer tracer(device, high);
   ProgressBar bar(!options.quiet);

@@ -16,6 +16,7 @@
 #include "app/options/option_helpers.h"
 #include "app/options/pick_devices.h"
 #include "app/process/child_process.h"
+#include "app/process/environment.h"
 #include "base/file.h"
 #include "bench/rays/self_check.h"
 #include "bench/report/machine.h"
@@ -55,7 +56,7 @@ void print_line(const std::string& line) {
 }
 
 int work(const std::string& spec) {
-  const DeviceInfo device = select_devices(enumerate_devices(), {spec}).front();
+  const DeviceInfo device = select_devices(list_devices(), {spec}).front();
   const SelfCheck check =
       check_device(device, [](const std::string& stage) { print_line("stage " + stage); });
   print_line("result " + check_json(check).dump(-1, ' ', false, json::error_handler_t::replace));
@@ -69,7 +70,7 @@ std::string end_text(const ChildResult& child, double seconds) {
 }
 
 /// The platforms and devices of a list as `sundog devices --json` gives it; `problem` when there is none.
-json list_devices(const std::vector<std::string>& variables, double seconds, std::string& problem) {
+json listed_devices(const std::vector<std::string>& variables, double seconds, std::string& problem) {
   std::string text;
   const ChildResult child = run_self({"devices", "--json"}, variables, seconds,
                                      [&](const std::string& line) { text += line + "\n"; });
@@ -104,7 +105,7 @@ json check_drivers(const fs::path& folder, double seconds) {
   for (const fs::path& file : files) {
     std::string problem, library = read_file(file);
     library = library.substr(0, library.find('\n'));
-    const json rows = list_devices({"OCL_ICD_VENDORS=" + file.string()}, seconds, problem);
+    const json rows = listed_devices({"OCL_ICD_VENDORS=" + file.string()}, seconds, problem);
     const auto devices = std::ranges::count_if(rows, [](const json& row) { return row.contains("index"); });
     if (problem.empty() && rows.empty()) problem = "cannot be loaded, or has no platform";
     drivers.push_back({{"file", file.filename().string()},
@@ -197,7 +198,7 @@ int exit_status(const json& devices) {
 int check(const CheckOptions& options) {
   const fs::path folder = vendors_folder();
   std::string problem;
-  const json rows = list_devices({}, options.timeout, problem);
+  const json rows = listed_devices({}, options.timeout, problem);
   const json wanted = wanted_rows(rows, options.devices);
   json report = {{"schema", 1},
                  {"sundog", SUNDOG_VERSION},

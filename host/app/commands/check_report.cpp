@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "app/process/environment.h"
 #include "base/cache_folder.h"
 #include "base/file.h"
 
@@ -73,7 +74,7 @@ std::string device_text(const json& device) {
 }  // namespace
 
 json cache_figures() {
-  const fs::path cache = cache_directory();
+  const fs::path cache = program_environment()->cache;
   const char* setting = std::getenv("SUNDOG_KERNEL_CACHE");
   json kernels = folder_figures("kernels", cache.empty() ? cache : cache / "kernels");
   kernels["off"] = setting && std::string_view(setting) == "off";
@@ -96,7 +97,8 @@ std::string check_text(const json& report) {
         cache.at("files").get<std::uint64_t>(), cache.at("bytes").get<double>() / (1 << 20),
         cache.at("writable") == true ? "" : ", cannot be written: set XDG_CACHE_HOME to a folder that can",
         cache.value("off", false) ? ", off by SUNDOG_KERNEL_CACHE" : "");
-  if (const std::string why = cache_refusal(); !why.empty()) text += fmt::format("  {}\n", why);
+  if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())
+    text += fmt::format("  {}\n", why);
   text += "\nDevices\n";
   for (const json& device : report.at("devices")) text += device_text(device);
   return text + problem_text(report);

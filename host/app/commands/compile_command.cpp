@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "app/options/commands.h"
+#include "app/process/environment.h"
 #include "app/process/interrupt.h"
 #include "base/error.h"
 #include "device/compile_process.h"
@@ -17,7 +18,7 @@ int compile_command(int argc, const char* const* argv) {
   // leave behind when it ends at once is of no use to anyone.
   hold_back({SIGINT, SIGHUP});
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  serve_compile(argv[2], STDIN_FILENO, STDOUT_FILENO);
+  serve_compile(program_environment(), argv[2], STDIN_FILENO, STDOUT_FILENO);
   return exit_done;
 }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <vector>
 
+#include "app/process/environment.h"
 #include "base/error.h"
 #include "device/choice.h"
 #include "device/devices.h"
@@ -132,7 +133,7 @@ void print_table(const std::vector<DeviceInfo>& rows, const DeviceInfo* chosen) 
 }  // namespace
 
 int devices_command(const DevicesOptions& options) {
-  const std::vector<DeviceInfo> rows = enumerate_devices();
+  const std::vector<DeviceInfo> rows = list_devices();
   const DeviceInfo* chosen = default_device(rows);
   if (options.json) {
     json list = json::array();

@@ -12,6 +12,7 @@
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/pick_devices.h"
+#include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/progress.h"
 #include "app/process/save_image.h"
@@ -92,7 +93,7 @@ GalleryPicture make_picture(const GalleryOptions& options, const std::string& sc
                             const std::vector<DeviceInfo>& devices, const std::shared_ptr<DevicePool>& pool) {
   LoadOptions load;
   load.outside_files = options.outside_files;
-  const SceneDescription description = load_scene(scene, overrides_of(options), load);
+  const SceneDescription description = load_scene(scene, overrides_of(options), with_streams(load));
   if (!options.quiet) print_warnings(description.warnings);
   const auto flat = std::make_shared<const CompiledScene>(compile(description));
   ProgressBar bar(!options.quiet);
@@ -129,7 +130,7 @@ int gallery(GalleryOptions options) {
   const fs::path page = fs::path(options.folder) / "index.html";
   check_writable(page);
   const std::vector<DeviceInfo> devices =
-      pick_devices(enumerate_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
+      pick_devices(list_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
   Gallery all{"sundog gallery", {{"sundog", SUNDOG_VERSION}}, {}};
   for (const DeviceInfo& device : devices) all.facts.emplace_back("device", device_fact(device));
   const Facts machine = machine_facts();

@@ -12,6 +12,7 @@
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/options/pick_devices.h"
+#include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/save_image.h"
 #include "app/process/trace_halo_map.h"
@@ -50,7 +51,7 @@ EnvironmentDescription read_halo(const HaloOptions& options) {
     return usual_halo();
   }
   const SceneDescription scene =
-      load_scene(options.scene, options.overrides, {.outside_files = options.outside_files});
+      load_scene(options.scene, options.overrides, with_streams({.outside_files = options.outside_files}));
   print_warnings(scene.warnings);
   if (scene.environment.type != EnvironmentType::halo)
     throw SceneError(options.scene, "/environment", "wanted an environment of the type \"halo\"");
@@ -158,7 +159,7 @@ int make_picture(const HaloOptions& options) {
   check_picture(options.picture, false);
   const EnvironmentDescription e = halo_of(options);
   const std::vector<DeviceInfo> devices =
-      pick_devices(enumerate_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
+      pick_devices(list_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
   const TracedHalo traced = trace_halo_map(e, devices, options.quiet || options.json);
   const Image image = picture_of(options, e, traced.map, rows);
   const auto color = options.picture.full_floats ? ExrColor::full : ExrColor::half;

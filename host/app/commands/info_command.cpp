@@ -5,6 +5,7 @@
 
 #include "app/options/commands.h"
 #include "app/options/option_values.h"
+#include "app/process/environment.h"
 #include "app/process/scene_figures.h"
 #include "app/process/warnings.h"
 #include "base/error.h"
@@ -83,7 +84,7 @@ CompiledScene compile_overridden(const SceneDescription& scene, const InfoComman
 int info_command(const InfoCommand& command) {
   for (const std::string& setting : command.overrides) check_override(setting);
   const SceneDescription scene =
-      load_scene(command.scene, command.overrides, {.outside_files = command.outside_files});
+      load_scene(command.scene, command.overrides, with_streams({.outside_files = command.outside_files}));
   print_warnings(scene.warnings);
   const CompiledScene flat = compile_overridden(scene, command);
   json figures = scene_figures(scene, flat);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/job/remote_devices.h"
+#include "app/process/environment.h"
 #include "app/process/warnings.h"
 #include "base/error.h"
 #include "render/film/hash.h"
@@ -127,7 +128,7 @@ std::vector<DeviceInfo> job_devices(Mailbox& job, const RenderCommand& command) 
   }
   Choice choice(job);
   choice.add(0, command.devices, [&] {
-    return Listed{command.isolate ? enumerate_in_worker() : enumerate_devices(), usable_cores()};
+    return Listed{command.isolate ? enumerate_in_worker() : list_devices(), usable_cores()};
   });
   for (int rank = 1; rank < job.size(); ++rank)
     choice.add(rank, command.devices,

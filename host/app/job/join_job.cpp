@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "app/job/job.h"
+#include "app/process/environment.h"
 #include "base/error.h"
 
 namespace sundog {
@@ -81,8 +82,8 @@ std::unique_ptr<Mailbox> join_job() {
   if (rank < 0) return nullptr;
   OpenTransport* open = load_transport();
   undo_default_binding();
-  auto job =
-      std::make_unique<Mailbox>([open] { return std::unique_ptr<Transport>(open()); }, silence_limit());
+  auto job = std::make_unique<Mailbox>([open] { return std::unique_ptr<Transport>(open()); },
+                                       program_environment()->silence_limit);
   if (const int size = job_size(); size > 0 && size != job->size())
     throw UsageError(
         fmt::format("the launcher has started {} processes, of which Open MPI sees {}: start sundog by the "

@@ -4,8 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "app/process/environment.h"
+#include "app/process/standard_streams.h"
 #include "base/error.h"
-#include "base/standard_streams.h"
 #include "render/device/device_server.h"
 #include "render/device/tuning.h"
 #include "render/film/hash.h"
@@ -21,7 +22,7 @@ using nlohmann::json;
 
 /// The device of that place and name on this side.
 DeviceInfo find_device(const DeviceInfo& wanted) {
-  for (DeviceInfo& device : enumerate_devices())
+  for (DeviceInfo& device : list_devices())
     if (device.platform == wanted.platform && device.device == wanted.device && device.name == wanted.name) {
       device.sub_units = wanted.sub_units;
       device.first_unit = wanted.first_unit;
@@ -57,7 +58,7 @@ std::shared_ptr<const CompiledScene> load_flat(const json& settings) {
                       settings.at("outside_files").get<bool>()};
   if (settings.at("frame").is_number()) options.frame = settings["frame"].get<double>();
   return std::make_shared<const CompiledScene>(
-      compile(load_scene(settings.at("scene").get<std::string>(), overrides, options)));
+      compile(load_scene(settings.at("scene").get<std::string>(), overrides, with_streams(options))));
 }
 
 /// The devices of one process render the same scene: it is loaded once.
@@ -107,21 +108,23 @@ OpenedServer open_server(const json& settings, KeptOpen* kept) {
 }
 
 std::vector<DeviceInfo> enumerate_in_worker() {
-  const std::unique_ptr<Channel> channel = start_worker("the list of devices");
+  const std::unique_ptr<Channel> channel = start_worker(*program_environment(), "the list of devices");
   channel->send({Message::list, {}, {}});
   while (true) {
     const std::optional<Message> answer = channel->receive(1);
     if (!answer) continue;
     if (answer->kind == Message::failed) throw DeviceError(answer->values.at("what").get<std::string>());
     channel->send({Message::close, {}, {}});
-    return answer->values.at("devices").get<std::vector<DeviceInfo>>();
+    auto devices = answer->values.at("devices").get<std::vector<DeviceInfo>>();
+    for (DeviceInfo& device : devices) device.environment = program_environment();
+    return devices;
   }
 }
 
 ServerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device, std::uint64_t scene_hash) {
   const RemoteDevice remote{device,
                             device.type == "cpu" ? 0 : -1,
-                            [label = device.label()] { return start_worker(label); },
+                            [label = device.label()] { return start_worker(*program_environment(), label); },
                             remote_settings(command, device),
                             scene_hash,
                             worker_restarts,

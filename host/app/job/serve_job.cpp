@@ -10,6 +10,7 @@
 #include "app/job/job.h"
 #include "app/job/remote_devices.h"
 #include "app/options/commands.h"
+#include "app/process/environment.h"
 #include "render/remote/hang_watch.h"
 #include "render/remote/remote_values.h"
 #include "render/remote/worker_process.h"
@@ -59,7 +60,7 @@ void serve_by_worker(ReadAhead& channel) {
   const std::string name =
       order.contains("device") ? order["device"].get<DeviceInfo>().label() : "the list of devices";
   try {
-    pass_on(channel, *start_worker(name));
+    pass_on(channel, *start_worker(*program_environment(), name));
   } catch (const DeviceError& error) {
     channel.send({Message::failed, {{"what", error.what()}, {"closed", true}}, {}});
   }
@@ -75,11 +76,14 @@ void serve_here(Channel& channel, Service& service) {
       // There is nobody left to tell.
     }
   });
-  serve_orders(channel, orders, [&](const nlohmann::json& settings) {
-    OpenedServer opened = open_server(settings, &service.kept);
-    watch.look_at(opened);
-    return opened;
-  });
+  serve_orders(
+      channel, orders,
+      [&](const nlohmann::json& settings) {
+        OpenedServer opened = open_server(settings, &service.kept);
+        watch.look_at(opened);
+        return opened;
+      },
+      list_devices);
 }
 
 void serve(Channel& opened, Service& service) {

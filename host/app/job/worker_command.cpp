@@ -8,6 +8,7 @@
 
 #include "app/job/remote_devices.h"
 #include "app/options/commands.h"
+#include "app/process/environment.h"
 #include "app/process/interrupt.h"
 #include "base/error.h"
 #include "render/remote/hang_watch.h"
@@ -35,11 +36,14 @@ int worker_command(int argc, const char* const* argv) {
     }
   };
   HangWatch watch(on_hang, beat);
-  serve_orders(channel, orders, [&](const nlohmann::json& settings) {
-    OpenedServer opened = open_server(settings);
-    watch.look_at(opened);
-    return opened;
-  });
+  serve_orders(
+      channel, orders,
+      [&](const nlohmann::json& settings) {
+        OpenedServer opened = open_server(settings);
+        watch.look_at(opened);
+        return opened;
+      },
+      list_devices);
   return exit_done;
 }
 

@@ -8,9 +8,9 @@
 #include <filesystem>
 
 #include "app/process/save_image.h"
+#include "app/process/standard_streams.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "base/standard_streams.h"
 
 namespace sundog {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/spawn_self.h"
+#include "app/process/spawn_self.h"
 
 namespace sundog {
 

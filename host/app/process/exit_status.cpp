@@ -7,6 +7,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <utility>
 
 #include "app/process/warnings.h"
 #include "base/error.h"
@@ -18,7 +19,7 @@ namespace {
 void write_message(std::string message) {
   std::ranges::replace(message, '\n', ' ');
   std::ranges::replace_if(message, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
-  tell(fmt::format("sundog: {}\n", message));
+  tell(fmt::format("sundog: {}\n", with_option_names(std::move(message))));
 }
 
 }  // namespace

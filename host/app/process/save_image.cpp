@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "app/process/environment.h"
+#include "app/process/standard_streams.h"
 #include "base/error.h"
-#include "base/standard_streams.h"
 
 namespace sundog {
 namespace {
@@ -18,14 +19,16 @@ fs::path named(const Picture& picture, const fs::path& path) {
 
 void write(const Picture& picture, const fs::path& path) {
   const Image shown = shown_in(named(picture, path), picture.image, picture.tone_map);
-  write_output(path, encode_image(shown, named(picture, path), picture.aovs,
-                                  picture.full_floats ? ExrColor::full : ExrColor::half));
+  write_output(path,
+               encode_image(shown, named(picture, path), picture.aovs,
+                            picture.full_floats ? ExrColor::full : ExrColor::half),
+               program_environment()->faults);
 }
 
 bool keep_checkpoint(const Picture& picture) {
   if (picture.checkpoint.empty()) return false;
   try {
-    write_checkpoint(picture.checkpoint, picture.film, picture.key);
+    write_checkpoint(picture.checkpoint, picture.film, picture.key, program_environment()->faults);
     return true;
   } catch (const IoError&) {
     return false;
@@ -67,14 +70,13 @@ Image shown_in(const fs::path& path, Image image, const ToneMap& map) {
   return image;
 }
 
-bool drops_alpha(const fs::path& path) { return path.extension() != ".exr" && path.extension() != ".EXR"; }
-
 void save_image(const Picture& picture, const fs::path& path) {
   save(picture, path, "image", [&](const fs::path& to) { write(picture, to); });
 }
 
 void save_part(const Picture& picture, const PartHeader& header, const fs::path& path) {
-  save(picture, path, "part", [&](const fs::path& to) { write_part(to, header, picture.film); });
+  save(picture, path, "part",
+       [&](const fs::path& to) { write_part(to, header, picture.film, program_environment()->faults); });
 }
 
 }  // namespace sundog

@@ -23,9 +23,6 @@ struct Picture {
   ToneMap tone_map = {};       // for formats of 8 bits
 };
 
-/// True where a program would show an alpha channel of coverage as holes.
-bool drops_alpha(const std::filesystem::path& path);
-
 /// The channels that a file of this name keeps: 3, or 4 with coverage.
 inline int image_channels(const std::filesystem::path& path) { return drops_alpha(path) ? 3 : 4; }
 

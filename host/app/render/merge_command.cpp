@@ -7,9 +7,9 @@
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/process/save_image.h"
+#include "app/process/standard_streams.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "base/standard_streams.h"
 #include "render/film/part.h"
 
 namespace sundog {

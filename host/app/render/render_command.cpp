@@ -15,10 +15,12 @@
 #include "app/options/frames.h"
 #include "app/options/output_files.h"
 #include "app/options/pick_devices.h"
+#include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/interrupt.h"
 #include "app/process/progress.h"
 #include "app/process/save_image.h"
+#include "app/process/standard_streams.h"
 #include "app/process/trace_halo_map.h"
 #include "app/process/warnings.h"
 #include "app/render/render_result.h"
@@ -27,7 +29,6 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "base/standard_streams.h"
 #include "device/device_pool.h"
 #include "render/device/tuning.h"
 #include "render/device/view_warnings.h"
@@ -83,7 +84,7 @@ void check_frames(const RenderCommand& command) {
 SceneDescription load(const RenderCommand& command) {
   try {
     return load_scene(command.scene, command.overrides,
-                      {command.frame, command.native_code, command.outside_files});
+                      with_streams({command.frame, command.native_code, command.outside_files}));
   } catch (const SceneError& error) {
     if (error.file == scene_file_name(command.scene))
       for (const std::string& setting : command.overrides)
@@ -103,6 +104,7 @@ RenderOptions render_options(const RenderCommand& command) {
   options.resume = command.resume;
   if (const char* seconds = std::getenv("SUNDOG_CHECKPOINT_EVERY"))
     options.checkpoint_seconds = std::max(0.0, std::strtod(seconds, nullptr));
+  options.faults = program_environment()->faults;
   options.keep_failed = true;
   options.time_limit = command.time_limit;
   options.noise = command.noise;
@@ -137,7 +139,7 @@ struct LoadedScene {
 
 std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job) {
   if (job) return job_devices(*job, command);
-  return pick_devices(command.isolate ? enumerate_in_worker() : enumerate_devices(), command.devices,
+  return pick_devices(command.isolate ? enumerate_in_worker() : list_devices(), command.devices,
                       command.verbose && !command.quiet);
 }
 
@@ -261,7 +263,8 @@ int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox*
     scene = load_and_compile(command, setup, times);
     print_warnings(scene->description.warnings);
   }
-  if (const std::string why = cache_refusal(); !why.empty()) print_warnings({{why}});
+  if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())
+    print_warnings({{why}});
   if (setup.devices.empty()) setup.devices = choose_devices(command, job);
   if (scene) return render_one(command, *scene, setup, clock, times);
   setup.pool = std::make_shared<DevicePool>();

@@ -3,9 +3,9 @@
 #include <string>
 
 #include "app/options/options.h"
-#include "app/render/frame_memory.h"
 #include "app/render/stats.h"
 #include "compile/compiled_scene.h"
+#include "render/film/frame_memory.h"
 #include "render/render.h"
 
 namespace sundog {

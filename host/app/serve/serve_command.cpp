@@ -8,6 +8,7 @@
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/pick_devices.h"
+#include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/warnings.h"
 #include "app/serve/studio.h"
@@ -55,7 +56,7 @@ SceneDocument first_document(const ServeOptions& options) {
 int serve(const ServeOptions& options) {
   SceneDocument document = first_document(options);
   print_warnings(document.scene()->warnings);
-  StudioSetup setup{fs::current_path(), enumerate_devices(), {}};
+  StudioSetup setup{fs::current_path(), list_devices(), {}};
   setup.picked =
       pick_devices(setup.devices, options.devices.empty() ? devices_of_environment() : options.devices);
   WebServer server(options.port.empty() ? 0 : parse_number("--port", options.port, 0, 65535), {});

@@ -9,8 +9,9 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
-#include <string_view>
 #include <thread>
+
+#include "base/environment.h"
 
 namespace sundog {
 namespace {
@@ -68,10 +69,10 @@ std::string busy_note() {
 
 std::string compiler_text() { return fmt::format("{} ({})", SUNDOG_COMPILER, SUNDOG_COMPILER_OPTIONS); }
 
-std::string pocl_fact() {
-  const char* value = std::getenv("POCL_WORK_GROUP_SPECIALIZATION");
-  const bool on = !value || std::string_view(value) != "0";  // PoCL's own default
-  return fmt::format("POCL_WORK_GROUP_SPECIALIZATION={}: a kernel is compiled {}", value ? value : "",
+std::string pocl_fact(const HostEnvironment& environment) {
+  const std::string value = environment.driver("POCL_WORK_GROUP_SPECIALIZATION");
+  const bool on = value != "0";  // PoCL's own default
+  return fmt::format("POCL_WORK_GROUP_SPECIALIZATION={}: a kernel is compiled {}", value,
                      on ? "again for each work-group size" : "once for all work-group sizes");
 }
 

@@ -21,7 +21,7 @@ std::string busy_note();
 std::string compiler_text();
 
 /// How PoCL compiles for work-group sizes, by the variable that it reads.
-std::string pocl_fact();
+std::string pocl_fact(const HostEnvironment& environment);
 
 /// "0:0 platform / name, 2 compute units, driver 3.1".
 std::string device_fact(const DeviceInfo& device);

@@ -11,10 +11,10 @@ namespace {
 constexpr std::uint64_t odd_a = 0x9E3779B97F4A7C15u, odd_b = 0xC2B2AE3D27D4EB4Fu;
 
 /// Numbers without gaps between them, as one piece of memory.
-template <class T>
-void add_rows(KeyMaker& key, const std::vector<T>& rows) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  key.add(rows.size()).bytes(rows.data(), rows.size() * sizeof(T));
+template <class Rows>
+void add_rows(KeyMaker& key, const Rows& rows) {
+  static_assert(std::is_trivially_copyable_v<typename Rows::value_type>);
+  key.add(rows.size()).bytes(rows.data(), rows.size() * sizeof(typename Rows::value_type));
 }
 
 template <class T>

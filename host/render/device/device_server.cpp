@@ -1,11 +1,9 @@
 #include "render/device/device_server.h"
-#include "device/device_pool.h"
-
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <utility>
+
+#include "base/environment.h"
+#include "device/device_pool.h"
 
 namespace sundog {
 namespace {
@@ -56,7 +54,9 @@ RenderTimes DeviceServer::open() {
   return times;
 }
 
-void DeviceServer::be_nice() { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 19); }
+void DeviceServer::be_nice() {
+  if (const auto& step_back = value_of(info_.environment).step_back) step_back();
+}
 
 TileResult DeviceServer::render(const TileRequest& request, const StopFlags& flags) {
   works_ = false;

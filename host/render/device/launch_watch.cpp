@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 
 namespace sundog {
 namespace {
@@ -15,8 +14,6 @@ double now() {
 
 double launch_limit(double expected_seconds, bool first) {
   constexpr double least = 30, compiling = 300, patience = 100;
-  if (const char* text = std::getenv("SUNDOG_LAUNCH_LIMIT"))
-    if (const double seconds = std::strtod(text, nullptr); seconds > 0) return seconds;
   return first ? compiling : std::max(least, patience * expected_seconds);
 }
 

@@ -5,7 +5,7 @@
 namespace sundog {
 
 /// The limit of a launch that is expected to take so long: a hundred times that, at least 30 s; 5 min for the
-/// first launches of a kernel, in which a driver may compile. SUNDOG_LAUNCH_LIMIT (seconds) replaces all.
+/// first launches of a kernel, in which a driver may compile.
 double launch_limit(double expected_seconds, bool first);
 
 class LaunchWatch {
@@ -26,8 +26,9 @@ class LaunchWatch {
 /// While it lives, a launch runs.
 class WatchedLaunch {
  public:
-  WatchedLaunch(LaunchWatch& watch, double expected_seconds, bool first) : watch_(watch) {
-    watch_.begin(launch_limit(expected_seconds, first), first);
+  /// `limit` in seconds takes the place of launch_limit(); 0: none.
+  WatchedLaunch(LaunchWatch& watch, double expected_seconds, bool first, double limit) : watch_(watch) {
+    watch_.begin(limit > 0 ? limit : launch_limit(expected_seconds, first), first);
   }
   ~WatchedLaunch() { watch_.end(); }
   WatchedLaunch(const WatchedLaunch&) = delete;

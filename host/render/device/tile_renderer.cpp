@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/clock.h"
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/faults.h"
 #include "device/cl_status.h"
@@ -81,7 +82,8 @@ void TileRenderer::launch_samples(const TileRequest& request, const StopFlags& f
     const std::optional<SizedLaunch> next = sizer_.next();
     if (!next) return;
     const Stopwatch clock;
-    const WatchedLaunch watched(watch_, next->expected_seconds, next->expected_seconds <= 0);
+    const WatchedLaunch watched(watch_, next->expected_seconds, next->expected_seconds <= 0,
+                                value_of(device_.info().environment).launch_limit);
     Launch launch = next->launch;
     launch.first_sample += request.first_sample;
     launch.listed = !request.pixels.empty();
@@ -99,7 +101,8 @@ void TileRenderer::launch_aovs(const TileRequest& request, const Tile& tile, std
   aovs.resize(3 * pixels);
   if (pixels == 0) return;
   constexpr double expected = 3;  // not known: only what stands for minutes is stuck
-  const WatchedLaunch watched(watch_, expected, !aovs_launched_);
+  const WatchedLaunch watched(watch_, expected, !aovs_launched_,
+                              value_of(device_.info().environment).launch_limit);
   run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>(
       device_, kernels_.first_surfaces, sizer_.surfaces(pixels), kernels_.tables,
       kernels_.tables.camera_media, pixels_, aovs_, counters_, static_cast<u32>(tile.x),
@@ -122,8 +125,8 @@ void TileRenderer::check_finished(const TileRequest& asked, const TileResult& ma
   }
   const auto wanted = static_cast<u32>(pixels * samples_of(asked));
   const auto aovs = wants_aovs(asked) ? static_cast<u32>(pixels) : 0u;
-  if (fault("cut", fmt::format("{}:{}", device_.info().platform, device_.info().device),
-            sizer_.tile_samples()))
+  if (fault(value_of(device_.info().environment).faults, "cut",
+            fmt::format("{}:{}", device_.info().platform, device_.info().device), sizer_.tile_samples()))
     finished = 0;
   // A tile that was stopped may have samples of rows that are not finished.
   if (finished == 2 * (primary + aovs) && (primary == wanted || made.tile != asked.tile)) return;

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "base/cache_folder.h"
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "device/embedded_kernels.h"
@@ -62,17 +63,19 @@ std::string scene_class(const CompiledScene& scene) {
   return scene.features.secondary_rays ? kind + "+rays" : kind;
 }
 
-std::string kernels_hash() {
+std::string kernels_hash(const HostEnvironment& environment) {
   std::string all;
   for (const EmbeddedKernel& file : embedded_kernels())
-    all += fmt::format("{}\n{}\n", file.path, embedded_kernel(std::string(file.path)));
+    all += fmt::format("{}\n{}\n", file.path, embedded_kernel(std::string(file.path), environment.kernels));
   return hash128(all);
 }
 
-std::filesystem::path tuning_folder() { return cache_folder("tuning"); }
+std::filesystem::path tuning_folder(const HostEnvironment& environment) {
+  return cache_folder(environment.cache, "tuning");
+}
 
 std::filesystem::path tuning_path(const DeviceInfo& device) {
-  std::filesystem::path folder = tuning_folder();
+  std::filesystem::path folder = tuning_folder(value_of(device.environment));
   if (folder.empty()) return folder;
   const std::string key =
       fmt::format("{}\n{}\n{}\n{}", device.platform_name, device.name, device.driver, device.sub_units);
@@ -92,7 +95,7 @@ std::optional<TuningFile> load_tuning(const DeviceInfo& device) {
   if (path.empty() || !std::filesystem::exists(path)) return {};
   try {
     TuningFile file = read_tuning_file(path);
-    if (file.kernels == kernels_hash()) return file;
+    if (file.kernels == kernels_hash(value_of(device.environment))) return file;
   } catch (const std::runtime_error&) {  // damaged: as if it were not there
   }
   return {};
@@ -101,11 +104,15 @@ std::optional<TuningFile> load_tuning(const DeviceInfo& device) {
 void keep_tuning(const DeviceInfo& device, const TuningEntry& entry) {
   const std::filesystem::path path = tuning_path(device);
   if (path.empty()) {
-    const std::string why = cache_refusal();
+    const std::string why = cache_refusal(value_of(device.environment).cache);
     throw IoError(why.empty() ? "there is no cache folder to keep the result in: set XDG_CACHE_HOME" : why);
   }
-  TuningFile file = load_tuning(device).value_or(
-      TuningFile{device.platform_name, device.name, device.driver, kernels_hash(), device.sub_units, {}});
+  TuningFile file = load_tuning(device).value_or(TuningFile{device.platform_name,
+                                                            device.name,
+                                                            device.driver,
+                                                            kernels_hash(value_of(device.environment)),
+                                                            device.sub_units,
+                                                            {}});
   std::erase_if(file.entries, [&](const TuningEntry& old) {
     return old.kernel == entry.kernel && old.scene_class == entry.scene_class;
   });

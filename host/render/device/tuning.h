@@ -43,10 +43,10 @@ struct TuningFile {
 std::string scene_class(const CompiledScene& scene);
 
 /// The hash of all kernel sources as they are now.
-std::string kernels_hash();
+std::string kernels_hash(const HostEnvironment& environment);
 
 /// The folder of the files; empty where there is no cache folder.
-std::filesystem::path tuning_folder();
+std::filesystem::path tuning_folder(const HostEnvironment& environment);
 std::filesystem::path tuning_path(const DeviceInfo& device);
 
 nlohmann::json to_json(const TuningFile& file);

@@ -14,7 +14,7 @@
 namespace sundog {
 namespace {
 
-constexpr const char* kept = "as `sundog tune --export` writes it";
+constexpr const char* kept = "as tunings are exported";
 
 /// What scene_class() may say.
 std::string scene_class_from(const JsonValue& value) {

@@ -28,7 +28,7 @@ std::vector<std::string> view_warnings(const CompiledScene& scene, std::span<con
     if (device.extensions.find("cl_khr_fp64") == std::string::npos)
       warnings.push_back(fmt::format(
           "{} has no doubles (cl_khr_fp64), which so near a view of a field needs: it will look flat "
-          "or torn; choose another device (--device), or move the camera back",
+          "or torn; choose another device, or move the camera back",
           device.label()));
   return warnings;
 }

@@ -38,7 +38,8 @@ void take(const std::string& in, std::size_t& at, std::vector<T>& values) {
 
 }  // namespace
 
-void write_checkpoint(const std::filesystem::path& path, const Film& film, std::uint64_t key) {
+void write_checkpoint(const std::filesystem::path& path, const Film& film, std::uint64_t key,
+                      const std::shared_ptr<Faults>& faults) {
   Header header{};
   std::memcpy(header.magic, magic, sizeof magic);
   header.key = key;
@@ -53,7 +54,7 @@ void write_checkpoint(const std::filesystem::path& path, const Film& film, std::
   append(bytes, film.done);
   const std::uint64_t checksum = hash_bytes(bytes.data(), bytes.size());
   bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
-  write_file(path, bytes);
+  write_file(path, bytes, faults);
 }
 
 std::optional<std::uint64_t> checkpoint_key(const std::filesystem::path& path) {

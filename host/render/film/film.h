@@ -11,6 +11,8 @@
 
 namespace sundog {
 
+class Faults;
+
 /// A rectangle of pixels.
 struct Tile {
   int x = 0, y = 0, width = 0, height = 0;
@@ -40,7 +42,8 @@ struct Film {
 };
 
 /// Writes the film for a later --resume; `key` identifies scene and settings. Throws IoError.
-void write_checkpoint(const std::filesystem::path& path, const Film& film, std::uint64_t key);
+void write_checkpoint(const std::filesystem::path& path, const Film& film, std::uint64_t key,
+                      const std::shared_ptr<Faults>& faults = nullptr);
 
 /// The key of the checkpoint in that file; none where there is no file, or another one.
 std::optional<std::uint64_t> checkpoint_key(const std::filesystem::path& path);

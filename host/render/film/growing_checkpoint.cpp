@@ -35,7 +35,7 @@ void for_each_array(Growing& film, Pixels& pixels, Made& made, const Visit& visi
 }  // namespace
 
 void write_growing_checkpoint(const std::filesystem::path& path, const GrowingFilm& film, const Pass& pass,
-                              const Film& made, std::uint64_t key) {
+                              const Film& made, std::uint64_t key, const std::shared_ptr<Faults>& faults) {
   GrowingHeader header{};
   std::memcpy(header.magic, growing_magic, sizeof growing_magic);
   header.key = key;
@@ -54,7 +54,7 @@ void write_growing_checkpoint(const std::filesystem::path& path, const GrowingFi
   });
   const std::uint64_t checksum = hash_bytes(bytes.data(), bytes.size());
   bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
-  write_file(path, bytes);
+  write_file(path, bytes, faults);
 }
 
 void read_growing_checkpoint(const std::filesystem::path& path, GrowingFilm& film, Pass& pass, Film& made,

@@ -54,7 +54,8 @@ std::vector<float> pixel_errors(const GrowingFilm& film);
 
 /// The state of an unfinished frame: the film before the pass in hand, and as much of it as is made.
 void write_growing_checkpoint(const std::filesystem::path& path, const GrowingFilm& film, const Pass& pass,
-                              const Film& made, std::uint64_t key);
+                              const Film& made, std::uint64_t key,
+                              const std::shared_ptr<Faults>& faults = nullptr);
 
 /// Reads one into `film`, which has the frame's size, `pass` and `made`. Throws as read_checkpoint() does.
 void read_growing_checkpoint(const std::filesystem::path& path, GrowingFilm& film, Pass& pass, Film& made,

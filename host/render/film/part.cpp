@@ -88,7 +88,7 @@ void check_all_there(const std::map<int, std::string>& found, int count) {
   if (!missing.empty())
     throw SceneError(
         found.begin()->second, "",
-        fmt::format("part{0} {1} of {2} {3} missing: render {4} with --tiles {5}/{2} and the options of the "
+        fmt::format("part{0} {1} of {2} {3} missing: render {4} as part {5}/{2} and with the options of the "
                     "others",
                     missing.size() > 1 ? "s" : "", listed(missing), count, missing.size() > 1 ? "are" : "is",
                     missing.size() > 1 ? "each" : "it",

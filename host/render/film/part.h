@@ -29,7 +29,8 @@ struct PartFile : PartHeader {
 };
 
 /// Only pixels that are done take room. Throws IoError.
-void write_part(const std::filesystem::path& path, const PartHeader& header, const Film& film);
+void write_part(const std::filesystem::path& path, const PartHeader& header, const Film& film,
+                const std::shared_ptr<Faults>& faults = nullptr);
 
 /// Throws IoError when it cannot be read, SceneError when it is no part or damaged.
 PartFile read_part(const std::filesystem::path& path);

@@ -115,7 +115,8 @@ bool read_film(const std::string& bytes, std::size_t at, bool with_aovs, Film& f
 
 }  // namespace
 
-void write_part(const std::filesystem::path& path, const PartHeader& header, const Film& film) {
+void write_part(const std::filesystem::path& path, const PartHeader& header, const Film& film,
+                const std::shared_ptr<Faults>& faults) {
   const json head = {{"format", format_name}, {"part", header.part.index}, {"parts", header.part.count},
                      {"key", header.key},     {"scene", header.scene},     {"aovs", header.aovs},
                      {"width", film.width},   {"height", film.height},     {"settings", header.settings}};
@@ -127,14 +128,14 @@ void write_part(const std::filesystem::path& path, const PartHeader& header, con
   append_done(bytes, film.weights, film.done);
   append_done(bytes, film.aovs, film.done);
   bytes += checksum(bytes);
-  write_file(path, bytes);
+  write_file(path, bytes, faults);
 }
 
 PartFile read_part(const std::filesystem::path& path) {
   std::string bytes = read_input(path, most_frame_bytes);
   const auto refuse = [&](const char* why) { return SceneError(path.string(), "", why); };
   if (!bytes.starts_with('{') || bytes.find(format_name) == std::string::npos)
-    throw refuse("is no part of a frame: `sundog render --tiles` writes them");
+    throw refuse("is no part of a frame: a render of one part writes them");
   const std::string damaged = "is damaged: render this part again";
   if (bytes.size() < checksum_digits) throw refuse(damaged.c_str());
   const std::string sum = bytes.substr(bytes.size() - checksum_digits);

@@ -72,11 +72,12 @@ TileRequest request_of(Frame& frame, const Tile& tile) {
 }
 
 void write_state(const std::filesystem::path& path, const Film& film,
-                 const std::optional<FramePasses>& passes, std::uint64_t key) {
+                 const std::optional<FramePasses>& passes, std::uint64_t key,
+                 const std::shared_ptr<Faults>& faults) {
   if (passes)
-    write_growing_checkpoint(path, passes->film, passes->pass, film, key);
+    write_growing_checkpoint(path, passes->film, passes->pass, film, key, faults);
   else
-    write_checkpoint(path, film, key);
+    write_checkpoint(path, film, key, faults);
 }
 
 /// Shows the picture so far, every so often.
@@ -119,7 +120,7 @@ void keep_checkpoint(Frame& frame) {
     passes = frame.passes;
   }
   try {
-    write_state(checkpoint_path(options), film, passes, frame.key);
+    write_state(checkpoint_path(options), film, passes, frame.key, options.faults);
   } catch (const IoError&) {
     // What keeps it from being written is reported at the end, if the frame does not come to its end.
   }
@@ -296,7 +297,7 @@ void serve_frame(Frame& frame, std::size_t i) {
 }
 
 void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& path) {
-  write_state(path, frame.film, frame.passes, frame.key);
+  write_state(path, frame.film, frame.passes, frame.key, frame.options.faults);
 }
 
 void run_frame(const std::shared_ptr<Frame>& frame, bool wait) {

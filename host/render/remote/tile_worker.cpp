@@ -95,13 +95,14 @@ Message made(TileServer& server, const Message& order, const StopFlags& flags) {
 }  // namespace
 
 void serve_orders(Channel& channel, Orders& orders,
-                  const std::function<OpenedServer(const nlohmann::json& settings)>& make) {
+                  const std::function<OpenedServer(const nlohmann::json& settings)>& make,
+                  const std::function<std::vector<DeviceInfo>()>& list) {
   OpenedServer current;
   while (const std::optional<Message> order = orders.next()) {
     Message answer;
     try {
       if (order->kind == Message::list)
-        answer = {Message::devices, {{"devices", enumerate_devices()}, {"cores", usable_cores()}}, {}};
+        answer = {Message::devices, {{"devices", list()}, {"cores", usable_cores()}}, {}};
       else if (order->kind == Message::open)
         answer = opened(current, *order, make);
       else if (current.server)

@@ -52,7 +52,9 @@ struct OpenedServer {
 
 /// Serves until told to close. `make` makes the server of an open order (loading its scene); what it throws,
 /// and what the server throws, is sent as the answer.
+/// `list` lists the devices.
 void serve_orders(Channel& channel, Orders& orders,
-                  const std::function<OpenedServer(const nlohmann::json& settings)>& make);
+                  const std::function<OpenedServer(const nlohmann::json& settings)>& make,
+                  const std::function<std::vector<DeviceInfo>()>& list);
 
 }  // namespace sundog

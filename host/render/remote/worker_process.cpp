@@ -12,8 +12,8 @@
 #include <cstring>
 #include <thread>
 
+#include "base/environment.h"
 #include "base/error.h"
-#include "base/spawn_self.h"
 #include "render/remote/silence.h"
 
 namespace sundog {
@@ -23,8 +23,11 @@ constexpr int worker_descriptor = 3;
 
 class WorkerChannel : public Channel {
  public:
-  WorkerChannel(int socket, pid_t process, std::string name)
-      : socket_(std::make_unique<SocketChannel>(socket)), process_(process), name_(std::move(name)) {}
+  WorkerChannel(int socket, pid_t process, std::string name, double limit)
+      : limit_(limit),
+        socket_(std::make_unique<SocketChannel>(socket)),
+        process_(process),
+        name_(std::move(name)) {}
   ~WorkerChannel() override {
     socket_.reset();  // which tells it to end
     wait_for_end(2);
@@ -80,16 +83,19 @@ class WorkerChannel : public Channel {
   }
 
   Silence silence_;
-  const double limit_ = silence_limit();
+  const double limit_;  // of its silence, in seconds
   std::unique_ptr<SocketChannel> socket_;
   pid_t process_;  // 0: ended, and waited for
   int status_ = 0;
   std::string name_;
 };
 
-pid_t spawn(int socket, const std::string& name) {
+pid_t spawn(const HostEnvironment& environment, int socket, const std::string& name) {
+  if (!environment.start_program)
+    throw DeviceError(fmt::format("{}: this program starts no worker processes", name));
   try {
-    return spawn_self({"worker", std::to_string(worker_descriptor), name}, {{socket, worker_descriptor}});
+    return environment.start_program({"worker", std::to_string(worker_descriptor), name},
+                                     {{socket, worker_descriptor}});
   } catch (const IoError& error) {
     throw DeviceError(fmt::format("{}: no worker process: {}", name, error.what()));
   }
@@ -97,14 +103,14 @@ pid_t spawn(int socket, const std::string& name) {
 
 }  // namespace
 
-std::unique_ptr<Channel> start_worker(const std::string& name) {
+std::unique_ptr<Channel> start_worker(const HostEnvironment& environment, const std::string& name) {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
     throw DeviceError(fmt::format("{}: no socket for its worker process: {}", name, std::strerror(errno)));
   try {
-    const pid_t process = spawn(ends[1], name);
+    const pid_t process = spawn(environment, ends[1], name);
     ::close(ends[1]);
-    return std::make_unique<WorkerChannel>(ends[0], process, name);
+    return std::make_unique<WorkerChannel>(ends[0], process, name, environment.silence_limit);
   } catch (const DeviceError&) {
     ::close(ends[0]);
     ::close(ends[1]);

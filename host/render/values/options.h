@@ -14,6 +14,7 @@
 namespace sundog {
 
 class DevicePool;
+class Faults;
 struct Film;
 
 /// How tiles are shared among devices: by measured speed as they come, or in fixed parts, one a device.
@@ -45,6 +46,7 @@ struct RenderOptions {
   std::filesystem::path checkpoint;  // written on interrupt and on the way, and removed by the caller; empty:
                                      // that is `resume`
   double checkpoint_seconds = 60;    // between those written on the way
+  std::shared_ptr<Faults> faults;    // of checkpoints
   std::atomic<bool>* keep_now = nullptr;        // set: write one at once, and take this back
   bool in_haste = false;                        // when stopped, a moment more may be too long
   double time_limit = 0;                        // seconds, after which the film so far is returned; 0: none

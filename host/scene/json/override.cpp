@@ -28,7 +28,8 @@ std::vector<std::string> split_pointer(std::string_view pointer) {
     } else if (pointer[i] == '~') {
       const char next = i + 1 < pointer.size() ? pointer[i + 1] : ' ';
       if (next != '0' && next != '1')
-        throw UsageError(fmt::format("--set {}: wanted ~0 (for ~) or ~1 (for /) in a JSON pointer", pointer));
+        throw UsageError(
+            fmt::format("the setting {}: wanted ~0 (for ~) or ~1 (for /) in a JSON pointer", pointer));
       tokens.back() += next == '0' ? '~' : '/';
       ++i;
     } else {
@@ -77,7 +78,7 @@ class Step {
 
   [[noreturn]] void fail(std::size_t depth, std::string_view why) const {
     throw SceneError(file_.string(), pointer(depth + 1),
-                     fmt::format("--set {} leads nowhere: {}", setting_, why));
+                     fmt::format("the setting {} leads nowhere: {}", setting_, why));
   }
 
   json* item(json& array, std::size_t depth) const {
@@ -113,7 +114,8 @@ class Step {
 void apply_override(json& document, std::string_view setting, const fs::path& file) {
   const std::size_t equals = setting.find('=');
   if (equals == std::string_view::npos || equals < 2 || setting[0] != '/')
-    throw UsageError(fmt::format("--set {}: wanted JSON_POINTER=VALUE, such as /camera/fov=30", setting));
+    throw UsageError(
+        fmt::format("the setting {}: wanted JSON_POINTER=VALUE, such as /camera/fov=30", setting));
   const std::vector<std::string> tokens = split_pointer(setting.substr(0, equals));
   const Step step(tokens, setting, file);
   json* place = &document;

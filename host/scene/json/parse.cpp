@@ -171,9 +171,9 @@ json parse_json(std::string_view text, const fs::path& file) {
   return builder.take();
 }
 
-json read_json_file(const fs::path& file) {
+json read_json_file(const fs::path& file, const std::shared_ptr<Faults>& faults) {
   require_readable(file, file, "");
-  return parse_json(read_input(file), file);
+  return parse_json(read_input(file, most_input_bytes, faults), file);
 }
 
 void require_readable(const fs::path& file, const fs::path& named_in, std::string_view place) {

@@ -194,7 +194,7 @@ std::vector<std::uint32_t> GltfMeshes::vertex_numbers(const Primitive& primitive
 // The file's v goes down.
 void GltfMeshes::append_uvs(const Primitive& primitive, const std::vector<std::uint32_t>& used, Mesh& mesh) {
   for (std::size_t set = 0; set < most_uv_sets; ++set) {
-    std::vector<glm::vec2>& to = set == 0 ? mesh.uvs : mesh.further_uvs[set - 1];
+    MeshArray<glm::vec2>& to = set == 0 ? mesh.uvs : mesh.further_uvs[set - 1];
     if (!primitive.uvs[set]) {
       to.resize(to.size() + used.size(), glm::vec2(0));
       continue;

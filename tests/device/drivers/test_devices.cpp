@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/environment.h"
 #include "catch.h"
 #include "devices.h"
 #include "temporary_folder.h"
@@ -53,7 +54,7 @@ std::vector<json> rows_of(const json& list, const std::string& part) {
 }  // namespace
 
 TEST_CASE("a row is usable and complete, or says what is wrong") {
-  const auto rows = enumerate_devices();
+  const auto rows = enumerate_devices(plain_environment());
   REQUIRE(!rows.empty());
   for (const DeviceInfo& row : rows) {
     INFO(row.label());

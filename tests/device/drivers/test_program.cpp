@@ -1,13 +1,15 @@
 // Programs: built, refused with file and line, kept in the binary cache.
 #include <sys/stat.h>
 
+#include <functional>
+
 #include "base/cache_folder.h"
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "catch.h"
 #include "device/program_cache.h"
 #include "devices.h"
-#include "environment.h"
 #include "shared/bvh.h"
 #include "temporary_folder.h"
 
@@ -43,19 +45,32 @@ std::vector<fs::path> files_of(const fs::path& folder) {
   return files;
 }
 
+/// The device, with another environment.
+DeviceInfo changed(DeviceInfo info, const std::function<void(HostEnvironment&)>& change) {
+  HostEnvironment environment = value_of(info.environment);
+  change(environment);
+  info.environment = std::make_shared<const HostEnvironment>(std::move(environment));
+  return info;
+}
+
 /// A cache folder of this test's own.
 struct OwnCache {
   TemporaryFolder folder;
-  ScopedVariable place{"XDG_CACHE_HOME", folder.path().c_str()};
-  ScopedVariable on{"SUNDOG_KERNEL_CACHE", nullptr};
   fs::path kernels() const { return folder.path() / "sundog" / "kernels"; }
+  DeviceInfo with(const DeviceInfo& info) const {
+    return changed(info, [&](HostEnvironment& environment) {
+      environment.cache = folder.path() / "sundog";
+      environment.kernel_cache = true;
+    });
+  }
 };
 
 }  // namespace
 
 TEST_CASE("a program is compiled once and comes from the cache after that") {
-  on_every_device([&](const DeviceInfo& info) {
+  on_every_device([&](const DeviceInfo& device) {
     const OwnCache cache;
+    const DeviceInfo info = cache.with(device);
     CHECK(!add_on(info).cached);
     CHECK(files_of(cache.kernels()).size() == 1);
     const BuildReport second = add_on(info);
@@ -68,8 +83,9 @@ TEST_CASE("a program is compiled once and comes from the cache after that") {
 }
 
 TEST_CASE("a damaged cache file is compiled anew and replaced") {
-  on_every_device([&](const DeviceInfo& info) {
+  on_every_device([&](const DeviceInfo& device) {
     const OwnCache cache;
+    const DeviceInfo info = cache.with(device);
     add_on(info);
     const auto files = files_of(cache.kernels());
     REQUIRE(files.size() == 1);
@@ -86,11 +102,12 @@ TEST_CASE("a damaged cache file is compiled anew and replaced") {
 }
 
 TEST_CASE("a binary that the driver refuses is compiled anew, and the report says so") {
-  for (const DeviceInfo& info : test_devices()) {
-    if (info.platform_name == "rusticl")
+  for (const DeviceInfo& device : test_devices()) {
+    if (device.platform_name == "rusticl")
       continue;  // aborts the process for a binary that is not its own (Mesa 22.3)
-    DYNAMIC_SECTION(info.label()) {
+    DYNAMIC_SECTION(device.label()) {
       const OwnCache cache;
+      const DeviceInfo info = cache.with(device);
       add_on(info);
       const auto files = files_of(cache.kernels());
       REQUIRE(files.size() == 1);
@@ -110,22 +127,22 @@ TEST_CASE("a binary that the driver refuses is compiled anew, and the report say
 }
 
 TEST_CASE("an unusable cache folder costs time and nothing else") {
-  const DeviceInfo& info = test_devices().front();
   const OwnCache cache;
+  const DeviceInfo info = cache.with(test_devices().front());
   write_file(cache.folder.path() / "sundog", "a file where the folder should be");
   CHECK(!add_on(info).cached);
   CHECK(!add_on(info).cached);
-  CHECK_THAT(cache_refusal(), ContainsSubstring("is not a folder"));
+  CHECK_THAT(cache_refusal(cache.folder.path() / "sundog"), ContainsSubstring("is not a folder"));
   CHECK(fs::is_regular_file(cache.folder.path() / "sundog"));
 }
 
-TEST_CASE("SUNDOG_KERNEL_CACHE=off neither reads nor writes the cache") {
-  const DeviceInfo& info = test_devices().front();
+TEST_CASE("without a kernel cache a program neither reads nor writes the cache") {
   const OwnCache cache;
+  const DeviceInfo info = cache.with(test_devices().front());
   add_on(info);
-  const ScopedVariable off("SUNDOG_KERNEL_CACHE", "off");
-  CHECK(!add_on(info).cached);
-  CHECK(!add_on(info, add_kernel + "\n").cached);
+  const DeviceInfo off = changed(info, [](HostEnvironment& e) { e.kernel_cache = false; });
+  CHECK(!add_on(off).cached);
+  CHECK(!add_on(off, add_kernel + "\n").cached);
   CHECK(files_of(cache.kernels()).size() == 1);
 }
 
@@ -153,10 +170,10 @@ TEST_CASE("a kernel that is not in the program is a build error") {
   CHECK_THROWS_AS(Program().kernel<>("add"), BuildError);
 }
 
-TEST_CASE("SUNDOG_DUMP_KERNELS keeps the text that the compiler gets") {
+TEST_CASE("a folder for texts keeps the text that the compiler gets") {
   const TemporaryFolder folder;
-  const ScopedVariable dump("SUNDOG_DUMP_KERNELS", folder.path().c_str());
-  Device device(test_devices().front());
+  Device device(changed(test_devices().front(),
+                        [&](HostEnvironment& environment) { environment.dump_folder = folder.path(); }));
   build_text(device, add_kernel, {{"WIDTH", "8"}});
   const auto files = files_of(folder.path());
   REQUIRE(files.size() == 1);
@@ -164,15 +181,15 @@ TEST_CASE("SUNDOG_DUMP_KERNELS keeps the text that the compiler gets") {
              ContainsSubstring("#define WIDTH 8") && ContainsSubstring("values[i] += what;"));
 }
 
-TEST_CASE("SUNDOG_BUILD_OPTIONS reach the compiler and are part of what the cache knows a program by") {
+TEST_CASE("the user's options reach the compiler and are part of what the cache knows a program by") {
   const std::string text = add_kernel +
                            "#ifndef FROM_OUTSIDE\n#error not defined\n#endif\n"
                            "__kernel void tell(__global uint* value) { value[0] = FROM_OUTSIDE; }\n";
-  on_every_device([&](const DeviceInfo& info) {
+  on_every_device([&](const DeviceInfo& device) {
     const OwnCache cache;
+    const DeviceInfo info = cache.with(device);
     const auto told = [&](const char* options, bool* cached) {
-      const ScopedVariable variable("SUNDOG_BUILD_OPTIONS", options);
-      Device device(info);
+      Device device(changed(info, [&](HostEnvironment& e) { e.build_options = options; }));
       BuildReport report;
       auto tell = device.build("add.cl", {}, &report, {{"add.cl", text}}).kernel<Buffer<u32>>("tell");
       *cached = report.cached;
@@ -193,9 +210,10 @@ TEST_CASE("SUNDOG_BUILD_OPTIONS reach the compiler and are part of what the cach
 }
 
 TEST_CASE("options that the compiler refuses are an error that names the variable") {
-  const ScopedVariable variable("SUNDOG_BUILD_OPTIONS", "--no-such-option");
-  on_every_device([&](const DeviceInfo& info) {
+  on_every_device([&](const DeviceInfo& on) {
     const OwnCache cache;
+    const DeviceInfo info =
+        changed(cache.with(on), [](HostEnvironment& e) { e.build_options = "--no-such-option"; });
     Device device(info);
     CHECK_THROWS_WITH(build_text(device, add_kernel),
                       ContainsSubstring("SUNDOG_BUILD_OPTIONS '--no-such-option': " + info.label()));
@@ -203,19 +221,19 @@ TEST_CASE("options that the compiler refuses are an error that names the variabl
 }
 
 TEST_CASE("an error of a kernel is its own, whatever options were given") {
-  const ScopedVariable variable("SUNDOG_BUILD_OPTIONS", "-DANYTHING");
-  Device device(test_devices().front());
+  Device device(changed(test_devices().front(), [](HostEnvironment& e) { e.build_options = "-DANYTHING"; }));
   CHECK_THROWS_WITH(build_text(device, "__kernel void f(__global float* a) { a[0] = undeclared; }"),
                     ContainsSubstring("did not build on"));
 }
 
-TEST_CASE("SUNDOG_BUILD_LOG keeps log, options and source of each program, cached or not") {
+TEST_CASE("a folder for logs keeps log, options and source of each program, cached or not") {
   const GeneratedFiles bad = {{"bad.cl", "__kernel void f(__global float* a) { a[0] = undeclared; }"}};
-  on_every_device([&](const DeviceInfo& info) {
+  on_every_device([&](const DeviceInfo& on) {
     const OwnCache cache;
-    add_on(info);
+    add_on(cache.with(on));
     const TemporaryFolder folder;
-    const ScopedVariable log("SUNDOG_BUILD_LOG", folder.path().c_str());
+    const DeviceInfo info =
+        changed(cache.with(on), [&](HostEnvironment& environment) { environment.build_log = folder.path(); });
     CHECK(!add_on(info).cached);
     auto files = files_of(folder.path());
     REQUIRE(files.size() == 1);

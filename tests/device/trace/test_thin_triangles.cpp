@@ -68,7 +68,7 @@ SceneDescription triangles_without_area() {
     const std::array<glm::vec3, 3> corners = i % 3 == 0   ? std::array{a, a, a}
                                              : i % 3 == 1 ? std::array{a, b, a}
                                                           : std::array{a, a + b, a + 2.0f * b};
-    mesh.positions.insert(mesh.positions.end(), corners.begin(), corners.end());
+    mesh.positions.values().insert(mesh.positions.values().end(), corners.begin(), corners.end());
     mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
   }
   return scene_of(std::move(mesh));

@@ -197,7 +197,7 @@ TEST_CASE("a lopsided set neither overflows the stack nor makes a deep tree") {
   for (int i = 0; i < 20000; ++i) {
     const float x = std::pow(10.0f, static_cast<float>(i % 70) - 35);
     const auto first = static_cast<unsigned>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), {{x, 0, 0}, {x, x, 0}, {x, 0, x}});
+    mesh.positions.values().insert(mesh.positions.values().end(), {{x, 0, 0}, {x, x, 0}, {x, 0, x}});
     mesh.triangles.emplace_back(first, first + 1, first + 2);
   }
   checked(mesh);

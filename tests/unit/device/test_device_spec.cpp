@@ -110,7 +110,7 @@ TEST_CASE("/N takes the devices that can give N units, and warns of the others")
   };
   CHECK(labels({"cpu/1"}) == "0:1/1 ");
   REQUIRE(warnings.size() == 1);
-  CHECK_THAT(warnings[0], ContainsSubstring("--device cpu/1: 0:0 Portable") &&
+  CHECK_THAT(warnings[0], ContainsSubstring("the device spec cpu/1: 0:0 Portable") &&
                               ContainsSubstring("cannot be split: drop the /1; it is left out"));
   CHECK(labels({"cpu/1", "!basic"}) == "0:1/1 ");
   CHECK(warnings.empty());
@@ -129,7 +129,7 @@ TEST_CASE("a SPEC that means nothing is refused with the candidates and what is 
   CHECK_THROWS_AS(selected({"1:0"}), DeviceError);
   CHECK_THROWS_WITH(selected({"radeon"}), ContainsSubstring("radeon") && ContainsSubstring("0:1 Portable") &&
                                               ContainsSubstring("no compiler"));
-  CHECK_THROWS_WITH(selected({"0:0,0:1"}), ContainsSubstring("several are chosen by several --device"));
+  CHECK_THROWS_WITH(selected({"0:0,0:1"}), ContainsSubstring("several are chosen by several specs"));
   CHECK_THROWS_WITH(selected({"radeon"}), !ContainsSubstring("several"));
   CHECK_THROWS_AS(selected({"2:1"}), DeviceError);            // found, but of no use
   CHECK_THROWS_AS(selected({"cpu", "radeon"}), DeviceError);  // one of several

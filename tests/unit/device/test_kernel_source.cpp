@@ -5,7 +5,6 @@
 #include "catch.h"
 #include "device/embedded_kernels.h"
 #include "device/kernel_source.h"
-#include "environment.h"
 #include "temporary_folder.h"
 
 using namespace sundog;
@@ -33,13 +32,13 @@ TEST_CASE("the embedded kernels are the files of kernels/, byte for byte") {
   CHECK(files > 0);
 }
 
-TEST_CASE("SUNDOG_KERNEL_DIR replaces the embedded kernels") {
+TEST_CASE("a folder replaces the embedded kernels") {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder.path() / "lib");
   write_file(folder.path() / "lib" / "own.cl", "int own;\n");
-  const ScopedVariable variable("SUNDOG_KERNEL_DIR", folder.path().c_str());
-  CHECK(embedded_kernel("lib/own.cl") == "int own;\n");
-  CHECK_THROWS_AS(embedded_kernel("shared/types.h"), MissingKernelFile);
+  CHECK(embedded_kernel("lib/own.cl", folder.path()) == "int own;\n");
+  CHECK_THROWS_AS(embedded_kernel("shared/types.h", folder.path()), MissingKernelFile);
+  CHECK(expand_kernel("lib/own.cl", {}, {}, folder.path()).find("int own;") != std::string::npos);
 }
 
 TEST_CASE("a file included twice is expanded once, and #line names what follows") {

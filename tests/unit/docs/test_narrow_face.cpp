@@ -41,6 +41,27 @@ std::set<std::string> included_by(const std::string& header) {
   return all;
 }
 
+const std::vector<std::string> layers_below = {"base", "scene", "compile", "device", "render", "api"};
+
+/// Calls f(file, line) for each line of code of the layers' sources.
+template <class F>
+void for_each_line(const std::vector<std::string>& layers, const F& f) {
+  int sources = 0;
+  for (const std::string& layer : layers)
+    for (const auto& entry : fs::recursive_directory_iterator(host / layer)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension != ".cpp" && extension != ".h") continue;
+      ++sources;
+      const std::string file = fs::relative(entry.path(), host).string();
+      for (const std::string& line : lines_of(entry.path())) {
+        if (line.find("//") <= line.find_first_not_of(" /") || line.find("virtual") != std::string::npos)
+          continue;
+        f(file, line.substr(0, line.find("  // ")));
+      }
+    }
+  CHECK(sources > 15);
+}
+
 }  // namespace
 
 TEST_CASE("the headers of a render and a session hold values: no OpenCL, no JSON, no store of tunings") {
@@ -62,33 +83,93 @@ TEST_CASE("the headers of a render and a session hold values: no OpenCL, no JSON
 TEST_CASE("code below the program neither prints nor ends, starts or steers the process") {
   // What is left, each for the reason beside it.
   const std::map<std::string, std::string> known = {
-      {"base/arguments.cpp", "exit"},           // of the command line's options: the program calls it
-      {"base/standard_streams.cpp", "signal"},  // the same, of pictures to the standard output
-      {"base/spawn_self.cpp", "posix_spawn"},   // workers, which the program alone asks for
-      {"device/device.cpp", "abort"},           // a fault on demand
-      {"device/pocl_folder.cpp", "atexit"},     // takes PoCL's folder away
-      {"render/device/device_server.cpp", "setpriority"},  // of its own thread
+      {"device/pocl_folder.cpp", "atexit"},  // PoCL's own folder goes after PoCL, which has no other moment
   };
   const std::regex calls(
-      R"((^|[^\w.>:])(?:std::|::|fmt::)?(printf|fprintf|print|puts|_exit|exit|quick_exit|abort|signal|sigaction|setpriority|setrlimit|pthread_sigmask|sigprocmask|atexit|posix_spawn|fork|system|popen)\()");
+      R"((^|[^\w.>:])(?:std::|::|fmt::)?(printf|fprintf|print|puts|_exit|exit|quick_exit|abort|terminate|raise|signal|sigaction|setpriority|setrlimit|pthread_sigmask|sigprocmask|atexit|posix_spawn|posix_spawnp|fork|vfork|execv|execve|execvp|system|popen)\()");
   const std::regex streams(R"(std::(cout|cerr|clog)\b)");
-  int sources = 0;
-  for (const char* layer : {"base", "scene", "compile", "device", "render", "api"})
-    for (const auto& entry : fs::recursive_directory_iterator(host / layer)) {
-      const std::string extension = entry.path().extension().string();
-      if (extension != ".cpp" && extension != ".h") continue;
-      ++sources;
-      const std::string file = fs::relative(entry.path(), host).string();
-      const auto exception = known.find(file);
-      std::smatch match;
-      for (const std::string& line : lines_of(entry.path())) {
-        if (line.find("//") < line.find_first_not_of(" /") || line.find("virtual") != std::string::npos)
-          continue;
-        CAPTURE(file, line);
-        CHECK_FALSE(std::regex_search(line, streams));
-        if (std::regex_search(line, match, calls))
-          CHECK((exception != known.end() && exception->second == match[2]));
-      }
+  std::set<std::string> used;
+  for_each_line(layers_below, [&](const std::string& file, const std::string& line) {
+    CAPTURE(file, line);
+    std::smatch match;
+    CHECK_FALSE(std::regex_search(line, streams));
+    if (!std::regex_search(line, match, calls)) return;
+    const auto exception = known.find(file);
+    CHECK((exception != known.end() && exception->second == match[2]));
+    used.insert(file);
+  });
+  CHECK(used.size() == known.size());
+}
+
+TEST_CASE("variables of the process are read by the program, and in one source below it") {
+  const std::regex reads(R"(\b(getenv|secure_getenv|environ)\b)");
+  std::set<std::string> readers;
+  for_each_line(layers_below, [&](const std::string& file, const std::string& line) {
+    if (std::regex_search(line, reads)) readers.insert(file);
+  });
+  CHECK(readers == std::set<std::string>{"base/environment.cpp"});
+  for_each_line({"bench"}, [&](const std::string& file, const std::string& line) {
+    CAPTURE(file, line);
+    CHECK_FALSE(std::regex_search(line, reads));
+  });
+  // Who asks for it: the program, and the library for the programs that use it.
+  std::set<std::string> callers;
+  const std::regex asks(R"(\bplain_environment\(|HostEnvironment environment = read_environment\()");
+  for_each_line({"base", "scene", "compile", "device", "render", "api", "bench", "app"},
+                [&](const std::string& file, const std::string& line) {
+                  if (std::regex_search(line, asks) && !file.starts_with("base/")) callers.insert(file);
+                });
+  CHECK(callers == std::set<std::string>{"api/devices.cpp", "app/process/environment.cpp"});
+}
+
+TEST_CASE("code below the program names no option of the command line, which puts them in place of phrases") {
+  const std::regex literal(R"--("([^"\\]|\\.)*")--"), option(R"(["` (]--[a-z])"),
+      string_break(R"("\s*\n\s*")"), phrase(R"--(\{"([^"]+)",)--");
+  std::string all;
+  for_each_line(layers_below, [&](const std::string& file, const std::string& line) {
+    CAPTURE(file, line);
+    for (std::sregex_iterator it(line.begin(), line.end(), literal), end; it != end; ++it) {
+      const std::string text = it->str();
+      CHECK_FALSE(std::regex_search(text, option));
     }
-  CHECK(sources > 200);
+    all += line + "\n";
+  });
+  all = std::regex_replace(all, string_break, "");
+  std::string table;
+  for (const std::string& line : lines_of(host / "app/process/option_words.cpp")) table += line + "\n";
+  int phrases = 0;
+  for (std::sregex_iterator it(table.begin(), table.end(), phrase), end; it != end; ++it, ++phrases) {
+    CAPTURE((*it)[1].str());
+    CHECK(all.find((*it)[1]) != std::string::npos);
+  }
+  CHECK(phrases > 8);
+}
+
+TEST_CASE("what outlives a call below the program is listed here, with its reason") {
+  // Everything else is handed down, or belongs to an object.
+  const std::map<std::string, std::string> known = {
+      {"api/c_api.cpp", "thread_local"},           // sundog_last_error() is of the thread
+      {"api/devices.cpp", "static const"},         // the process's variables, read once
+      {"base/file.cpp", "static std::atomic"},     // a serial number in temporary files' names
+      {"device/device.cpp", "static std::mutex"},  // of queues that PoCL must not lose: see keep_for_good()
+      {"device/enumerate.cpp", "once_flag"},       // drivers take their settings once a process
+      {"device/pocl_folder.cpp", "static std::string"},  // PoCL's folder: one a process
+      {"render/frame/frame.cpp", "std::atomic"},         // threads_left_behind() is of the process
+  };
+  const std::regex mutable_state(
+      R"(^\s*(static|thread_local|inline)\b(?!.*\b(const|constexpr|namespace)\b)(?![^={]*\()[^;{=]*[;{=]|^(std::atomic|std::mutex|std::vector|std::string|std::optional|int|bool|unsigned|double)\b[^()]*[;{=]|once_flag)");
+  std::set<std::string> found;
+  for_each_line(layers_below, [&](const std::string& file, const std::string& line) {
+    if (!std::regex_search(line, mutable_state)) return;
+    CAPTURE(file, line);
+    CHECK(known.contains(file));
+    found.insert(file);
+  });
+  for (const auto& [file, what] : known) {
+    CAPTURE(file, what);
+    bool there = false;
+    for (const std::string& line : lines_of(host / file))
+      there = there || line.find(what) != std::string::npos;
+    CHECK(there);
+  }
 }

@@ -29,7 +29,8 @@ Mesh turned(Mesh mesh) {
 
 Mesh joined(Mesh mesh, const Mesh& other) {
   const auto first = static_cast<unsigned>(mesh.positions.size());
-  mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+  mesh.positions.values().insert(mesh.positions.values().end(), other.positions.begin(),
+                                 other.positions.end());
   for (const glm::uvec3& t : other.triangles) mesh.triangles.push_back(t + first);
   return mesh;
 }
@@ -65,7 +66,7 @@ TEST_CASE("a closed mesh that faces outwards has no fault") {
 
 TEST_CASE("a mesh without a triangle is open at its three edges") {
   Mesh mesh = cube({0, 0, 0}, 1);
-  mesh.triangles.pop_back();
+  mesh.triangles.values().pop_back();
   check(mesh, 3, 0, 0, 0);
 }
 

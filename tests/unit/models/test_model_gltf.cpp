@@ -129,7 +129,7 @@ TEST_CASE("sparse accessors replace some elements, of data or of zeros", "[model
       "indices":{"bufferView":2,"componentType":5123},"values":{"bufferView":3}}}],
       "meshes":[{"primitives":[{"attributes":{"POSITION":1},"indices":0}]}],)" +
             one_node));
-    const std::vector<glm::vec3>& p = model.meshes.at(0).positions;
+    const auto& p = model.meshes.at(0).positions;
     CHECK(p.at(1) == glm::vec3(7, 0, 0));
     CHECK(p.at(2) == (zeros ? glm::vec3(0) : glm::vec3(2, 2, 0)));
     CHECK(p.at(3) == glm::vec3(0, 8, 0));

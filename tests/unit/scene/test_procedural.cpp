@@ -26,7 +26,7 @@ IceBlock hollow_block(std::uint64_t seed = 7, int subdivision = 32) {
 }
 
 template <class T>
-void hash_in(std::uint64_t& hash, const std::vector<T>& values) {  // FNV-1a
+void hash_in(std::uint64_t& hash, const MeshArray<T>& values) {  // FNV-1a
   const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
   for (std::size_t i = 0; i < values.size() * sizeof(T); i++) hash = (hash ^ bytes[i]) * 0x100000001B3ull;
 }

@@ -22,7 +22,7 @@ void check_error(const std::string& setting, const std::string& place, const std
   INFO(error.what());
   CHECK(error.place == place);
   CHECK(error.reason.find(words) != std::string::npos);
-  CHECK(error.reason.find("--set " + setting) != std::string::npos);
+  CHECK(error.reason.find("the setting " + setting) != std::string::npos);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace sundog {
 
 /// What a frame is rendered to.
 struct FrameOutput {
-  std::string file;  // its extension says what is encoded; ".part": a part of the frame
+  std::string file;  // its extension says what is encoded; ".part": a part of the frame; empty: nothing
   std::vector<std::string> aovs;
   bool checkpoints = false;  // written on the way
   int tile = 0;              // edge of the tiles; 0: they are small beside the frame

@@ -1,5 +1,5 @@
 // See standard_streams.h.
-#include "base/standard_streams.h"
+#include "app/process/standard_streams.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -65,8 +65,9 @@ void claim_standard_output() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-void write_output(const std::filesystem::path& path, std::string_view bytes) {
-  if (!is_standard_stream(path)) return write_file(path, bytes);
+void write_output(const std::filesystem::path& path, std::string_view bytes,
+                  const std::shared_ptr<Faults>& faults) {
+  if (!is_standard_stream(path)) return write_file(path, bytes, faults);
   while (!bytes.empty()) {
     const ssize_t size = ::write(output, bytes.data(), bytes.size());
     if (size < 0 && errno == EINTR) continue;

@@ -1,4 +1,4 @@
-#include "app/render/frame_memory.h"
+#include "render/film/frame_memory.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "app/process/save_image.h"
+#include "base/image_io.h"
 #include "base/memory.h"
 
 namespace sundog {
@@ -25,6 +25,7 @@ std::uint64_t aov_floats(const std::string& name) {
 /// where the picture is noise that no compression makes smaller.
 std::uint64_t encoder_bytes(const std::string& file, std::uint64_t aovs) {
   const fs::path extension = fs::path(file).extension();
+  if (file.empty()) return 0;
   if (!drops_alpha(file)) return 16 + aovs;  // half floats, two copies; AOVs stay floats
   if (extension == ".png" || extension == ".PNG") return 12;
   if (extension == ".hdr" || extension == ".HDR") return 14;

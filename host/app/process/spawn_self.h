@@ -3,17 +3,11 @@
 #include <sys/types.h>
 
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "base/environment.h"
+
 namespace sundog {
-
-constexpr int nowhere = -1;  // /dev/null
-
-/// A descriptor of this process, or nowhere, and the number that the new one knows it by.
-struct HandedDown {
-  int here, there;
-};
 
 /// Starts this very program with `arguments` (without its own name); `variables` ("NAME=VALUE") are added to
 /// its environment, `descriptors` handed down; its stdin and stdout, unless they are among these, are

@@ -1,10 +1,13 @@
 // The standard streams where a command names a file: "-".
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
 namespace sundog {
+
+class Faults;
 
 bool is_standard_stream(const std::filesystem::path& path);
 
@@ -20,6 +23,7 @@ void set_standard_input(std::string text);
 void claim_standard_output();
 
 /// write_file(); "-" is the claimed standard output. Throws IoError.
-void write_output(const std::filesystem::path& path, std::string_view bytes);
+void write_output(const std::filesystem::path& path, std::string_view bytes,
+                  const std::shared_ptr<Faults>& faults = nullptr);
 
 }  // namespace sundog

@@ -1,5 +1,5 @@
 // See spawn_self.h.
-#include "base/spawn_self.h"
+#include "app/process/spawn_self.h"
 
 #include <fcntl.h>
 #include <signal.h>

@@ -1,0 +1,47 @@
+// See environment.h.
+#include "app/process/environment.h"
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+
+#include "app/process/spawn_self.h"
+#include "app/process/standard_streams.h"
+
+namespace sundog {
+namespace {
+
+/// Faults on demand that end or stop the process (base/faults.h).
+void end_process(const std::string& kind) {
+  if (kind == "crash") std::abort();
+  std::raise(kind == "kill" ? SIGKILL : SIGSTOP);
+}
+
+EnvironmentPtr read_program_environment() {
+  HostEnvironment environment = read_environment(end_process);
+  environment.start_program = [](std::vector<std::string> arguments, std::vector<HandedDown> descriptors) {
+    return spawn_self(std::move(arguments), std::move(descriptors));
+  };
+  environment.step_back = [] { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 19); };
+  return std::make_shared<const HostEnvironment>(std::move(environment));
+}
+
+}  // namespace
+
+const EnvironmentPtr& program_environment() {
+  static const EnvironmentPtr environment = read_program_environment();
+  return environment;
+}
+
+std::vector<DeviceInfo> list_devices() { return enumerate_devices(program_environment()); }
+
+LoadOptions with_streams(LoadOptions options) {
+  options.standard_input = standard_input;
+  options.faults = program_environment()->faults;
+  return options;
+}
+
+}  // namespace sundog

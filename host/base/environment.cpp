@@ -1,0 +1,79 @@
+// See environment.h. The only source below `app` that asks for variables.
+#include "base/environment.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "base/faults.h"
+
+namespace sundog {
+namespace {
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+double seconds_of(const char* name, double otherwise) {
+  const double seconds = std::strtod(variable(name).c_str(), nullptr);
+  return seconds > 0 ? seconds : otherwise;
+}
+
+std::filesystem::path cache_directory() {
+  if (const std::string xdg = variable("XDG_CACHE_HOME"); !xdg.empty())
+    return std::filesystem::path(xdg) / "sundog";
+  if (const std::string home = variable("HOME"); !home.empty())
+    return std::filesystem::path(home) / ".cache" / "sundog";
+  return {};
+}
+
+std::map<std::string, std::string> driver_variables() {
+  std::map<std::string, std::string> result = {
+      // PoCL compiles a kernel for each local size and again for grids below 65536, and once more to give its
+      // binary out. One version for all was as fast in every kernel measured, so each kernel is compiled
+      // once.
+      {"POCL_WORK_GROUP_SPECIALIZATION", "0"},
+      // Intel's driver compiles each kernel a second time, for 16 work-items at once. That is nine tenths of
+      // its compile time; pictures are the same to the bit, by the wide tracer as fast, by the compact one
+      // slower.
+      {"CL_CONFIG_USE_VECTORIZER", "False"},
+      {"PATH", "/usr/local/bin:/usr/bin:/bin"},  // PoCL ends a process in which it finds no linker
+  };
+  for (const char* name :
+       {"POCL_WORK_GROUP_SPECIALIZATION", "CL_CONFIG_USE_VECTORIZER", "PATH", "POCL_EXTRA_BUILD_FLAGS",
+        "POCL_WORK_GROUP_METHOD", "POCL_CACHE_DIR", "HWLOC_SYNTHETIC", "HWLOC_XMLFILE", "HWLOC_FSROOT"})
+    if (const char* value = std::getenv(name)) result[name] = value;
+  return result;
+}
+
+}  // namespace
+
+std::string HostEnvironment::driver(const std::string& name) const {
+  const auto found = drivers.find(name);
+  return found == drivers.end() ? std::string() : found->second;
+}
+
+const HostEnvironment& value_of(const EnvironmentPtr& environment) {
+  static const HostEnvironment none;
+  return environment ? *environment : none;
+}
+
+HostEnvironment read_environment(const std::function<void(const std::string& kind)>& end_process) {
+  HostEnvironment environment;
+  environment.cache = cache_directory();
+  environment.kernel_cache = variable("SUNDOG_KERNEL_CACHE") != "off";
+  environment.kernels = variable("SUNDOG_KERNEL_DIR");
+  environment.dump_folder = variable("SUNDOG_DUMP_KERNELS");
+  environment.build_options = variable("SUNDOG_BUILD_OPTIONS");
+  environment.build_log = variable("SUNDOG_BUILD_LOG");
+  environment.launch_limit = seconds_of("SUNDOG_LAUNCH_LIMIT", 0);
+  environment.silence_limit = seconds_of("SUNDOG_SILENCE_LIMIT", 10);
+  if (const std::string faults = variable("SUNDOG_FAULTS"); !faults.empty())
+    environment.faults = std::make_shared<Faults>(faults, end_process);
+  environment.drivers = driver_variables();
+  return environment;
+}
+
+EnvironmentPtr plain_environment() { return std::make_shared<const HostEnvironment>(read_environment()); }
+
+}  // namespace sundog
