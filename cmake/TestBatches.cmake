@@ -31,7 +31,7 @@ function(sundog_test_batches variable folder size)
   list(REMOVE_ITEM out ${tests})
   set(number 0)
   while(tests)
-    list(SUBLIST tests 0 ${size} batch)  # or what is left of them
+    list(SUBLIST tests 0 ${size} batch)  # or the rest of them
     list(REMOVE_ITEM tests ${batch})
     set(output ${CMAKE_CURRENT_BINARY_DIR}/${folder}_batch_${number}.cpp)
     list(JOIN batch "|" joined)

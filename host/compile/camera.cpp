@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "compile/local_origin.h"
-#include "compile/pack.h"
+#include "scene/pack.h"
 
 namespace sundog {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "compile/halo/halo_map.h"
 #include "compile/materials.h"
-#include "compile/pack.h"
 #include "compile/sky.h"
+#include "scene/pack.h"
 
 namespace sundog {
 namespace {
@@ -63,7 +63,7 @@ dvec3 sun_in_axes(const EnvironmentDescription& e) {
 
 Sky sky_of(const EnvironmentDescription& e) { return {e.turbidity, e.sun_altitude * pi / 180}; }
 
-/// What of its light reaches the ground through crystals.
+/// The part of its light that reaches the ground through crystals.
 double sun_share(const EnvironmentDescription& e) {
   if (e.type != EnvironmentType::halo) return 1;
   return std::exp(-e.halo.optical_depth / std::max(sun_in_axes(e).y, 0.01));

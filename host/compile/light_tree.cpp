@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include "scene/integrators.h"
+#include "scene/kinds.h"
+#include "scene/lamps.h"
 
 namespace sundog {
 namespace {
@@ -18,34 +19,14 @@ struct Lamp {
   glm::vec3 middle() const { return 0.5f * (lower + upper); }
 };
 
-glm::vec3 xyz(const float4& v) { return {v.x, v.y, v.z}; }
-
 bool has_extent(const Light& light) {
   if (light.kind == LIGHT_TRIANGLE) return light.direction.w > 0 && light.color != float4{};
-  return light.kind >= LIGHT_RECTANGLE && light.kind < LIGHT_KINDS;
+  return light.kind < LIGHT_KINDS && facts_of_kind(light.kind).extent;
 }
 
 Lamp lamp_of(const Light& light, u32 index) {
-  const glm::vec3 p = xyz(light.position), u = glm::abs(xyz(light.edge_u)), v = glm::abs(xyz(light.edge_v));
-  const float luminance = 0.2126f * light.color.x + 0.7152f * light.color.y + 0.0722f * light.color.z;
-  const float radius = light.edge_u.w;
-  switch (light.kind) {
-    case LIGHT_SPHERE:
-      return {p - radius, p + radius, luminance * 4 * std::numbers::pi_v<float> * radius * radius, index};
-    case LIGHT_TRIANGLE: {
-      const glm::vec3 a = xyz(light.edge_u), b = xyz(light.edge_v), none(0);
-      return {p + glm::min(none, glm::min(a, b)), p + glm::max(none, glm::max(a, b)),
-              luminance * light.direction.w, index};
-    }
-    case LIGHT_DISK:
-      return {p - u - v, p + u + v, luminance * light.direction.w, index};
-    default: {
-      const glm::vec3 a = xyz(light.edge_u), b = xyz(light.edge_v);
-      return {p + glm::min(a, glm::vec3(0)) + glm::min(b, glm::vec3(0)),
-              p + glm::max(a, glm::vec3(0)) + glm::max(b, glm::vec3(0)), luminance * light.direction.w,
-              index};
-    }
-  }
+  const LampBounds bounds = lamp_bounds(light);
+  return {bounds.lower, bounds.upper, bounds.power, index};
 }
 
 LightNode node_over(std::span<const Lamp> lamps) {

@@ -4,17 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <stdexcept>
 
 #include "base/error.h"
-#include "compile/pack.h"
 #include "compile/spectra.h"
 #include "compile/textures.h"
 #include "scene/integrators.h"
 #include "scene/kinds.h"
 #include "scene/lamps.h"
+#include "scene/pack.h"
 
 namespace sundog {
 namespace {
@@ -115,91 +112,6 @@ bool lacks_material(const SceneDescription& scene, const Object& object) {
   if (!shape) return true;
   const auto& materials = scene.meshes[static_cast<std::size_t>(shape->mesh)].materials;
   return materials.empty() || std::any_of(materials.begin(), materials.end(), [](int m) { return m < 0; });
-}
-
-/// A light and its place in the scene file, for messages.
-struct NamedLight {
-  const SceneDescription& scene;
-  const LightDescription& light;
-  const std::string& place;
-};
-
-dvec3 unit_direction(const NamedLight& named) {
-  const dvec3& direction = named.light.direction;
-  const double length = glm::length(direction);
-  if (!(length > 0) || !std::isfinite(length))
-    throw SceneError(named.scene.file.string(), named.place + "/direction",
-                     fmt::format("wanted a direction, found ({}, {}, {}); give the way the light travels",
-                                 direction.x, direction.y, direction.z));
-  return direction / length;
-}
-
-double cosine(double degrees) { return std::cos(degrees * std::numbers::pi / 180); }
-
-/// The extent of a light, in `packed`.
-void pack_extent(const NamedLight& named, const dvec3& origin, Light& packed) {
-  const LightDescription& light = named.light;
-  if (light.type == LightType::sphere) {
-    packed.edge_u.w = static_cast<float>(light.radius);
-    return;
-  }
-  unit_direction(named);
-  const LampAxes axes = lamp_axes(light);
-  const bool rectangle = light.type == LightType::rectangle;
-  const double area = glm::length(glm::cross(axes.u, axes.v)) * (rectangle ? 1 : std::numbers::pi);
-  if (rectangle) packed.position = pack(light.position - (axes.u + axes.v) / 2.0 - origin);
-  packed.direction = pack(axes.normal, area);
-  packed.edge_u = pack(axes.u, glm::length(axes.u));
-  packed.edge_v = pack(axes.v, glm::length(axes.v));
-}
-
-/// A sun of the given angle across, with the irradiance of the directional light: sin^2 of half the angle
-/// times pi is what a surface that faces it sees of it.
-void pack_sun(const LightDescription& light, Light& packed) {
-  const double half = light.angle * std::numbers::pi / 360, sine = std::sin(half);
-  const double cap = 2 * std::sin(half / 2) * std::sin(half / 2);
-  packed.kind = LIGHT_SUN;
-  packed.color = pack(light.color * light.intensity / (sine * sine));
-  packed.direction.w = static_cast<float>(light.visible ? cap : -cap);
-}
-
-Light pack_light(const NamedLight& named, const dvec3& origin) {
-  const LightDescription& light = named.light;
-  Light packed{};
-  packed.position = pack(light.position - origin);
-  packed.color = pack(light.color * light.intensity);
-  packed.falloff_constant = static_cast<float>(light.falloff.x);
-  packed.falloff_linear = static_cast<float>(light.falloff.y);
-  packed.falloff_quadratic = static_cast<float>(light.falloff.z);
-  switch (light.type) {
-    case LightType::ambient:
-      throw std::logic_error("an ambient light is no entry of the table of lights");
-    case LightType::point:
-      packed.kind = LIGHT_POINT;
-      break;
-    case LightType::directional:
-      packed.kind = LIGHT_DIRECTIONAL;
-      packed.direction = pack(unit_direction(named));
-      if (light.angle > 0) pack_sun(light, packed);
-      break;
-    case LightType::spot:
-      packed.kind = LIGHT_SPOT;
-      packed.direction = pack(unit_direction(named), cosine(light.outer_angle));
-      packed.color.w = static_cast<float>(cosine(light.inner_angle));
-      break;
-    case LightType::rectangle:
-      packed.kind = LIGHT_RECTANGLE;
-      break;
-    case LightType::disk:
-      packed.kind = LIGHT_DISK;
-      break;
-    case LightType::sphere:
-      packed.kind = LIGHT_SPHERE;
-      break;
-  }
-  if (facts_of(light.type).extent) pack_extent(named, origin, packed);
-  packed.position.w = facts_of(light.type).extent && !light.visible ? 1.0f : 0.0f;
-  return packed;
 }
 
 }  // namespace

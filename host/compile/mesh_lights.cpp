@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compile/pack.h"
 #include "scene/integrators.h"
+#include "scene/pack.h"
 
 namespace sundog {
 namespace {

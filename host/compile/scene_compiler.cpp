@@ -15,9 +15,9 @@
 #include "compile/lobe_energy.h"
 #include "compile/local_origin.h"
 #include "compile/mesh_lights.h"
-#include "compile/pack.h"
 #include "compile/parts/parts.h"
 #include "scene/integrators.h"
+#include "scene/pack.h"
 
 namespace sundog {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "base/error.h"
 #include "base/image_io.h"
-#include "compile/pack.h"
 #include "compile/texels.h"
+#include "scene/pack.h"
 
 namespace sundog {
 namespace {

@@ -1,4 +1,4 @@
-// The kernel files that the build embedded (cmake/EmbedKernels.cmake), by their path under kernels/.
+// The kernel files that the build embedded (cmake/EmbedFiles.cmake), by their path under kernels/.
 #pragma once
 #include <filesystem>
 #include <span>

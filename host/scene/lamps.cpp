@@ -4,11 +4,79 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
+#include <stdexcept>
 
+#include "base/error.h"
 #include "scene/kinds.h"
+#include "scene/pack.h"
+#include "scene/read/parts.h"
 
 namespace sundog {
 namespace {
+
+// Their keys in scene files.
+
+/// Products of two such lengths are floats.
+constexpr Range lamp_range{.low = 1e-15, .high = 1e15};
+
+/// The way it shines, given as such or by a point that it shines at.
+void read_aim(JsonObject& object, LightDescription& light) {
+  static constexpr std::string_view aims[] = {"direction", "target"};
+  const std::string aim = object.one_of(aims);
+  const JsonValue value = *object.find(aim);
+  if (aim == "direction") {
+    light.direction = value.direction();
+  } else {
+    light.direction = value.vec3() - light.position;
+    if (!(glm::length(light.direction) > 1e-12)) value.fail("wanted a point away from the light's position");
+    light.direction = glm::normalize(light.direction);
+  }
+}
+
+void read_rectangle(JsonObject& object, LightDescription& light) {
+  if (const auto up = object.find("up")) light.up = up->direction();
+  const JsonValue size = object.at("size", "the two edges [width, height]");
+  const auto edges = size.items("2 lengths");
+  if (edges.size() != 2) size.wanted("an array of 2 lengths");
+  light.size = {edges[0].number(lamp_range), edges[1].number(lamp_range)};
+}
+
+void read_radius(JsonObject& object, LightDescription& light) {
+  light.radius = object.number("radius", light.radius, lamp_range);
+}
+
+void read_spot(JsonObject& object, LightDescription& light) {
+  const Range angle{.low = 0, .high = 90, .low_open = true, .high_open = true};
+  light.outer_angle = object.number("outer_angle", light.outer_angle, angle);
+  light.inner_angle =
+      object.number("inner_angle", light.outer_angle * 2 / 3, {.low = 0, .high = 90, .high_open = true});
+  if (light.inner_angle > light.outer_angle)
+    object.value().fail(fmt::format("wanted an \"inner_angle\" not above the \"outer_angle\" of {}, found {}",
+                                    light.outer_angle, light.inner_angle));
+}
+
+// The things that rays meet.
+
+/// The sides of a rectangle and the radii of a disk, at right angles to `normal`, the way the light travels:
+/// cross(u, v) has the normal's direction. A rectangle's `v` lies as near to the light's `up` as it can.
+struct LampAxes {
+  dvec3 u{1, 0, 0}, v{0, 0, 1}, normal{0, -1, 0};  // u and v in world units
+};
+
+LampAxes lamp_axes(const LightDescription& light) {
+  LampAxes axes;
+  axes.normal = glm::normalize(light.direction);
+  dvec3 side = glm::cross(light.up, axes.normal);
+  // An "up" along the light's direction says nothing: then z, and for a light along that x.
+  if (glm::length(side) < 1e-6 * glm::length(light.up)) side = glm::cross(dvec3(0, 0, 1), axes.normal);
+  if (glm::length(side) < 1e-6) side = glm::cross(dvec3(1, 0, 0), axes.normal);
+  side = glm::normalize(side);
+  const bool round = light.type == LightType::disk;
+  axes.u = side * (round ? light.radius : light.size.x);
+  axes.v = glm::cross(axes.normal, side) * (round ? light.radius : light.size.y);
+  return axes;
+}
 
 /// The rotation and place of something whose axis is +y and whose middle is its origin.
 dmat4 placed_along(const LampAxes& axes, const dvec3& middle) {
@@ -28,25 +96,163 @@ Mesh rectangle_mesh(const dvec2& size) {
 Shape lamp_shape(const LightDescription& light, SceneDescription& scene) {
   if (light.type == LightType::sphere) return SphereShape{light.radius};
   if (light.type == LightType::disk) return DiskShape{light.radius, 0};
+  if (light.type != LightType::rectangle) throw std::logic_error("a light without a shape that rays meet");
   scene.meshes.push_back(rectangle_mesh(light.size));
   scene.meshes.back().name = "lamp";
   return MeshShape{static_cast<int>(scene.meshes.size()) - 1};
 }
 
+// Their rows.
+
+dvec3 unit_direction(const NamedLight& named) {
+  const dvec3& direction = named.light.direction;
+  const double length = glm::length(direction);
+  if (!(length > 0) || !std::isfinite(length))
+    throw SceneError(named.scene.file.string(), named.place + "/direction",
+                     fmt::format("wanted a direction, found ({}, {}, {}); give the way the light travels",
+                                 direction.x, direction.y, direction.z));
+  return direction / length;
+}
+
+double cosine(double degrees) { return std::cos(degrees * std::numbers::pi / 180); }
+
+void pack_flat(const NamedLight& named, const LampAxes& axes, double area, Light& packed) {
+  unit_direction(named);
+  packed.direction = pack(axes.normal, area);
+  packed.edge_u = pack(axes.u, glm::length(axes.u));
+  packed.edge_v = pack(axes.v, glm::length(axes.v));
+}
+
+void pack_rectangle(const NamedLight& named, const dvec3& origin, Light& packed) {
+  const LampAxes axes = lamp_axes(named.light);
+  pack_flat(named, axes, glm::length(glm::cross(axes.u, axes.v)), packed);
+  packed.position = pack(named.light.position - (axes.u + axes.v) / 2.0 - origin);
+}
+
+void pack_disk(const NamedLight& named, Light& packed) {
+  const LampAxes axes = lamp_axes(named.light);
+  pack_flat(named, axes, glm::length(glm::cross(axes.u, axes.v)) * std::numbers::pi, packed);
+}
+
+/// A sun of the given angle across, with the irradiance of the directional light: sin^2 of half the angle
+/// times pi is what a surface that faces it sees of it.
+void pack_sun(const LightDescription& light, Light& packed) {
+  const double half = light.angle * std::numbers::pi / 360, sine = std::sin(half);
+  const double cap = 2 * std::sin(half / 2) * std::sin(half / 2);
+  packed.kind = LIGHT_SUN;
+  packed.color = pack(light.color * light.intensity / (sine * sine));
+  packed.direction.w = static_cast<float>(light.visible ? cap : -cap);
+}
+
+/// Whether the list of lights ends with those of an extent, from LIGHT_RECTANGLE on: kernels tell them by
+/// that.
+constexpr bool extents_come_last() {
+  for (u32 kind = 0; kind < LIGHT_KINDS; ++kind)
+    if (facts_of_kind(kind).extent != (kind >= LIGHT_RECTANGLE)) return false;
+  return true;
+}
+static_assert(extents_come_last());
+
+glm::vec3 xyz(const float4& v) { return {v.x, v.y, v.z}; }
+
 }  // namespace
 
-LampAxes lamp_axes(const LightDescription& light) {
-  LampAxes axes;
-  axes.normal = glm::normalize(light.direction);
-  dvec3 side = glm::cross(light.up, axes.normal);
-  // An "up" along the light's direction says nothing: then z, and for a light along that x.
-  if (glm::length(side) < 1e-6 * glm::length(light.up)) side = glm::cross(dvec3(0, 0, 1), axes.normal);
-  if (glm::length(side) < 1e-6) side = glm::cross(dvec3(1, 0, 0), axes.normal);
-  side = glm::normalize(side);
-  const bool round = light.type == LightType::disk;
-  axes.u = side * (round ? light.radius : light.size.x);
-  axes.v = glm::cross(axes.normal, side) * (round ? light.radius : light.size.y);
-  return axes;
+void read_light_sampling(JsonObject& object, int& samples, bool& visible) {
+  samples = object.integer("samples", samples, 1, 1024);
+  visible = object.boolean("visible", visible);
+}
+
+void read_light_kind(JsonObject& object, LightDescription& light) {
+  if (facts_of(light.type).extent) read_light_sampling(object, light.samples, light.visible);
+  switch (light.type) {
+    case LightType::ambient:
+    case LightType::point:
+      break;
+    case LightType::directional:
+      light.direction = object.at("direction", "the way the light travels [x, y, z]").direction();
+      light.angle = object.number("angle", light.angle, {.low = 0, .high = 90});
+      read_light_sampling(object, light.samples, light.visible);
+      break;
+    case LightType::spot:
+      read_aim(object, light);
+      read_spot(object, light);
+      break;
+    case LightType::rectangle:
+      read_rectangle(object, light);
+      read_aim(object, light);
+      break;
+    case LightType::disk:
+      read_radius(object, light);
+      read_aim(object, light);
+      break;
+    case LightType::sphere:
+      read_radius(object, light);
+      break;
+  }
+}
+
+Light pack_light(const NamedLight& named, const dvec3& origin) {
+  const LightDescription& light = named.light;
+  Light packed{};
+  packed.position = pack(light.position - origin);
+  packed.color = pack(light.color * light.intensity);
+  packed.falloff_constant = static_cast<float>(light.falloff.x);
+  packed.falloff_linear = static_cast<float>(light.falloff.y);
+  packed.falloff_quadratic = static_cast<float>(light.falloff.z);
+  switch (light.type) {
+    case LightType::ambient:
+      throw std::logic_error("an ambient light is no entry of the table of lights");
+    case LightType::point:
+      packed.kind = LIGHT_POINT;
+      break;
+    case LightType::directional:
+      packed.kind = LIGHT_DIRECTIONAL;
+      packed.direction = pack(unit_direction(named));
+      if (light.angle > 0) pack_sun(light, packed);
+      break;
+    case LightType::spot:
+      packed.kind = LIGHT_SPOT;
+      packed.direction = pack(unit_direction(named), cosine(light.outer_angle));
+      packed.color.w = static_cast<float>(cosine(light.inner_angle));
+      break;
+    case LightType::rectangle:
+      packed.kind = LIGHT_RECTANGLE;
+      pack_rectangle(named, origin, packed);
+      break;
+    case LightType::disk:
+      packed.kind = LIGHT_DISK;
+      pack_disk(named, packed);
+      break;
+    case LightType::sphere:
+      packed.kind = LIGHT_SPHERE;
+      packed.edge_u.w = static_cast<float>(light.radius);
+      break;
+  }
+  packed.position.w = facts_of(light.type).extent && !light.visible ? 1.0f : 0.0f;
+  return packed;
+}
+
+LampBounds lamp_bounds(const Light& light) {
+  const glm::vec3 p = xyz(light.position), u = xyz(light.edge_u), v = xyz(light.edge_v), none(0);
+  const float luminance = 0.2126f * light.color.x + 0.7152f * light.color.y + 0.0722f * light.color.z;
+  const float radius = light.edge_u.w, flat = luminance * light.direction.w;
+  switch (static_cast<LightKind>(light.kind)) {
+    case LIGHT_SPHERE:
+      return {p - radius, p + radius, luminance * 4 * std::numbers::pi_v<float> * radius * radius};
+    case LIGHT_TRIANGLE:
+      return {p + glm::min(none, glm::min(u, v)), p + glm::max(none, glm::max(u, v)), flat};
+    case LIGHT_DISK:
+      return {p - glm::abs(u) - glm::abs(v), p + glm::abs(u) + glm::abs(v), flat};
+    case LIGHT_RECTANGLE:
+      return {p + glm::min(u, none) + glm::min(v, none), p + glm::max(u, none) + glm::max(v, none), flat};
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_POINT:
+    case LIGHT_SPOT:
+    case LIGHT_SUN:
+    case LIGHT_ENVIRONMENT:
+      break;
+  }
+  throw std::logic_error("a light without an extent has no bounds");
 }
 
 void add_lamps(SceneDescription& scene) {

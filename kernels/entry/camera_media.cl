@@ -1,8 +1,8 @@
 // One stage: which media the camera is inside of, found by following a line from it to the outside.
 #include "lib/path/segment.cl"
 
-// The line leaves `medium`: one that it entered, or one that holds the camera. What is left later was entered
-// earlier: it goes to the far end.
+// The line leaves `medium`: one that it entered, or one that holds the camera. A medium that is left
+// later was entered earlier: it goes to the far end.
 static inline void leave_medium(u32 medium, MediaStack* entered, MediaStack* holding) {
   if (cross_boundary(entered, medium, false)) return;
   u32 shift = 0;

@@ -1,4 +1,4 @@
-// The page that the build embedded (cmake/EmbedPage.cmake): HTML, CSS, modules, the sheet of surfaces, and
+// The page that the build embedded (cmake/EmbedFiles.cmake): HTML, CSS, modules, the sheet of surfaces, and
 // the scene's schema.
 #pragma once
 #include <span>

@@ -174,7 +174,7 @@ void time_sizes(Sweep& sweep, std::vector<WorkGroupTime>& times, int repeat) {
   }
   for (std::size_t k = 0; k < times.size(); ++k) {
     times[k].seconds = spread(seconds[k]);
-    // What is left of a later launch is no compiling: queueing, and the host's own work.
+    // The rest of a later launch is no compiling: queueing, and the host's own work.
     if (times[k].compile_seconds && !beyond[k].empty())
       times[k].compile_seconds = std::max(0.0, *times[k].compile_seconds - spread(beyond[k]).median);
   }

@@ -132,7 +132,7 @@ std::pair<double, double> duel(Candidate& a, Candidate& b, int count) {
   return {spread(of_a).median, spread(of_b).median};
 }
 
-/// What is left of the time for a kernel, and what measuring a point will take of it.
+/// The time that remains for a kernel, and the part of it that measuring a point will take.
 class TimeLeft {
  public:
   TimeLeft(double budget, TuneCosts& costs) : budget_(budget), costs_(costs) {}

@@ -93,8 +93,7 @@ std::shared_ptr<Frame> make_session_frame(const FrameOrder& order,
   FramePasses passes = passes_of(order, options);
   const std::size_t pixels = passes.film.taken.size();
   options.on_progress = std::move(on_progress);
-  auto frame = std::make_shared<Frame>(options, Film(), TilePlan{{WaitingTiles()}, false, false},
-                                       speeds_of(order.servers));
+  auto frame = std::make_shared<Frame>(options, Film(), TilePlan{{WaitingTiles()}}, speeds_of(order.servers));
   for (const auto& server : order.servers) {
     Frame::Server entry;
     entry.server = server;

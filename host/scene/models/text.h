@@ -24,7 +24,7 @@ class TextReader {
 
   /// The line's next word, empty at its end.
   std::string_view word();
-  /// What is left of the line, without blanks around it.
+  /// The rest of the line, without blanks around it.
   std::string_view rest();
   bool at_line_end();
 

@@ -9,6 +9,7 @@
 #include "base/limits.h"
 #include "scene/integrators.h"
 #include "scene/kinds.h"
+#include "scene/lamps.h"
 #include "scene/read/parts.h"
 
 namespace sundog {
@@ -55,57 +56,12 @@ void read_placed_light(JsonObject& object, LightDescription& light) {
   if (const auto falloff = object.find("falloff")) light.falloff = falloff->object("falloff", read_falloff);
 }
 
-/// The way it shines, given as such or by a point that it shines at.
-void read_aim(JsonObject& object, LightDescription& light) {
-  static constexpr std::string_view aims[] = {"direction", "target"};
-  const std::string aim = object.one_of(aims);
-  const JsonValue value = *object.find(aim);
-  if (aim == "direction") {
-    light.direction = value.direction();
-  } else {
-    light.direction = value.vec3() - light.position;
-    if (!(glm::length(light.direction) > 1e-12)) value.fail("wanted a point away from the light's position");
-    light.direction = glm::normalize(light.direction);
-  }
-}
-
 void read_sun(const JsonValue& value, EnvironmentDescription& e) {
   value.object("sun", [&](JsonObject& object) {
     e.sun_altitude = object.number("altitude", e.sun_altitude, {.low = 0, .high = 90});
     e.sun_azimuth = object.number("azimuth", e.sun_azimuth, {.low = -360, .high = 360});
     e.sun_size = object.number("size", e.sun_size, {.low = 0, .high = 90});
   });
-}
-
-/// Products of two such lengths are floats.
-constexpr Range lamp_range{.low = 1e-15, .high = 1e15};
-
-void read_sampling(JsonObject& object, int& samples, bool& visible) {
-  samples = object.integer("samples", samples, 1, 1024);
-  visible = object.boolean("visible", visible);
-}
-
-void read_extent(JsonObject& object, LightDescription& light) {
-  read_sampling(object, light.samples, light.visible);
-  if (light.type == LightType::rectangle) {
-    if (const auto up = object.find("up")) light.up = up->direction();
-    const JsonValue size = object.at("size", "the two edges [width, height]");
-    const auto edges = size.items("2 lengths");
-    if (edges.size() != 2) size.wanted("an array of 2 lengths");
-    light.size = {edges[0].number(lamp_range), edges[1].number(lamp_range)};
-  } else {
-    light.radius = object.number("radius", light.radius, lamp_range);
-  }
-}
-
-void read_spot(JsonObject& object, LightDescription& light) {
-  const Range angle{.low = 0, .high = 90, .low_open = true, .high_open = true};
-  light.outer_angle = object.number("outer_angle", light.outer_angle, angle);
-  light.inner_angle =
-      object.number("inner_angle", light.outer_angle * 2 / 3, {.low = 0, .high = 90, .high_open = true});
-  if (light.inner_angle > light.outer_angle)
-    object.value().fail(fmt::format("wanted an \"inner_angle\" not above the \"outer_angle\" of {}, found {}",
-                                    light.outer_angle, light.inner_angle));
 }
 
 void read_filter(JsonObject& object, RenderSettings& render) {
@@ -317,7 +273,7 @@ EnvironmentDescription read_environment(const JsonValue& value,
     e.intensity = object.number("intensity", e.intensity, at_least_0);
     if (const auto up = object.find("up")) e.up = up->direction();
     e.rotate = object.number("rotate", e.rotate, {.low = -1e6, .high = 1e6});
-    read_sampling(object, e.samples, e.visible);
+    read_light_sampling(object, e.samples, e.visible);
     if (type == "image") {
       e.type = EnvironmentType::image;
       e.picture = read_picture(object.at("file", "the path of an image"));
@@ -351,26 +307,7 @@ LightDescription read_light(const JsonValue& value) {
     const auto facts = std::find(types.begin(), types.end(), type) - types.begin();
     light.type = light_types[static_cast<std::size_t>(facts)].type;
     if (facts_of(light.type).placed) read_placed_light(object, light);
-    if (facts_of(light.type).extent) read_extent(object, light);
-    switch (light.type) {
-      case LightType::ambient:
-      case LightType::point:
-      case LightType::sphere:
-        break;
-      case LightType::directional:
-        light.direction = object.at("direction", "the way the light travels [x, y, z]").direction();
-        light.angle = object.number("angle", light.angle, {.low = 0, .high = 90});
-        read_sampling(object, light.samples, light.visible);
-        break;
-      case LightType::rectangle:
-      case LightType::disk:
-        read_aim(object, light);
-        break;
-      case LightType::spot:
-        read_aim(object, light);
-        read_spot(object, light);
-        break;
-    }
+    read_light_kind(object, light);
     return light;
   });
 }

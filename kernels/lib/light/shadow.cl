@@ -199,7 +199,7 @@ static inline Hits shadow_hits(const Scene* scene, SceneRays* rays, MASK lanes, 
 }
 #endif
 
-// What of `light` arrives at the ends of the shadow rays of `lanes`, taken all the way there.
+// The part of `light` that arrives at the ends of the shadow rays of `lanes`, taken all the way there.
 #if HAS_SHADOW_FILTERS
 static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 sent, MASK lanes, u32* counts) {
   REAL3 light = sent;

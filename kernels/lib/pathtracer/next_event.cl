@@ -81,7 +81,7 @@ static inline SceneRays rays_to_light(const Scene* scene, const SceneRays* rays,
   return to_light;
 }
 
-// What of `light` arrives at the ends of shadow rays.
+// The part of `light` that arrives at the ends of shadow rays.
 #if HAS_DISPERSION
 static inline Carried carried_to_light(const Scene* scene, const Wavelengths* w, SceneRays* rays,
                                        Carried light, MASK lanes, u32* counts) {

@@ -13,8 +13,8 @@ typedef struct Walks {
   Carried light;  // gathered so far
   REAL3 from;     // the surface that chose the ray's direction, with the density `density`
   REAL density;   // 0: no light that is chosen at surfaces counts twice on this ray
-  // What of the throughput is no measure of the path's worth: radiance spread by refraction since the camera
-  // (squared index by squared index), and paths drawn to guides.
+  // The factor of the throughput that says nothing of the path's worth: radiance spread by refraction since
+  // the camera (squared index by squared index), and paths drawn to guides.
   REAL spread;
   MASK depth;  // of the ray: the camera's has 1
   MASK met;    // the camera's ray has hit something

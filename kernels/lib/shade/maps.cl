@@ -89,7 +89,7 @@ static inline REAL first_value(__global const MaterialMaps* maps, const SlotValu
   return has_slot(maps, slot) ? values->of[slot].x : (REAL)(1.0f);
 }
 
-// What of surfaces is there: all below 1 lets what is behind it through.
+// The opacity of surfaces: below 1, what is behind them shows through.
 static inline REAL opacity_of(__global const MaterialMaps* maps, const SlotValues* values) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
   const REAL opacity = real_clamp(maps->opacity * first_value(maps, values, MAP_OPACITY), zero, one);

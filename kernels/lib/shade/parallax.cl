@@ -147,7 +147,7 @@ NEVER_INLINE void add_parallax(const Scene* scene, REAL3 d, MASK lanes, SurfaceI
   }
 }
 
-// What of light from wi comes to the surfaces of `lanes` past their own heights: all or nothing.
+// The part of light from wi that reaches the surfaces of `lanes` past their own heights: 1 or 0.
 NEVER_INLINE REAL relief_visibility(const Scene* scene, const SurfaceInteractions* s, REAL3 wi, MASK lanes) {
   const REAL zero = (REAL)(0.0f);
   const MASK deep = lanes & MASK_OF(s->sunk > 0.0f) & MASK_OF(dot3(s->ng, wi) > 0.0f);

@@ -155,8 +155,8 @@ NEVER_INLINE void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInt
   s->bent = mapped;
 }
 
-// What of light from wi the bent normals of `lanes` return: none from behind the surface, and near its
-// terminator less, as microfacets of the bend's slope hide each other (Conty Estevez and others 2019, "A
+// The part of light from wi that the bent normals of `lanes` return: none from behind the surface, and near
+// its terminator less, as microfacets of the bend's slope hide each other (Conty Estevez and others 2019, "A
 // Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem"; against others:
 // docs/textures.md).
 static inline REAL terminator(const SurfaceInteractions* s, REAL3 wi) {

@@ -117,7 +117,7 @@ ALWAYS_INLINE void walk_block(__global const TriangleBlock* blocks, const REAL* 
   drop_behind(walk, walk->base, hit.t);
 }
 
-// What is left to do for a walk after a leaf's word, for all walks of the round at once.
+// The work that a leaf leaves to a walk, done for all walks of the round at once.
 #define LEAF_TURN 1u   // it has entered a mesh: its ray is aimed in the mesh's space
 #define LEAF_SOLID 2u  // it has come to a solid
 

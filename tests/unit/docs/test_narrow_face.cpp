@@ -81,7 +81,7 @@ TEST_CASE("the headers of a render and a session hold values: no OpenCL, no JSON
 }
 
 TEST_CASE("code below the program neither prints nor ends, starts or steers the process") {
-  // What is left, each for the reason beside it.
+  // The exceptions, each for the reason beside it.
   const std::map<std::string, std::string> known = {
       {"device/pocl_folder.cpp", "atexit"},  // PoCL's own folder goes after PoCL, which has no other moment
   };
