@@ -2,6 +2,7 @@
 // The scenes share their kernels: each is one triangle under one ambient and one directional light.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "catch.h"
 #include "devices.h"
@@ -143,6 +144,23 @@ TEST_CASE("fog takes exp(-density d) of what lies behind it and adds the rest in
       away.camera.target = met + dvec3(0, 0, 9);
       check_color(device, away, fog);
     }
+}
+
+TEST_CASE("there is no fog inside of things") {
+  const dvec3 glow{0.2, 0.9, 0.4};
+  SceneDescription scene = one_triangle({0, 0, 1}, 0);
+  scene.fog = {{0.7, 0.3, 0.1}, 0.13};
+  material_of(scene).ambient = glow;
+  scenes::place(scene, SphereShape{20}, scenes::add_dielectric(scene, 1.5, {0, 0, 0}, 0));
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label())
+  check_color(device, scene, glow);
+}
+
+TEST_CASE("samples whose light is not finite in one color count for nothing") {
+  SceneDescription scene = one_triangle({0, 0, 1}, 0);
+  material_of(scene).ambient = {0.5, 0.5, std::numeric_limits<double>::infinity()};
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label())
+  check_color(device, scene, {0, 0, 0});
 }
 
 TEST_CASE("the background goes from bottom to top with the sine of the elevation") {
