@@ -54,8 +54,9 @@ std::size_t table_bytes(const SceneTables& tables);
 
 struct CompiledScene : SceneTables {
   SceneInfo info{};
-  dvec3 origin{0};           // where the tables' coordinates begin in the world; SceneInfo has it in floats
-  std::string field_source;  // text of generated/sdf.cl (compile/fields/sdf.h); empty without fields
+  dvec3 origin{0};             // where the tables' coordinates begin in the world; SceneInfo has it in floats
+  std::string field_source;    // text of generated/sdf.cl (compile/fields/sdf.h); empty without fields
+  std::string pattern_source;  // text of generated/patterns.cl (compile/fields/pattern_code.h), or empty
   std::string integrator = "whitted";  // a name of scene/integrators.h
   Tracer tracer = Tracer::automatic;   // of which kind the device shall trace
   Sampling sampling;

@@ -75,7 +75,7 @@ u32 material_flags(const MaterialDescription& material) {
   if (material.checker) flags |= MATERIAL_CHECKER;
   if (!is_zero(material.transmission) || material.opacity < 1 || material.textures.opacity >= 0)
     flags |= MATERIAL_TRANSMITS;
-  if (!is_zero(material.reflection)) flags |= MATERIAL_REFLECTS;
+  if (!is_zero(material.reflection) || material.coat > 0) flags |= MATERIAL_REFLECTS;
   if (material.medium < 0) flags |= MATERIAL_THIN;
   if (material.vertex_color) flags |= MATERIAL_VERTEX_COLOR;
   if (material.one_sided) flags |= MATERIAL_ONE_SIDED | MATERIAL_TRANSMITS;

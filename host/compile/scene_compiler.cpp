@@ -214,6 +214,7 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
                         [&] { return make_fields(scene, views, out); });
   take_part(p.fields.made, out);
   out.field_source = p.fields.made.field_source;
+  out.pattern_source = p.surfaces.made.pattern_source;
   out.features.camera_inside = is_camera_inside(scene.camera.position - out.origin,
                                                 p.instances.made.instances.rows(), p.instances.boxes);
   finish_lights(scene, p.meshes.placed, out);

@@ -70,6 +70,14 @@ u32 pack_tangent(const dvec3& tangent, bool mirrored) {
          static_cast<u32>(std::lround((y * 0.5 + 0.5) * 32767)) << 16 | (mirrored ? 0x80000000u : 0u);
 }
 
+/// The tangent that the model's file has at a vertex, or the one that was made.
+CornerTangent given_or(const Mesh& mesh, u32 vertex, const CornerTangent& made) {
+  if (mesh.tangents.empty()) return made;
+  const glm::vec4& given = mesh.tangents[vertex];
+  const dvec3 tangent = unit_or_zero(dvec3(given));
+  return tangent == dvec3(0) ? made : CornerTangent{tangent, given.w < 0};
+}
+
 }  // namespace
 
 std::vector<CornerTangent> corner_tangents(const Mesh& mesh) {
@@ -105,7 +113,7 @@ std::vector<CornerTangent> corner_tangents(const Mesh& mesh) {
         if (mean != dvec3(0)) tangent = mean;
       }
       if (tangent == dvec3(0)) tangent = dvec3(1, 0, 0);
-      corners.push_back({tangent, mirrored});
+      corners.push_back(given_or(mesh, mesh.triangles[t][corner], {tangent, mirrored}));
     }
   return corners;
 }

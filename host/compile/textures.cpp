@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/image_io.h"
+#include "compile/fields/pattern_code.h"
 #include "compile/texels.h"
 #include "scene/pack.h"
 
@@ -39,6 +40,7 @@ class TextureCompiler {
       out_.texture_values.push_back(linear_from_srgb(static_cast<float>(i) / (SRGB_VALUES - 1)));
     std::vector<float>& values = out_.texture_values.edit();
     values.insert(values.end(), stops_.begin(), stops_.end());
+    out_.pattern_source = formulas_.empty() ? "" : pattern_code(formulas_);
     write_images();
   }
 
@@ -66,6 +68,7 @@ class TextureCompiler {
     maps.parallax = textures.height >= 0 ? static_cast<float>(material.parallax) : 0;
     out_.features.parallax |= maps.parallax > 0;
     maps.occlusion = static_cast<float>(material.occlusion);
+    maps.coat = static_cast<float>(material.coat);
     if (textures.normal >= 0 || textures.height >= 0) add_relief(textures, maps);
     out_.material_maps.push_back(maps);
   }
@@ -129,6 +132,7 @@ class TextureCompiler {
     node.scale = static_cast<float>(scale_of(texture));
     if (texture.kind == TEXTURE_IMAGE) set_image(texture, node);
     if (texture.kind == TEXTURE_RAMP) set_stops(texture, node);
+    if (texture.kind == TEXTURE_FORMULA) set_formula(texture, node);
     if (texture.kind != TEXTURE_COLOR && texture.mapping == Mapping::uv) {
       out_.features.surface_coordinates = true;
       out_.features.extra_uvs = std::max(out_.features.extra_uvs, static_cast<u32>(texture.uv_set));
@@ -152,6 +156,14 @@ class TextureCompiler {
     for (const RampStop& stop : texture.stops)
       for (const double value : {stop.at, stop.color.x, stop.color.y, stop.color.z})
         stops_.push_back(static_cast<float>(value));
+  }
+
+  void set_formula(const TextureDescription& texture, TextureNode& node) {
+    node.first = static_cast<u32>(SRGB_VALUES + stops_.size());
+    node.count = static_cast<u32>(formulas_.size());
+    formulas_.push_back(texture.formula);
+    for (const FormulaParameter& parameter : texture.formula.parameters)
+      for (const double value : parameter.value) stops_.push_back(static_cast<float>(value));
   }
 
   void set_image(const TextureDescription& texture, TextureNode& node) {
@@ -192,7 +204,8 @@ class TextureCompiler {
   CompiledScene& out_;
   std::map<int, u32> nodes_;                   // by texture
   std::map<int, std::pair<u32, u32>> levels_;  // by image: the first one, how many
-  std::vector<float> stops_;                   // of ramps, behind the values of bytes
+  std::vector<float> stops_;                   // of ramps and formulas, behind the values of bytes
+  std::vector<PatternFormula> formulas_;
   std::size_t units_ = 0;
 };
 
@@ -203,7 +216,7 @@ bool has_maps(const MaterialDescription& material) {
 #define SUNDOG_HAS_MAP(constant, name) textured |= material.textures.name >= 0;
   MAP_SLOTS(SUNDOG_HAS_MAP)
 #undef SUNDOG_HAS_MAP
-  return textured || material.opacity < 1 || material.one_sided || material.metal_rough;
+  return textured || material.opacity < 1 || material.one_sided || material.metal_rough || material.coat > 0;
 }
 
 void cut_into_pages(std::vector<u32> texels, u32 least_page, CompiledScene& out) {

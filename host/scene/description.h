@@ -186,16 +186,18 @@ struct MaterialDescription {
   double displacement_middle = 0;  // the height that moves nothing
   double displacement_edge = 0;    // of the triangles, object space; 0: about a texel's
   double occlusion = 1;            // how much of the occlusion texture counts, [0, 1]
+  double coat = 0;                 // a clear layer's mirror above all else, [0, 1], times its texture
 };
 
-/// Triangles with shared vertices. `normals` (empty: flat shading), `uvs` and `colors` are empty or as long
-/// as `positions`; all colours linear.
+/// Triangles with shared vertices. `normals` (empty: flat shading), `uvs`, `tangents` and `colors` are empty
+/// or as long as `positions`; all colours linear.
 struct Mesh {
   std::string name;
   MeshArray<glm::vec3> positions;
   MeshArray<glm::vec3> normals;
   MeshArray<glm::vec2> uvs;                       // v up
   std::vector<MeshArray<glm::vec2>> further_uvs;  // sets 1, 2, ..., each empty or as long as `positions`
+  MeshArray<glm::vec4> tangents;  // along u; w: the bitangent's sign. Empty: compile() makes them
   MeshArray<glm::vec3> colors;
   MeshArray<glm::uvec3> triangles;
   std::vector<int> materials;  // per triangle, index into SceneDescription::materials; empty: the object's

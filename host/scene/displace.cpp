@@ -207,6 +207,7 @@ bool displaces(const SceneDescription& scene, int index) {
 }  // namespace
 
 Mesh refine(Mesh mesh, double edge, std::size_t most) {
+  mesh.tangents.clear();  // compile() makes those of the new surface
   if (!(edge > 0)) return mesh;
   for (bool any = true; any && mesh.triangles.size() <= most;) {
     any = false;

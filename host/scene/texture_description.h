@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/pixels/stored_image.h"
+#include "scene/formula/definition.h"
 #include "shared/textures.h"
 
 namespace sundog {
@@ -47,6 +48,7 @@ struct TextureDescription {
   glm::dmat4 placement{1};   // from the object's units to the mapping's
   double parameter[6] = {};  // by kind, as in shared/textures.h
   std::vector<RampStop> stops{};
+  PatternFormula formula{};
   glm::dvec4 factor{1}, offset{0};
 };
 

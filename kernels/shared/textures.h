@@ -8,8 +8,7 @@
 SUNDOG_SHARED_BEGIN
 
 // The kinds of nodes in one list: from it come TEXTURE_* and the description's TextureKind. Bit i of the
-// feature TEXTURE_KINDS is set where a scene has kind i. All but the first two give a number t, which mixes
-// two colours.
+// feature TEXTURE_KINDS is set where a scene has kind i. Patterns give a number t, which mixes two colours.
 //   TEXTURE(constant after TEXTURE_, name in scene files)
 // A table:
 // clang-format off
@@ -25,7 +24,8 @@ SUNDOG_SHARED_BEGIN
   TEXTURE(MARBLE, marble)     /* veins across x; parameters 0, 1, 2: octaves, gain, turbulence */           \
   TEXTURE(WOOD, wood)         /* rings about y; parameters as of marble */                                  \
   TEXTURE(RAMP, ramp)         /* the stops at `first` by the red of the value on the stack */               \
-  TEXTURE(PRODUCT, product)   /* of the two values on the stack */
+  TEXTURE(PRODUCT, product)   /* of the two values on the stack */                                          \
+  TEXTURE(FORMULA, formula)   /* number `count` of generated/patterns.cl, its numbers at `first` */
 // clang-format on
 
 #define TEXTURE_CONSTANT(constant, name) TEXTURE_##constant,
@@ -62,7 +62,7 @@ typedef enum TextureKind SUNDOG_ENUM_OF_U32 { TEXTURES(TEXTURE_CONSTANT) TEXTURE
 // i.
 #define MAPPING_UV 0u  // the surface's u and v (lib/shade/parametrize.cl); the set is above MAPPING_SET_SHIFT
 #define MAPPING_OBJECT 1u       // the point in the object's own units; x and y are u and v
-#define MAPPING_SPHERICAL 2u    // longitude about y from +x to +z, and latitude, both over [0, 1]
+#define MAPPING_SPHERICAL 2u    // longitude about y from +x to -z, and latitude, both over [0, 1]
 #define MAPPING_CYLINDRICAL 3u  // longitude and y
 #define MAPPING_BOX 4u          // along the three axes, mixed by the normal
 #define MAPPING_KIND 0xFFu
@@ -112,7 +112,8 @@ SUNDOG_SHARED_SIZE(TexelLevel, 16)
   SLOT(NORMAL, normal)           /* tangent space, (0, 0, 1) is 0.5 0.5 1 */     \
   SLOT(HEIGHT, height)           /* along the normal, times MaterialMaps.bump */ \
   SLOT(METAL_ROUGH, metal_rough) /* green: roughness, blue: metalness (glTF) */  \
-  SLOT(OCCLUSION, occlusion)     /* red: of ambient light */
+  SLOT(OCCLUSION, occlusion)     /* red: of ambient light */                     \
+  SLOT(COAT, coat)               /* red: of the clear layer's mirror */
 
 #define MAP_CONSTANT(constant, name) MAP_##constant,
 typedef enum MapSlot SUNDOG_ENUM_OF_U32 { MAP_SLOTS(MAP_CONSTANT) MAP_COUNT } MapSlot;
@@ -135,7 +136,8 @@ typedef struct MaterialMaps {
   float occlusion;      // how much of the occlusion counts
   float parallax;       // depth of a 0 of the heights below a 1, which is the surface; 0: no parallax
   float bump_uv;        // the same height in units of u and v
-  u32 pad0, pad1;
+  float coat;           // a clear layer's mirror above all else
+  u32 pad;
 } MaterialMaps;
 SUNDOG_SHARED_SIZE(MaterialMaps, 128)
 

@@ -177,13 +177,18 @@ KeyMaker& KeyMaker::add(const ImageDescription& image) {
 
 KeyMaker& KeyMaker::add(const TextureDescription& texture) {
   const auto& [name, kind, of, image, wrap, filter, channel, mapping, uv_set, uv, placement, parameter, stops,
-               factor, offset] = texture;
+               formula, factor, offset] = texture;
   (void)name;
   add_each(kind, of[0], of[1], image, wrap[0], wrap[1], filter, channel, mapping, uv_set, uv, placement,
            factor, offset);
   bytes(parameter, sizeof parameter);
   add(stops.size());
   for (const auto& [at, color] : stops) add_each(at, color);
+  add(formula.text);
+  for (const FormulaParameter& p : formula.parameters) {
+    add(p.name);
+    add_rows(*this, p.value);
+  }
   return *this;
 }
 
@@ -192,13 +197,13 @@ KeyMaker& KeyMaker::add(const MaterialDescription& material) {
                roughness, medium, shadow_opaque, shadow_filter, checker, checker_ambient, checker_diffuse,
                checker_size, vertex_color, opacity, cutoff, one_sided, textures, metal_rough, normal_scale,
                bump, bump_uv, parallax, displaced_by, displacement, displacement_middle, displacement_edge,
-               occlusion] = material;
+               occlusion, coat] = material;
   (void)name;
   // These have made the meshes.
   (void)displaced_by, (void)displacement, (void)displacement_middle, (void)displacement_edge;
   add_each(type, ambient, diffuse, specular, exponent, blinn, emission, reflection, transmission, roughness,
            medium, shadow_opaque, shadow_filter, checker, checker_ambient, checker_diffuse, checker_size,
-           vertex_color, opacity, cutoff, one_sided, normal_scale, bump, bump_uv, parallax, occlusion,
+           vertex_color, opacity, cutoff, one_sided, normal_scale, bump, bump_uv, parallax, occlusion, coat,
            metal_rough.has_value());
   static_assert(sizeof textures % sizeof(int) == 0);
   bytes(&textures, sizeof textures);
@@ -208,7 +213,7 @@ KeyMaker& KeyMaker::add(const MaterialDescription& material) {
 }
 
 KeyMaker& KeyMaker::add(const Mesh& mesh) {
-  const auto& [name, positions, normals, uvs, further_uvs, colors, triangles, materials,
+  const auto& [name, positions, normals, uvs, further_uvs, tangents, colors, triangles, materials,
                source_vertex_count] = mesh;
   (void)name, (void)source_vertex_count;
   add_rows(*this, positions);
@@ -216,6 +221,7 @@ KeyMaker& KeyMaker::add(const Mesh& mesh) {
   add_rows(*this, uvs);
   add(further_uvs.size());
   for (const auto& set : further_uvs) add_rows(*this, set);
+  add_rows(*this, tangents);
   add_rows(*this, colors);
   add_rows(*this, triangles);
   add_rows(*this, materials);

@@ -89,6 +89,7 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   define("HAS_BVH", scene.features.shapes[SHAPE_MESH] || scene.info.bounded_count > without_tree);
   define("LANES", lanes);
   if (!scene.field_source.empty()) config.generated["generated/sdf.cl"] = scene.field_source;
+  if (!scene.pattern_source.empty()) config.generated["generated/patterns.cl"] = scene.pattern_source;
   return config;
 }
 

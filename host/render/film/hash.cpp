@@ -41,6 +41,7 @@ std::uint64_t hash_scene(const CompiledScene& scene) {
   state = hash_bytes(shared_out, sizeof shared_out, state);
   mix(scene.integrator);
   mix(scene.field_source);
+  mix(scene.pattern_source);
   for_each_table(scene, [&](const char*, const auto& table) { mix(table); });
   return state;
 }

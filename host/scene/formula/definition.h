@@ -58,4 +58,11 @@ struct FormulaDefinition {
   static constexpr std::size_t max_parameters = 32;
 };
 
+/// A pattern: a text that ends in an expression, a number or a vec3, in `p`, the place, and `width`, how wide
+/// what is seen there is, both in the pattern's units.
+struct PatternFormula {
+  std::string text;
+  std::vector<FormulaParameter> parameters;
+};
+
 }  // namespace sundog

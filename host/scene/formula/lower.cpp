@@ -172,6 +172,32 @@ void lower_finish(LoweredFormula& out, const FormulaDefinition& d, const std::ve
 
 }  // namespace
 
+LoweredPattern lower_pattern(const PatternFormula& formula) {
+  FormulaDefinition definition;
+  definition.kind = FormulaKind::direct;
+  definition.parameters = formula.parameters;
+  const std::vector<double> values = default_values(definition);
+  LoweredPattern out;
+  Lowering low(out.graph, definition, values);
+  Value p, width;
+  p.type = ValueType::vec3;
+  for (int i = 0; i < 3; ++i) p.part[static_cast<std::size_t>(i)] = out.graph.input(in::p + i);
+  width.part[0] = out.graph.input(in::iteration);
+  // Nobody wants a derivative.
+  p.varies = width.varies = true;
+  p.tight = width.tight = false;
+  low.define("p", p);
+  low.define("width", width);
+  const FormulaBody body = parse_body(formula.text);
+  low.run(body.statements);
+  const Value value = low.value_of(body.result);
+  if (value.type != ValueType::scalar && value.type != ValueType::vec3)
+    throw FormulaError(body.result.place.line, body.result.place.column,
+                       "a pattern is a number or a vec3, found a " + name_of(value.type));
+  out.values.assign(value.part.begin(), value.part.begin() + value.size());
+  return out;
+}
+
 std::vector<double> default_values(const FormulaDefinition& definition) {
   std::vector<double> values;
   for (const FormulaParameter& p : definition.parameters)

@@ -50,6 +50,15 @@ struct LoweredFormula {
 LoweredFormula lower(const FormulaDefinition& definition, const std::vector<double>& values,
                      const Section* start = nullptr);
 
+/// A pattern's code: one value, or the three of a colour.
+struct LoweredPattern {
+  Graph graph;
+  std::vector<NodeId> values;
+};
+
+/// Throws FormulaError.
+LoweredPattern lower_pattern(const PatternFormula& formula);
+
 /// The default values of a definition's parameters, one after the other.
 std::vector<double> default_values(const FormulaDefinition& definition);
 

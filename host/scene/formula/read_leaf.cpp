@@ -139,12 +139,7 @@ FormulaDefinition read_definition(JsonObject& object) {
   d.safety = d.kind == FormulaKind::direct          ? (d.normalize ? 0.8 : 1)
              : d.estimate == EscapeEstimate::linear ? 0.85
                                                     : 0.9;
-  if (const auto given = object.find("parameters"))
-    for (const auto& [name, value] : given->members("parameters")) {
-      if (d.parameters.size() == FormulaDefinition::max_parameters)
-        value.fail(fmt::format("a formula may have {} parameters", FormulaDefinition::max_parameters));
-      d.parameters.push_back(read_declaration(name, value));
-    }
+  d.parameters = read_declarations(object);
   return d;
 }
 
@@ -199,6 +194,17 @@ double bailout_of(std::vector<FormulaStep>& steps) {
 }
 
 }  // namespace
+
+std::vector<FormulaParameter> read_declarations(JsonObject& object) {
+  std::vector<FormulaParameter> all;
+  if (const auto given = object.find("parameters"))
+    for (const auto& [name, value] : given->members("parameters")) {
+      if (all.size() == FormulaDefinition::max_parameters)
+        value.fail(fmt::format("a formula may have {} parameters", FormulaDefinition::max_parameters));
+      all.push_back(read_declaration(name, value));
+    }
+  return all;
+}
 
 FormulaLeaf read_single(JsonObject& object, std::string_view type) {
   return read_leaf(object, type == "formula" ? read_definition(object) : read_listed(object));

@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scene/formula/error.h"
 #include "scene/formula/sdf.h"
@@ -15,6 +16,9 @@ namespace sundog {
 
 /// A text of the language: a string, or an array of lines.
 std::string read_text(JsonObject& object, std::string_view key);
+
+/// The "parameters" that a formula of the user's own declares. Throws SceneError.
+std::vector<FormulaParameter> read_declarations(JsonObject& object);
 
 /// A formula and the interval that it is built in unless the scene says otherwise: lower, upper.
 struct FormulaLeaf {

@@ -109,7 +109,7 @@ GltfMaterials::Entry GltfMaterials::read(const JsonAt& at) const {
   entry.two_sided = at.boolean("doubleSided", false);
   read_textures(at, entry);
   add_specular_textures(at, entry);
-  add_clearcoat(at, m);
+  add_clearcoat(at, entry);
   read_unlit(at, entry, base);
   blend(at, entry, alpha);
   return entry;
@@ -182,7 +182,8 @@ void GltfMaterials::read_unlit(const JsonAt& at, Entry& entry, dvec3 base) {
   m.emission = base;
   entry.has_medium = entry.by_values = false;
   entry.emission = entry.base;
-  entry.normal = entry.occlusion = std::nullopt;
+  entry.normal = entry.occlusion = entry.coat = std::nullopt;
+  m.coat = 0;
 }
 
 /// The textures of KHR_materials_specular: alpha of the one, colour of the other. What is no metal has them.
@@ -198,12 +199,21 @@ void GltfMaterials::add_specular_textures(const JsonAt& at, Entry& entry) const 
 }
 
 /// KHR_materials_clearcoat as a mirror of 4 % above the rest, as far as it is smooth.
-void GltfMaterials::add_clearcoat(const JsonAt& at, MaterialDescription& material) {
+void GltfMaterials::add_clearcoat(const JsonAt& at, Entry& entry) const {
+  MaterialDescription& material = entry.material;
   const auto extension = at.extension("KHR_materials_clearcoat");
   if (!extension || material.type == MaterialType::dielectric) return;
   const double factor = extension->number("clearcoatFactor", 0, unit_range);
   const double coat =
       0.04 * factor * square(1 - extension->number("clearcoatRoughnessFactor", 0, unit_range));
+  if (const auto texture = extension->find("clearcoatTexture")) {
+    entry.coat = textures_.read(*texture);
+    entry.coat->channel = 0;
+  }
+  if (entry.coat || entry.by_values) {  // the device computes the terms
+    material.coat = coat;
+    return;
+  }
   for (dvec3* part : {&material.ambient, &material.diffuse, &material.specular, &material.reflection})
     *part *= 1 - coat;
   material.reflection += coat;
@@ -245,6 +255,7 @@ void GltfMaterials::use_textures(const Entry& entry, MaterialDescription& materi
     if (entry.metal_rough) to.metal_rough = textures_.use(*entry.metal_rough, false, model);
   }
   if (!entry.unlit) use_specular(entry, material, model);
+  if (entry.coat) to.coat = textures_.use(*entry.coat, false, model);
   if (entry.opacity) to.opacity = textures_.use(*entry.opacity, true, model);
   if (entry.emission) to.emission = textures_.use(*entry.emission, true, model);
   if (entry.normal) to.normal = textures_.use(*entry.normal, false, model);

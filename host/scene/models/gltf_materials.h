@@ -34,7 +34,7 @@ class GltfMaterials {
     MediumDescription medium;
     bool has_medium = false;
     std::optional<TextureDescription> base, opacity, emission, metal_rough, normal, occlusion;
-    std::optional<TextureDescription> transmission, specular, specular_color;
+    std::optional<TextureDescription> transmission, specular, specular_color, coat;
     MetalRough values;
     double transmitted = 0;  // of what is no metal, the share that a transmission texture is a factor on
     bool two_sided = false, unlit = false,
@@ -44,7 +44,7 @@ class GltfMaterials {
   void read_textures(const JsonAt& at, Entry& entry) const;
   void settle_sides();
   static void read_unlit(const JsonAt& at, Entry& entry, glm::dvec3 base);
-  static void add_clearcoat(const JsonAt& at, MaterialDescription& material);
+  void add_clearcoat(const JsonAt& at, Entry& entry) const;
   void add_specular_textures(const JsonAt& at, Entry& entry) const;
   void use_textures(const Entry& entry, MaterialDescription& material, Model& model);
   void use_transmission(const Entry& entry, MaterialDescription& material, Model& model);

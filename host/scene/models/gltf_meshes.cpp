@@ -21,16 +21,16 @@ struct AttributeRule {
   bool normalized_integers;
 };
 constexpr AttributeRule rules[] = {{"POSITION", "VEC3", "VEC3", false},  {"NORMAL", "VEC3", "VEC3", false},
-                                   {"TEXCOORD_0", "VEC2", "VEC2", true}, {"TEXCOORD_1", "VEC2", "VEC2", true},
-                                   {"TEXCOORD_2", "VEC2", "VEC2", true}, {"TEXCOORD_3", "VEC2", "VEC2", true},
-                                   {"COLOR_0", "VEC3", "VEC4", true}};
+                                   {"TANGENT", "VEC4", "VEC4", false},   {"TEXCOORD_0", "VEC2", "VEC2", true},
+                                   {"TEXCOORD_1", "VEC2", "VEC2", true}, {"TEXCOORD_2", "VEC2", "VEC2", true},
+                                   {"TEXCOORD_3", "VEC2", "VEC2", true}, {"COLOR_0", "VEC3", "VEC4", true}};
 
 // What KHR_mesh_quantization adds: integers of 8 and 16 bits, for normals signed and normalised ones.
 bool fits_quantized(std::string_view name, const Accessor& accessor) {
   const std::uint64_t component = accessor.dense.component;
   const bool is_signed = component == component_byte || component == component_short;
   const bool is_unsigned = component == component_unsigned_byte || component == component_unsigned_short;
-  if (name == "NORMAL") return is_signed && accessor.normalized;
+  if (name == "NORMAL" || name == "TANGENT") return is_signed && accessor.normalized;
   return (name == "POSITION" || name.starts_with("TEXCOORD_")) && (is_signed || is_unsigned);
 }
 
@@ -118,12 +118,13 @@ GltfMeshes::Primitive GltfMeshes::read_primitive(const JsonAt& at) const {
   const JsonAt attributes = at.member("attributes");
   p.position = read_attribute(attributes, "POSITION");
   p.normal = read_attribute(attributes, "NORMAL");
+  p.tangent = read_attribute(attributes, "TANGENT");
   for (std::uint64_t set = 0; set < most_uv_sets; ++set)
     p.uvs.push_back(read_attribute(attributes, fmt::format("TEXCOORD_{}", set).c_str()));
   p.color = read_attribute(attributes, "COLOR_0");
   const auto vertices = [&](std::size_t accessor) { return accessors_.all()[accessor].dense.count; };
   std::vector<std::optional<std::size_t>> others = p.uvs;
-  others.insert(others.end(), {p.normal, p.color});
+  others.insert(others.end(), {p.normal, p.tangent, p.color});
   for (const auto& other : others)
     if (p.position && other && vertices(*other) != vertices(*p.position))
       attributes.fail(fmt::format("an attribute of {} elements beside {} positions", vertices(*other),
@@ -151,7 +152,7 @@ int GltfMeshes::use(std::size_t index, Model& model) {
 Mesh GltfMeshes::build(const Entry& entry, Model& model) {
   Mesh mesh;
   mesh.name = entry.name;
-  bool any_color = false;
+  bool any_color = false, any_tangent = false;
   std::vector<bool> any_uv(most_uv_sets, false);
   mesh.further_uvs.resize(most_uv_sets - 1);
   std::vector<bool> has_normal;
@@ -160,12 +161,14 @@ Mesh GltfMeshes::build(const Entry& entry, Model& model) {
     append(primitive, model, mesh, has_normal);
     for (std::size_t set = 0; set < most_uv_sets; ++set) any_uv[set] = any_uv[set] || primitive.uvs[set];
     any_color = any_color || primitive.color;
+    any_tangent = any_tangent || (primitive.normal && primitive.tangent);
   }
   if (!any_uv[0]) mesh.uvs.clear();
   for (std::size_t set = 1; set < most_uv_sets; ++set)
     if (!any_uv[set]) mesh.further_uvs[set - 1].clear();
   while (!mesh.further_uvs.empty() && mesh.further_uvs.back().empty()) mesh.further_uvs.pop_back();
   if (!any_color) mesh.colors.clear();
+  if (!any_tangent) mesh.tangents.clear();
   const bool smooth =
       crease_degrees_ > 0 && std::find(has_normal.begin(), has_normal.end(), false) != has_normal.end();
   complete_normals(mesh, std::move(has_normal), crease_degrees_,
@@ -189,6 +192,17 @@ std::vector<std::uint32_t> GltfMeshes::vertex_numbers(const Primitive& primitive
       JsonAt(accessors_.source(), nlohmann::json(), primitive.pointer + "/indices")
           .fail(fmt::format("index {} is {}, but there are {} vertices", i, numbers[i], count));
   return numbers;
+}
+
+// Tangents without normals are to be made anew (glTF 2.0, section 3.7.2.1), as where there are none.
+void GltfMeshes::append_tangents(const Primitive& primitive, const std::vector<std::uint32_t>& used,
+                                 Mesh& mesh) {
+  if (!primitive.normal || !primitive.tangent) {
+    mesh.tangents.resize(mesh.tangents.size() + used.size(), glm::vec4(0));
+    return;
+  }
+  const std::vector<float>& tangents = accessors_.floats(*primitive.tangent);
+  for (const std::uint32_t v : used) mesh.tangents.push_back(element<glm::vec4>(tangents, 4, v));
 }
 
 // The file's v goes down.
@@ -228,6 +242,7 @@ void GltfMeshes::append(const Primitive& primitive, Model& model, Mesh& mesh, st
     mesh.colors.push_back(primitive.color ? element<glm::vec3>(colors, channels, v) : glm::vec3(1));
     has_normal.push_back(primitive.normal.has_value());
   }
+  append_tangents(primitive, used, mesh);
   append_uvs(primitive, used, mesh);
   const auto place = [&](std::uint32_t v) {
     return first + static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), v) - used.begin());

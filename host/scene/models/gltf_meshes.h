@@ -23,7 +23,7 @@ class GltfMeshes {
  private:
   struct Primitive {
     std::string pointer;
-    std::optional<std::size_t> position, normal, color, indices;
+    std::optional<std::size_t> position, normal, tangent, color, indices;
     std::vector<std::optional<std::size_t>> uvs;  // by set
     std::size_t material = 0;
     std::uint64_t mode = 4;
@@ -38,6 +38,7 @@ class GltfMeshes {
   void check_indices(const JsonAt& at, const Accessor& accessor) const;
   Mesh build(const Entry& entry, Model& model);
   std::vector<std::uint32_t> vertex_numbers(const Primitive& primitive);
+  void append_tangents(const Primitive& primitive, const std::vector<std::uint32_t>& used, Mesh& mesh);
   void append_uvs(const Primitive& primitive, const std::vector<std::uint32_t>& used, Mesh& mesh);
   void append(const Primitive& primitive, Model& model, Mesh& mesh, std::vector<bool>& has_normal);
 

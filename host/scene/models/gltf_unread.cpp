@@ -39,7 +39,7 @@ constexpr std::array textures{Named{"baseColorTexture", nullptr},  // read
                               Named{"normalTexture", nullptr},
                               Named{"occlusionTexture", nullptr},
                               Named{"transmissionTexture", nullptr},
-                              Named{"clearcoatTexture", "clearcoat textures"},
+                              Named{"clearcoatTexture", nullptr},
                               Named{"clearcoatRoughnessTexture", "clearcoat textures"},
                               Named{"clearcoatNormalTexture", "clearcoat textures"},
                               Named{"specularTexture", nullptr},

@@ -145,6 +145,7 @@ class PointFans {
     again(mesh_.normals);
     again(mesh_.uvs);
     for (auto& set : mesh_.further_uvs) again(set);
+    again(mesh_.tangents);
     again(mesh_.colors);
     again(points_);
     return static_cast<uint32_t>(mesh_.positions.size() - 1);

@@ -13,6 +13,8 @@
 #include "base/error.h"
 #include "base/input.h"
 #include "base/limits.h"
+#include "scene/formula/lower.h"
+#include "scene/formula/read_leaf.h"
 #include "scene/inside.h"
 #include "scene/json/parse.h"
 #include "scene/read/parts.h"
@@ -22,8 +24,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The kinds that mix two colours.
-constexpr std::array<std::string_view, 8> pattern_types{"checker", "stripes", "gradient", "brick",
-                                                        "noise",   "cells",   "marble",   "wood"};
+constexpr std::array<std::string_view, 9> pattern_types{"checker", "stripes", "gradient", "brick",  "noise",
+                                                        "cells",   "marble",  "wood",     "formula"};
 
 constexpr std::uintmax_t most_image_bytes = std::uintmax_t{1} << 31;
 
@@ -143,6 +145,20 @@ static void read_parameters(JsonObject& object, const std::string& type, Texture
   if (type == "wood") to[2] = object.number("turbulence", 0.3, {.low = 0, .high = 1e3});
 }
 
+/// A formula, which is lowered to check it. Whether it gives colours, which nothing mixes.
+static bool read_pattern_formula(JsonObject& object, PatternFormula& formula) {
+  object.at("formula", "a text of the formula language");
+  formula.text = read_text(object, "formula");
+  formula.parameters = read_declarations(object);
+  try {
+    return lower_pattern(formula).values.size() == 3;
+  } catch (const FormulaError& error) {
+    FormulaError placed = error;
+    placed.section = "formula";
+    fail_formula(object.value(), placed);
+  }
+}
+
 /// What a texture's coordinates are made from, and how it lies there.
 static void read_mapping(JsonObject& object, std::string_view standard, TextureDescription& texture) {
   static constexpr std::string_view names[] = {"uv", "object", "spherical", "cylindrical", "box"};
@@ -175,8 +191,10 @@ TextureLibrary::Entry TextureLibrary::read_pattern(JsonObject& object, const std
     texture.placement = glm::scale(dmat4(1), dvec3(0.5, 1, 1)) * texture.placement;
     texture.uv = glm::dmat3(glm::dvec3(0.5, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)) * texture.uv;
   }
+  const bool colored = type == "formula" && read_pattern_formula(object, texture.formula);
   const auto colors = object.find("colors");
   if (!colors) return entry;
+  if (colored) colors->fail("the formula gives colours by itself; only a number mixes two");
   const auto items = colors->items("2 colours or names of textures");
   if (items.size() != 2) colors->wanted("an array of 2 colours or names of textures");
   if (!items[0].json().is_string() && !items[1].json().is_string()) {

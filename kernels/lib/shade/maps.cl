@@ -138,6 +138,17 @@ static inline void map_colors(__global const MaterialMaps* maps, const SlotValue
   map_term(maps, values, shared ? MAP_DIFFUSE : MAP_AMBIENT, lanes, &terms->ambient);
 }
 
+// Adds a clear layer's mirror, which leaves less of what lies below.
+static inline void map_coat(REAL coat, MASK lanes, Terms* terms) {
+  const REAL kept = 1.0f - coat;
+  const REAL4 below = real4(kept, kept, kept, kept);
+  scale_term(&terms->ambient, below, lanes);
+  scale_term(&terms->diffuse, below, lanes);
+  scale_term(&terms->specular, below, lanes);
+  scale_term(&terms->reflection, below, lanes);
+  terms->reflection = select3(terms->reflection, add3(terms->reflection, real3(coat, coat, coat)), lanes);
+}
+
 // Takes what is not there from the terms of `lanes`; it shows what lies behind.
 static inline void map_opacity(REAL opacity, MASK lanes, Terms* terms) {
   const REAL4 part = real4(opacity, opacity, opacity, opacity);
@@ -174,6 +185,7 @@ static inline void map_material(const Scene* scene, __global const MaterialMaps*
     const REAL kept = fma((REAL)(maps->occlusion), open - 1.0f, (REAL)(1.0f));
     terms->ambient = select3(terms->ambient, scale3(terms->ambient, kept), lanes);
   }
+  if (maps->coat > 0.0f) map_coat(maps->coat * first_value(maps, &values, MAP_COAT), lanes, terms);
   const bool one_sided = flags & MATERIAL_ONE_SIDED;
   if (maps->opacity == 1.0f && !has_slot(maps, MAP_OPACITY) && !one_sided) return;
   const REAL opacity = opacity_of(maps, &values);

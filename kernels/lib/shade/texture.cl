@@ -20,6 +20,8 @@ typedef struct TexturePoints {
 } TexturePoints;
 
 #if TEXTURE_KINDS
+#include "generated/patterns.cl"
+
 #define HAS_KIND(kind) (TEXTURE_KINDS >> (kind) & 1u)
 #define HAS_MAPPING(mapping) (TEXTURE_MAPPINGS & (1u << (mapping)))
 
@@ -29,6 +31,27 @@ typedef struct MappedPoints {
   REAL density;
   REAL3 across;  // by axis: how much of the footprint lies along it, which has no depth along the normal
 } MappedPoints;
+
+// How far lane i is from a triangle's first corner in a further set with edges d1 and d2. Where u and v of
+// the first set have moved along the surface, by a step of a bump or by parallax, the others move with them.
+#if EXTRA_UVS && HAS_MESH
+static inline float2 moved_corners(const TexturePoints* at, __global const Vertex* v0,
+                                   __global const Vertex* v1, __global const Vertex* v2, u32 i, float2 d1,
+                                   float2 d2) {
+  float b = REAL_LANE(at->b, i), c = REAL_LANE(at->c, i);
+  if (HAS_RELIEF) {
+    const float2 e1 = (float2)(v1->u - v0->u, v1->v - v0->v), e2 = (float2)(v2->u - v0->u, v2->v - v0->v);
+    const float du = REAL_LANE(at->u, i) - (v0->u + b * e1.x + c * e2.x),
+                dv = REAL_LANE(at->v, i) - (v0->v + b * e1.y + c * e2.y);
+    const float area = e1.x * e2.y - e2.x * e1.y;
+    if (area != 0.0f) {
+      b += (du * e2.y - dv * e2.x) / area;
+      c += (e1.x * dv - e1.y * du) / area;
+    }
+  }
+  return b * d1 + c * d2;
+}
+#endif
 
 // u, v and their unit's length of the set `set` for triangles; solids have the first set alone.
 #if EXTRA_UVS && HAS_MESH
@@ -48,7 +71,7 @@ static inline REAL3 coordinates_of_set(const Scene* scene, const TexturePoints* 
     // Areas of the first set, whose unit's length is known.
     const float known = fabs((v1->u - v0->u) * (v2->v - v0->v) - (v2->u - v0->u) * (v1->v - v0->v));
     const float area = fabs(d1.x * d2.y - d2.x * d1.y);
-    const float2 uv = uv0 + REAL_LANE(at->b, i) * d1 + REAL_LANE(at->c, i) * d2;
+    const float2 uv = uv0 + moved_corners(at, v0, v1, v2, i, d1, d2);
     set3(&coordinates, i,
          (float3)(uv, area > 0.0f ? REAL_LANE(at->uv_length, i) * sqrt(known / area) : 0.0f));
   }
@@ -166,7 +189,10 @@ static inline REAL4 node_values(const Scene* scene, __global const TextureNode* 
   if (node->kind == TEXTURE_COLOR) return real4(zero, zero, zero, zero);
   if (TEXEL_FORMATS && node->kind == TEXTURE_IMAGE) return image_values(scene, node, at, lanes);
   const MappedPoints mapped = map_points(scene, node, at, lanes);
-  const REAL t = pattern_value(node, mapped, at->footprint * mapped.density);
+  const REAL width = at->footprint * mapped.density;
+  if (HAS_KIND(12) && node->kind == TEXTURE_FORMULA)
+    return pattern_formula(node->count, mapped.q, width, scene->texture_values + node->first);
+  const REAL t = pattern_value(node, mapped, width);
   return real4(t, t, t, t);
 }
 

@@ -101,6 +101,7 @@ __kernel void shade_points(SCENE_PARAMETERS, __global const float4* points, __gl
   SlotValues values;
   read_slots(&scene, scene.material_maps + 1, ~0u, &at, lanes, &values);
   metal_rough_terms(scene.material_maps + 1, &values, s.color, lanes, &terms);
+  if (scene.material_maps[1].coat > 0.0f) map_coat((REAL)(scene.material_maps[1].coat), lanes, &terms);
   for (u32 i = 0; i < BATCH && first + i < count; ++i) {
     __global float4* to = out + 7u * (first + i);
     to[2] = lane4(&terms.ambient, zero, i); to[3] = lane4(&terms.diffuse, terms.exponent, i);

@@ -178,6 +178,25 @@ TEST_CASE("metalness and roughness from a texture give the terms that they stand
   });
 }
 
+TEST_CASE("a clear layer takes its mirror's share of all that lies below") {
+  SceneDescription scene = white_plane();
+  MaterialDescription& m = scene.materials[0];
+  m.metal_rough = MetalRough{{0.8, 0.5, 0.2}, 1, 1, 0.04};
+  m.textures.metal_rough = add_image(scene, pixel({0, 153, 102, 255}));
+  SceneDescription coated = scene;
+  coated.materials[0].coat = 0.25;
+  on_every_device([&](const DeviceInfo& info) {
+    const surfaces::Shaded bare = surfaces::shade(info, surfaces::Part::metal_rough, scene, above());
+    const surfaces::Shaded under = surfaces::shade(info, surfaces::Part::metal_rough, coated, above());
+    for (int c = 0; c < 3; ++c) {
+      CHECK(xyz(under.ambient)[c] == Approx(0.75 * xyz(bare.ambient)[c]));
+      CHECK(xyz(under.diffuse)[c] == Approx(0.75 * xyz(bare.diffuse)[c]));
+      CHECK(xyz(under.specular)[c] == Approx(0.75 * xyz(bare.specular)[c]));
+      CHECK(xyz(under.reflection)[c] == Approx(0.25 + 0.75 * xyz(bare.reflection)[c]));
+    }
+  });
+}
+
 TEST_CASE("patterns have their values near by, and their means far away") {
   SceneDescription checker = white_plane(), stripes = checker, noise = checker;
   checker.materials[0].textures.emission = add_pattern(checker, TEXTURE_CHECKER, 0.5);
@@ -199,6 +218,47 @@ TEST_CASE("patterns have their values near by, and their means far away") {
     CHECK(pattern_at(info, checker, 0.1, 0.2, 140) == Approx(0.5).margin(0.01));
     CHECK(pattern_at(info, stripes, 0.1, 0.2, 140) == Approx(0.25).margin(0.01));
     CHECK(pattern_at(info, noise, 0.1, 0.2, 140) == Approx(0.5).margin(1e-4));
+  });
+}
+
+TEST_CASE("a formula gives a pattern: a number that mixes two colours, a colour, or a height") {
+  SceneDescription scene = white_plane();
+  const auto add_formula = [&](const std::string& text, std::vector<FormulaParameter> parameters) {
+    const int index = add_pattern(scene, TEXTURE_FORMULA, 0.5);
+    scene.textures.back().formula = {text, std::move(parameters)};
+    return index;
+  };
+  FormulaParameter turns, shift;
+  turns.name = "turns", turns.value = {3};
+  shift.name = "shift", shift.value = {0.25, 0.5, 0.75};
+  const int number = add_formula("t = sin(turns * p.x)\n0.5 + 0.5 * t * cos(p.z)", {turns});
+  scene.textures.back().factor = {0.5, 0, 0, 0}, scene.textures.back().offset = {0.25, 0, 0, 1};
+  const int color = add_formula("fract(p + shift)", {shift});
+  const int bad = add_formula("x = exp(400 * p.x)\nx * x", {});
+  const int height = add_formula("0.25 * p.x", {});
+  MaterialDescription& m = scene.materials[0];
+  m.ambient = m.diffuse = dvec3(0);
+  m.emission = dvec3(1);
+  on_picture_devices([&](const DeviceInfo& info) {
+    const auto seen = [&](int texture) {
+      m.textures.emission = texture;
+      return scenes::pixel_on(info, scene);  // of the point (0.3, 0, 0.2)
+    };
+    CHECK(seen(number).x ==
+          Approx(0.25 + 0.5 * (0.5 + 0.5 * std::sin(3 * 0.6) * std::cos(0.4))).epsilon(1e-4));
+    const dvec3 found = seen(color);
+    CHECK(found.x == Approx(0.85).epsilon(1e-3));
+    CHECK(found.y == Approx(0.5).epsilon(1e-3));
+    CHECK(found.z == Approx(0.15).epsilon(1e-3));
+    CHECK(std::isfinite(seen(bad).x));
+    // As a height of 0.5 on a unit of x, times 0.5: the sun above sees the normal (-0.25, 1, 0).
+    m.textures.emission = -1, m.emission = dvec3(0), m.diffuse = dvec3(1);
+    m.textures.height = height, m.bump = 0.5;
+    LightDescription sun;
+    sun.type = LightType::directional;
+    sun.direction = {0, -1, 0};
+    scene.lights.assign(1, sun);
+    CHECK(scenes::pixel_on(info, scene).x == Approx(1 / std::sqrt(1 + 0.25 * 0.25)).epsilon(2e-3));
   });
 }
 

@@ -334,6 +334,47 @@ TEST_CASE("pictures have what textures make of surfaces") {
   });
 }
 
+TEST_CASE("heights on a further set of coordinates bend normals and sink in as on the first") {
+  SceneDescription scene = scenes::line_of_sight({0, 5, 0}, {0, 0, 0}, {0, 0, 1});
+  LightDescription sun;
+  sun.type = LightType::directional;
+  sun.direction = {-0.6, -0.8, 0};
+  scene.lights.push_back(sun);
+  Mesh quad;
+  quad.normals.assign(4, {0, 1, 0});
+  for (const glm::vec2 corner : {glm::vec2(-1, 1), glm::vec2(1, 1), glm::vec2(1, -1), glm::vec2(-1, -1)}) {
+    quad.positions.push_back({corner.x, 0, corner.y});
+    quad.uvs.push_back({0.5f + 0.5f * corner.x, 0.5f - 0.5f * corner.y});
+  }
+  quad.triangles = {{0, 1, 2}, {0, 2, 3}};
+  quad.further_uvs = {quad.uvs};
+  // The second set is that of the first; the first of the other quad is turned by a quarter.
+  Mesh other = quad;
+  for (glm::vec2& uv : other.uvs) uv = {1 - uv.y, uv.x};
+  scene.meshes = {quad, other};
+  const int image = add_image(scene, 8, {0, 10, 40, 90, 160, 200, 230, 255});
+  MaterialDescription material;
+  material.ambient = dvec3(0), material.diffuse = dvec3(1);
+  material.textures.height = image;
+  material.bump = 0.2;
+  material.parallax = 0.1;
+  scene.materials.assign(2, material);
+  scene.textures.push_back(scene.textures[static_cast<std::size_t>(image)]);
+  scene.textures.back().uv_set = 1;
+  scene.materials[1].textures.height = static_cast<int>(scene.textures.size()) - 1;
+  scenes::place(scene, MeshShape{0}, 0);
+  scenes::place(scene, MeshShape{1}, 1, glm::translate(glm::dmat4(1), dvec3(10, 0, 0)));
+  on_picture_devices([&](const DeviceInfo& info) {
+    for (const double x : {-0.6, -0.1, 0.35}) {
+      INFO(x);
+      const double first = seen(info, scene, {x + 1, 3, 0.2}, {x, 0, 0.2}).x,
+                   further = seen(info, scene, {x + 11, 3, 0.2}, {x + 10, 0, 0.2}).x;
+      CHECK(std::abs(first - 0.8) > 0.01);  // of a flat surface
+      CHECK(further == Approx(first).margin(2e-3));
+    }
+  });
+}
+
 TEST_CASE("an opacity cut off lets rays and light through where the texture says") {
   // The left half of the disk is there, the right half is not; a floor that glows, and one that is lit,
   // below.

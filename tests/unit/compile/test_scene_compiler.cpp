@@ -36,6 +36,7 @@ std::string difference(const CompiledScene& a, const CompiledScene& b) {
   if (a.features.unbounded != b.features.unbounded) where += "unbounded ";
   if (a.features.bvh_stack != b.features.bvh_stack) where += "bvh_stack ";
   if (a.field_source != b.field_source) where += "field_source ";
+  if (a.pattern_source != b.pattern_source) where += "pattern_source ";
   if (a.origin != b.origin) where += "origin ";
   if (a.figures.sah_cost != b.figures.sah_cost || a.figures.bytes != b.figures.bytes ||
       a.figures.mean_block_fill != b.figures.mean_block_fill)

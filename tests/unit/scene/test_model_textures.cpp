@@ -1,6 +1,7 @@
-// Textures that models of other formats bring: glTF's extensions, MTL's displacement.
+// Textures that models of other formats bring: glTF's extensions and tangents, MTL's displacement.
 #include <base/image_io.h>
 #include <compile/compiled_scene.h>
+#include <compile/textures.h>
 #include <scene/load.h>
 #include <scene/model.h>
 
@@ -65,6 +66,69 @@ TEST_CASE("a glTF's specular textures are factors on the highlight of what is no
   CHECK(quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":1},)" + specular)
             .materials.at(0)
             .textures.specular == -1);
+}
+
+TEST_CASE("a glTF's clearcoat texture is a factor on the mirror of its clear layer") {
+  const SceneDescription scene = quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":0},
+      "extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":0.5,"clearcoatTexture":{"index":0}}}})");
+  const MaterialDescription& m = scene.materials.at(0);
+  CHECK(m.coat == Approx(0.02));
+  CHECK(m.reflection == dvec3(0));
+  CHECK(texture_of(scene, m.textures.coat).channel == 0);
+  CHECK((compile(scene).materials[0].flags & MATERIAL_REFLECTS) != 0);
+  CHECK(scene.warnings.empty());
+}
+
+TEST_CASE("a clear layer without a texture stays a number, except where textures make the terms") {
+  const std::string coat = R"("extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":1}}})";
+  CHECK(quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":0},)" + coat).materials.at(0).reflection.x ==
+        Approx(0.04));
+  const SceneDescription scene =
+      quad_with(R"({"pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0}},)" + coat);
+  CHECK(scene.materials.at(0).coat == Approx(0.04));
+}
+
+TEST_CASE("a model's own tangents take the place of made ones, where there are any") {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  mesh.uvs = {{0, 0}, {1, 0}, {0, 1}};
+  mesh.triangles = {{0, 1, 2}};
+  const std::vector<CornerTangent> made = corner_tangents(mesh);
+  mesh.tangents = {{0, 3, 0, -1}, {0, 0, 0, 1}, {1, 0, 0, 1}};
+  const std::vector<CornerTangent> given = corner_tangents(mesh);
+  REQUIRE(given.size() == 3);
+  CHECK(given[0].tangent == dvec3(0, 1, 0));
+  CHECK(given[0].mirrored);
+  CHECK(given[1].tangent == made[1].tangent);  // of no length
+  CHECK(given[1].mirrored == made[1].mirrored);
+  CHECK(given[2].tangent == dvec3(1, 0, 0));
+}
+
+TEST_CASE("a glTF's TANGENT is read with its normals, and left aside without them") {
+  std::string bytes;
+  put<float>(bytes, {0, 0, 0, 1, 0, 0, 0, 1, 0});
+  put<float>(bytes, {0, 0, 1, 0, 0, 1, 0, 0, 1});
+  put<float>(bytes, {0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1});
+  const auto model = [&](const std::string& attributes) {
+    const TemporaryFolder folder;
+    return load_model(folder.write(
+        "a.gltf",
+        document(
+            R"("buffers":[{"byteLength":120,"uri":"data:application/octet-stream;base64,)" + base64(bytes) +
+            R"("}],"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":36},
+      {"buffer":0,"byteOffset":72,"byteLength":48}],"accessors":[
+      {"bufferView":0,"componentType":5126,"type":"VEC3","count":3},
+      {"bufferView":1,"componentType":5126,"type":"VEC3","count":3},
+      {"bufferView":2,"componentType":5126,"type":"VEC4","count":3}],
+      "meshes":[{"primitives":[{"attributes":{)" +
+            attributes + R"(}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0)")));
+  };
+  const Model with = model(R"("POSITION":0,"NORMAL":1,"TANGENT":2)");
+  REQUIRE(with.meshes.at(0).tangents.size() == 3);
+  CHECK(with.meshes[0].tangents[1] == glm::vec4(0, 1, 0, -1));
+  CHECK(model(R"("POSITION":0,"TANGENT":2)").meshes.at(0).tangents.empty());
+  CHECK_THROWS_WITH(model(R"("POSITION":0,"NORMAL":1,"TANGENT":1)"), ContainsSubstring("VEC4"));
 }
 
 TEST_CASE("an MTL's disp displaces by what -bm says, and bends normals without it") {

@@ -124,6 +124,35 @@ TEST_CASE("bad textures are errors with file and place") {
              ContainsSubstring("/materials/m/opacity"));
 }
 
+TEST_CASE("a formula's pattern becomes kernel code, and what is wrong with it has its place") {
+  const Folder folder;
+  const auto with = [](const std::string& rest) {
+    return R"("materials": {"m": {"color": "t"}}, "textures": {"t": {"type": "formula", )" + rest + "}}";
+  };
+  const std::string rings = R"j("formula": ["d = length(p)", "sin(turns * d)"], "parameters": {"turns": )j";
+  const CompiledScene flat = compile(folder.scene(with(rings + "7}")));
+  CHECK_THAT(flat.pattern_source, ContainsSubstring("static inline REAL4 pattern_0("));
+  REQUIRE(flat.texture_nodes.size() == 1);
+  CHECK(flat.texture_values[flat.texture_nodes[0].first] == 7);
+  // Another parameter is another number in the table, for the same kernels.
+  const CompiledScene other = compile(folder.scene(with(rings + "8}")));
+  CHECK(other.pattern_source == flat.pattern_source);
+  CHECK(other.texture_values[flat.texture_nodes[0].first] == 8);
+  const auto check = [&](const std::string& rest, const std::string& place, const std::string& words) {
+    const std::string found = folder.error(with(rest));
+    INFO(found);
+    CHECK_THAT(found, ContainsSubstring("/textures/t" + place));
+    CHECK_THAT(found, ContainsSubstring(words));
+  };
+  check(R"("size": 1)", "", "missing key");
+  check(R"j("formula": "sin(p.x")j", "/formula", "column");
+  check(R"j("formula": "sin(z.x)")j", "/formula", "unknown name 'z'");
+  check(R"j("formula": "quat(1, 2, 3, 4)")j", "/formula", "a number or a vec3");
+  check(R"j("formula": "p.x < 1")j", "/formula", "a number or a vec3");
+  check(R"j("formula": "p", "colors": [[0, 0, 0], [1, 1, 1]])j", "/colors", "only a number mixes two");
+  check(R"j("formula": "1", "parameters": {"p": 1})j", "/parameters/p", "reserved");
+}
+
 TEST_CASE("images beyond the memory for textures are made smaller, with a warning each") {
   const Folder folder;
   Image large(1024, 512, 3);

@@ -1,0 +1,15 @@
+// Formulas of patterns as OpenCL C ("generated/patterns.cl").
+#pragma once
+#include <span>
+#include <string>
+
+#include "scene/formula/definition.h"
+
+namespace sundog {
+
+/// The text of generated/patterns.cl, whose pattern_formula() computes formula `number`. It depends on the
+/// formulas and their whole exponents; all other parameters are in the table that it is called with. Throws
+/// FormulaError.
+std::string pattern_code(std::span<const PatternFormula> formulas);
+
+}  // namespace sundog
