@@ -104,20 +104,36 @@ Device::~Device() {
   if (info_.sub_units > 0 && queue_()) keep_for_good(device_, queue_);
 }
 
+std::string Device::expanded(const std::string& entry, const KernelDefines& defines,
+                             const GeneratedFiles& generated) const {
+  KernelDefines all = defines;
+  if (fma_) all.emplace("DEVICE_HAS_FMA", "1");
+  return expand_kernel(entry, all, generated, value_of(info_.environment).kernels);
+}
+
+const std::shared_ptr<ProgramRecord>* Device::find_built(const std::string& entry,
+                                                         const std::string& source) const {
+  const auto built =
+      std::ranges::find_if(programs_, [&, options = all_build_options(value_of(info_.environment), wish_)](const auto& program) {
+        return program->entry == entry && program->source == source && program->options == options;
+      });
+  return built == programs_.end() ? nullptr : &*built;
+}
+
+bool Device::has(const std::string& entry, const KernelDefines& defines,
+                 const GeneratedFiles& generated) const {
+  const std::string source = expanded(entry, defines, generated);
+  return find_built(entry, source) || is_program_cached(info_, source, wish_);
+}
+
 Program Device::build(const std::string& entry, const KernelDefines& defines, BuildReport* report,
                       const GeneratedFiles& generated) {
   const auto start = Clock::now();
   BuildReport own;
   BuildReport& result = report ? *report : own;
   result = {};
-  KernelDefines all = defines;
-  if (fma_) all.emplace("DEVICE_HAS_FMA", "1");
-  const std::string source = expand_kernel(entry, all, generated, value_of(info_.environment).kernels);
-  const auto built = std::ranges::find_if(
-      programs_, [&, options = all_build_options(value_of(info_.environment), wish_)](const auto& program) {
-        return program->entry == entry && program->source == source && program->options == options;
-      });
-  if (built != programs_.end()) {
+  const std::string source = expanded(entry, defines, generated);
+  if (const auto* built = find_built(entry, source)) {
     result.cached = true;
     return Program(*built);
   }

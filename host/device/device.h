@@ -115,6 +115,10 @@ class Device {
   Program build(const std::string& entry, const KernelDefines& defines, BuildReport* report = nullptr,
                 const GeneratedFiles& generated = {});
 
+  /// Whether build() would compile nothing: it has built this before, or the binary cache holds it.
+  bool has(const std::string& entry, const KernelDefines& defines,
+           const GeneratedFiles& generated = {}) const;
+
   /// A device array with a copy of `values` (never zero bytes: an empty span gives one unused element).
   template <class T>
   Buffer<T> upload(std::span<const T> values) {
@@ -167,6 +171,9 @@ class Device {
                   "kernel values are scalars, vectors and plain structs");
     check_argument(kernel.setArg(index, sizeof(T), &value), name, index);
   }
+  std::string expanded(const std::string& entry, const KernelDefines& defines,
+                       const GeneratedFiles& generated) const;
+  const std::shared_ptr<ProgramRecord>* find_built(const std::string& entry, const std::string& source) const;
   KernelLimits limits_of(const cl::Kernel& kernel) const;
   void check_argument(cl_int status, const std::string& name, cl_uint index) const;
   cl::Buffer allocate(std::size_t bytes, const void* data);

@@ -233,6 +233,13 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
   return record;
 }
 
+bool is_program_cached(const DeviceInfo& info, const std::string& source, const BuildWish& wish) {
+  const HostEnvironment& environment = value_of(info.environment);
+  if (wish.from_source || !environment.build_log.empty()) return false;
+  const std::string key = program_key(info, all_build_options(environment, wish), source);
+  return load_program(program_cache_file(environment, key), key).has_value();
+}
+
 void save_program(ProgramRecord& record) {
   const bool complete = std::ranges::includes(record.stored_variants, record.launched_variants);
   // What was never launched is not worth it: PoCL would compile it now to give its binary out.

@@ -27,6 +27,9 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
                                              const std::string& source, const BuildWish& wish,
                                              BuildReport& report);
 
+/// Whether build_program() would find it in the cache.
+bool is_program_cached(const DeviceInfo& info, const std::string& source, const BuildWish& wish);
+
 /// Stores the program when the cache lacks something that was launched. Throws DeviceError, IoError.
 void save_program(ProgramRecord& record);
 

@@ -1,52 +1,13 @@
-// The frame: plan the tiles, let every device take from the queue, gather the film and the figures.
+// One frame: a session (render/session/render_session.h) that renders it and ends. Who renders several keeps
+// a session.
 #pragma once
-#include <array>
-#include <atomic>
-#include <cstdint>
-#include <exception>
-#include <filesystem>
-#include <functional>
-#include <map>
 #include <memory>
-#include <string>
 #include <vector>
 
-#include "base/image.h"
 #include "compile/compiled_scene.h"
-#include "device/devices.h"
-#include "render/film/film.h"
-#include "render/values/options.h"
-#include "render/values/report.h"
+#include "render/frame/result.h"
 
 namespace sundog {
-
-struct RenderResult {
-  Image image;  // linear RGBA; alpha is coverage: 0 where only background was seen or nothing was rendered
-  AovImages aovs;
-  bool complete = true;  // false: stopped before the end
-  RayCounts counts{};
-  std::vector<DeviceReport> devices;
-  double efficiency = 1;  // work done over what the devices could have done (plan.h)
-  RenderTimes times;
-  Film film;                        // what the image was developed from
-  std::vector<u32> taken;           // of a frame in passes: samples of each pixel, 0 where it is interpolated
-  std::uint64_t surfaces_seen = 0;  // of such a frame: rays that only looked which surface a pixel shows
-  unsigned passes = 0;              // of such a frame: that are complete
-  bool time_limited = false;        // it ended at the time limit
-  std::uint64_t key = 0;            // of the scene, for write_checkpoint; 0 without a checkpoint
-  std::exception_ptr failure;       // every device failed: what the last one threw (options.keep_failed)
-  bool checkpoint_kept = false;     // an interrupted frame is in the checkpoint
-  std::string checkpoint_error;     // why it could not be written there
-};
-
-class TileServer;
-
-/// What makes tiles, and what is known of it before it is opened.
-struct ServerPlan {
-  DeviceInfo info;
-  int processor = -1;  // devices with the same number run on the same cores (plan.h)
-  std::function<std::shared_ptr<TileServer>(const RenderOptions&)> make;
-};
 
 /// A device of this process.
 ServerPlan plan_local(std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device);

@@ -58,26 +58,6 @@ void read_spot(JsonObject& object, LightDescription& light) {
 
 // The things that rays meet.
 
-/// The sides of a rectangle and the radii of a disk, at right angles to `normal`, the way the light travels:
-/// cross(u, v) has the normal's direction. A rectangle's `v` lies as near to the light's `up` as it can.
-struct LampAxes {
-  dvec3 u{1, 0, 0}, v{0, 0, 1}, normal{0, -1, 0};  // u and v in world units
-};
-
-LampAxes lamp_axes(const LightDescription& light) {
-  LampAxes axes;
-  axes.normal = glm::normalize(light.direction);
-  dvec3 side = glm::cross(light.up, axes.normal);
-  // An "up" along the light's direction says nothing: then z, and for a light along that x.
-  if (glm::length(side) < 1e-6 * glm::length(light.up)) side = glm::cross(dvec3(0, 0, 1), axes.normal);
-  if (glm::length(side) < 1e-6) side = glm::cross(dvec3(1, 0, 0), axes.normal);
-  side = glm::normalize(side);
-  const bool round = light.type == LightType::disk;
-  axes.u = side * (round ? light.radius : light.size.x);
-  axes.v = glm::cross(axes.normal, side) * (round ? light.radius : light.size.y);
-  return axes;
-}
-
 /// The rotation and place of something whose axis is +y and whose middle is its origin.
 dmat4 placed_along(const LampAxes& axes, const dvec3& middle) {
   return {glm::dvec4(glm::normalize(axes.u), 0), glm::dvec4(axes.normal, 0),
@@ -156,6 +136,20 @@ static_assert(extents_come_last());
 glm::vec3 xyz(const float4& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
+
+LampAxes lamp_axes(const LightDescription& light) {
+  LampAxes axes;
+  axes.normal = glm::normalize(light.direction);
+  dvec3 side = glm::cross(light.up, axes.normal);
+  // An "up" along the light's direction says nothing: then z, and for a light along that x.
+  if (glm::length(side) < 1e-6 * glm::length(light.up)) side = glm::cross(dvec3(0, 0, 1), axes.normal);
+  if (glm::length(side) < 1e-6) side = glm::cross(dvec3(1, 0, 0), axes.normal);
+  side = glm::normalize(side);
+  const bool round = light.type == LightType::disk;
+  axes.u = side * (round ? light.radius : light.size.x);
+  axes.v = glm::cross(axes.normal, side) * (round ? light.radius : light.size.y);
+  return axes;
+}
 
 void read_light_sampling(JsonObject& object, int& samples, bool& visible) {
   samples = object.integer("samples", samples, 1, 1024);

@@ -23,6 +23,13 @@ struct NamedLight {
   const std::string& place;
 };
 
+/// The sides of a rectangle and the radii of a disk, at right angles to `normal`, the way the light travels:
+/// cross(u, v) has the normal's direction. A rectangle's `v` lies as near to the light's `up` as it can.
+struct LampAxes {
+  dvec3 u{1, 0, 0}, v{0, 0, 1}, normal{0, -1, 0};  // u and v in world units
+};
+LampAxes lamp_axes(const LightDescription& light);
+
 /// The light's row, whose position counts from `origin`. Throws SceneError for a direction of length zero.
 Light pack_light(const NamedLight& named, const dvec3& origin);
 

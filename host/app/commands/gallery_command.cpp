@@ -22,9 +22,8 @@
 #include "base/image_io.h"
 #include "bench/report/gallery_page.h"
 #include "bench/report/machine.h"
-#include "device/device_pool.h"
 #include "render/device/tuning.h"
-#include "render/render.h"
+#include "render/session/render_session.h"
 #include "scene/load.h"
 
 namespace sundog {
@@ -89,8 +88,7 @@ std::string command_of(const GalleryOptions& options, const std::string& scene) 
   return text;
 }
 
-GalleryPicture make_picture(const GalleryOptions& options, const std::string& scene,
-                            const std::vector<DeviceInfo>& devices, const std::shared_ptr<DevicePool>& pool) {
+GalleryPicture make_picture(const GalleryOptions& options, const std::string& scene, RenderSession& session) {
   LoadOptions load;
   load.outside_files = options.outside_files;
   const SceneDescription description = load_scene(scene, overrides_of(options), with_streams(load));
@@ -98,11 +96,10 @@ GalleryPicture make_picture(const GalleryOptions& options, const std::string& sc
   const auto flat = std::make_shared<const CompiledScene>(compile(description));
   ProgressBar bar(!options.quiet);
   RenderOptions frame;
-  frame.pool = pool;
   frame.channels = 3;
   frame.tuning = [flat](const DeviceInfo& device) { return saved_tuning(device, *flat); };
   frame.on_progress = [&](const RenderProgress& now) { bar.update(now); };
-  const RenderResult result = render(flat, devices, frame);
+  const RenderResult result = session.render(flat, frame);
   bar.erase();
 
   GalleryPicture picture;
@@ -136,9 +133,9 @@ int gallery(GalleryOptions options) {
   const Facts machine = machine_facts();
   all.facts.insert(all.facts.end(), machine.begin(), machine.end());
   if (const std::string note = busy_note(); !note.empty()) all.facts.emplace_back("load", note);
-  const auto pool = std::make_shared<DevicePool>();
+  RenderSession session(devices);
   for (const std::string& scene : options.scenes) {
-    all.pictures.push_back(make_picture(options, scene, devices, pool));
+    all.pictures.push_back(make_picture(options, scene, session));
     write_file(page, gallery_html(all));
     if (!options.quiet)
       fmt::print("{:3} of {}  {}  {:.3g} s\n", all.pictures.size(), options.scenes.size(),

@@ -72,28 +72,56 @@ std::shared_ptr<const CompiledScene> load_once(const json& settings, KeptOpen& k
   return kept.scene;
 }
 
-std::shared_ptr<std::mutex> in_use(const DeviceInfo& device, KeptOpen& kept) {
+std::shared_ptr<KeptDevice> kept_device(const DeviceInfo& device, KeptOpen& kept) {
   const std::lock_guard lock(kept.mutex);
-  std::shared_ptr<std::mutex>& mutex = kept.in_use[device.label()];
-  if (!mutex) mutex = std::make_shared<std::mutex>();
-  return mutex;
+  std::shared_ptr<KeptDevice>& one = kept.devices[device.label()];
+  if (!one) one = std::make_shared<KeptDevice>();
+  return one;
+}
+
+/// A kept device for one frame: it is left open behind it.
+class BorrowedServer : public TileServer {
+ public:
+  explicit BorrowedServer(SceneServer& server) : server_(server) {}
+  const DeviceInfo& info() const override { return server_.info(); }
+  RenderTimes open() override { return server_.open(); }
+  TileResult render(const TileRequest& request, const StopFlags& flags) override {
+    return server_.render(request, flags);
+  }
+  ServerFigures figures() const override { return server_.figures(); }
+  void close() override { server_.rest(); }
+  double overdue() const override { return server_.overdue(); }
+  bool compiles() const override { return server_.compiles(); }
+  void be_nice() override { server_.be_nice(); }
+
+ private:
+  SceneServer& server_;
+};
+
+/// What a server refers to while it makes a frame. The lock ends first.
+struct ServedFrame {
+  RenderOptions options;
+  std::shared_ptr<const CompiledScene> scene;
+  std::shared_ptr<KeptDevice> device;
+  std::unique_lock<std::mutex> in_use;
+};
+
+std::shared_ptr<TileServer> server_of(ServedFrame& frame, const DeviceInfo& device) {
+  if (!frame.device) return std::make_shared<DeviceServer>(find_device(device), frame.scene, frame.options);
+  std::shared_ptr<SceneServer>& server = frame.device->server;
+  if (!server) server = std::make_shared<DeviceServer>(find_device(device), frame.scene, frame.options);
+  server->show(frame.scene, frame.options);
+  return std::make_shared<BorrowedServer>(*server);
 }
 
 }  // namespace
 
 OpenedServer open_server(const json& settings, KeptOpen* kept) {
-  struct Frame {
-    std::shared_ptr<std::mutex> mutex;
-    std::unique_lock<std::mutex> in_use;
-    RenderOptions options;
-    std::shared_ptr<const CompiledScene> scene;
-  };
   const auto device = settings.at("device").get<DeviceInfo>();
-  const auto frame = std::make_shared<Frame>();
+  const auto frame = std::make_shared<ServedFrame>();
   if (kept) {
-    frame->mutex = in_use(device, *kept);
-    frame->in_use = std::unique_lock(*frame->mutex);
-    frame->options.pool = kept->pool;
+    frame->device = kept_device(device, *kept);
+    frame->in_use = std::unique_lock(frame->device->in_use);
   }
   frame->options.work_group = settings.at("work_group").get<WorkGroup>();
   frame->options.aovs = settings.at("aovs").get<std::vector<std::string>>();
@@ -102,7 +130,7 @@ OpenedServer open_server(const json& settings, KeptOpen* kept) {
   OpenedServer opened;
   opened.scene = hash_scene(*frame->scene);
   opened.kept = frame;
-  opened.server = std::make_shared<DeviceServer>(find_device(device), frame->scene, frame->options);
+  opened.server = server_of(*frame, device);
   if (settings.at("nice").get<bool>()) opened.server->be_nice();
   return opened;
 }

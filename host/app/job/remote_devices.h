@@ -9,7 +9,7 @@
 
 #include "app/options/options.h"
 #include "compile/compiled_scene.h"
-#include "device/device_pool.h"
+#include "render/frame/tile_server.h"
 #include "render/remote/tile_worker.h"
 #include "render/render.h"
 
@@ -18,13 +18,18 @@ namespace sundog {
 /// What a process needs to render a part of the command's frame on `device` (Message::open).
 nlohmann::json remote_settings(const RenderCommand& command, const DeviceInfo& device);
 
+/// A device that stays open from frame to frame, used by one thread at a time.
+struct KeptDevice {
+  std::mutex in_use;
+  std::shared_ptr<SceneServer> server;  // null: nobody has asked for it yet
+};
+
 /// What a process that serves several devices, or several frames, keeps from one to the next. Any thread.
 struct KeptOpen {
-  std::shared_ptr<DevicePool> pool = std::make_shared<DevicePool>();
-  std::mutex mutex;                                           // for what follows
-  std::string scene_settings;                                 // that the scene was loaded by
-  std::shared_ptr<const CompiledScene> scene;                 // the last
-  std::map<std::string, std::shared_ptr<std::mutex>> in_use;  // by the device's label
+  std::mutex mutex;                                            // for what follows
+  std::string scene_settings;                                  // that the scene was loaded by
+  std::shared_ptr<const CompiledScene> scene;                  // the last
+  std::map<std::string, std::shared_ptr<KeptDevice>> devices;  // by label
 };
 
 /// Loads the scene of such settings and makes a server of the device; with `kept`, waits until nobody else in

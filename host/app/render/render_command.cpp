@@ -29,11 +29,11 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "device/device_pool.h"
 #include "render/device/tuning.h"
 #include "render/device/view_warnings.h"
 #include "render/film/hash.h"
 #include "render/plan/passes.h"
+#include "render/session/render_session.h"
 #include "scene/json/override.h"
 #include "scene/load.h"
 
@@ -111,12 +111,12 @@ RenderOptions render_options(const RenderCommand& command) {
   return options;
 }
 
-/// What the frames of one run share: the devices stay open, with their kernels.
+/// What the frames of one run share.
 struct Setup {
   const StopOnSignal& stop;
   Mailbox* job = nullptr;  // the other processes that mpirun has started
   std::vector<DeviceInfo> devices;
-  std::shared_ptr<DevicePool> pool;
+  std::unique_ptr<RenderSession> session;  // of frames on this process's devices, which stay open
 };
 
 /// In a job there always is one: mpirun kills all ranks when one dies.
@@ -185,7 +185,6 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
   RenderOptions options = render_options(command);
   const std::string checkpoint = checkpoint_file(command, setup);
   RankWatch watch(setup.job, setup.stop.flag(), checkpoint);
-  options.pool = setup.pool;
   options.stop = &setup.stop.flag();
   options.checkpoint = checkpoint;
   options.in_haste = setup.job != nullptr;
@@ -198,7 +197,9 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
     };
   }
   options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
-  const RenderResult result = render(scene.flat, plan_servers(command, scene, setup), options);
+  const RenderResult result = setup.session
+                                  ? setup.session->render(scene.flat, options)
+                                  : render(scene.flat, plan_servers(command, scene, setup), options);
   bar.erase();
   const bool told = setup.job && result.checkpoint_kept && !result.failure;
   if (told) tell_kept(result, checkpoint);
@@ -252,7 +253,7 @@ int render_frames(const RenderCommand& command, Setup& setup) {
 /// Of this process, or of rank 0 of a job.
 int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox* job) {
   const Stopwatch clock;
-  Setup setup{stop, job, {}, {}};
+  Setup setup{stop, job, {}, nullptr};
   check_frames(command);
   check_outputs(command.frames ? frame_command(command, command.frames->first) : command);
   if (is_standard_stream(command.out) || is_standard_stream(command.stats)) claim_standard_output();
@@ -267,7 +268,7 @@ int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox*
     print_warnings({{why}});
   if (setup.devices.empty()) setup.devices = choose_devices(command, job);
   if (scene) return render_one(command, *scene, setup, clock, times);
-  setup.pool = std::make_shared<DevicePool>();
+  if (!job && !command.isolate) setup.session = std::make_unique<RenderSession>(setup.devices);
   return render_frames(command, setup);
 }
 

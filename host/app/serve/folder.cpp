@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <stdlib.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "scene/model.h"
 
 namespace sundog {
@@ -66,6 +71,42 @@ std::string safe_file_name(const std::string& name) {
     safe += (std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.') ? c : '_';
   if (safe.size() > 100) safe.resize(100);
   return safe.empty() || safe[0] == '.' ? "scene" + safe : safe;
+}
+
+namespace {
+
+fs::path private_folder() {
+  std::string name = (fs::temp_directory_path() / "sundog-XXXXXX").string();
+  if (!::mkdtemp(name.data()))
+    throw IoError(fmt::format("{}: a folder for uploads cannot be made: {}", name, std::strerror(errno)));
+  return name;
+}
+
+}  // namespace
+
+Uploads::~Uploads() {
+  std::error_code ignored;
+  if (!folder_.empty()) fs::remove_all(folder_, ignored);
+}
+
+fs::path Uploads::keep(const std::string& name, const std::string& bytes) {
+  if (folder_.empty()) folder_ = private_folder();
+  const fs::path folder = folder_ / std::to_string(++count_);
+  std::error_code failed;
+  fs::create_directory(folder, failed);
+  if (failed) throw IoError(fmt::format("{}: cannot be made: {}", folder.string(), failed.message()));
+  write_file(folder / name, bytes);
+  return folder / name;
+}
+
+void Uploads::forget_others() {
+  std::error_code ignored;
+  for (; oldest_ < count_; ++oldest_) fs::remove_all(folder_ / std::to_string(oldest_), ignored);
+}
+
+void Uploads::forget_newest() {
+  std::error_code ignored;
+  if (count_ >= oldest_) fs::remove_all(folder_ / std::to_string(count_--), ignored);
 }
 
 }  // namespace sundog

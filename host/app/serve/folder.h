@@ -17,4 +17,25 @@ std::filesystem::path file_below(const std::filesystem::path& folder, const std:
 /// A name for a new file: letters, digits, "-", "_" and "." of `name`, never empty, never hidden.
 std::string safe_file_name(const std::string& name);
 
+/// Files that are dropped on the page, each in a folder of its own, which this process alone may read and
+/// which goes with it.
+class Uploads {
+ public:
+  Uploads() = default;
+  ~Uploads();
+  Uploads(const Uploads&) = delete;
+  Uploads& operator=(const Uploads&) = delete;
+
+  /// Keeps the bytes under a name (safe_file_name()); the file's place. Throws IoError.
+  std::filesystem::path keep(const std::string& name, const std::string& bytes);
+  /// Removes all but the newest: nobody has the others open.
+  void forget_others();
+  /// Removes the newest.
+  void forget_newest();
+
+ private:
+  std::filesystem::path folder_;  // empty: none yet
+  int count_ = 0, oldest_ = 1;
+};
+
 }  // namespace sundog

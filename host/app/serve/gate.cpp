@@ -1,12 +1,18 @@
 #include "app/serve/gate.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 
 #include "base/error.h"
+#include "base/file.h"
 
 namespace sundog {
 
@@ -21,6 +27,29 @@ std::string random_token() {
     throw IoError("serve: the system gives no random bytes for the token");
   std::string token;
   for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
+  return token;
+}
+
+std::string kept_token(const std::filesystem::path& file) {
+  struct stat status = {};
+  if (::stat(file.c_str(), &status) != 0) {
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (descriptor < 0)
+      throw IoError(fmt::format("{}: cannot be made: {}", file.string(), std::strerror(errno)));
+    const std::string token = random_token(), line = token + "\n";
+    const bool written = ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+    if (::close(descriptor) != 0 || !written)
+      throw IoError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+    return token;
+  }
+  if ((status.st_mode & 077) != 0 || status.st_uid != ::geteuid())
+    throw UsageError(fmt::format("--token-file {}: others may read it; wanted a file of yours with mode 600",
+                                 file.string()));
+  std::string token = read_file(file);
+  if (token.ends_with('\n')) token.pop_back();
+  if (token.size() != 32 || token.find_first_not_of("0123456789abcdef") != std::string::npos)
+    throw UsageError(
+        fmt::format("--token-file {}: holds no token; remove it, and a new one is made", file.string()));
   return token;
 }
 

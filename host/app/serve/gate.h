@@ -2,6 +2,7 @@
 // Host, a page of this server as its Origin, the token, a method without effects where it asks for none.
 // Pure: no socket, no clock.
 #pragma once
+#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
@@ -30,6 +31,11 @@ inline constexpr std::string_view token_header = "x-sundog-token";
 
 /// 128 bits from the system's source, as 32 hexadecimal digits. Throws IoError.
 std::string random_token();
+
+/// The token that the file holds, which is made, for this user alone, where it is missing: pages that are
+/// open come back to a server that is started anew. Throws UsageError for a file of anything else, or one
+/// that others may read; IoError.
+std::string kept_token(const std::filesystem::path& file);
 
 /// The gate of a server at this port, which browsers reach by loopback names and by `further` ("name:port",
 /// as through a tunnel).

@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
+#include <thread>
 
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/pick_devices.h"
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
+#include "app/process/interrupt.h"
 #include "app/process/warnings.h"
 #include "app/serve/studio.h"
 #include "base/error.h"
@@ -20,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ServeOptions {
-  std::string scene, port;
+  std::string scene, port, token_file;
   std::vector<std::string> devices, hosts;
 };
 
@@ -53,17 +56,34 @@ SceneDocument first_document(const ServeOptions& options) {
   return document;
 }
 
+/// Ends the server at a signal, so that what it keeps in files is taken away.
+class EndsOnSignal {
+ public:
+  EndsOnSignal(const StopOnSignal& signal, WebServer& server)
+      : thread_([&signal, &server](const std::stop_token& over) {
+          while (!over.stop_requested() && !signal.flag()) std::this_thread::sleep_for(look_again);
+          server.stop();
+        }) {}
+
+ private:
+  static constexpr std::chrono::milliseconds look_again{100};
+  std::jthread thread_;
+};
+
 int serve(const ServeOptions& options) {
+  const StopOnSignal signal;
   SceneDocument document = first_document(options);
   print_warnings(document.scene()->warnings);
   StudioSetup setup{fs::current_path(), list_devices(), {}};
   setup.picked =
       pick_devices(setup.devices, options.devices.empty() ? devices_of_environment() : options.devices);
   WebServer server(options.port.empty() ? 0 : parse_number("--port", options.port, 0, 65535), {});
-  const Gate gate = make_gate(server.port(), random_token(), options.hosts);
+  const std::string token = options.token_file.empty() ? random_token() : kept_token(options.token_file);
+  const Gate gate = make_gate(server.port(), token, options.hosts);
   Studio studio(server, std::move(setup), std::move(document));
   fmt::print("http://127.0.0.1:{}/#token={}\n", server.port(), gate.token);
   std::fflush(stdout);
+  const EndsOnSignal ends(signal, server);
   server.run(gate, studio.handlers());
   return exit_done;
 }
@@ -87,6 +107,8 @@ void add_serve(Arguments& root, Command& chosen) {
   values(
       app, "--host", "NAME:PORT", options->hosts,
       "a further name and port by which browsers reach this server, as through a tunnel with another port");
+  value(app, "--token-file", "FILE", options->token_file,
+        "keep the token in this file, so that open pages come back when the server is started anew");
   app->callback([options, &chosen] {
     for (const std::string& host : options->hosts) check_host(host);
     chosen = RunLater{[options] { return serve(*options); }};

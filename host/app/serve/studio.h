@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/serve/folder.h"
 #include "app/serve/picture_stream.h"
 #include "app/serve/scene_document.h"
 #include "app/serve/web_server.h"
@@ -47,6 +48,7 @@ class Studio {
               const std::string& reason);
   WebAnswer answer(const WebRequest& request);  // what reads or changes the document
   WebAnswer open_upload(const WebRequest& request);
+  void open_model(const std::string& name, const std::string& bytes);
   WebAnswer picture(const std::string& format);  // on the second thread
   std::uint64_t version_of(Generation generation);
   std::string command_line() const;
@@ -54,6 +56,7 @@ class Studio {
   WebServer& server_;
   StudioSetup setup_;
   SceneDocument document_;
+  Uploads uploads_;
   RenderSession session_;
   SessionSettings settings_;
   std::string split_ = "dynamic", work_group_ = "auto";

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/image_io.h"
 #include "scene/json/parse.h"
+#include "scene/model.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -64,12 +65,29 @@ WebAnswer Studio::answer(const WebRequest& request) {
   }
 }
 
-/// A scene that was dropped on the page, or that a link carries. Files that it names count from the folder of
-/// the scene before.
+/// A model that was dropped on the page is all there is in its folder: files that it names are not found.
+void Studio::open_model(const std::string& name, const std::string& bytes) {
+  try {
+    document_.open(uploads_.keep(name, bytes));
+  } catch (const SceneError& error) {
+    uploads_.forget_newest();
+    throw UsageError(
+        fmt::format("{}: {}{}{}", name, error.place, error.place.empty() ? "" : ": ", error.reason));
+  } catch (const std::exception&) {
+    uploads_.forget_newest();
+    throw;
+  }
+  uploads_.forget_others();
+}
+
+/// A scene or model that was dropped on the page, or a scene that a link carries. Files that a scene names
+/// count from the folder of the scene before.
 WebAnswer Studio::open_upload(const WebRequest& request) {
   const std::string name = safe_file_name(query_value(request.query, "name"));
-  const fs::path file = document_.file().parent_path() / name;
-  document_.replace(parse_json(request.body, name), file);
+  if (is_model_file(name))
+    open_model(name, request.body);
+  else
+    document_.replace(parse_json(request.body, name), document_.file().parent_path() / name);
   begin_drawing();
   tell_scene();
   return plain(200, "opened");

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <memory>
 
-#include "device/device_pool.h"
 #include "render/film/sampling_report.h"
-#include "render/render.h"
+#include "render/session/render_session.h"
 
 namespace sundog {
 namespace {
@@ -18,13 +17,6 @@ double traced_rays(const RenderResult& result) {
   for (const int kind : {COUNT_PRIMARY, COUNT_REFLECTION, COUNT_REFRACTION, COUNT_SHADOW})
     rays += static_cast<double>(result.counts[static_cast<std::size_t>(kind)]);
   return rays;
-}
-
-RenderResult render_way(const SampleWays& plan, const CompiledScene& scene,
-                        const std::shared_ptr<DevicePool>& pool) {
-  RenderOptions options;
-  options.pool = pool;
-  return render(scene, {plan.device}, options);
 }
 
 }  // namespace
@@ -41,20 +33,23 @@ double rays_for_error(const std::vector<SampleTime>& even, double rms) {
 
 std::vector<WayTime> measure_ways(const SampleWays& plan, const std::vector<SampleTime>& even,
                                   const std::function<void(const std::string&)>& on_step) {
-  const auto pool = std::make_shared<DevicePool>();
+  RenderSession session({plan.device});
+  using Scene = std::shared_ptr<const CompiledScene>;
+  const auto compiled = [&](const std::vector<std::string>& overrides) {
+    return std::make_shared<const CompiledScene>(plan.compile_with(overrides));
+  };
   on_step(fmt::format("{}, the reference of {} samples", plan.scene, plan.reference));
-  const Image right = render_way(plan,
-                                 plan.compile_with({fmt::format("/render/samples={}", plan.reference),
-                                                    "/render/adaptive/threshold=0"}),
-                                 pool)
+  const Image right = session
+                          .render(compiled({fmt::format("/render/samples={}", plan.reference),
+                                            "/render/adaptive/threshold=0"}))
                           .image;
-  std::vector<CompiledScene> scenes;
+  std::vector<Scene> scenes;
   std::vector<WayTime> times;
   std::vector<std::vector<double>> seconds(plan.ways.size());
   for (const SampleWay& way : plan.ways) {
     on_step(fmt::format("{}, {}", plan.scene, way.name));
-    scenes.push_back(plan.compile_with(way.overrides));
-    const RenderResult result = render_way(plan, scenes.back(), pool);
+    scenes.push_back(compiled(way.overrides));
+    const RenderResult result = session.render(scenes.back());
     WayTime time;
     time.name = way.name;
     time.rays = traced_rays(result);
@@ -65,7 +60,7 @@ std::vector<WayTime> measure_ways(const SampleWays& plan, const std::vector<Samp
   }
   for (int run = 0; run < plan.repeat; ++run)
     for (std::size_t i = 0; i < scenes.size(); ++i) {
-      const RenderTimes spent = render_way(plan, scenes[i], pool).times;
+      const RenderTimes spent = session.render(scenes[i]).times;
       seconds[i].push_back(spent.render + spent.readback);
     }
   for (std::size_t i = 0; i < times.size(); ++i) times[i].seconds = spread(seconds[i]);

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "base/environment.h"
-#include "device/device_pool.h"
 
 namespace sundog {
 namespace {
@@ -28,7 +27,7 @@ void add(ServerFigures& sum, const ServerFigures& more) {
 
 DeviceServer::DeviceServer(DeviceInfo info, std::shared_ptr<const CompiledScene> scene,
                            const RenderOptions& options)
-    : info_(std::move(info)), scene_(std::move(scene)), options_(&options) {}
+    : info_(std::move(info)), scene_(std::move(scene)), options_(&options), builder_(info_) {}
 
 void DeviceServer::show(std::shared_ptr<const CompiledScene> scene, const RenderOptions& options) {
   scene_ = std::move(scene);
@@ -47,8 +46,8 @@ RenderTimes DeviceServer::open() {
   } else {
     close();
     readback_before_ = 0;
-    device_ = options_->pool ? options_->pool->take(info_) : std::make_unique<Device>(info_);
-    renderer_.emplace(*device_, *scene_, *options_, times, watch_);
+    device_ = std::make_unique<Device>(info_);
+    renderer_.emplace(*device_, *scene_, *options_, times, watch_, &builder_);
   }
   works_ = true;
   return times;
@@ -65,6 +64,10 @@ TileResult DeviceServer::render(const TileRequest& request, const StopFlags& fla
   return result;
 }
 
+void DeviceServer::rest() {
+  if (works_) renderer_->rest();
+}
+
 ServerFigures DeviceServer::figures() const {
   ServerFigures sum = closed_;
   if (!renderer_) return sum;
@@ -77,7 +80,6 @@ ServerFigures DeviceServer::figures() const {
 void DeviceServer::close() {
   closed_ = figures();
   renderer_.reset();
-  if (device_ && works_ && options_->pool) options_->pool->give_back(std::move(device_));
   device_.reset();
   works_ = false;
 }

@@ -17,6 +17,8 @@ class DeviceServer : public SceneServer {
   void show(std::shared_ptr<const CompiledScene> scene, const RenderOptions& options) override;
   void prepare_surfaces() override { renderer_->prepare_surfaces(); }
   bool is_open() const override { return works_ && !other_scene_; }
+  void rest() override;
+  std::size_t kernels_waiting() const override { return builder_.waiting(); }
 
   const DeviceInfo& info() const override { return info_; }
   RenderTimes open() override;
@@ -33,9 +35,10 @@ class DeviceServer : public SceneServer {
   std::shared_ptr<const CompiledScene> scene_;
   const RenderOptions* options_;
   LaunchWatch watch_;
+  KernelBuilder builder_;
   std::unique_ptr<Device> device_;
   std::optional<TileRenderer> renderer_;
-  bool works_ = false;          // nothing has failed since it was opened: fit for the pool, or another scene
+  bool works_ = false;          // nothing has failed since it was opened: fit for another scene
   bool other_scene_ = false;    // open() may keep what suits it
   double readback_before_ = 0;  // of scenes before
   ServerFigures closed_;        // of what was opened before

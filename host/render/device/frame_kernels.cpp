@@ -62,18 +62,39 @@ bool same_kernels(const KernelConfig& a, const KernelConfig& b) {
   return a.defines == b.defines && a.generated == b.generated;
 }
 
+/// What to draw with: the wanted kernels where they are there or nothing stands in for them.
+KernelConfig choose_config(const Device& device, const Integrator& integrator, KernelConfig wanted,
+                           const FrameKernels& kernels) {
+  if (!kernels.builder || traces_paths(integrator.name)) return wanted;
+  if (device.has(integrator.entry, wanted.defines, wanted.generated)) return wanted;
+  std::vector<KernelConfig> candidates = kernels.builder->built();
+  candidates.insert(candidates.end(), kernels.known.rbegin(), kernels.known.rend());
+  candidates.push_back(kernels.general);
+  for (const KernelConfig& general : candidates)
+    if (stands_in(general, wanted) && device.has(integrator.entry, general.defines, general.generated)) {
+      kernels.builder->want({integrator.entry, integrator.kernel, std::move(wanted)});
+      return general;
+    }
+  return wanted;
+}
+
 /// The kernels for the scene: what is there, or other ones.
 void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning, const WorkGroup& asked,
                    bool aovs, FrameKernels& kernels, RenderTimes& times, KernelUpdate& update) {
   const Integrator& integrator = *find_integrator(scene.integrator);
   KernelConfig config = make_kernel_config(scene, device.info(), tuning);
-  const bool same = kernels.integrator.kernel() && kernels.entry == integrator.entry &&
-                    same_kernels(kernels.config, config);
-  if (!same) {
+  if (kernels.builder) kernels.general = general_config(scene, device.info(), tuning);
+  const auto is_there = [&] {
+    return kernels.integrator.kernel() && kernels.entry == integrator.entry &&
+           same_kernels(kernels.config, config);
+  };
+  if (!is_there()) config = choose_config(device, integrator, std::move(config), kernels);
+  if (!is_there()) {
     kernels.config = std::move(config);
     kernels.most_group = greatest_work_group(kernels.config, device.info());
     check_work_group(device.info(), kernels.most_group, asked);
     build_integrator(device, integrator, kernels, times, update);
+    if (kernels.builder) kernels.known.push_back(kernels.config);
   }
   if (aovs) add_first_surfaces(device, kernels, times);
   check_work_group(device.info(), kernels.most_group, asked);
@@ -91,6 +112,13 @@ void renew_camera_media(Device& device, const CompiledScene& scene, FrameKernels
 }
 
 }  // namespace
+
+void build_general_kernels(const Device& device, FrameKernels& kernels) {
+  if (!kernels.builder || !kernels.integrator.kernel()) return;
+  const KernelConfig& general = kernels.general;
+  if (device.has(kernels.entry, general.defines, general.generated)) return;
+  kernels.builder->want_later({kernels.entry, kernels.integrator.name, general});
+}
 
 void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& times) {
   if (kernels.first_surfaces.kernel()) return;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/device/device_scene.h"
+#include "render/device/kernel_builder.h"
 #include "render/device/kernel_config.h"
 #include "render/values/options.h"
 #include "render/values/report.h"
@@ -22,6 +23,9 @@ struct FrameKernels {
   bool camera_inside = false;           // tables.camera_media are not those of the outside
   std::size_t most_group = 0;           // work-items that a group of theirs may have; 0: not known
   std::vector<std::string> notes;       // why a cache could not be used
+  KernelBuilder* builder = nullptr;     // builds beside the work while other kernels draw; null: nobody does
+  std::vector<KernelConfig> known;      // that this device has built
+  KernelConfig general;                 // with a builder: those that stand in for the scene's
 };
 
 /// Builds the integrator's kernel, with `aovs` that of the AOVs too, uploads the scene and finds out which
@@ -42,6 +46,10 @@ struct KernelUpdate {
 KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,
                                   const WorkGroup& asked, bool aovs, FrameKernels& kernels,
                                   RenderTimes& times);
+
+/// Has kernels built that will stand in when an edit asks for others (general_config()). Nothing without a
+/// builder.
+void build_general_kernels(const Device& device, FrameKernels& kernels);
 
 /// Builds the kernel of the AOVs where it is missing.
 void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& times);

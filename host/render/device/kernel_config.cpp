@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <set>
 #include <string>
 
 #include "device/choice.h"
@@ -13,6 +14,9 @@ namespace {
 // A CPU's driver keeps the private memory of a whole group on a thread's stack, 8 MiB by default, and crashes
 // when that is full. What a work-item holds is its ray stack and its batch.
 constexpr std::size_t group_memory = std::size_t{6} << 20, ray_bytes = 80, batch_bytes = 640;
+
+// General kernels have room for the rays of so many levels.
+constexpr unsigned general_depth = 12;
 
 /// Shadow rays of one surface that wait at a time: a light each, as far as that is a moderate number, and
 /// rounded up, so that similar scenes share their kernels.
@@ -40,7 +44,51 @@ void define_features(const SceneFeatures& features, const Define& define) {
 #undef SUNDOG_DEFINE_FEATURE
 }
 
+/// Definitions that change no bit of a scene that does without, so that kernels with them draw it too (a test
+/// renders scenes both ways). Fog, lenses, textures and meshes are not among them: they change the arithmetic
+/// of every ray.
+const std::set<std::string>& harmless_definitions() {
+  static const std::set<std::string> harmless{
+      "HAS_ABSORPTION",     "HAS_AREA_LIGHTS", "HAS_BOX",          "HAS_BVH",
+      "HAS_DISK",           "HAS_EMISSION",    "HAS_ENVIRONMENT",  "HAS_FRACTIONAL_EXPONENTS",
+      "HAS_GLOW",           "HAS_LIGHT_TREE",  "HAS_MEDIA",        "HAS_METAL_ROUGH",
+      "HAS_OCCLUSION",      "HAS_PLANE",       "HAS_ROUGH",        "HAS_SECONDARY",
+      "HAS_SHADOW_FILTERS", "HAS_SKY",         "HAS_SOFT_SHADOWS", "HAS_SPHERE",
+      "HAS_TOUCHING",       "HAS_UV",          "SDF_TWO_SIDED"};
+  return harmless;
+}
+
 }  // namespace
+
+bool stands_in(const KernelConfig& general, const KernelConfig& wanted) {
+  if (general.generated != wanted.generated || general.defines.size() != wanted.defines.size()) return false;
+  return std::ranges::equal(general.defines, wanted.defines, [](const auto& has, const auto& wants) {
+    if (has == wants) return true;
+    if (has.first != wants.first) return false;
+    const bool room = has.first == "RAY_STACK" || has.first == "BVH_STACK";
+    return (room || harmless_definitions().contains(has.first)) &&
+           std::stoul(has.second) >= std::stoul(wants.second);
+  });
+}
+
+KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
+  if (traces_paths(scene.integrator)) return make_kernel_config(scene, device, tuning);
+  CompiledScene deep;
+  deep.features = scene.features;
+  deep.features.secondary_rays = true;
+  deep.info = scene.info;
+  deep.info.max_depth = std::max(scene.info.max_depth, general_depth);
+  deep.integrator = scene.integrator;
+  deep.tracer = scene.tracer;
+  deep.field_source = scene.field_source;
+  KernelConfig config = make_kernel_config(deep, device, tuning);
+  const bool fields = config.generated.contains("generated/sdf.cl");
+  for (auto& [name, value] : config.defines) {
+    const bool of_fields = name == "HAS_OCCLUSION" || name == "HAS_SOFT_SHADOWS" || name == "SDF_TWO_SIDED";
+    if (harmless_definitions().contains(name) && (fields || !of_fields)) value = "1";
+  }
+  return config;
+}
 
 std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& device) {
   if (device.device_class != DeviceClass::cpu) return device.max_work_group;

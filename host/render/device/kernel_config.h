@@ -22,6 +22,14 @@ bool traces_compact(const CompiledScene& scene, const DeviceInfo& device);
 KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device,
                                 const Tuning& tuning = {});
 
+/// Whether kernels of `general` draw all that those of `wanted` draw, to the bit: they differ in definitions
+/// that leave every bit of a scene that does without, and in room.
+bool stands_in(const KernelConfig& general, const KernelConfig& wanted);
+
+/// Those that stand in for the scene's, and for those of scenes with most other materials, lights and solids,
+/// of the same formulas. A path tracer's are its own. Pure.
+KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning = {});
+
 /// Most work-items that a group of the render kernels may have; 0: the device does not say.
 std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& device);
 

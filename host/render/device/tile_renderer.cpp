@@ -33,6 +33,12 @@ bool makes_aovs(const CompiledScene& scene, const RenderOptions& options) {
   return !options.aovs.empty() || needs_surfaces(scene.sampling);
 }
 
+FrameKernels kernels_with(const RenderOptions& options, KernelBuilder* builder) {
+  FrameKernels none;
+  none.builder = options.general_kernels ? builder : nullptr;
+  return none;
+}
+
 /// What a failed launch may be answered with; nothing when smaller launches would not help.
 std::optional<LaunchFailure> failure_of(const DeviceError& error) {
   if (dynamic_cast<const LoopsCutShort*>(&error)) return LaunchFailure::loops_cut_short;
@@ -44,12 +50,14 @@ std::optional<LaunchFailure> failure_of(const DeviceError& error) {
 }  // namespace
 
 TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options,
-                           RenderTimes& times, LaunchWatch& watch)
+                           RenderTimes& times, LaunchWatch& watch, KernelBuilder* builder)
     : device_(device),
       options_(&options),
+      builder_(builder),
       samples_(scene.info.samples),
       tuning_(tuning_of(options, device.info())),
       asked_(options.work_group),
+      kernels_(kernels_with(options, builder)),
       update_(
           update_frame_kernels(device, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times)),
       sizer_(limits_of(device.info(), kernels_), asked_, tuning_, !scene.sdf_fields.empty()),
@@ -63,6 +71,7 @@ void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions&
   tuning_ = tuning;
   asked_ = options.work_group;
   samples_ = scene.info.samples;
+  kernels_.builder = options.general_kernels ? builder_ : nullptr;
   kernels_.notes.clear();
   update_ =
       update_frame_kernels(device_, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times);
@@ -70,6 +79,11 @@ void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions&
     sizer_ = LaunchSizer(limits_of(device_.info(), kernels_), asked_, tuning_, !scene.sdf_fields.empty());
   else
     sizer_.calm();
+}
+
+void TileRenderer::rest() {
+  device_.save_programs();
+  build_general_kernels(device_, kernels_);
 }
 
 void TileRenderer::prepare_surfaces() {

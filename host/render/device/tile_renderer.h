@@ -14,14 +14,18 @@ namespace sundog {
 
 class TileRenderer {
  public:
-  /// Builds the kernels and uploads the scene; fills `times`. Reports each launch to `watch`. Throws
-  /// DeviceError, BuildError.
+  /// Builds the kernels and uploads the scene; fills `times`. Reports each launch to `watch`. Where options
+  /// allow it, `builder` builds kernels beside the work while others stand in for them. Throws DeviceError,
+  /// BuildError.
   TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options, RenderTimes& times,
-               LaunchWatch& watch);
+               LaunchWatch& watch, KernelBuilder* builder = nullptr);
 
   /// Draws another scene from now on: keeps the kernels and tables that suit it, and builds and uploads the
   /// others. `options` must outlive it. After an exception it is of no use. Throws as the constructor does.
   void change_scene(const CompiledScene& scene, const RenderOptions& options, RenderTimes& times);
+
+  /// Called when nothing is to be drawn: keeps what was compiled, and has general kernels built.
+  void rest();
 
   /// Builds the kernel of the AOVs where it is missing, for requests of passes that ask for surfaces.
   void prepare_surfaces();
@@ -61,6 +65,7 @@ class TileRenderer {
 
   Device& device_;
   const RenderOptions* options_;
+  KernelBuilder* builder_;
   unsigned samples_;
   Tuning tuning_;
   WorkGroup asked_;

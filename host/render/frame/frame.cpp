@@ -35,13 +35,6 @@ void report_progress(Frame& frame) {
       {frame.pixels_done, static_cast<std::uint64_t>(frame.film.done.size()), frame.clock.seconds()});
 }
 
-/// Passes on the caller's wish to stop. Only while the caller waits in run_frame.
-void look_for_stop(Frame& frame) {
-  if (!frame.options.stop || !frame.options.stop->load()) return;
-  frame.stop = true;
-  frame.queue.close();
-}
-
 /// The pixels of a tile, one each.
 template <class Visit>
 void for_each_pixel(const Film& film, const Tile& tile, const Visit& visit) {
@@ -219,17 +212,6 @@ void begin_work(Frame& frame, std::size_t i, const RenderTimes& times) {
   frame.servers[i].phase = Phase::working;
 }
 
-void serve(const std::shared_ptr<Frame>& frame, std::size_t i) {
-  serve_frame(*frame, i);
-  set_phase(*frame, i, Phase::closing);
-  try {
-    frame->servers[i].server->close();
-  } catch (const std::exception&) {
-    // It is let go of as well as can be; the frame has what it made.
-  }
-  set_phase(*frame, i, Phase::gone);
-}
-
 /// Waits until the frame is over, and retires servers that hang.
 void watch(Frame& frame) {
   while (!frame.queue.wait(look_again)) {
@@ -296,36 +278,37 @@ void serve_frame(Frame& frame, std::size_t i) {
   take_figures(frame, i);
 }
 
+void look_for_stop(Frame& frame) {
+  if (!frame.options.stop || !frame.options.stop->load()) return;
+  frame.stop = true;
+  frame.queue.close();
+}
+
 void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& path) {
   write_state(path, frame.film, frame.passes, frame.key, frame.options.faults);
 }
 
-void run_frame(const std::shared_ptr<Frame>& frame, bool wait) {
-  look_for_stop(*frame);  // before a worker takes a tile
-  std::vector<std::thread> threads;
-  left_behind += static_cast<unsigned>(frame->servers.size());
-  for (std::size_t i = 0; i < frame->servers.size(); ++i)
-    threads.emplace_back([mine = frame, i]() mutable {
-      serve(mine, i);
-      mine.reset();
-      --left_behind;
-    });
-  watch(*frame);
-  const bool stopped = frame->stop.exchange(true);
-  if (!wait) wait_for_threads(*frame, stopped);
-  for (std::size_t i = 0; i < threads.size(); ++i) {
-    std::unique_lock lock(frame->mutex);
-    Frame::Server& server = frame->servers[i];
-    if (wait || server.phase == Phase::gone) {
-      lock.unlock();
-      threads[i].join();
-    } else {
-      server.report.abandoned = true;
-      threads[i].detach();
+void leave_frame(Frame& frame, std::size_t i, bool closes) {
+  if (closes) {
+    set_phase(frame, i, Phase::closing);
+    try {
+      frame.servers[i].server->close();
+    } catch (const std::exception&) {
+      // It is let go of as well as can be; the frame has what it made.
     }
   }
-  const std::lock_guard lock(frame->mutex);
-  frame->over = true;
+  set_phase(frame, i, Phase::gone);
+}
+
+void watch_frame(Frame& frame, bool wait) {
+  watch(frame);
+  const bool stopped = frame.stop.exchange(true);
+  if (!wait) wait_for_threads(frame, stopped);
+  std::unique_lock lock(frame.mutex);
+  const auto is_gone = [](const Frame::Server& server) { return server.phase == Phase::gone; };
+  if (wait) frame.changed.wait(lock, [&] { return std::ranges::all_of(frame.servers, is_gone); });
+  for (Frame::Server& server : frame.servers) server.report.abandoned = !is_gone(server);
+  frame.over = true;
 }
 
 }  // namespace sundog

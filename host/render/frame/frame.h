@@ -1,5 +1,5 @@
-// A frame at work: one thread a server takes tiles from the queue, while the caller's thread watches for the
-// end, for an interrupt and for drivers that hang. Internal to the render layer.
+// A frame at work: a session's threads, one a server, take tiles from the queue, while another watches for
+// the end, for an interrupt and for drivers that hang. Internal to the render layer.
 #pragma once
 #include <condition_variable>
 #include <exception>
@@ -96,8 +96,15 @@ GrowingFilm film_so_far(const Frame& frame);
 /// Writes the frame's state.
 void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& path);
 
-/// Runs the frame to its end: finished, stopped (options.stop), or out of servers. With `wait`, every thread
-/// has ended on return; else those in a driver are left behind (see threads_left_behind()).
-void run_frame(const std::shared_ptr<Frame>& frame, bool wait);
+/// Passes on the caller's wish to stop (options.stop); before the first tile is taken, none is.
+void look_for_stop(Frame& frame);
+
+/// Called by a server's thread behind serve_frame(), of a frame that watch_frame() watches: closes the server
+/// where it is not needed any more.
+void leave_frame(Frame& frame, std::size_t i, bool closes);
+
+/// Waits for the frame's end: finished, stopped (options.stop), or out of servers. With `wait`, every server
+/// has left it on return; else those in a driver are abandoned, but for moments of grace.
+void watch_frame(Frame& frame, bool wait);
 
 }  // namespace sundog

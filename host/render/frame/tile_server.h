@@ -87,6 +87,10 @@ class SceneServer : public TileServer {
   virtual void prepare_surfaces() = 0;
   /// It was opened, and nothing has failed since.
   virtual bool is_open() const = 0;
+  /// Nothing is to be drawn for now: it may prepare for what comes, without delay for it.
+  virtual void rest() {}
+  /// Kernels that are being built beside the work. Any thread.
+  virtual std::size_t kernels_waiting() const { return 0; }
 };
 
 }  // namespace sundog

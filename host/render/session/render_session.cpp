@@ -5,13 +5,11 @@
 
 #include "base/error.h"
 #include "render/device/device_server.h"
+#include "render/session/final_frame.h"
 #include "render/session/session_state.h"
 
 namespace sundog {
 namespace {
-
-// What a driver gets to come back from a launch when the session ends.
-constexpr std::chrono::seconds ending_grace{10};
 
 Servers make_servers(const std::vector<DeviceInfo>& devices) {
   if (devices.empty()) throw DeviceError("no device to render on");
@@ -47,34 +45,10 @@ RenderSession::RenderSession(const std::vector<DeviceInfo>& devices) : RenderSes
 
 RenderSession::RenderSession(std::vector<std::shared_ptr<SceneServer>> servers)
     : state_(std::make_shared<State>()) {
-  for (auto& server : servers) state_->add_worker(std::move(server));
-  state_->control = std::thread([self = state_] { self->run_control(); });
+  state_->begin({servers.begin(), servers.end()});
 }
 
-RenderSession::~RenderSession() {
-  State& s = *state_;
-  {
-    const std::lock_guard lock(s.mutex);
-    s.closing = true;
-    s.drop_frame();
-    s.drop_picks();
-    s.note();
-  }
-  s.control.join();
-  std::vector<std::shared_ptr<State::Worker>> all = s.workers;
-  all.insert(all.end(), s.leaving.begin(), s.leaving.end());
-  for (const auto& worker : all) {
-    std::unique_lock lock(s.mutex);
-    const auto gone = [&] { return worker->gone; };
-    s.changed.wait_for(lock, worker->opening && worker->server->compiles() ? look_again : ending_grace, gone);
-    const bool joins = worker->gone;
-    lock.unlock();
-    if (joins)
-      worker->thread.join();
-    else
-      worker->thread.detach();
-  }
-}
+RenderSession::~RenderSession() { state_->end(); }
 
 Generation RenderSession::start(std::shared_ptr<const SceneDescription> scene,
                                 const SessionSettings& settings) {
@@ -101,7 +75,7 @@ void RenderSession::cancel() {
 void RenderSession::use_devices(const std::vector<DeviceInfo>& devices) {
   Servers servers = make_servers(devices);
   State& s = *state_;
-  const std::lock_guard lock(s.mutex);
+  const std::scoped_lock lock(s.rendering, s.mutex);
   std::vector<std::shared_ptr<State::Worker>> before = std::exchange(s.workers, {});
   for (std::shared_ptr<SceneServer>& server : servers) {
     const auto same = std::ranges::find_if(before, [&](const auto& worker) {
@@ -124,17 +98,22 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
   const State& s = *state_;
   Snapshot snapshot;
   std::shared_ptr<SessionFrame> current, shown;
+  Servers servers;
   {
     const std::lock_guard lock(s.mutex);
     snapshot.generation = s.newest;
     snapshot.revision = s.revision;
     snapshot.state = s.state;
     snapshot.error = s.error;
+    snapshot.prepared = s.rested == s.newest && s.newest > 0;
+    for (const auto& worker : s.workers) servers.push_back(worker->of_scenes);
     current = s.current;
     shown = s.shown;
     const std::shared_ptr<SessionFrame>& times = current && current->generation == s.newest ? current : shown;
     if (times) snapshot.times = times->times;
   }
+  for (const auto& server : servers) snapshot.kernels_waiting += server->kernels_waiting();
+  snapshot.prepared = snapshot.prepared && snapshot.kernels_waiting == 0;
   if (current) {
     const Frame& frame = *current->frame;
     const std::lock_guard lock(current->frame->mutex);
@@ -161,6 +140,25 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
   snapshot.seconds = progress.settled ? snapshot.times.settled : shown->clock.seconds();
   if (with_picture) snapshot.picture = s.picture_so_far(frame);
   return snapshot;
+}
+
+RenderResult RenderSession::render(const std::shared_ptr<const CompiledScene>& scene,
+                                   const RenderOptions& options) {
+  const std::lock_guard one_at_a_time(state_->rendering);
+  std::vector<ServerPlan> plans;
+  {
+    const std::lock_guard lock(state_->mutex);
+    for (const auto& worker : state_->workers)
+      plans.push_back({worker->server->info(), worker->server->processor(),
+                       [server = worker->server](const RenderOptions&) { return server; }});
+  }
+  return render_frame(scene, plans, options, [&](const std::shared_ptr<Frame>& frame) {
+    const auto mine = std::make_shared<SessionFrame>();
+    mine->flat = scene;
+    mine->frame = frame;
+    mine->final = true;
+    state_->run(mine, false);
+  });
 }
 
 void RenderSession::wait() const {

@@ -14,8 +14,7 @@
 
 #include "base/image.h"
 #include "compile/scene_compiler.h"
-#include "render/values/options.h"
-#include "render/values/report.h"
+#include "render/frame/result.h"
 #include "scene/description.h"
 
 namespace sundog {
@@ -96,6 +95,8 @@ struct Snapshot {
   double seconds = 0;  // since the start() of `shown`, or the time it took
   SessionTimes times;
   EditWork work;
+  std::size_t kernels_waiting = 0;  // that are built beside the drawing, for edits to come
+  bool prepared = false;            // settled, and none of these is left to build
   std::vector<DeviceActivity> devices;
 };
 
@@ -108,6 +109,7 @@ struct Picked {
 };
 
 class SceneServer;
+struct Frame;
 
 class RenderSession {
  public:
@@ -126,6 +128,12 @@ class RenderSession {
   /// compiled never is. Errors of the scene or a device come as
   /// SessionState::failed. The scene must not be changed afterwards.
   Generation start(std::shared_ptr<const SceneDescription> scene, const SessionSettings& settings = {});
+
+  /// Renders a frame to its end, in place of what is drawn, and waits for it: `sundog render`'s picture, with
+  /// checkpoints, parts, AOVs and figures. Nobody else sees it: snapshot() shows what was drawn before. A
+  /// start() or cancel() meanwhile ends it before its time. Devices keep what suits the next one. Throws as
+  /// render() does (render.h).
+  RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const RenderOptions& options = {});
 
   /// Stops drawing at once. The picture so far stays.
   void cancel();
@@ -150,6 +158,7 @@ class RenderSession {
   std::optional<Picked> pick(int x, int y);
 
  private:
+  friend void run_frame(const std::shared_ptr<Frame>& frame, bool wait);
   struct State;
   std::shared_ptr<State> state_;
 };

@@ -18,6 +18,7 @@ RenderOptions options_of(const SessionSettings& settings) {
   options.tuning = settings.tuning;
   options.split = settings.split;
   options.tile = settings.tile;
+  options.general_kernels = true;
   return options;
 }
 
@@ -121,6 +122,9 @@ FrameProgress progress_of(const Frame& frame) {
 
 FrameSamples samples_of(const Frame& frame, unsigned wanted) {
   if (frame.queue.complete()) return {wanted, 1};
+  if (!frame.passes)
+    return {0, static_cast<double>(frame.pixels_done) /
+                   static_cast<double>(std::max<std::size_t>(1, frame.film.done.size()))};
   const FramePasses& passes = *frame.passes;
   const std::vector<u32>& taken = passes.film.taken;
   double all = 0;

@@ -13,10 +13,12 @@ namespace sundog {
 struct SessionFrame {
   Generation generation = 0;
   std::shared_ptr<const SceneDescription> scene;
-  std::shared_ptr<const CompiledScene> flat;
+  std::shared_ptr<const CompiledScene> flat;  // null: the servers have the scene
   std::shared_ptr<Frame> frame;
-  Stopwatch clock;  // since start()
-  Stopwatch begun;  // since it can be drawn
+  bool final = false;   // it is rendered to its end for a caller who waits, and shown by nobody
+  bool closes = false;  // so is the session: servers are closed behind it
+  Stopwatch clock;      // since start()
+  Stopwatch begun;      // since it can be drawn
   double patience = 0;
   SessionTimes times;
   CompileWork compiled;  // for this generation

@@ -14,6 +14,7 @@
 namespace sundog {
 
 using Servers = std::vector<std::shared_ptr<SceneServer>>;
+using TileServers = std::vector<std::shared_ptr<TileServer>>;
 
 // How often a frame in hand is looked at for drivers that hang.
 inline constexpr std::chrono::milliseconds look_again{50};
@@ -30,11 +31,14 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
     Stopwatch clock;
   };
   struct Worker {
-    std::shared_ptr<SceneServer> server;
+    std::shared_ptr<TileServer> server;
+    std::shared_ptr<SceneServer> of_scenes;  // the same; null: its scene is the only one
     std::thread thread;
     std::shared_ptr<SessionFrame> seen;  // the last frame that it took part in
     bool opening = false;                // it may be in a driver's compiler
+    bool closed = false;                 // the server, behind a frame
     bool leave = false, gone = false;
+    bool abandoned = false;  // a frame did not wait for it, and nobody does
   };
   struct Pick {
     Generation generation = 0;
@@ -54,9 +58,11 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
   std::vector<std::shared_ptr<Worker>> leaving;
   std::deque<Pick> picks;
   double pixel_seconds = 0;
+  Generation rested = 0;  // the last for which a server has prepared for what comes
   bool closing = false;
   std::thread control;
   SceneCompiler compiler;  // the control thread's
+  std::mutex rendering;    // taken before `mutex`: one frame at a time is rendered to its end
 
   mutable std::mutex picture_mutex;
   mutable std::shared_ptr<const Image> picture;
@@ -72,7 +78,11 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
     note();
   }
 
-  void add_worker(std::shared_ptr<SceneServer> server);
+  void add_worker(std::shared_ptr<TileServer> server);
+  void begin(const TileServers& servers);
+  void end();
+  /// Renders a frame of the workers' servers to its end, in place of what is drawn.
+  void run(const std::shared_ptr<SessionFrame>& mine, bool wait);
   void run_control();
   void take_order(std::unique_lock<std::mutex>& lock);
   std::shared_ptr<SessionFrame> prepare(const Order& order, Servers servers, double speed);
@@ -81,15 +91,17 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
   void serve(std::unique_lock<std::mutex>& lock, Worker& worker, std::size_t index);
   void serve_pick(std::unique_lock<std::mutex>& lock, Worker& worker);
   bool may_pick(const Worker& worker) const {
-    return !picks.empty() && worker.seen == current && worker.server->is_open();
+    return !picks.empty() && worker.of_scenes && worker.seen == current && worker.of_scenes->is_open();
   }
   std::optional<std::size_t> index_of(const Worker& worker) const;
   void note_progress(const std::shared_ptr<SessionFrame>& mine);
   /// The frame in hand may bring its first picture before a newer one takes its place.
   bool is_awaited() const {
-    return current && !current->frame->stop && current->times.first < 0 && current->times.settled < 0 &&
-           current->begun.seconds() < current->patience;
+    return current && !current->final && !current->frame->stop && current->times.first < 0 &&
+           current->times.settled < 0 && current->begun.seconds() < current->patience;
   }
+  /// A frame that is rendered to its end is let go of by its caller.
+  bool is_held() const { return current && current->final; }
   void answer_picks(const std::shared_ptr<TileServer>& server);
   void drop_frame();
   void drop_picks();

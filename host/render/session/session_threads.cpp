@@ -34,8 +34,9 @@ Picked pick_on(SceneServer& server, int x, int y) {
 
 }  // namespace
 
-void RenderSession::State::add_worker(std::shared_ptr<SceneServer> server) {
+void RenderSession::State::add_worker(std::shared_ptr<TileServer> server) {
   auto worker = std::make_shared<Worker>();
+  worker->of_scenes = std::dynamic_pointer_cast<SceneServer>(server);
   worker->server = std::move(server);
   workers.push_back(worker);
   count_left_behind(1);
@@ -72,8 +73,8 @@ std::optional<std::size_t> RenderSession::State::index_of(const Worker& worker) 
 void RenderSession::State::run_control() {
   std::unique_lock lock(mutex);
   while (!closing) {
-    const auto wanted = [&] { return closing || (pending && !is_awaited()); };
-    if (current && (pending || !is_at_rest(state)))
+    const auto wanted = [&] { return closing || (pending && !is_awaited() && !is_held()); };
+    if (current && !is_held() && (pending || !is_at_rest(state)))
       changed.wait_for(lock, look_again, wanted);
     else
       changed.wait(lock, wanted);
@@ -90,7 +91,7 @@ void RenderSession::State::take_order(std::unique_lock<std::mutex>& lock) {
   pending.reset();
   drop_frame();
   Servers servers;
-  for (const auto& worker : workers) servers.push_back(worker->server);
+  for (const auto& worker : workers) servers.push_back(worker->of_scenes);
   const double speed = pixel_seconds;
   lock.unlock();
   std::shared_ptr<SessionFrame> made;
@@ -101,7 +102,7 @@ void RenderSession::State::take_order(std::unique_lock<std::mutex>& lock) {
     failure = thrown.what();
   }
   lock.lock();
-  if (order.generation != newest || is_at_rest(state)) return;  // replaced, or cancelled
+  if (order.generation != newest || is_at_rest(state) || is_held()) return;  // replaced, or cancelled
   if (!made) {
     error = failure;
     drop_picks();
@@ -196,7 +197,7 @@ void RenderSession::State::run_worker(Worker& worker) {
   worker.opening = false;
   lock.unlock();
   try {
-    worker.server->close();
+    if (!worker.closed) worker.server->close();
   } catch (const std::exception&) {
     // It is let go of as well as can be.
   }
@@ -211,16 +212,25 @@ void RenderSession::State::serve(std::unique_lock<std::mutex>& lock, Worker& wor
   worker.opening = true;
   lock.unlock();
   Frame& frame = *mine->frame;
-  worker.server->show(mine->flat, frame.options);
+  if (mine->flat && worker.of_scenes) worker.of_scenes->show(mine->flat, frame.options);
   serve_frame(frame, index);
+  if (mine->final) leave_frame(frame, index, mine->closes);
   double speed = 0;
-  {
+  if (!mine->final) {
     const std::lock_guard frame_lock(frame.mutex);
     speed = frame.passes->pixel_seconds;
   }
   lock.lock();
   worker.opening = false;
+  worker.closed = mine->closes;
   if (speed > 0) pixel_seconds = speed;
+  note();
+  if (mine != current || mine->final || state != SessionState::settled || !worker.of_scenes->is_open())
+    return;
+  lock.unlock();
+  worker.of_scenes->rest();
+  lock.lock();
+  rested = mine->generation;
   note();
 }
 
@@ -229,7 +239,7 @@ void RenderSession::State::serve_pick(std::unique_lock<std::mutex>& lock, Worker
   picks.pop_front();
   lock.unlock();
   try {
-    pick.answer.set_value(pick_on(*worker.server, pick.x, pick.y));
+    pick.answer.set_value(pick_on(*worker.of_scenes, pick.x, pick.y));
   } catch (const std::exception&) {
     pick.answer.set_exception(std::current_exception());
   }

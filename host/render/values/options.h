@@ -13,7 +13,6 @@
 
 namespace sundog {
 
-class DevicePool;
 class Faults;
 struct Film;
 
@@ -34,9 +33,9 @@ struct RenderProgress {
 };
 
 struct RenderOptions {
-  std::shared_ptr<DevicePool> pool;  // where devices wait between frames; none: opened for this one
   WorkGroup work_group;
   std::function<Tuning(const DeviceInfo&)> tuning;  // of each device; empty: the defaults
+  bool general_kernels = false;  // those that draw the same bits may stand in while the scene's are built
   int tile = 0;  // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
   Split split;
   PartOfFrame part;               // what to render of the frame

@@ -221,6 +221,31 @@ TEST_CASE("a client that stops reading, and one that never sends, hold up nobody
   CHECK(get("/").status == 200);
 }
 
+TEST_CASE("a token file is made for its owner alone, and must hold a token") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", viewer_scene);
+  const auto refused = [&](const std::string& file) {
+    const CommandResult result =
+        run_sundog({"serve", (folder / "scene.json").string(), "--token-file", (folder / file).string()});
+    CHECK(result.status == 2);
+    CHECK(result.err.find("--token-file") != std::string::npos);
+  };
+  {
+    BackgroundProgram program({SUNDOG_BINARY, "serve", "scene.json", "--token-file", "kept"}, folder.path());
+    program.line_with("http://");
+    BackgroundProgram again({SUNDOG_BINARY, "serve", "scene.json", "--token-file", "kept"}, folder.path());
+    const std::string url = again.line_with("http://");
+    CHECK(sundog::read_file(folder / "kept") == url.substr(url.find("token=") + 6) + "\n");
+  }
+  namespace fs = std::filesystem;
+  CHECK(fs::status(folder / "kept").permissions() == (fs::perms::owner_read | fs::perms::owner_write));
+  fs::permissions(folder / "kept", fs::perms::group_read, fs::perm_options::add);
+  refused("kept");
+  folder.write("other", "not a token\n");
+  fs::permissions(folder / "other", fs::perms::owner_read | fs::perms::owner_write);
+  refused("other");
+}
+
 TEST_CASE("--host adds a name for a tunnel; --port and --host are checked") {
   const TemporaryFolder folder;
   folder.write("scene.json", viewer_scene);

@@ -178,6 +178,9 @@ TEST_CASE("a wrong formula is marked at its place, and the picture stays; a righ
   CHECK(v.run("return document.querySelector('#panel .error[role=alert] "
               "pre')?.textContent.split('\\n')[1].indexOf('^')")
             .get<int>() == 12);
+  CHECK(v.run("return "
+              "document.querySelector('[data-code=Distance]').shadowRoot.querySelector('.cm-lintRange-error')"
+              "?.textContent") == "sise");
   CHECK(v.picture() == before);
   changes_picture([&] { v.type("Distance", "max(abs(p.x), max(abs(p.y), abs(p.z))) - size"); });
 }
@@ -220,6 +223,151 @@ TEST_CASE("what is saved renders with sundog to the same bits, and so does the c
   REQUIRE(run_command({"sh", "-c", place + command.substr(6) + " --quiet"}, options).status == 0);
   CHECK(sundog::read_file(folder / "picture.png") == picture);
   v.undo_all();
+}
+
+TEST_CASE("the picture is saved as EXR with the bits of sundog render") {
+  Viewer& v = viewer();
+  v.picture();
+  v.run("const files = await import('/files.js'); await files.savePicture('exr');");
+  const auto file = v.browser.downloads() / "scene.exr";
+  for (int i = 0; i < 500 && !std::filesystem::exists(file); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const std::string again = (v.browser.downloads() / "again.exr").string();
+  REQUIRE(run_sundog({"render", v.served.scene, "-o", again, "--quiet"}).status == 0);
+  const sundog::Image saved = sundog::read_image(file), rendered = sundog::read_image(again);
+  REQUIRE(saved.width == rendered.width);
+  for (int y = 0; y < saved.height; ++y)
+    for (int x = 0; x < saved.width; ++x)
+      for (int c = 0; c < 3; ++c) REQUIRE(saved.pixel(x, y)[c] == rendered.pixel(x, y)[c]);
+}
+
+TEST_CASE("a link carries the whole scene, and a preset, a path and a drop are edits like others") {
+  Viewer& v = viewer();
+  const auto before = v.picture();
+  v.tab("light");
+  v.type("Intensity", "0.15");
+  const auto dark = v.picture();
+  const std::string link = v.run(R"(
+    const files = await import('/files.js');
+    Object.defineProperty(navigator, 'clipboard', {value: {writeText: async (text) => (window.copied = text)}, configurable: true});
+    await files.copyLink();
+    return window.copied;)");
+  v.undo_all();
+  CHECK(v.picture() == before);
+  v.browser.open_tab(link);
+  v.wait("return store.state.file === 'scene.json' && store.state.document?.lights[0].intensity === 0.15");
+  CHECK(v.picture() == dark);
+  CHECK(v.run("return location.hash.includes('scene=')") == false);
+  v.browser.use_tab(0);
+  CHECK(v.picture() == dark);
+  // A file that is dropped: the scene as it was.
+  v.run(R"(
+    const file = new File([args[0]], 'scene.json', {type: 'application/json'}), data = new DataTransfer();
+    data.items.add(file);
+    document.dispatchEvent(new DragEvent('drop', {dataTransfer: data, bubbles: true, cancelable: true}));)",
+        {viewer_scene});
+  v.wait("return store.state.document.lights[0].intensity === undefined");
+  CHECK(v.picture() == before);
+  v.tab("build");
+  changes_picture([&] {
+    v.run(
+        "const {setMaterial} = await import('/presets.js'); setMaterial('/materials/red', "
+        "store.state.document.materials.red, 'Gold')");
+  });
+  v.tab("camera");
+  v.press("Keep this view");
+  v.run("store.set('/camera/position', [3, 2, 2])");
+  v.settle();
+  v.run("const {keepView} = await import('/panels/path.js'); keepView(store.state.resolved.camera, 24)");
+  v.settle();
+  CHECK(
+      v.run(
+          "return store.state.document.animate.map((t) => [t.type, t.value, t.keys.map((k) => k.frame)])") ==
+      json::parse(R"([["smooth", "/camera/position", [0, 24]], ["smooth", "/camera/target", [0, 24]]])"));
+  v.undo_all();
+  CHECK(v.picture() == before);
+}
+
+TEST_CASE("presets of materials, lights and quality are scenes that can be read") {
+  Viewer& v = viewer();
+  const json refused = v.run(R"(
+    const presets = await import('/presets.js');
+    const bad = [];
+    const tried = async (name, act) => {
+      store.update({error: null});
+      act();
+      for (let i = 0; i < 500 && (store.pending.length || store.inFlight !== null); ++i) await new Promise((r) => setTimeout(r, 5));
+      if (store.state.error) bad.push(name + ': ' + store.state.error.reason);
+    };
+    for (const name of Object.keys(presets.materials)) await tried(name, () => presets.setMaterial('/materials/red', {}, name));
+    for (const name of Object.keys(presets.lights)) await tried(name, () => presets.setLights(name));
+    for (const name of Object.keys(presets.qualities)) await tried(name, () => presets.setQuality(name));
+    return bad;)");
+  CHECK(refused == json::array());
+  v.undo_all();
+}
+
+TEST_CASE("a model that is dropped on the page is shown; one that is damaged is refused") {
+  Viewer& v = viewer();
+  const json before = v.run("return store.state.document");
+  const char* drop = R"(
+    const data = new DataTransfer();
+    data.items.add(new File([args[0]], args[1]));
+    document.dispatchEvent(new DragEvent('drop', {dataTransfer: data, bubbles: true, cancelable: true}));)";
+  v.run(drop, {"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex nonsense", "bad.stl"});
+  v.wait("return store.state.error !== null");
+  CHECK(v.run("return store.state.document") == before);
+  CHECK(v.run("return store.state.error.reason").get<std::string>().starts_with("bad.stl: "));
+  v.run("store.update({error: null})");
+  v.run(drop,
+        {"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+         "three.ply"});
+  v.wait("return store.state.file === 'three.ply' && store.state.status.settled");
+  v.settle();
+  CHECK(v.run("return new Set(pixels()).size").get<int>() > 2);
+  v.run("store.say('open', {file: 'scene.json'})");
+  v.wait("return store.state.file === 'scene.json'");
+  v.settle();
+}
+
+TEST_CASE("devices are switched while the scene is shown") {
+  Viewer& v = viewer();
+  v.tab("devices");
+  const json specs = v.run("return store.state.devices.filter((d) => !d.problem).map((d) => d.spec)");
+  const json picked = v.run("return store.state.devices.filter((d) => d.picked).map((d) => d.spec)");
+  REQUIRE(!specs.empty());
+  const json generation = v.run("return store.state.status.generation");
+  const std::string other = specs[0].get<std::string>() + "/1";  // one of its cores
+  v.run("store.say('devices', {specs: [args[0]]})", {other});
+  v.wait("return store.state.status.generation > " + generation.dump() + " && store.state.status.settled");
+  CHECK(v.run("return store.state.status.devices.map((d) => d.spec)") == json({other}));
+  v.run("store.say('devices', {specs: args[0]})", json::array({picked}));
+  v.wait("return store.state.status.devices.length === " + std::to_string(picked.size()) +
+         " && store.state.status.settled");
+}
+
+TEST_CASE("pages come back when the server is started anew, and give it their scene") {
+  TemporaryFolder folder;
+  folder.write("scene.json", viewer_scene);
+  std::vector<std::string> command = {SUNDOG_BINARY, "serve", "scene.json", "--token-file", "token"};
+  auto server = std::make_unique<BackgroundProgram>(command, folder.path());
+  const std::string url = server->line_with("http://");
+  command.insert(command.end(), {"--port", url.substr(17, url.find('/', 17) - 17)});
+  Viewer& v = viewer();
+  v.browser.open_tab(url);
+  v.settle();
+  v.run("store.set('/camera/fov', 31)");
+  const auto changed = v.picture();
+  server.reset();
+  v.wait("return store.state.connected === 'no'");
+  server = std::make_unique<BackgroundProgram>(command, folder.path());
+  CHECK(server->line_with("http://") == url);
+  v.wait(
+      "return store.state.connected === 'yes' && store.state.document.camera.fov === 31 && "
+      "store.state.version <= 2");
+  CHECK(v.picture() == changed);
+  v.browser.use_tab(0);
 }
 
 TEST_CASE("two pages see each other's changes, and a page that is loaded again is as before") {

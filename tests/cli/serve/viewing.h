@@ -47,6 +47,13 @@ struct Viewer {
   /// Types a value into the widget of that label in the open panel, as a person does.
   void type(const std::string& label, const std::string& value) {
     const json found = run(R"(
+      const code = document.querySelector(`#panel [data-code="${args[0]}"]`)?.editor;
+      if (code) {
+        code.focus();
+        code.dispatch({changes: {from: 0, to: code.state.doc.length, insert: args[1]}, userEvent: 'input'});
+        code.contentDOM.blur();
+        return '';
+      }
       const input = document.querySelector(`#panel [aria-label="${args[0]}"]`) ?? [...document.querySelectorAll('#panel label')].find((l) => l.textContent === args[0])?.control;
       if (!input) return 'no widget ' + args[0];
       input.focus();

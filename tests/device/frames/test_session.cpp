@@ -2,8 +2,12 @@
 // uploads no geometry; a pick shows what the AOVs show.
 #include "render/session/render_session.h"
 
+#include <chrono>
+#include <thread>
+
 #include "catch.h"
 #include "devices.h"
+#include "render/device/kernel_config.h"
 #include "same_bits.h"
 #include "scene/load.h"
 #include "scenes.h"
@@ -140,4 +144,76 @@ TEST_CASE("a pick shows what the first surface is") {
     CHECK(picked->normal.y == whole.aovs.at("normal").pixel(x, y)[1]);
     CHECK(picked->position.x == whole.aovs.at("position").pixel(x, y)[0]);
   }
+}
+
+TEST_CASE(
+    "general kernels draw the same bits as a scene's own, and an edit that wants others waits for none") {
+  const DeviceInfo& device = test_devices().front();
+  RenderSession session(std::vector<DeviceInfo>{device});
+  const auto wait_for_kernels = [&] {
+    for (int i = 0; i < 8000 && !session.snapshot(false).prepared; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(25));
+    REQUIRE(session.snapshot(false).prepared);
+  };
+  SceneDescription scene = shipped("mandelbulb");
+  scene.render.max_depth = 3;
+  check_settled(session, scene, device);
+  wait_for_kernels();
+  // Kernels that no cache has: of an odd depth, with a highlight and a light of another kind.
+  scene.render.max_depth = 4;
+  scene.materials.back().exponent = 7.5;
+  scene.materials.back().reflection = dvec3(0.2);
+  scene.lights.emplace_back();
+  scene.lights.back().type = LightType::ambient;
+  session.start(std::make_shared<const SceneDescription>(scene));
+  session.wait();
+  const Snapshot general = session.snapshot();
+  REQUIRE(general.state == SessionState::settled);
+  CHECK(general.work.kernels_built == 0);
+  wait_for_kernels();
+  session.start(std::make_shared<const SceneDescription>(scene));
+  session.wait();
+  const Snapshot own = session.snapshot();
+  CHECK(own.work.kernels_built == 0);
+  CHECK(same_bits(*general.picture, *own.picture));
+  CHECK(same_bits(*own.picture, scenes::render_on(device, scene).image));
+}
+
+TEST_CASE("kernels stand in for others that leave harmless features out") {
+  const DeviceInfo& device = test_devices().front();
+  const CompiledScene scene = compile(shipped("spheres"));
+  const KernelConfig own = make_kernel_config(scene, device), general = general_config(scene, device);
+  CHECK(stands_in(general, own));
+  CHECK(stands_in(own, own));
+  CHECK_FALSE(stands_in(own, general));
+  CompiledScene foggy = scene;
+  foggy.features.fog = true;
+  CHECK_FALSE(stands_in(general, make_kernel_config(foggy, device)));
+  CHECK_FALSE(stands_in(general_config(compile(shipped("mandelbulb")), device), own));
+}
+
+TEST_CASE("a session renders frames to their end, and draws between them") {
+  const DeviceInfo& device = test_devices().front();
+  RenderSession session(std::vector<DeviceInfo>{device});
+  SceneDescription scene = mesh_scene();
+  RenderOptions options;
+  options.aovs = {"depth"};
+  const auto flat = [](const SceneDescription& of) {
+    return std::make_shared<const CompiledScene>(compile(of));
+  };
+  const RenderResult first = session.render(flat(scene), options);
+  CHECK(first.complete);
+  const RenderResult cold = scenes::render_on(device, scene, options);
+  CHECK(same_bits(first.image, cold.image));
+  CHECK(same_bits(first.aovs.at("depth"), cold.aovs.at("depth")));
+  CHECK(first.counts == cold.counts);
+  check_settled(session, scene, device);
+  const auto shown = session.snapshot().shown;
+  scene.camera.position += dvec3(0.1, 0, 0);
+  const RenderResult second = session.render(flat(scene));
+  CHECK(same_bits(second.image, scenes::render_on(device, scene).image));
+  CHECK(second.devices.at(0).kernels_built == 0);
+  CHECK(session.snapshot().shown == shown);
+  CHECK_FALSE(session.pick(1, 1));
+  check_settled(session, scene, device);
 }

@@ -1,5 +1,5 @@
 // A frame's threads without a device: servers that are made up take tiles, fail, hang and are stopped.
-#include "render/frame/frame.h"
+#include "render/session/final_frame.h"
 
 #include <chrono>
 #include <thread>

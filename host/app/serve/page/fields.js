@@ -2,6 +2,7 @@
 // that the document leaves it open, and `fallback` (the default) is shown.
 import {html, useRef, useState, useEffect, useStore, plain} from './ui.js';
 import {store} from './store.js';
+import {CodeEditor} from './editor.js';
 
 let gestures = 0;
 let ids = 0;
@@ -106,38 +107,28 @@ export function TextField({label, value, fallback, help, at, onSet, onReset}) {
 const asText = (value) => (Array.isArray(value) ? value.join('\n') : value ?? '');
 
 /** Text of the formula language. It is sent when typing pauses; an error is marked at its line and column. */
-export function CodeField({label, value, help, at, onSet, onReset}) {
-  const id = useId(), area = useRef(), timer = useRef();
+export function CodeField({label, value, help, at, words, onSet, onReset}) {
+  const id = useId(), timer = useRef();
   const [text, setText] = useState(null);
   const error = useStore(store, (s) => (s.error?.at === at ? s.error : null));
-  const given = asText(value);
+  const given = asText(value), shown = text ?? given;
   const place = error && /line (\d+), column (\d+)/.exec(error.reason);
   useEffect(() => {
-    if (!error) setText(null);
+    if (!error && given !== text) setText(null);  // what was refused stays, to be mended
   }, [given]);
-  const input = (event) => {
-    setText(event.target.value);
+  const input = (code) => {
+    setText(code);
     clearTimeout(timer.current);
-    timer.current = setTimeout(() => send(area.current.value), 500);
+    timer.current = setTimeout(() => send(code), 500);
   };
   const send = (code) => {
     clearTimeout(timer.current);
     const lines = code.split('\n').filter((line) => line.trim());
     onSet(lines.length > 1 ? lines : lines[0], 'code' + id);
   };
-  const shown = text ?? given, lines = shown.split('\n');
-  const show = () => {
-    const start = lines.slice(0, place[1] - 1).reduce((n, line) => n + line.length + 1, 0) + Number(place[2]) - 1;
-    area.current.focus();
-    area.current.setSelectionRange(start, start + 1);
-  };
+  const marked = place && {line: Number(place[1]), column: Number(place[2]), reason: error.reason};
   return html`<${Row} id=${id} label=${label} help=${help} at=${error ? undefined : at} isSet=${value !== undefined} onReset=${onReset} wide>
-    <div class=${'code' + (error ? ' bad' : '')}>
-      <div class="lines" aria-hidden="true">${lines.map((_, i) => html`<span class=${place && Number(place[1]) === i + 1 ? 'bad' : ''}>${i + 1}</span>`)}</div>
-      <textarea id=${id} ref=${area} spellcheck="false" autocapitalize="off" rows=${shown ? Math.max(2, lines.length) : 1} value=${shown}
-        aria-invalid=${!!error} aria-describedby=${id + 'e'} onInput=${input} onBlur=${(e) => text !== null && text !== given && send(e.target.value)}></textarea>
-    </div>
-    <p id=${id + 'e'} class="error" role="alert">${error && html`${place && html`<pre>${lines[place[1] - 1] ?? ''}${'\n' + ' '.repeat(Math.max(0, place[2] - 1))}^</pre>`}
-      ${error.reason} ${place && html`<button type="button" class="button" onClick=${show}>Show</button>`}`}</p>
+    <${CodeEditor} id=${id} label=${label} text=${shown} words=${words} place=${marked} onInput=${input} onLeave=${(code) => text !== null && code !== given && send(code)} />
+    <p class="error" role="alert">${error && html`${place && html`<pre>${shown.split('\n')[place[1] - 1] ?? ''}${'\n' + ' '.repeat(Math.max(0, place[2] - 1))}^</pre>`}${error.reason}`}</p>
   </${Row}>`;
 }

@@ -64,9 +64,11 @@ export async function copyLink() {
   await copy(`${location.origin}/#token=${store.link.token}&name=${encodeURIComponent(store.state.file)}&scene=${scene}`, 'Link');
 }
 
-async function upload(text, name) {
+const models = ['gltf', 'glb', 'obj', 'ply', 'stl', 'nff'];
+
+async function upload(bytes, name) {
   try {
-    await store.link.call('scene?name=' + encodeURIComponent(name), {method: 'POST', body: text});
+    await store.link.call('scene?name=' + encodeURIComponent(name), {method: 'POST', body: bytes});
   } catch (error) {
     store.update({error: {at: '', reason: error.message}});
   }
@@ -85,8 +87,10 @@ export async function openLink() {
 }
 
 export async function openFile(file) {
-  if (!file.name.endsWith('.json')) return store.notice('Drop a scene (.json); models are opened from the folder that sundog was started in.');
-  await upload(await file.text(), file.name);
+  const kind = file.name.toLowerCase().split('.').pop();
+  if (kind === 'json') return upload(await file.text(), file.name);
+  if (models.includes(kind)) return upload(await file.arrayBuffer(), file.name);
+  store.notice(`${file.name} is neither a scene (.json) nor a model (${models.join(', ')}).`);
 }
 
 export function OpenDialog({onClose}) {
@@ -104,7 +108,7 @@ export function OpenDialog({onClose}) {
     <input type="search" class="filter" aria-label="Find a file" placeholder="Find a scene or model" value=${wanted} onInput=${(e) => want(e.target.value)} />
     <ul class="files">${shown.map((f) => html`<li key=${f}><button type="button" onClick=${() => open(f)}>${f}</button></li>`)}</ul>
     ${files && shown.length === 0 && html`<p class="hint">No scene or model like that below the folder that sundog was started in.</p>`}
-    <label class="button">Open a file of this computer<input type="file" accept=".json" class="hidden" onChange=${(e) => {
+    <label class="button">Open a file of this computer<input type="file" accept=${['json', ...models].map((kind) => '.' + kind).join()} class="hidden" onChange=${(e) => {
       if (e.target.files[0]) openFile(e.target.files[0]);
       onClose();
     }} /></label>

@@ -27,7 +27,10 @@ class Store {
 
   start() {
     this.link = new Link({
-      open: () => this.update({connected: 'yes'}),
+      open: () => {
+        this.comesBack = this.state.document !== null;
+        this.update({connected: 'yes'});
+      },
       closed: (why) => {
         this.inFlight = null;
         this.update({connected: why});
@@ -104,7 +107,19 @@ class Store {
     };
     takers[message.is]?.();
   }
-  takeScene(message) {
+  /** A server that was started anew has the scene's file again: it gets back what this page shows. */
+  async giveBack(message) {
+    if (!this.comesBack) return false;
+    this.comesBack = false;
+    const mine = this.state.document, name = this.state.file;
+    if (message.version >= this.state.version || message.file !== name || JSON.stringify(mine) === JSON.stringify(message.document)) return false;
+    await this.link.call('scene?name=' + encodeURIComponent(name), {method: 'POST', body: JSON.stringify(mine)});
+    this.notice('The server was started anew; the scene is as you left it.');
+    return true;
+  }
+  async takeScene(message) {
+    if (await this.giveBack(message).catch(() => false)) return;
+    if (message.version !== this.state.version) this.update({error: null});
     this.update({
       document: message.document, opened: message.opened, file: message.file, version: message.version,
       canUndo: message.can_undo, canRedo: message.can_redo, resolved: message.resolved,

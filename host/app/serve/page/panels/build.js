@@ -6,6 +6,7 @@ import {definition, sample, variants, words} from '../schema.js';
 import {ChoiceField, NumberField, VectorField, Row, CodeField} from '../fields.js';
 import {Fields, Table} from '../form.js';
 import {SurfaceList, Thumbnail} from '../surfaces.js';
+import {Presets, materials, setMaterial} from '../presets.js';
 
 /** All objects with their pointers, those of groups behind their group. */
 export function allObjects(document, at = '/objects', depth = 0) {
@@ -85,7 +86,7 @@ function OwnFormula({at, object}) {
     setName('');
   };
   return html`${['start', 'map', 'distance'].map((key) => html`<${CodeField} key=${at + key} label=${words(key)} at=${at + '/' + key} value=${object[key]} help=${schema[key].description}
-      onSet=${(v, g) => store.set(at + '/' + key, v, g)} onReset=${() => store.set(at + '/' + key, undefined)} />`)}
+      words=${[...Object.keys(object.parameters ?? {}), 'p', 'z', 'c']} onSet=${(v, g) => store.set(at + '/' + key, v, g)} onReset=${() => store.set(at + '/' + key, undefined)} />`)}
     <h2 class="minor">Parameters</h2>
     ${Object.entries(object.parameters ?? {}).map(([key, p]) => {
       const whole = typeof p === 'object' && !Array.isArray(p);
@@ -137,6 +138,7 @@ export function BuildPanel() {
     <${Group} title=${field ? 'Surface, further' : titleOf(chosen)} id="object" open=${!field} key=${'object' + at}>
       <${Fields} schema=${{$ref: '#/$defs/object'}} at=${at} value=${object} without=${field ? surfaceKeys : ['objects']} /></${Group}>
     ${material && get(document, join('/materials', material)) && html`<${Group} title=${`Material: ${material}`} id="material">
+      <${Presets} title="Presets of materials" list=${materials} onTake=${(name) => setMaterial(join('/materials', material), get(document, join('/materials', material)), name)} />
       <${Fields} schema=${{$ref: '#/$defs/material'}} at=${join('/materials', material)} value=${get(document, join('/materials', material))} /></${Group}>`}
     <${Group} title="Smoothing" id="smoothing"><${Fields} schema=${{$ref: '#/$defs/render'}} at="/render" value=${document.render ?? {}}
       only=${['samples', 'filter', 'filter_radius', 'adaptive', 'subsample']} /></${Group}>

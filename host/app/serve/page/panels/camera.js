@@ -3,6 +3,7 @@ import {html, Group, Button, useState, useStore} from '../ui.js';
 import {store} from '../store.js';
 import {VectorField, NumberField, ChoiceField} from '../fields.js';
 import {Fields} from '../form.js';
+import {CameraPath} from './path.js';
 import {cameraChanges, dolly, move, orbit, turnAbout} from '../camera.js';
 
 function change(next, gesture = '') {
@@ -56,5 +57,6 @@ export function CameraPanel() {
     </${Group}>
     <${Turn} camera=${camera} />
     <${Move} camera=${camera} />
+    <${CameraPath} camera=${camera} onChange=${change} />
     <${Group} title="Lens and motion" id="lens" open=${false}><${Fields} schema=${{$ref: '#/$defs/camera'}} at="/camera" value=${placed} only=${['lens', 'moves_to']} /></${Group}>`;
 }

@@ -1,0 +1,94 @@
+// The editor of formulas: CodeMirror with the formula language's words, in a shadow root, where it may bring its own style sheets (the page's
+// policy forbids style elements).
+import {html, useEffect, useRef} from './ui.js';
+import {store} from './store.js';
+import * as cm from './vendor/codemirror.module.js';
+
+const own = cm.Annotation.define();  // a change that is not the person's
+
+/** Numbers, names, functions of the language, operators. */
+const language = cm.StreamLanguage.define({
+  token(stream) {
+    if (stream.eatSpace()) return null;
+    if (stream.match(/^(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?/)) return 'number';
+    if (stream.match(/^(#|\/\/).*/)) return 'comment';
+    if (stream.match(/^[A-Za-z_]\w*(?=\s*\()/)) return 'keyword';
+    if (stream.match(/^[A-Za-z_]\w*/)) return 'variableName';
+    stream.next();
+    return 'operator';
+  },
+});
+
+const colors = cm.HighlightStyle.define([
+  {tag: cm.tags.number, color: 'var(--code-number)'},
+  {tag: cm.tags.keyword, color: 'var(--code-function)'},
+  {tag: cm.tags.comment, color: 'var(--soft)'},
+]);
+
+const look = cm.EditorView.theme({
+  '&': {font: '12px/1.45 ui-monospace, "DejaVu Sans Mono", monospace', color: 'var(--text)', backgroundColor: 'var(--raised)'},
+  '&.cm-focused': {outline: '2px solid var(--accent)', outlineOffset: '-1px'},
+  '.cm-content': {caretColor: 'var(--text)', padding: '4px 0', minHeight: '22px'},
+  '.cm-cursor': {borderLeftColor: 'var(--text)'},
+  '.cm-gutters': {backgroundColor: 'transparent', color: 'var(--soft)', border: '0'},
+  '.cm-scroller': {fontFamily: 'inherit', lineHeight: 'inherit'},
+  '&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground, .cm-selectionBackground': {backgroundColor: 'var(--selected)'},
+  '.cm-matchingBracket': {backgroundColor: 'var(--selected)', outline: '0'},
+  '.cm-tooltip': {backgroundColor: 'var(--panel)', color: 'var(--text)', border: '1px solid var(--line)', borderRadius: '5px'},
+  '.cm-tooltip-autocomplete > ul > li[aria-selected]': {backgroundColor: 'var(--selected)', color: 'var(--text)'},
+  '.cm-lintRange-error': {backgroundImage: 'none', textDecoration: 'underline wavy var(--bad)', backgroundColor: 'var(--bad-back)'},
+});
+
+/** The functions of the language, and what `extra` has: parameters, variables. */
+function completions(extra) {
+  return (context) => {
+    const word = context.matchBefore(/[A-Za-z_]\w*/);
+    if (!word && !context.explicit) return null;
+    const functions = store.state.functions.map((f) => ({label: f.call.replace(/\(.*/, ''), detail: f.call.replace(/^[^(]*/, ''), info: f.meaning, type: 'function'}));
+    return {from: word ? word.from : context.pos, options: [...functions, ...extra.current.map((label) => ({label, type: 'variable'}))]};
+  };
+}
+
+/** `place` is {line, column, reason} of an error, or null; both count from 1. */
+export function CodeEditor({id, label, text, words, place, onInput, onLeave}) {
+  const host = useRef(), view = useRef(), now = useRef({});
+  const extra = useRef([]);
+  now.current = {onInput, onLeave};
+  extra.current = words ?? [];
+  useEffect(() => {
+    const root = host.current.shadowRoot ?? host.current.attachShadow({mode: 'open'});
+    view.current = new cm.EditorView({
+      root, parent: root,
+      state: cm.EditorState.create({
+        doc: text,
+        extensions: [
+          cm.history(), cm.lineNumbers(), cm.drawSelection(), cm.bracketMatching(), cm.closeBrackets(), language, cm.syntaxHighlighting(colors), look,
+          cm.autocompletion({override: [completions(extra)], icons: false}),
+          cm.keymap.of([...cm.closeBracketsKeymap, ...cm.completionKeymap, ...cm.historyKeymap, ...cm.defaultKeymap]),
+          cm.EditorView.lineWrapping,
+          cm.EditorView.contentAttributes.of({'aria-label': label, spellcheck: 'false', autocapitalize: 'off'}),
+          cm.EditorView.updateListener.of((update) => {
+            if (update.docChanged && !update.transactions.some((t) => t.annotation(own))) now.current.onInput(update.state.doc.toString());
+            if (update.focusChanged && !update.view.hasFocus) now.current.onLeave(update.state.doc.toString());
+          }),
+        ],
+      }),
+    });
+    host.current.editor = view.current;
+    return () => view.current.destroy();
+  }, []);
+  useEffect(() => {
+    const doc = view.current.state.doc;
+    if (doc.toString() !== text) view.current.dispatch({changes: {from: 0, to: doc.length, insert: text}, annotations: own.of(true)});
+  }, [text]);
+  useEffect(() => {
+    const doc = view.current.state.doc, list = [];
+    if (place && place.line <= doc.lines) {
+      const line = doc.line(place.line), from = Math.min(line.from + place.column - 1, Math.max(line.from, line.to - 1));
+      const word = /^\w+/.exec(doc.sliceString(from, line.to));
+      list.push({from, to: Math.min(line.to, from + (word ? word[0].length : 1)), severity: 'error', message: place.reason});
+    }
+    view.current.dispatch(cm.setDiagnostics(view.current.state, list));
+  }, [place?.line, place?.column, place?.reason]);
+  return html`<div ref=${host} id=${id} class=${'code' + (place ? ' bad' : '')} data-code=${label}></div>`;
+}

@@ -1,0 +1,55 @@
+// Presets: materials, lights and render settings that are often wanted, as parts of a scene. A preset is an edit like any other.
+import {html, Button, useState} from './ui.js';
+import {store} from './store.js';
+import {join} from './pointer.js';
+
+const glossy = (coefficient, exponent) => ({specular: {coefficient, exponent}});
+
+/** Of materials. Those without a colour keep the one that there is. */
+export const materials = {
+  Matte: {ambient: 0.2, diffuse: 0.9},
+  Plastic: {ambient: 0.2, diffuse: 0.8, ...glossy(0.5, 40)},
+  Lacquer: {ambient: 0.15, diffuse: 0.75, ...glossy(0.8, 200), reflection: 0.12},
+  Mirror: {color: [0.9, 0.9, 0.9], ambient: 0, diffuse: 0.05, ...glossy(0.8, 400), reflection: 0.9},
+  'Brushed metal': {color: [0.75, 0.76, 0.78], ambient: 0.1, diffuse: 0.25, ...glossy(0.9, 30), reflection: 0.45, roughness: 0.3},
+  Gold: {color: [1, 0.71, 0.29], ambient: 0.1, diffuse: 0.25, specular: {color: [1, 0.78, 0.34], coefficient: 0.9, exponent: 120}, reflection: {color: [1, 0.71, 0.29], coefficient: 0.7}},
+  Glass: {type: 'dielectric', ior: 1.52, ...glossy(0.6, 300)},
+  Water: {type: 'dielectric', ior: 1.333, ...glossy(0.5, 200)},
+  Ice: {type: 'dielectric', ior: 1.31, ...glossy(0.4, 150)},
+  Diamond: {type: 'dielectric', ior: 2.417, ...glossy(0.8, 500)},
+};
+
+/** Of all lights. */
+export const lights = {
+  'Lamp from the left': [{type: 'ambient', intensity: 0.6}, {type: 'point', position: [-3, 4, 3]}],
+  'Key, fill and rim': [{type: 'ambient', intensity: 0.4}, {type: 'directional', direction: [-0.8, -1, -0.6], color: [1, 0.95, 0.86], intensity: 0.9},
+    {type: 'directional', direction: [1, -0.3, -0.4], color: [0.7, 0.82, 1], intensity: 0.35}, {type: 'directional', direction: [0.2, -0.6, 1], intensity: 0.5}],
+  'Low sun': [{type: 'ambient', color: [0.5, 0.6, 0.9], intensity: 0.6}, {type: 'directional', direction: [-1, -0.25, -0.4], color: [1, 0.62, 0.32], intensity: 1.2}],
+  'Soft window': [{type: 'ambient', intensity: 0.5}, {type: 'rectangle', position: [-3, 3, 2], direction: [1, -1, -0.7], size: [2, 2], intensity: 6, samples: 4}],
+};
+
+/** Of the render's settings: only these keys are set. */
+export const qualities = {
+  Draft: {samples: 1, max_depth: 3},
+  Good: {samples: 4, max_depth: 6},
+  Best: {samples: 16, max_depth: 10},
+};
+
+let gestures = 0;
+
+export function setMaterial(at, before, name) {
+  const preset = materials[name];
+  const keeps = !preset.color && preset.type !== 'dielectric' && before?.color !== undefined;
+  store.set(at, keeps ? {color: before.color, ...preset} : {...preset});
+}
+export const setLights = (name) => store.set('/lights', structuredClone(lights[name]));
+export const setQuality = (name) =>
+  store.edit(Object.entries(qualities[name]).map(([key, value]) => ({at: join('/render', key), value})), 'quality' + ++gestures);
+
+/** A list of presets and a button that takes the chosen one. */
+export function Presets({title, list, onTake}) {
+  const names = Object.keys(list);
+  const [name, choose] = useState(names[0]);
+  return html`<div class="line"><select aria-label=${title} value=${name} onChange=${(e) => choose(e.target.value)}>${names.map((n) => html`<option>${n}</option>`)}</select>
+    <${Button} kind="small" label="Use preset" title=${`${title}: take ${name}`} onClick=${() => onTake(name)} /></div>`;
+}

@@ -1,0 +1,171 @@
+#include "render/device/kernel_builder.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "base/clock.h"
+#include "base/environment.h"
+#include "render/device/device_scene.h"
+#include "render/frame/frame.h"
+#include "shared/launch.h"
+
+namespace sundog {
+namespace {
+
+bool same(const KernelOrder& a, const KernelOrder& b) {
+  return a.entry == b.entry && a.config.defines == b.config.defines &&
+         a.config.generated == b.config.generated;
+}
+
+bool is_among(const std::vector<KernelOrder>& list, const KernelOrder& order) {
+  return std::ranges::any_of(list, [&](const KernelOrder& other) { return same(order, other); });
+}
+
+/// Launches of no pixel: some drivers compile a kernel at its first launch of each local size.
+void build(const DeviceInfo& info, const KernelOrder& order) {
+  Device device(info);
+  const Program program = device.build(order.entry, order.config.defines, nullptr, order.config.generated);
+  auto kernel = scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
+      program, order.kernel);
+  const DeviceScene nothing = upload_scene(device, CompiledScene{});
+  const auto pixels = device.make<u32>(1), counters = device.make<u32>(COUNTERS);
+  const auto film = device.make<float4>(1);
+  const auto weights = device.make<float>(1);
+  Launch launch{};
+  launch.row_items = 1;
+  const bool many_pixels = order.config.tile_w * order.config.tile_h > 1;
+  const std::vector<std::size_t> groups =
+      many_pixels ? std::vector<std::size_t>{4, 1} : std::vector<std::size_t>{64};
+  for (const std::size_t group : groups)
+    run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
+        device, kernel, {group, 1, group, 1}, nothing, nothing.camera_media, pixels, film, weights, counters,
+        launch);
+  device.finish();
+  device.save_programs();
+}
+
+}  // namespace
+
+// The thread holds it too, so that nobody waits for a compiler when the builder goes.
+struct KernelBuilder::State {
+  explicit State(DeviceInfo device) : info(std::move(device)) {}
+
+  const DeviceInfo info;
+  std::mutex mutex;  // for all below
+  std::condition_variable changed;
+  std::vector<KernelOrder> waiting;  // the last one is next
+  std::optional<KernelOrder> later;
+  Stopwatch since_wish;
+  std::optional<KernelOrder> in_hand;
+  std::vector<KernelOrder> done, failed;
+  bool ends = false;
+
+  bool is_known(const KernelOrder& order) const {
+    return is_among(done, order) || is_among(failed, order) || (in_hand && same(*in_hand, order));
+  }
+  void note_wish() {
+    since_wish = Stopwatch();
+    changed.notify_all();
+  }
+  std::optional<KernelOrder> take(std::unique_lock<std::mutex>& lock);
+  void run();
+};
+
+KernelBuilder::KernelBuilder(DeviceInfo info) : state_(std::make_shared<State>(std::move(info))) {}
+
+void KernelBuilder::begin() {
+  if (thread_.joinable()) return;
+  count_left_behind(1);
+  thread_ = std::thread([state = state_]() mutable {
+    state->run();
+    state.reset();
+    count_left_behind(-1);
+  });
+}
+
+KernelBuilder::~KernelBuilder() {
+  if (!thread_.joinable()) return;
+  bool compiles = false;
+  {
+    const std::lock_guard lock(state_->mutex);
+    state_->ends = true;
+    compiles = state_->in_hand.has_value();
+    state_->changed.notify_all();
+  }
+  if (compiles)
+    thread_.detach();
+  else
+    thread_.join();
+}
+
+void KernelBuilder::want(KernelOrder order) {
+  begin();
+  const std::lock_guard lock(state_->mutex);
+  if (state_->is_known(order)) return;
+  std::erase_if(state_->waiting, [&](const KernelOrder& other) { return same(order, other); });
+  state_->waiting.push_back(std::move(order));
+  state_->note_wish();
+}
+
+void KernelBuilder::want_later(KernelOrder order) {
+  begin();
+  const std::lock_guard lock(state_->mutex);
+  if (state_->is_known(order)) return;
+  state_->later = std::move(order);
+  state_->note_wish();
+}
+
+std::vector<KernelConfig> KernelBuilder::built() const {
+  const std::lock_guard lock(state_->mutex);
+  std::vector<KernelConfig> configs;
+  for (auto order = state_->done.rbegin(); order != state_->done.rend(); ++order)
+    configs.push_back(order->config);
+  return configs;
+}
+
+std::size_t KernelBuilder::waiting() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->waiting.size() + (state_->later ? 1 : 0) + (state_->in_hand ? 1 : 0);
+}
+
+/// Waits for the next one; nothing when it ends.
+std::optional<KernelOrder> KernelBuilder::State::take(std::unique_lock<std::mutex>& lock) {
+  constexpr double rest = 1;  // seconds
+  while (!ends) {
+    if (!waiting.empty()) {
+      KernelOrder order = std::move(waiting.back());
+      waiting.pop_back();
+      return order;
+    }
+    const double left = rest - since_wish.seconds();
+    if (later && left <= 0) return std::exchange(later, std::nullopt);
+    if (later)
+      changed.wait_for(lock, std::chrono::duration<double>(left));
+    else
+      changed.wait(lock);
+  }
+  return std::nullopt;
+}
+
+void KernelBuilder::State::run() {
+  // The compiler takes only time that nobody else wants.
+  if (const auto& step_back = value_of(info.environment).step_back) step_back();
+  std::unique_lock lock(mutex);
+  while ((in_hand = take(lock))) {
+    lock.unlock();
+    bool works = true;
+    try {
+      build(info, *in_hand);
+    } catch (const std::exception&) {
+      works = false;  // whoever needs it builds it again, and reports why not
+    }
+    lock.lock();
+    (works ? done : failed).push_back(std::move(*in_hand));
+    in_hand.reset();
+  }
+}
+
+}  // namespace sundog

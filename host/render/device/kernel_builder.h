@@ -1,0 +1,44 @@
+// Kernels that are built beside the work: in a thread of its own, on the device opened once more, into the
+// binary cache, from which the device that draws takes them in milliseconds.
+#pragma once
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "render/device/kernel_config.h"
+
+namespace sundog {
+
+/// An integrator's kernel, and its definitions.
+struct KernelOrder {
+  std::string entry, kernel;
+  KernelConfig config;
+};
+
+class KernelBuilder {
+ public:
+  explicit KernelBuilder(DeviceInfo info);
+  /// Leaves a compiler that is at work behind (threads_left_behind()).
+  ~KernelBuilder();
+  KernelBuilder(const KernelBuilder&) = delete;
+  KernelBuilder& operator=(const KernelBuilder&) = delete;
+
+  // Both are called by one thread, the server's.
+  /// To be built next. What waits already is built after it; what was built, or failed to, is not again.
+  void want(KernelOrder order);
+  /// To be built when nothing else was wanted for a second. Takes the place of what waits so already.
+  void want_later(KernelOrder order);
+  /// What was built so far, the latest first.
+  std::vector<KernelConfig> built() const;
+  /// How many wait or are in hand. Any thread.
+  std::size_t waiting() const;
+
+ private:
+  struct State;
+  void begin();
+  std::shared_ptr<State> state_;
+  std::thread thread_;
+};
+
+}  // namespace sundog

@@ -1,0 +1,187 @@
+#include "render/session/final_frame.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "render/film/hash.h"
+#include "render/plan/frame_tiles.h"
+
+namespace sundog {
+namespace {
+
+using Scene = std::shared_ptr<const CompiledScene>;
+
+void check_aovs(const std::vector<std::string>& names) {
+  for (const std::string& name : names)
+    if (std::find(aov_names().begin(), aov_names().end(), name) == aov_names().end())
+      throw UsageError(
+          fmt::format("no AOV is called '{}'; there are {}", name, fmt::join(aov_names(), ", ")));
+}
+
+void check_shares(const Split& split, const std::vector<ServerPlan>& devices) {
+  if (split.shares.empty() || split.shares.size() == devices.size()) return;
+  std::vector<std::string> labels;
+  for (const ServerPlan& device : devices) labels.push_back(device.info.label());
+  throw UsageError(fmt::format("the fixed split {}: {} share{} for {} device{} ({}): give one share a device",
+                               fmt::join(split.shares, ","), split.shares.size(),
+                               split.shares.size() == 1 ? "" : "s", devices.size(),
+                               devices.size() == 1 ? "" : "s", fmt::join(labels, "; ")));
+}
+
+std::vector<double> estimates(const std::vector<ServerPlan>& devices) {
+  std::vector<double> result;
+  for (const ServerPlan& device : devices) result.push_back(device.info.estimate);
+  return result;
+}
+
+/// The passes of a frame that has some, with what a checkpoint has of them; the frame's film is the pass's.
+FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devices,
+                         const RenderOptions& options, std::uint64_t key, Film& film) {
+  FramePasses passes;
+  const int width = static_cast<int>(scene->info.width), height = static_cast<int>(scene->info.height);
+  passes.plan = {scene->sampling, scene->info.samples, options.noise, !options.aovs.empty()};
+  passes.film = GrowingFilm(width, height, !options.aovs.empty() || needs_surfaces(scene->sampling));
+  passes.tiles = [options, shares = estimates(devices)](const Film& of_pass) {
+    return plan_tiles(options, of_pass, shares);
+  };
+  if (!options.resume.empty() && std::filesystem::exists(options.resume)) {
+    read_growing_checkpoint(options.resume, passes.film, passes.pass, film, key);
+    return passes;
+  }
+  passes.pass = *next_pass(passes.film, passes.plan);
+  film = Film(passes.pass.width, passes.pass.height, passes.pass.surfaces);
+  return passes;
+}
+
+/// A film that holds what a checkpoint has of the frame.
+Film begin_film(const CompiledScene& scene, const RenderOptions& options, std::uint64_t key) {
+  Film film(static_cast<int>(scene.info.width), static_cast<int>(scene.info.height), !options.aovs.empty());
+  if (!options.resume.empty() && std::filesystem::exists(options.resume))
+    read_checkpoint(options.resume, film, key);
+  return film;
+}
+
+std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerPlan>& devices,
+                                   const RenderOptions& options, std::uint64_t key) {
+  const bool has_passes = in_passes(scene->sampling);
+  if (has_passes && options.part.count > 1)
+    throw UsageError("a frame that is adaptive, subsampled or progressive is made whole: leave the part out");
+  Film film;
+  std::optional<FramePasses> passes;
+  if (has_passes)
+    passes = begin_passes(scene, devices, options, key, film);
+  else
+    film = begin_film(*scene, options, key);
+  std::vector<DeviceSpeed> speeds(devices.size());
+  TilePlan plan = plan_tiles(options, film, estimates(devices));
+  const auto done = static_cast<std::uint64_t>(
+      std::count_if(film.done.begin(), film.done.end(), [](auto d) { return d != 0; }));
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    speeds[i].estimate = devices[i].info.estimate;
+    speeds[i].processor = devices[i].processor;
+    if (options.tuning) speeds[i].tile_seconds = 1e-3 * options.tuning(devices[i].info).tile_ms;
+  }
+  auto frame = std::make_shared<Frame>(options, std::move(film), std::move(plan), std::move(speeds));
+  for (const ServerPlan& device : devices) {
+    Frame::Server server;
+    server.server = device.make(frame->options);
+    server.report.info = device.info;
+    frame->servers.push_back(std::move(server));
+  }
+  frame->pixels_done = frame->pixels_kept = done;
+  frame->key = key;
+  if (passes) {
+    frame->passes = std::move(passes);
+    frame->queue.expect_more();
+    plan_next_pass(*frame);
+  }
+  return frame;
+}
+
+std::vector<DeviceReport> reports(Frame& frame) {
+  std::vector<DeviceReport> result;
+  double pixels = static_cast<double>(std::max<std::size_t>(1, frame.film.done.size()));
+  if (frame.passes) {
+    pixels = 1;
+    for (const Frame::Server& server : frame.servers) pixels += static_cast<double>(server.report.pixels);
+  }
+  for (std::size_t i = 0; i < frame.servers.size(); ++i) {
+    DeviceReport report = frame.servers[i].report;
+    report.busy_seconds = frame.queue.work(i).busy_seconds;
+    report.share = static_cast<double>(report.pixels) / pixels;
+    result.push_back(std::move(report));
+  }
+  return result;
+}
+
+double frame_efficiency(const Frame& frame) {
+  std::vector<DeviceWork> work;
+  for (std::size_t i = 0; i < frame.servers.size(); ++i) work.push_back(frame.queue.work(i));
+  return efficiency(work);
+}
+
+/// Keeps what an interrupted frame has; a disk that is full must not take the image along.
+void keep_checkpoint(const Frame& frame, RenderResult& result) {
+  if (checkpoint_path(frame.options).empty() || result.complete) return;
+  try {
+    write_frame_checkpoint(frame, checkpoint_path(frame.options));
+    result.checkpoint_kept = true;
+  } catch (const IoError& error) {
+    result.checkpoint_error = error.what();
+  }
+}
+
+/// Gathers the film, complete or not.
+RenderResult finish_frame(Frame& frame, std::uint64_t key) {
+  const std::lock_guard lock(frame.mutex);
+  RenderResult result;
+  result.devices = reports(frame);
+  result.key = key;
+  result.complete = frame.queue.complete();
+  result.time_limited = frame.limited && !result.complete;
+  keep_checkpoint(frame, result);
+  if (frame.passes) {
+    GrowingFilm film = film_so_far(frame);
+    result.film = std::move(film.film);
+    result.taken = std::move(film.taken);
+    result.surfaces_seen = film.surfaces_seen;
+    result.passes = film.stage;
+  } else {
+    result.film = std::move(frame.film);
+  }
+  result.efficiency = frame_efficiency(frame);
+  result.counts = frame.counts;
+  if (frame.options.channels > 0) {
+    result.image = result.film.develop(frame.options.channels);
+    for (const std::string& name : frame.options.aovs) result.aovs[name] = result.film.develop_aov(name);
+  }
+  result.times = frame.times;
+  result.times.readback = frame.readback;
+  result.times.render = std::max(
+      0.0, frame.clock.seconds() - result.times.build_kernels - result.times.upload - frame.readback);
+  return result;
+}
+
+}  // namespace
+
+RenderResult render_frame(const Scene& scene, const std::vector<ServerPlan>& devices,
+                          const RenderOptions& options,
+                          const std::function<void(const std::shared_ptr<Frame>&)>& run) {
+  check_aovs(options.aovs);
+  if (devices.empty()) throw DeviceError("no device to render on");
+  check_shares(options.split, devices);
+  const std::uint64_t key = checkpoint_path(options).empty() ? 0 : hash_scene(*scene);
+  const std::shared_ptr<Frame> frame = begin_frame(scene, devices, options, key);
+  run(frame);
+  const bool stopped = options.stop && options.stop->load();
+  RenderResult result = finish_frame(*frame, key);
+  if (!result.complete && !stopped) result.failure = frame->last_error;
+  if (result.failure && !(options.keep_failed && frame->pixels_done > 0))
+    std::rethrow_exception(result.failure);
+  return result;
+}
+
+}  // namespace sundog
