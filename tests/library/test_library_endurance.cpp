@@ -1,4 +1,6 @@
 // Many renders in one process, and how soon one stops: figures are printed.
+#include <malloc.h>
+
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -28,6 +30,7 @@ Held held() {
 }
 
 void render_often(int count) {
+  mallopt(M_ARENA_MAX, 1);  // or what it holds depends on which threads met
   sundog::Scene scene = sundog::Scene::load(shipped_scene("spheres")).set_size(32, 24);
   const auto device = test_device();
   Held early;

@@ -81,7 +81,7 @@ void RenderSession::State::run_control() {
     if (closing) return;
     if (wanted())
       take_order(lock);
-    else if (!pending)
+    else if (!pending && current && !is_held())  // a frame that was rendered to its end meanwhile is gone
       look_at(lock);
   }
 }
