@@ -155,7 +155,7 @@ struct MediumDescription {
 
 enum class MaterialType { phong, dielectric };
 
-/// Coefficients follow brief 1: ka, kd, ks, kr, kt in [0, inf) (kr, kt in [0, 1]), each times a colour.
+/// ka, kd, ks, kr, kt in [0, inf), kr and kt in [0, 1], each times a colour.
 struct MaterialDescription {
   std::string name;
   MaterialType type = MaterialType::phong;

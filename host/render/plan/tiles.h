@@ -23,7 +23,7 @@ inline std::uint64_t pixel_count(const Tile& tile) {
   return static_cast<std::uint64_t>(tile.width) * static_cast<std::uint64_t>(tile.height);
 }
 
-/// What is left of a frame to hand out: rectangles, in the order of work.
+/// The tiles of a frame that are not handed out yet: rectangles, in the order of work.
 class WaitingTiles {
  public:
   WaitingTiles() = default;

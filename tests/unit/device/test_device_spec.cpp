@@ -177,7 +177,8 @@ TEST_CASE("an exclusion that takes nothing away is reported, with the devices th
   CHECK(warnings.empty());
   select_devices(machine(), {"all", "!radeon", "!7:0", "!broken"}, &warnings);
   REQUIRE(warnings.size() == 2);
-  CHECK_THAT(warnings[0], ContainsSubstring("the device spec '!radeon' takes nothing away: no device matches it"));
+  CHECK_THAT(warnings[0],
+             ContainsSubstring("the device spec '!radeon' takes nothing away: no device matches it"));
   CHECK_THAT(warnings[0], ContainsSubstring("2:0 NVIDIA CUDA / GeForce 4090/D"));
   CHECK_THAT(warnings[1], ContainsSubstring("'!7:0'"));
 }
