@@ -8,8 +8,8 @@ inline namespace v0 {
 namespace {
 
 core::ToneMap tone_map_of(const ToneMap& map) {
-  const auto* found = std::ranges::find(sundog::tone_curve_names, map.curve);
-  if (found == sundog::tone_curve_names.end())
+  const auto curve = core::value_named(core::tone_curves, map.curve);
+  if (!curve)
     throw Error(ErrorKind::usage,
                 "tone map: wanted the curve none, reinhard, aces or agx, found \"" + map.curve + "\"");
   if (!(std::abs(map.exposure) <= 32))
@@ -17,8 +17,7 @@ core::ToneMap tone_map_of(const ToneMap& map) {
   const bool white = map.white_balance >= sundog::least_white && map.white_balance <= sundog::greatest_white;
   if (map.white_balance != 0 && !white)
     throw Error(ErrorKind::usage, "tone map: wanted a white balance of 1667 to 25000 kelvin, or 0");
-  return {static_cast<core::ToneCurve>(found - sundog::tone_curve_names.begin()), map.exposure,
-          map.white_balance};
+  return {*curve, map.exposure, map.white_balance};
 }
 
 std::shared_ptr<const Image::Impl> no_pixels() {

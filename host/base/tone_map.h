@@ -2,9 +2,9 @@
 // is brighter than white. For files of 8 bits a channel; others keep what was rendered.
 #pragma once
 #include <array>
-#include <string_view>
 
 #include "base/image.h"
+#include "base/named_values.h"
 
 namespace sundog {
 
@@ -16,8 +16,10 @@ namespace sundog {
 /// whose bright colours go to white.
 enum class ToneCurve { none, reinhard, aces, agx };
 
-/// By ToneCurve.
-inline constexpr std::array<std::string_view, 4> tone_curve_names = {"none", "reinhard", "aces", "agx"};
+inline constexpr std::array tone_curves = {
+    NamedValue<ToneCurve>{"none", ToneCurve::none}, NamedValue<ToneCurve>{"reinhard", ToneCurve::reinhard},
+    NamedValue<ToneCurve>{"aces", ToneCurve::aces}, NamedValue<ToneCurve>{"agx", ToneCurve::agx}};
+inline constexpr auto tone_curve_names = names_of(tone_curves);
 
 struct ToneMap {
   ToneCurve curve = ToneCurve::none;

@@ -71,7 +71,7 @@ double filter_value(Filter filter, double radius, double x) {
 
 double filter_radius(const RenderSettings& settings) {
   if (settings.filter_radius > 0) return settings.filter_radius;
-  return filters.at(static_cast<std::size_t>(settings.filter)).radius;
+  return std::ranges::find(filters, settings.filter, &FilterFacts::value)->radius;
 }
 
 std::vector<float> filter_table(const RenderSettings& settings) {

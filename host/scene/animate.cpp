@@ -66,12 +66,15 @@ void read_turn(JsonObject& object, Track& track) {
 }
 
 Track read_track(const JsonValue& value) {
-  static constexpr std::string_view kinds[] = {"linear", "smooth", "rotate"};
-  const std::string kind = value.member("type", list_names(kinds)).choice(kinds);
-  return value.object(kind == "rotate" ? "rotate_track" : "keyed_track", [&](JsonObject& object) {
+  using Kind = Track::Kind;
+  static constexpr std::array kinds = {NamedValue<Kind>{"linear", Kind::linear},
+                                       NamedValue<Kind>{"smooth", Kind::smooth},
+                                       NamedValue<Kind>{"rotate", Kind::rotate}};
+  const Kind kind = value.member("type", list_names(names_of(kinds))).choose(kinds);
+  return value.object(kind == Kind::rotate ? "rotate_track" : "keyed_track", [&](JsonObject& object) {
     Track track;
     object.at("type", "");
-    track.kind = static_cast<Track::Kind>(std::ranges::find(kinds, kind) - std::begin(kinds));
+    track.kind = kind;
     const JsonValue pointer = object.at("value", "the JSON pointer of a value, as \"/camera/fov\"");
     track.pointer = pointer.text();
     if (!is_pointer(track.pointer) || track.pointer.starts_with("/animate"))

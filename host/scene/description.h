@@ -102,20 +102,12 @@ struct RenderSettings {
 enum class LightType { ambient, LIGHTS(SUNDOG_LIGHT_TYPE) };
 #undef SUNDOG_LIGHT_TYPE
 
+/// What the keys of LIGHT_KEYS say (shared/lights.h).
 struct LightDescription {
   LightType type = LightType::point;
-  dvec3 color{1, 1, 1};
-  double intensity = 1;                       // times colour: of a light with an extent its radiance
-  dvec3 position{0, 0, 0};                    // of an extent the middle
-  dvec3 direction{0, -1, 0};                  // the way the light travels; normalised by compile()
-  double inner_angle = 20, outer_angle = 30;  // spot: half angles in degrees, 0 <= inner <= outer < 90
-  dvec3 falloff{1, 0, 0};                     // constant, linear, quadratic
-  dvec2 size{1, 1};                           // rectangle: across and along `up`
-  dvec3 up{0, 1, 0};
-  double radius = 0.5;  // disk, sphere
-  double angle = 0;     // directional: degrees across that it takes up in the sky, [0, 90]; above 0 an extent
-  int samples = 1;      // an extent: shadow rays that a surface sends to it
-  bool visible = true;  // an extent: rays meet it (scene/lamps.h places what they meet)
+#define SUNDOG_LIGHT_MEMBER(type, name, ...) type name __VA_ARGS__;
+  LIGHT_KEYS(SUNDOG_LIGHT_MEMBER)
+#undef SUNDOG_LIGHT_MEMBER
 };
 
 enum class EnvironmentType { none, image, gradient, sky, halo };

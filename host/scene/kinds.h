@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 
+#include "base/named_values.h"
 #include "scene/description.h"
 
 namespace sundog {
@@ -15,47 +16,47 @@ inline constexpr std::array<std::string_view, SHAPE_COUNT> shape_names = {"mesh"
                                                                               "field"};
 static_assert(shape_names[SHAPE_SDF] == "field");
 
-/// By SAMPLER_* constant.
-inline constexpr std::array<std::string_view, SAMPLER_INDEPENDENT + 1> sampler_names = {SAMPLERS};
+#define SUNDOG_NAMED_CONSTANT(constant, name) NamedValue<u32>{#name, constant},
+/// SAMPLER_*, HALO_* and STRATEGY_* constants.
+inline constexpr std::array samplers = {SAMPLERS(SUNDOG_NAMED_CONSTANT)};
+inline constexpr std::array halo_shapes = {HALO_SHAPES(SUNDOG_NAMED_CONSTANT)};
+inline constexpr std::array light_strategies = {LIGHT_STRATEGIES(SUNDOG_NAMED_CONSTANT)};
+#undef SUNDOG_NAMED_CONSTANT
 
 struct FilterFacts {
   std::string_view name;
+  Filter value;
   double radius;  // in pixels, unless the scene says another
 };
 
-/// By Filter.
-inline constexpr std::array filters = {FilterFacts{"box", 0.5}, FilterFacts{"tent", 1},
-                                       FilterFacts{"gaussian", 1.5}, FilterFacts{"blackman_harris", 1.5},
-                                       FilterFacts{"mitchell", 2}};
-
-/// The names, in the table's order.
-inline constexpr auto filter_names = [] {
-  std::array<std::string_view, filters.size()> names{};
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = filters[i].name;
-  return names;
-}();
+inline constexpr std::array filters = {FilterFacts{"box", Filter::box, 0.5},
+                                       FilterFacts{"tent", Filter::tent, 1},
+                                       FilterFacts{"gaussian", Filter::gaussian, 1.5},
+                                       FilterFacts{"blackman_harris", Filter::blackman_harris, 1.5},
+                                       FilterFacts{"mitchell", Filter::mitchell, 2}};
+inline constexpr auto filter_names = names_of(filters);
 
 struct LightTypeFacts {
   std::string_view name;  // in scene files and figures
-  LightType type;
+  LightType value;
   bool placed = false;  // it has a position
   bool aimed = false;   // it has a direction
   bool extent = false;  // it has an extent, and no falloff
 };
 
 /// By LightType.
-inline constexpr std::array light_types = {LightTypeFacts{.name = "ambient", .type = LightType::ambient},
+inline constexpr std::array light_types = {LightTypeFacts{.name = "ambient", .value = LightType::ambient},
 #define SUNDOG_LIGHT_FACTS(constant, name, placed, aimed, extent) \
   LightTypeFacts{#name, LightType::name, placed, aimed, extent},
                                            LIGHTS(SUNDOG_LIGHT_FACTS)
 #undef SUNDOG_LIGHT_FACTS
 };
 
-/// By EnvironmentType, from image on.
-inline constexpr std::array<std::string_view, 4> environment_types = {"image", "gradient", "sky", "halo"};
-
-/// By HALO_* constant.
-inline constexpr std::array<std::string_view, HALO_RANDOM + 1> halo_shapes = {HALO_SHAPES};
+inline constexpr std::array environment_types = {
+    NamedValue<EnvironmentType>{"image", EnvironmentType::image},
+    NamedValue<EnvironmentType>{"gradient", EnvironmentType::gradient},
+    NamedValue<EnvironmentType>{"sky", EnvironmentType::sky},
+    NamedValue<EnvironmentType>{"halo", EnvironmentType::halo}};
 
 constexpr const LightTypeFacts& facts_of(LightType type) {
   return light_types.at(static_cast<std::size_t>(type));

@@ -4,9 +4,13 @@
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
-// How crystals lie in the air: the names in scene files, in the order of the constants. PLATE: its axis about
-// upright; COLUMN: about level; PARRY: a column with two level side faces; RANDOM: any way.
-#define HALO_SHAPES "plate", "column", "parry", "random"
+// How crystals lie in the air: their names in scene files. PLATE: its axis about upright;
+// COLUMN: about level; PARRY: a column with two level side faces; RANDOM: any way.
+#define HALO_SHAPES(SHAPE)   \
+  SHAPE(HALO_PLATE, plate)   \
+  SHAPE(HALO_COLUMN, column) \
+  SHAPE(HALO_PARRY, parry)   \
+  SHAPE(HALO_RANDOM, random)
 #define HALO_PLATE 0
 #define HALO_COLUMN 1
 #define HALO_PARRY 2

@@ -16,6 +16,24 @@ SUNDOG_SHARED_BEGIN
   LIGHT(DISK, disk, 1, 1, 1)               \
   LIGHT(SPHERE, sphere, 1, 0, 1)
 
+// What scene files say about them: the members of the host's LightDescription, with their defaults.
+//   KEY(type, name, default)
+#define LIGHT_KEYS(KEY)                                                               \
+  KEY(dvec3, color, {1, 1, 1})                                                        \
+  KEY(double, intensity, {1})       /* times colour: of an extent its radiance */     \
+  KEY(dvec3, position, {0, 0, 0})   /* of an extent the middle */                     \
+  KEY(dvec3, direction, {0, -1, 0}) /* the way the light travels; normalised later */ \
+  KEY(double, inner_angle, {20})    /* spot: half angles in degrees, */               \
+  KEY(double, outer_angle, {30})    /* 0 <= inner <= outer < 90 */                    \
+  KEY(dvec3, falloff, {1, 0, 0})    /* constant, linear, quadratic */                 \
+  KEY(dvec2, size, {1, 1})          /* rectangle: across and along `up` */            \
+  KEY(dvec3, up, {0, 1, 0})                                                           \
+  KEY(double, radius, {0.5}) /* disk, sphere */                                       \
+  KEY(double, angle, {0})    /* directional: degrees across that it takes up          \
+                                in the sky, [0, 90]; above 0 an extent */             \
+  KEY(int, samples, {1})     /* an extent: shadow rays that a surface sends to it */  \
+  KEY(bool, visible, {true}) /* an extent: rays meet it (scene/lamps.h places what they meet) */
+
 #define LIGHT_CONSTANT(constant, name, placed, aimed, extent) LIGHT_##constant,
 typedef enum LightKind SUNDOG_ENUM_OF_U32 {
   LIGHTS(LIGHT_CONSTANT) LIGHT_KINDS,

@@ -6,11 +6,15 @@
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
-// How samples lie in their pixels: the names in scene files, in the order of the constants. AUTO is a set of
-// Hammersley's for a fixed number of samples, which STRATIFIED and REGULAR need to know too; to the samples
-// of the others more can be added. In dimensions other than the pixel's all but INDEPENDENT use Sobol's
-// sequence.
-#define SAMPLERS "auto", "sobol", "stratified", "regular", "independent"
+// How samples lie in their pixels: their names in scene files. AUTO is a set of Hammersley's for a fixed
+// number of samples, which STRATIFIED and REGULAR need to know too; to the samples of the others more can be
+// added. In dimensions other than the pixel's all but INDEPENDENT use Sobol's sequence.
+#define SAMPLERS(SAMPLER)                 \
+  SAMPLER(SAMPLER_AUTO, auto)             \
+  SAMPLER(SAMPLER_SOBOL, sobol)           \
+  SAMPLER(SAMPLER_STRATIFIED, stratified) \
+  SAMPLER(SAMPLER_REGULAR, regular)       \
+  SAMPLER(SAMPLER_INDEPENDENT, independent)
 #define SAMPLER_AUTO 0
 #define SAMPLER_SOBOL 1
 #define SAMPLER_STRATIFIED 2

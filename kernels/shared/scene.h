@@ -55,7 +55,10 @@ SUNDOG_SHARED_SIZE(Medium, 32)
 
 // Which ways of finding light path tracing adds: both, each by its share; lights chosen at surfaces alone
 // where these can be chosen; those that scattered rays meet alone where they can be met.
-#define LIGHT_STRATEGIES "mis", "lights", "surfaces"
+#define LIGHT_STRATEGIES(STRATEGY)  \
+  STRATEGY(STRATEGY_MIS, mis)       \
+  STRATEGY(STRATEGY_LIGHTS, lights) \
+  STRATEGY(STRATEGY_SURFACES, surfaces)
 #define STRATEGY_MIS 0u
 #define STRATEGY_LIGHTS 1u
 #define STRATEGY_SURFACES 2u

@@ -33,7 +33,7 @@ std::vector<LightDescription> every_light() {
   std::vector<LightDescription> lights;
   for (const LightTypeFacts& facts : light_types) {
     LightDescription light;
-    light.type = facts.type;
+    light.type = facts.value;
     light.position = {1, 3, 2};
     light.direction = {0, -1, 0};
     lights.push_back(light);

@@ -46,12 +46,11 @@ double real_number(const char* option, const std::string& text, double low, doub
 
 ToneMap parse_tone_map(const PictureOptions& picture) {
   ToneMap map;
-  const auto& names = tone_curve_names;
-  const auto curve = std::ranges::find(names, picture.tone_curve);
-  if (!picture.tone_curve.empty() && curve == names.end())
-    throw UsageError(
-        fmt::format("--tone-map {}: wanted one of {}", picture.tone_curve, fmt::join(names, ", ")));
-  if (!picture.tone_curve.empty()) map.curve = static_cast<ToneCurve>(curve - names.begin());
+  const auto curve = value_named(tone_curves, picture.tone_curve);
+  if (!picture.tone_curve.empty() && !curve)
+    throw UsageError(fmt::format("--tone-map {}: wanted one of {}", picture.tone_curve,
+                                 fmt::join(tone_curve_names, ", ")));
+  map.curve = curve.value_or(map.curve);
   map.exposure = real_number("--exposure", picture.exposure, -32, 32);
   map.white_balance = real_number("--white-balance", picture.white_balance, least_white, greatest_white);
   return map;

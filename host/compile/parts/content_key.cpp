@@ -3,6 +3,7 @@
 #include "compile/parts/content_key.h"
 
 #include <bit>
+#include <boost/pfr.hpp>
 #include <cstring>
 
 namespace sundog {
@@ -62,39 +63,6 @@ void add(KeyMaker& key, const StoredImage& image) {
   add_rows(key, data);
 }
 
-// Members of each solid.
-void add(KeyMaker&, const PlaneShape&) {}
-void add(KeyMaker& key, const MeshShape& s) { key.add(s.mesh); }
-void add(KeyMaker& key, const FieldShape& s) { key.add(s.field); }
-void add(KeyMaker& key, const SphereShape& s) {
-  const auto& [radius] = s;
-  key.add(radius);
-}
-void add(KeyMaker& key, const BoxShape& s) {
-  const auto& [half] = s;
-  key.add(half);
-}
-void add(KeyMaker& key, const CylinderShape& s) {
-  const auto& [radius, half_height, capped] = s;
-  key.add_each(radius, half_height, capped);
-}
-void add(KeyMaker& key, const ConeShape& s) {
-  const auto& [bottom_radius, top_radius, half_height, capped] = s;
-  key.add_each(bottom_radius, top_radius, half_height, capped);
-}
-void add(KeyMaker& key, const DiskShape& s) {
-  const auto& [radius, inner_radius] = s;
-  key.add_each(radius, inner_radius);
-}
-void add(KeyMaker& key, const TorusShape& s) {
-  const auto& [major_radius, minor_radius] = s;
-  key.add_each(major_radius, minor_radius);
-}
-void add(KeyMaker& key, const RoundBoxShape& s) {
-  const auto& [half, radius] = s;
-  key.add_each(half, radius);
-}
-
 }  // namespace
 
 KeyMaker& KeyMaker::bytes(const void* data, std::size_t count) {
@@ -134,10 +102,11 @@ KeyMaker& KeyMaker::add(const Camera& camera) {
 }
 
 KeyMaker& KeyMaker::add(const LightDescription& light) {
-  const auto& [type, color, intensity, position, direction, inner_angle, outer_angle, falloff, size, up,
-               radius, angle, samples, visible] = light;
-  return add_each(type, color, intensity, position, direction, inner_angle, outer_angle, falloff, size, up,
-                  radius, angle, samples, visible);
+#define SUNDOG_KEY_MEMBER(type, name, ...) add(light.name);
+  add(light.type);
+  LIGHT_KEYS(SUNDOG_KEY_MEMBER)
+#undef SUNDOG_KEY_MEMBER
+  return *this;
 }
 
 KeyMaker& KeyMaker::add(const EnvironmentDescription& environment) {
@@ -230,7 +199,11 @@ KeyMaker& KeyMaker::add(const Mesh& mesh) {
 
 KeyMaker& KeyMaker::add(const Shape& shape) {
   add(shape.index());
-  std::visit([this](const auto& solid) { sundog::add(*this, solid); }, shape);
+  std::visit(
+      [this](const auto& solid) {
+        boost::pfr::for_each_field(solid, [this](const auto& member) { add(member); });
+      },
+      shape);
   return *this;
 }
 

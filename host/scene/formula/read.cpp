@@ -102,10 +102,12 @@ SdfNode read_node(JsonObject& object, std::string_view type, std::array<double, 
 
 SdfColoring read_coloring(const JsonValue& value) {
   return value.object("coloring", [](JsonObject& object) {
-    static constexpr std::array<std::string_view, 5> names{"point", "plane", "axis", "iterations", "radius"};
+    using By = NamedValue<SdfColorBy>;
+    static constexpr std::array traps = {
+        By{"point", SdfColorBy::point}, By{"plane", SdfColorBy::plane}, By{"axis", SdfColorBy::axis},
+        By{"iterations", SdfColorBy::iterations}, By{"radius", SdfColorBy::radius}};
     SdfColoring coloring;
-    const std::string by = object.choice("by", "point", names);
-    coloring.by = static_cast<SdfColorBy>(1 + (std::find(names.begin(), names.end(), by) - names.begin()));
+    coloring.by = object.choose("by", SdfColorBy::point, traps);
     const JsonValue palette = object.at("palette", "an array of colours");
     for (const JsonValue& stop : palette.items("colours")) coloring.palette.push_back(stop.color());
     if (coloring.palette.empty() || coloring.palette.size() > 64) palette.wanted("1 to 64 colours");

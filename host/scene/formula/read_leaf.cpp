@@ -106,9 +106,12 @@ FormulaParameter read_declaration(const std::string& name, const JsonValue& valu
 }
 
 FormulaDerivative read_derivative(JsonObject& object, FormulaDerivative fallback) {
-  static constexpr std::array<std::string_view, 4> names{"automatic", "running", "radial", "jacobian"};
-  const std::string name = object.choice("derivative", names[static_cast<std::size_t>(fallback)], names);
-  return static_cast<FormulaDerivative>(std::find(names.begin(), names.end(), name) - names.begin());
+  using Derivative = NamedValue<FormulaDerivative>;
+  static constexpr std::array derivatives = {Derivative{"automatic", FormulaDerivative::automatic},
+                                             Derivative{"running", FormulaDerivative::running},
+                                             Derivative{"radial", FormulaDerivative::radial},
+                                             Derivative{"jacobian", FormulaDerivative::jacobian}};
+  return object.choose("derivative", fallback, derivatives);
 }
 
 /// A formula of the user's own.

@@ -1,6 +1,8 @@
 // Reading JSON strictly: a JsonValue is a value with its place (file and JSON pointer), so that every error
 // names both; a JsonObject remembers the keys it was asked for, and refuses all others when it has been read.
 #pragma once
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <map>
@@ -13,6 +15,8 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+#include "base/named_values.h"
 
 namespace sundog {
 
@@ -67,6 +71,11 @@ class JsonValue {
   std::string text() const;
   /// Which of `names` the string is.
   std::string choice(std::span<const std::string_view> names) const;
+  /// The value of the row that the string names.
+  template <class Row, std::size_t N>
+  auto choose(const std::array<Row, N>& table) const {
+    return std::ranges::find(table, choice(names_of(table)), &Row::name)->value;
+  }
   glm::dvec3 vec3(const Range& each = any_number) const;
   /// [x, y, z] that is not all zero; returned with length 1.
   glm::dvec3 direction() const;
@@ -112,6 +121,11 @@ class JsonObject {
   std::string text(std::string_view key, std::string_view fallback);
   std::string choice(std::string_view key, std::string_view fallback,
                      std::span<const std::string_view> names);
+  template <class Row, std::size_t N>
+  auto choose(std::string_view key, decltype(Row::value) fallback, const std::array<Row, N>& table) {
+    const auto found = find(key);
+    return found ? found->choose(table) : fallback;
+  }
   glm::dvec3 vec3(std::string_view key, const glm::dvec3& fallback, const Range& each = any_number);
   glm::dvec3 color(std::string_view key, const glm::dvec3& fallback, const Range& each = color_range);
 

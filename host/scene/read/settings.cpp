@@ -65,8 +65,7 @@ void read_sun(const JsonValue& value, EnvironmentDescription& e) {
 }
 
 void read_filter(JsonObject& object, RenderSettings& render) {
-  const std::string name = object.choice("filter", std::string(filters[0].name), filter_names);
-  render.filter = static_cast<Filter>(std::ranges::find(filter_names, name) - filter_names.begin());
+  render.filter = object.choose("filter", render.filter, filters);
   render.filter_radius = object.number("filter_radius", 0, {.low = 0, .high = 16});
   constexpr int least = 8;  // fewer may all lie in the lobes below zero
   if (render.filter == Filter::mitchell && render.samples < least)
@@ -84,10 +83,8 @@ Guide read_guide(const JsonValue& value) {
 }
 
 void read_path(JsonObject& object, RenderSettings& render) {
-  static constexpr std::string_view strategies[] = {LIGHT_STRATEGIES};
   render.roulette = object.integer("roulette", render.roulette, 1, 65);
-  const std::string strategy = object.choice("lights", std::string(strategies[0]), strategies);
-  render.light_strategy = static_cast<u32>(std::ranges::find(strategies, strategy) - strategies);
+  render.light_strategy = object.choose("lights", render.light_strategy, light_strategies);
   const auto guides = object.find("guides");
   if (!guides) return;
   const auto balls = guides->items("balls");
@@ -124,7 +121,7 @@ void read_sampling(JsonObject& object, RenderSettings& render) {
     object.value().fail(
         fmt::format("the sampler {} has a fixed number of samples: wanted auto, sobol or "
                     "independent with \"adaptive\" or \"progressive\"",
-                    sampler_names[render.sampler]));
+                    name_of_value(samplers, render.sampler)));
 }
 
 }  // namespace
@@ -166,8 +163,7 @@ Camera read_camera(const JsonValue& value, bool& placed) {
 ToneMap read_tone_map(const JsonValue& value) {
   return value.object("tone_map", [](JsonObject& object) {
     ToneMap map;
-    const std::string curve = object.choice("curve", std::string(tone_curve_names[0]), tone_curve_names);
-    map.curve = static_cast<ToneCurve>(std::ranges::find(tone_curve_names, curve) - tone_curve_names.begin());
+    map.curve = object.choose("curve", map.curve, tone_curves);
     map.exposure = object.number("exposure", map.exposure, {.low = -32, .high = 32});
     if (object.find("white_balance"))
       map.white_balance = object.number("white_balance", 0, {.low = least_white, .high = greatest_white});
@@ -198,7 +194,9 @@ ImageSettings read_image(const JsonValue& value) {
 }
 
 RenderSettings read_render(const JsonValue& value) {
-  static constexpr std::string_view tracers[] = {"auto", "wide", "compact"};
+  static constexpr std::array tracers = {NamedValue<Tracer>{"auto", Tracer::automatic},
+                                         NamedValue<Tracer>{"wide", Tracer::wide},
+                                         NamedValue<Tracer>{"compact", Tracer::compact}};
   return value.object("render", [](JsonObject& object) {
     RenderSettings render;
     render.max_depth = object.integer("max_depth", render.max_depth, 1, 64);
@@ -211,15 +209,10 @@ RenderSettings read_render(const JsonValue& value) {
         read_path(inner, render);
         return true;
       });
-    const std::string sampler =
-        object.choice("sampler", std::string(sampler_names[SAMPLER_AUTO]), sampler_names);
-    render.sampler = static_cast<u32>(std::ranges::find(sampler_names, sampler) - sampler_names.begin());
+    render.sampler = object.choose("sampler", render.sampler, samplers);
     read_filter(object, render);
     read_sampling(object, render);
-    const std::string tracer = object.choice("tracer", "auto", tracers);
-    render.tracer = tracer == "wide"      ? Tracer::wide
-                    : tracer == "compact" ? Tracer::compact
-                                          : Tracer::automatic;
+    render.tracer = object.choose("tracer", render.tracer, tracers);
     render.texture_memory = object.integer("texture_memory", render.texture_memory, 1, 65536);
     render.spatial_splits = object.boolean("spatial_splits", render.spatial_splits);
     return render;
@@ -238,8 +231,7 @@ FogDescription read_fog(const JsonValue& value) {
 HaloCrystals read_crystals(const JsonValue& value) {
   return value.object("crystals", [](JsonObject& object) {
     HaloCrystals crystals;
-    const std::string shape = object.at("shape", list_names(halo_shapes)).choice(halo_shapes);
-    crystals.shape = static_cast<u32>(std::ranges::find(halo_shapes, shape) - halo_shapes.begin());
+    crystals.shape = object.at("shape", list_names(names_of(halo_shapes))).choose(halo_shapes);
     crystals.ratio = object.number("ratio", crystals.ratio, {.low = 0.001, .high = 1000});
     crystals.tilt = object.number("tilt", crystals.tilt, {.low = 0, .high = 90});
     crystals.roll = object.number("roll", crystals.roll, {.low = 0, .high = 90});
@@ -265,25 +257,24 @@ void read_halo(JsonObject& object, HaloDescription& halo) {
 
 EnvironmentDescription read_environment(const JsonValue& value,
                                         const std::function<Image(const JsonValue&)>& read_picture) {
-  const std::string type = value.member("type", list_names(environment_types)).choice(environment_types);
-  return value.object(type + "_environment", [&](JsonObject& object) {
+  const JsonValue named = value.member("type", list_names(names_of(environment_types)));
+  const EnvironmentType type = named.choose(environment_types);
+  return value.object(named.text() + "_environment", [&](JsonObject& object) {
     EnvironmentDescription e;
+    e.type = type;
     object.at("type", "");
     e.color = object.color("color", e.color);
     e.intensity = object.number("intensity", e.intensity, at_least_0);
     if (const auto up = object.find("up")) e.up = up->direction();
     e.rotate = object.number("rotate", e.rotate, {.low = -1e6, .high = 1e6});
     read_light_sampling(object, e.samples, e.visible);
-    if (type == "image") {
-      e.type = EnvironmentType::image;
+    if (type == EnvironmentType::image) {
       e.picture = read_picture(object.at("file", "the path of an image"));
-    } else if (type == "gradient") {
-      e.type = EnvironmentType::gradient;
+    } else if (type == EnvironmentType::gradient) {
       e.bottom = object.color("bottom", e.bottom);
       e.top = object.color("top", e.top);
     } else {
-      e.type = type == "halo" ? EnvironmentType::halo : EnvironmentType::sky;
-      if (type == "halo") read_halo(object, e.halo);
+      if (type == EnvironmentType::halo) read_halo(object, e.halo);
       e.turbidity = object.number("turbidity", e.turbidity, {.low = 2, .high = 10});
       e.ground = object.color("ground", e.ground, zero_to_one);
       if (const auto sun = object.find("sun")) read_sun(*sun, e);
@@ -293,19 +284,14 @@ EnvironmentDescription read_environment(const JsonValue& value,
 }
 
 LightDescription read_light(const JsonValue& value) {
-  static constexpr auto types = [] {
-    std::array<std::string_view, light_types.size()> names{};
-    for (std::size_t i = 0; i < names.size(); ++i) names[i] = light_types[i].name;
-    return names;
-  }();
-  const std::string type = value.member("type", list_names(types)).choice(types);
-  return value.object(type + "_light", [&](JsonObject& object) {
+  const JsonValue named = value.member("type", list_names(names_of(light_types)));
+  const LightType type = named.choose(light_types);
+  return value.object(named.text() + "_light", [&](JsonObject& object) {
     LightDescription light;
+    light.type = type;
     object.at("type", "");
     light.color = object.color("color", light.color);
     light.intensity = object.number("intensity", light.intensity, at_least_0);
-    const auto facts = std::find(types.begin(), types.end(), type) - types.begin();
-    light.type = light_types[static_cast<std::size_t>(facts)].type;
     if (facts_of(light.type).placed) read_placed_light(object, light);
     read_light_kind(object, light);
     return light;

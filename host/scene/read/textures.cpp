@@ -55,9 +55,10 @@ glm::dmat3 read_uv(JsonObject& object) {
 }
 
 Wrap read_wrap(const JsonValue& value) {
-  static constexpr std::string_view names[] = {"repeat", "mirror", "clamp"};
-  const std::string name = value.choice(names);
-  return name == "repeat" ? Wrap::repeat : name == "mirror" ? Wrap::mirror : Wrap::clamp;
+  static constexpr std::array wraps = {NamedValue<Wrap>{"repeat", Wrap::repeat},
+                                       NamedValue<Wrap>{"mirror", Wrap::mirror},
+                                       NamedValue<Wrap>{"clamp", Wrap::clamp}};
+  return value.choose(wraps);
 }
 
 void read_wraps(JsonObject& object, TextureDescription& texture) {
@@ -160,11 +161,12 @@ static bool read_pattern_formula(JsonObject& object, PatternFormula& formula) {
 }
 
 /// What a texture's coordinates are made from, and how it lies there.
-static void read_mapping(JsonObject& object, std::string_view standard, TextureDescription& texture) {
-  static constexpr std::string_view names[] = {"uv", "object", "spherical", "cylindrical", "box"};
-  const std::string name = object.choice("projection", standard, names);
-  const auto at = std::find(std::begin(names), std::end(names), name) - std::begin(names);
-  texture.mapping = static_cast<Mapping>(at);
+static void read_mapping(JsonObject& object, Mapping standard, TextureDescription& texture) {
+  static constexpr std::array projections = {
+      NamedValue<Mapping>{"uv", Mapping::uv}, NamedValue<Mapping>{"object", Mapping::object},
+      NamedValue<Mapping>{"spherical", Mapping::spherical},
+      NamedValue<Mapping>{"cylindrical", Mapping::cylindrical}, NamedValue<Mapping>{"box", Mapping::box}};
+  texture.mapping = object.choose("projection", standard, projections);
   texture.uv_set = object.integer("uv_set", 0, 0, 3);
   if (const auto placed = object.find("transform")) {
     const dmat4 transform = read_transform(*placed);
@@ -180,7 +182,7 @@ TextureLibrary::Entry TextureLibrary::read_pattern(JsonObject& object, const std
   if (type == #name) texture.kind = TEXTURE_##constant;
   TEXTURES(SUNDOG_KIND)
 #undef SUNDOG_KIND
-  read_mapping(object, "object", texture);
+  read_mapping(object, Mapping::object, texture);
   const double size = object.number("size", 1, {.low = 1e-6, .high = 1e6});
   texture.placement = glm::scale(dmat4(1), dvec3(1 / size)) * texture.placement;
   texture.uv = glm::dmat3(glm::dvec3(1 / size, 0, 0), glm::dvec3(0, 1 / size, 0), glm::dvec3(0, 0, 1));
@@ -246,29 +248,28 @@ TextureLibrary::Entry TextureLibrary::read_product(JsonObject& object) {
 }
 
 TextureLibrary::Entry TextureLibrary::read_image(JsonObject& object) const {
-  static constexpr std::string_view filters[] = {"trilinear", "bilinear", "nearest"},
-                                    encodings[] = {"auto", "srgb", "linear"},
-                                    channels[] = {"red", "green", "blue", "alpha", "all"};
+  using Encoding = Entry::Encoding;
+  static constexpr std::array encodings = {NamedValue<Encoding>{"auto", Encoding::by_use},
+                                           NamedValue<Encoding>{"srgb", Encoding::srgb},
+                                           NamedValue<Encoding>{"linear", Encoding::linear}};
+  static constexpr std::array filters = {NamedValue<TextureFilter>{"trilinear", TextureFilter::trilinear},
+                                         NamedValue<TextureFilter>{"bilinear", TextureFilter::bilinear},
+                                         NamedValue<TextureFilter>{"nearest", TextureFilter::nearest}};
+  static constexpr std::array channels = {NamedValue<int>{"red", 0}, NamedValue<int>{"green", 1},
+                                          NamedValue<int>{"blue", 2}, NamedValue<int>{"alpha", 3},
+                                          NamedValue<int>{"all", -1}};
   Entry entry;
   TextureDescription& texture = entry.texture;
   texture.kind = TEXTURE_IMAGE;
   const JsonValue file = object.at("file", "the path of an image");
   entry.file = find_image(file).string();
   entry.place = file.pointer();
-  const std::string encoding = object.choice("encoding", "auto", encodings);
-  entry.encoding = encoding == "srgb"     ? Entry::Encoding::srgb
-                   : encoding == "linear" ? Entry::Encoding::linear
-                                          : Entry::Encoding::by_use;
-  const std::string filter = object.choice("filter", "trilinear", filters);
-  texture.filter = filter == "nearest"    ? TextureFilter::nearest
-                   : filter == "bilinear" ? TextureFilter::bilinear
-                                          : TextureFilter::trilinear;
+  entry.encoding = object.choose("encoding", Encoding::by_use, encodings);
+  texture.filter = object.choose("filter", TextureFilter::trilinear, filters);
   read_wraps(object, texture);
-  read_mapping(object, "uv", texture);
+  read_mapping(object, Mapping::uv, texture);
   texture.uv = read_uv(object);
-  const std::string channel = object.choice("channel", "all", channels);
-  for (int i = 0; i < 4; ++i)
-    if (channel == channels[i]) texture.channel = i;
+  texture.channel = object.choose("channel", -1, channels);
   return entry;
 }
 

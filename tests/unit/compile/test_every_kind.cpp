@@ -51,7 +51,7 @@ TEST_CASE("the tests run over every solid and every light that a scene can hold"
   const std::vector<LightDescription> lights = every_light();
   for (std::size_t i = 0; i < lights.size(); ++i) {
     CHECK(lights[i].type == static_cast<LightType>(i));
-    CHECK(facts_of(lights[i].type).type == lights[i].type);
+    CHECK(facts_of(lights[i].type).value == lights[i].type);
     if (i > 0) CHECK(&facts_of_kind(static_cast<u32>(i - 1)) == &facts_of(lights[i].type));
   }
 }

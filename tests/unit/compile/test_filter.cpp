@@ -36,10 +36,10 @@ TEST_CASE(
     "a filter's table has its moments, its lobes below zero among them, so that weights integrate to one") {
   for (std::size_t f = 0; f < filters.size(); ++f)
     for (const double radius : {0.0, 1.25}) {
-      const RenderSettings settings = with_filter(static_cast<Filter>(f), radius);
+      const RenderSettings settings = with_filter(filters[f].value, radius);
       const std::vector<float> table = filter_table(settings);
       INFO(filters[f].name << " " << radius);
-      if (f == 0 && radius == 0) {
+      if (filters[f].value == Filter::box && radius == 0) {
         CHECK(table.empty());
         continue;
       }

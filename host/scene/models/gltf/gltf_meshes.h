@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "scene/model.h"
-#include "scene/models/gltf_accessors.h"
-#include "scene/models/gltf_materials.h"
+#include "scene/models/gltf/gltf_accessors.h"
+#include "scene/models/gltf/gltf_materials.h"
 
 namespace sundog::models {
 

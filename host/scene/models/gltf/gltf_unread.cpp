@@ -1,5 +1,5 @@
 // See gltf_unread.h. Whatever is not of the expected kind is passed by.
-#include "scene/models/gltf_unread.h"
+#include "scene/models/gltf/gltf_unread.h"
 
 #include <array>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // Cameras (glTF 2.0, section 3.10) and punctual lights, checked.
-#include "scene/models/gltf_views.h"
+#include "scene/models/gltf/gltf_views.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // glTF's cameras and lights (KHR_lights_punctual), before a node places them.
 #pragma once
 #include "scene/description.h"
-#include "scene/models/gltf_json.h"
+#include "scene/models/gltf/gltf_json.h"
 
 namespace sundog::models {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/models/gltf_json.h"
+#include "scene/models/gltf/gltf_json.h"
 
 namespace sundog::models {
 

@@ -1,6 +1,6 @@
 // Metallic-roughness materials and their extensions (glTF 2.0, section 3.9; KHR_materials_ior, _transmission,
 // _volume, _dispersion).
-#include "scene/models/gltf_materials.h"
+#include "scene/models/gltf/gltf_materials.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/models/gltf_container.h"
+#include "scene/models/gltf/gltf_container.h"
 
 namespace sundog::models {
 

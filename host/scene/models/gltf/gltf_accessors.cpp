@@ -1,5 +1,5 @@
 // glTF's binary data (glTF 2.0, section 3.6): every count, offset and stride is held against what is there.
-#include "scene/models/gltf_accessors.h"
+#include "scene/models/gltf/gltf_accessors.h"
 
 #include <fmt/format.h>
 

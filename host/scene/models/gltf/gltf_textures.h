@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "scene/model.h"
-#include "scene/models/gltf_accessors.h"
-#include "scene/models/gltf_json.h"
+#include "scene/models/gltf/gltf_accessors.h"
+#include "scene/models/gltf/gltf_json.h"
 
 namespace sundog::models {
 

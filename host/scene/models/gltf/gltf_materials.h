@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "scene/model.h"
-#include "scene/models/gltf_json.h"
-#include "scene/models/gltf_textures.h"
+#include "scene/models/gltf/gltf_json.h"
+#include "scene/models/gltf/gltf_textures.h"
 
 namespace sundog::models {
 

@@ -1,6 +1,6 @@
 // glTF's primitives (glTF 2.0, section 3.7.2): triangles, strips and fans; points and lines have nothing to
 // trace.
-#include "scene/models/gltf_meshes.h"
+#include "scene/models/gltf/gltf_meshes.h"
 
 #include <fmt/format.h>
 

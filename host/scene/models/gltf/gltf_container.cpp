@@ -1,5 +1,5 @@
 // GLB files (glTF 2.0, section 4) and buffer URIs (RFC 3986, RFC 2397, RFC 4648).
-#include "scene/models/gltf_container.h"
+#include "scene/models/gltf/gltf_container.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // JSON values with their pointers.
-#include "scene/models/gltf_json.h"
+#include "scene/models/gltf/gltf_json.h"
 
 #include <fmt/format.h>
 

@@ -10,9 +10,9 @@
 #include <numbers>
 #include <set>
 
-#include "scene/models/gltf_meshes.h"
-#include "scene/models/gltf_unread.h"
-#include "scene/models/gltf_views.h"
+#include "scene/models/gltf/gltf_meshes.h"
+#include "scene/models/gltf/gltf_unread.h"
+#include "scene/models/gltf/gltf_views.h"
 #include "scene/models/readers.h"
 
 namespace sundog::models {

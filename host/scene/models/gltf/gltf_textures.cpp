@@ -1,4 +1,4 @@
-#include "scene/models/gltf_textures.h"
+#include "scene/models/gltf/gltf_textures.h"
 
 #include <fmt/format.h>
 

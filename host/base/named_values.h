@@ -1,0 +1,42 @@
+// Values of an enumeration with the names that files and people use for them, in one table: neither depends
+// on the order of the other.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+
+namespace sundog {
+
+template <class Value>
+struct NamedValue {
+  std::string_view name;
+  Value value;
+};
+
+/// The names, in the table's order. Rows may be of any type with a `name`.
+template <class Row, std::size_t N>
+constexpr std::array<std::string_view, N> names_of(const std::array<Row, N>& table) {
+  std::array<std::string_view, N> names{};
+  std::ranges::transform(table, names.begin(), &Row::name);
+  return names;
+}
+
+/// The value of that name, if the table has it.
+template <class Value, std::size_t N>
+constexpr std::optional<Value> value_named(const std::array<NamedValue<Value>, N>& table,
+                                           std::string_view name) {
+  const auto row = std::ranges::find(table, name, &NamedValue<Value>::name);
+  return row == table.end() ? std::nullopt : std::optional(row->value);
+}
+
+/// The name of a value of the table; std::logic_error for others.
+template <class Value, std::size_t N>
+constexpr std::string_view name_of_value(const std::array<NamedValue<Value>, N>& table, Value value) {
+  const auto row = std::ranges::find(table, value, &NamedValue<Value>::value);
+  if (row == table.end()) throw std::logic_error("a value without a name");
+  return row->name;
+}
+
+}  // namespace sundog
