@@ -201,7 +201,7 @@ KeyMaker& KeyMaker::add(const Shape& shape) {
   add(shape.index());
   std::visit(
       [this](const auto& solid) {
-        boost::pfr::for_each_field(solid, [this](const auto& member) { add(member); });
+        boost::pfr::for_each_field(solid, [this](const auto& member) { this->add(member); });
       },
       shape);
   return *this;
