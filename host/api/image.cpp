@@ -8,7 +8,7 @@ inline namespace v0 {
 namespace {
 
 core::ToneMap tone_map_of(const ToneMap& map) {
-  const auto curve = core::value_named(core::tone_curves, map.curve);
+  const auto curve = sundog::value_named(sundog::tone_curves, map.curve);
   if (!curve)
     throw Error(ErrorKind::usage,
                 "tone map: wanted the curve none, reinhard, aces or agx, found \"" + map.curve + "\"");
@@ -17,7 +17,7 @@ core::ToneMap tone_map_of(const ToneMap& map) {
   const bool white = map.white_balance >= sundog::least_white && map.white_balance <= sundog::greatest_white;
   if (map.white_balance != 0 && !white)
     throw Error(ErrorKind::usage, "tone map: wanted a white balance of 1667 to 25000 kelvin, or 0");
-  return {*curve, map.exposure, map.white_balance};
+  return core::ToneMap{*curve, map.exposure, map.white_balance};
 }
 
 std::shared_ptr<const Image::Impl> no_pixels() {
