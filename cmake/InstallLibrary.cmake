@@ -18,7 +18,7 @@ foreach(layer base scene compile device render api)
 endforeach()
 add_library(sundog_static STATIC ${objects})
 set(packages OpenCL TBB fmt OpenEXR ZLIB Threads)
-set(libraries spng turbojpeg webp)
+set(libraries spng deflate turbojpeg webp)
 target_link_libraries(sundog_static INTERFACE OpenCL::OpenCL TBB::tbb fmt::fmt OpenEXR::OpenEXR ZLIB::ZLIB Threads::Threads
   ${libraries} ${CMAKE_DL_LIBS})
 

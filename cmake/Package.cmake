@@ -80,7 +80,7 @@ What programs that render with sundog need at run time.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME lib${PROJECT_NAME}-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${runtime} (= ${PROJECT_VERSION})")
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "ocl-icd-opencl-dev, libtbb-dev, libfmt-dev, libopenexr-dev, libspng-dev, \
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "ocl-icd-opencl-dev, libtbb-dev, libfmt-dev, libopenexr-dev, libspng-dev, libdeflate-dev, \
 libturbojpeg0-dev, libwebp-dev, zlib1g-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "renderer on OpenCL - headers for C++ and C
 Headers, the static library, the CMake package and the pkg-config file.")

@@ -8,7 +8,7 @@ build=$root/build/release
 
 # The build cannot do without these. PoCL is among them, so that the first picture needs no GPU.
 needed=(g++ cmake ninja-build ocl-icd-opencl-dev opencl-clhpp-headers pocl-opencl-icd libglm-dev libstb-dev
-  libopenexr-dev libspng-dev libturbojpeg0-dev libwebp-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtbb-dev zlib1g-dev catch2)
+  libopenexr-dev libspng-dev libdeflate-dev libturbojpeg0-dev libwebp-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtbb-dev zlib1g-dev catch2)
 # Debian 12 has Boost 1.81 beside an older one.
 if grep -qs '^12' /etc/debian_version; then needed+=(libboost1.81-dev); else needed+=(libboost-dev); fi
 # The tests compare with these where they are; Open MPI is what `mpirun sundog` needs; a browser opens the viewer's page; pip

@@ -38,7 +38,7 @@ int bench_textures(const TexturesOptions& options) {
       fmt::format("Median of {} pairs of frames after one each to warm up, in turn; times are those of the "
                   "kernels, and the ratio is the median of the pairs'. Without textures the materials keep "
                   "their colors and numbers. Levels: all that compiling the scene takes, mostly the smaller "
-                  "levels of the images.",
+                  "levels of the images. Loading: both.",
                   options.repeat));
   return publish(report, options);
 }

@@ -54,6 +54,34 @@ std::uint16_t word_at(const StoredImage& image, std::size_t sample) {
 template <std::size_t channels>
 using Pixel = std::array<float, channels>;
 
+template <std::size_t channels>
+Pixel<channels> mean_of_pixels(const Pixel<channels>& a, const Pixel<channels>& b, const Pixel<channels>& c,
+                               const Pixel<channels>& d) {
+  Pixel<channels> mean;
+  for (std::size_t k = 0; k < channels; ++k) mean[k] = 0.25f * (a[k] + b[k] + c[k] + d[k]);
+  return mean;
+}
+
+/// Pixels of a level.
+template <std::size_t channels>
+class LevelReader {
+ public:
+  explicit LevelReader(const LinearLevel& level) : data_(level.data.data()) {}
+  Pixel<channels> operator()(std::size_t at) const {
+    Pixel<channels> pixel;
+    std::copy_n(data_ + at * channels, channels, pixel.begin());
+    return pixel;
+  }
+  /// The mean of 2x2 pixels from `at` on.
+  Pixel<channels> mean_of_four(std::size_t at, std::size_t width) const {
+    const LevelReader& read = *this;
+    return mean_of_pixels<channels>(read(at), read(at + 1), read(at + width), read(at + width + 1));
+  }
+
+ private:
+  const float* data_;
+};
+
 /// Samples of an image as linear floats.
 template <std::size_t channels>
 class SampleReader {
@@ -79,8 +107,26 @@ class SampleReader {
       for (std::size_t c = 0; c + 1 < channels; ++c) pixel[c] *= pixel[channels - 1];
     return pixel;
   }
+  /// The mean of 2x2 pixels from `at` on.
+  Pixel<channels> mean_of_four(std::size_t at, std::size_t width) const {
+    const SampleReader& read = *this;
+    if (channels == 4 && image_.sample == Sample::byte) {
+      const std::uint8_t *up = image_.data.data() + 4 * at, *down = up + 4 * width;
+      if ((up[3] & up[7] & down[3] & down[7]) == 255) return mean_of_opaque(up, down);
+    }
+    return mean_of_pixels<channels>(read(at), read(at + 1), read(at + width), read(at + width + 1));
+  }
 
  private:
+  /// The same, to the bit, without the work for alpha.
+  Pixel<channels> mean_of_opaque(const std::uint8_t* up, const std::uint8_t* down) const {
+    Pixel<channels> mean;
+    for (std::size_t c = 0; c < channels; ++c)
+      mean[c] =
+          c == 3 ? 1 : 0.25f * (table_[up[c]] + table_[up[4 + c]] + table_[down[c]] + table_[down[4 + c]]);
+    return mean;
+  }
+
   const StoredImage& image_;
   bool by_alpha_;
   std::array<float, 256> table_{}, plain_{};
@@ -93,15 +139,6 @@ std::array<float, 3> weights_of(int edge, int i) {
   const auto n = static_cast<float>(edge);
   const int half = edge / 2;
   return {static_cast<float>(half - i) / n, static_cast<float>(half) / n, static_cast<float>(i + 1) / n};
-}
-
-/// The mean of 2x2 pixels from `at` on.
-template <std::size_t channels, class Read>
-Pixel<channels> mean_of_four(const Read& read, std::size_t at, std::size_t width) {
-  const Pixel<channels> a = read(at), b = read(at + 1), c = read(at + width), d = read(at + width + 1);
-  Pixel<channels> mean;
-  for (std::size_t k = 0; k < channels; ++k) mean[k] = 0.25f * (a[k] + b[k] + c[k] + d[k]);
-  return mean;
 }
 
 /// The weighted mean of up to 3x3 pixels from `at` on, of an edge that is odd.
@@ -119,89 +156,87 @@ Pixel<channels> weighted_mean(const Read& read, std::size_t at, std::size_t widt
   return sum;
 }
 
-template <std::size_t channels, class Read>
-LinearLevel halve(int width, int height, const Read& read) {
-  LinearLevel level{std::max(1, width / 2), std::max(1, height / 2), channels, {}};
-  const auto row = static_cast<std::size_t>(level.width) * channels,
-             from_row = static_cast<std::size_t>(width);
-  level.data.resize(static_cast<std::size_t>(level.height) * row);
-  const bool even = width % 2 == 0 && height % 2 == 0;
-  tbb::parallel_for(tbb::blocked_range<int>(0, level.height, 16), [&](const auto& rows) {
-    for (int y = rows.begin(); y != rows.end(); ++y) {
-      float* to = level.data.data() + static_cast<std::size_t>(y) * row;
-      std::size_t at = 2 * static_cast<std::size_t>(y) * from_row;
-      for (int x = 0; x < level.width; ++x, to += channels, at += 2) {
-        const Pixel<channels> mean =
-            even ? mean_of_four<channels>(read, at, from_row)
-                 : weighted_mean<channels>(read, at, from_row, weights_of(width, x), weights_of(height, y));
-        std::copy(mean.begin(), mean.end(), to);
-      }
-    }
-  });
-  return level;
-}
-
-template <std::size_t channels>
-LinearLevel halve(const LinearLevel& from) {
-  return halve<channels>(from.width, from.height, [&](std::size_t at) {
-    Pixel<channels> pixel;
-    std::copy_n(from.data.data() + at * channels, channels, pixel.begin());
-    return pixel;
-  });
-}
-LinearLevel halve(const LinearLevel& from) { return from.channels == 1 ? halve<1>(from) : halve<4>(from); }
-
-LinearLevel halve(const StoredImage& from, bool srgb) {
-  if (from.channels == 1) return halve<1>(from.width, from.height, SampleReader<1>(from, srgb));
-  return halve<4>(from.width, from.height, SampleReader<4>(from, srgb));
-}
-
 /// Rounds what is not negative.
 std::size_t rounded(float value) {
   return static_cast<std::size_t>(value + 0.5f);  // NOLINT(bugprone-incorrect-roundings): faster than lround
 }
 
-/// `table` is that of sRGB bytes, or none where they are linear.
-void write_sample(StoredImage& image, std::size_t sample, float value, const std::uint8_t* table) {
-  if (image.sample == Sample::byte) {
-    const float unit = std::clamp(value, 0.0f, 1.0f);
-    image.data[sample] = table ? table[rounded(unit * static_cast<float>(srgb_steps))]
-                               : static_cast<std::uint8_t>(rounded(unit * 255));
-    return;
-  }
-  const std::uint16_t word = image.sample == Sample::half
-                                 ? half_from_float(value)
-                                 : static_cast<std::uint16_t>(rounded(std::clamp(value, 0.0f, 1.0f) * 65535));
-  std::memcpy(image.data.data() + 2 * sample, &word, 2);
+float unit_clamped(float value) { return std::clamp(value, 0.0f, 1.0f); }
+
+std::uint16_t word_of(float value, Sample kind) {
+  return kind == Sample::half ? half_from_float(value)
+                              : static_cast<std::uint16_t>(rounded(unit_clamped(value) * 65535));
 }
 
+/// Writes `count` pixels of linear floats as samples. `table` is that of sRGB bytes, or none where they are
+/// linear; colours (`srgb`) are divided by their alpha.
 template <std::size_t channels>
-void store_pixels(const LinearLevel& level, std::size_t begin, std::size_t end, bool srgb,
-                  StoredImage& image) {
+void store_pixels(const float* from, std::size_t count, Sample kind, bool srgb, std::uint8_t* to) {
   const std::uint8_t* table = srgb ? srgb_bytes().data() : nullptr;
-  for (std::size_t i = begin; i != end; ++i) {
-    const float* from = level.data.data() + i * channels;
+  for (std::size_t i = 0; i < count; ++i, from += channels) {
     const float alpha = srgb && channels == 4 ? from[channels - 1] : 1;
     const float scale = alpha == 1 ? 1 : alpha > 0 ? 1 / alpha : 0;
-    for (std::size_t c = 0; c < channels; ++c)
-      write_sample(image, i * channels + c, c == 3 ? from[c] : from[c] * scale, c == 3 ? nullptr : table);
+    for (std::size_t c = 0; c < channels; ++c) {
+      const float value = c == 3 ? from[c] : from[c] * scale;
+      if (kind == Sample::byte) {
+        *to++ = table && c != 3 ? table[rounded(unit_clamped(value) * static_cast<float>(srgb_steps))]
+                                : static_cast<std::uint8_t>(rounded(unit_clamped(value) * 255));
+      } else {
+        const std::uint16_t word = word_of(value, kind);
+        std::memcpy(to, &word, 2);
+        to += 2;
+      }
+    }
   }
 }
 
-StoredImage store(const LinearLevel& level, Sample kind, bool srgb) {
-  StoredImage image;
-  image.width = level.width;
-  image.height = level.height;
-  image.channels = static_cast<int>(level.channels);
-  image.sample = kind;
-  image.data.resize(image.pixel_count() * image.pixel_bytes());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, image.pixel_count(), 4096), [&](const auto& range) {
-    if (level.channels == 1)
-      store_pixels<1>(level, range.begin(), range.end(), srgb, image);
-    else
-      store_pixels<4>(level, range.begin(), range.end(), srgb, image);
+/// A level and its samples.
+struct Halved {
+  LinearLevel linear;
+  StoredImage stored;
+};
+
+/// Row by row, the samples while the row is at hand.
+template <std::size_t channels, class Read>
+Halved halve(int width, int height, const Read& read, Sample kind, bool srgb) {
+  Halved out{{std::max(1, width / 2), std::max(1, height / 2), channels, {}}, {}};
+  LinearLevel& level = out.linear;
+  out.stored.width = level.width;
+  out.stored.height = level.height;
+  out.stored.channels = static_cast<int>(channels);
+  out.stored.sample = kind;
+  const auto columns = static_cast<std::size_t>(level.width), from_row = static_cast<std::size_t>(width);
+  const std::size_t row = columns * channels, stored_row = columns * out.stored.pixel_bytes();
+  level.data.resize(static_cast<std::size_t>(level.height) * row);
+  out.stored.data.resize(static_cast<std::size_t>(level.height) * stored_row);
+  const bool even = width % 2 == 0 && height % 2 == 0;
+  tbb::parallel_for(tbb::blocked_range<int>(0, level.height, 16), [&](const auto& rows) {
+    for (int y = rows.begin(); y != rows.end(); ++y) {
+      float* const begin = level.data.data() + static_cast<std::size_t>(y) * row;
+      float* to = begin;
+      std::size_t at = 2 * static_cast<std::size_t>(y) * from_row;
+      for (int x = 0; x < level.width; ++x, to += channels, at += 2) {
+        const Pixel<channels> mean =
+            even ? read.mean_of_four(at, from_row)
+                 : weighted_mean<channels>(read, at, from_row, weights_of(width, x), weights_of(height, y));
+        std::copy(mean.begin(), mean.end(), to);
+      }
+      store_pixels<channels>(begin, columns, kind, srgb,
+                             out.stored.data.data() + static_cast<std::size_t>(y) * stored_row);
+    }
   });
-  return image;
+  return out;
+}
+
+Halved halve(const LinearLevel& from, Sample kind, bool srgb) {
+  if (from.channels == 1) return halve<1>(from.width, from.height, LevelReader<1>(from), kind, srgb);
+  return halve<4>(from.width, from.height, LevelReader<4>(from), kind, srgb);
+}
+
+Halved halve(const StoredImage& from, bool srgb) {
+  if (from.channels == 1)
+    return halve<1>(from.width, from.height, SampleReader<1>(from, srgb), from.sample, srgb);
+  return halve<4>(from.width, from.height, SampleReader<4>(from, srgb), from.sample, srgb);
 }
 
 }  // namespace
@@ -237,17 +272,15 @@ void settle_samples(StoredImage& image, bool srgb) {
 std::vector<StoredImage> smaller_levels(const StoredImage& image, bool srgb) {
   std::vector<StoredImage> levels;
   if (image.width == 1 && image.height == 1) return levels;
-  LinearLevel level = halve(image, srgb);
-  levels.push_back(store(level, image.sample, srgb));
-  while (level.width > 1 || level.height > 1) {
-    level = halve(level);
-    levels.push_back(store(level, image.sample, srgb));
+  Halved level = halve(image, srgb);
+  levels.push_back(std::move(level.stored));
+  while (level.linear.width > 1 || level.linear.height > 1) {
+    level = halve(level.linear, image.sample, srgb);
+    levels.push_back(std::move(level.stored));
   }
   return levels;
 }
 
-StoredImage half_size(const StoredImage& image, bool srgb) {
-  return store(halve(image, srgb), image.sample, srgb);
-}
+StoredImage half_size(const StoredImage& image, bool srgb) { return halve(image, srgb).stored; }
 
 }  // namespace sundog

@@ -1,4 +1,5 @@
-// PNG through libspng, which is given the image's limits before it decodes a pixel.
+// PNG through libspng, which is given the image's limits before it decodes a pixel; the pixels of the most
+// common files by png_pixels.h.
 #include <fmt/format.h>
 #include <spng.h>
 
@@ -8,6 +9,7 @@
 
 #include "base/image_codecs.h"
 #include "base/limits.h"
+#include "base/pixels/png_pixels.h"
 #include "base/pixels/stored_image.h"
 
 namespace sundog {
@@ -39,6 +41,21 @@ spng_format format_of(const spng_ihdr& header, bool transparent, StoredImage& st
   stored.sample = header.bit_depth == 16 ? StoredImage::Sample::word : StoredImage::Sample::byte;
   if (grey) return header.bit_depth == 16 ? SPNG_FMT_PNG : SPNG_FMT_G8;  // words in the machine's order
   return header.bit_depth == 16 ? SPNG_FMT_RGBA16 : SPNG_FMT_RGBA8;
+}
+
+/// Channels of a file whose pixels need nothing from libspng; 0 for others.
+std::size_t plain_channels(const spng_ihdr& header, bool transparent) {
+  if (header.bit_depth != 8 || header.interlace_method != SPNG_INTERLACE_NONE || transparent) return 0;
+  switch (header.color_type) {
+    case SPNG_COLOR_TYPE_GRAYSCALE:
+      return 1;
+    case SPNG_COLOR_TYPE_TRUECOLOR:
+      return 3;
+    case SPNG_COLOR_TYPE_TRUECOLOR_ALPHA:
+      return 4;
+    default:
+      return 0;
+  }
 }
 
 }  // namespace
@@ -77,11 +94,13 @@ StoredImage decode_png(std::string_view bytes) {
   const int transparency = spng_get_trns(context.get(), &ignored);
   if (transparency != SPNG_ECHUNKAVAIL) check_png(transparency);
   const int format = format_of(header, transparency == 0, stored);
+  stored.exponent = png_decoding_exponent(bytes);
+  const std::size_t plain = plain_channels(header, transparency == 0);
+  if (plain && decode_png_pixels(bytes, plain, stored)) return stored;
   std::size_t size = 0;
   check_png(spng_decoded_image_size(context.get(), format, &size));
   stored.data.resize(size);
   check_png(spng_decode_image(context.get(), stored.data.data(), size, format, SPNG_DECODE_TRNS));
-  stored.exponent = png_decoding_exponent(bytes);
   return stored;
 }
 

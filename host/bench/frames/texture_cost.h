@@ -32,7 +32,7 @@ TextureCost measure_texture_cost(const SceneDescription& scene, const DeviceInfo
 /// What loading eight PNG files of `edge` texels a side takes, from their bytes to the tables of texels, in
 /// seconds: decoding, and the rest, which is smaller levels and tiles.
 struct ImageCost {
-  Spread decode, levels, processor;  // the last: processor time of both
+  Spread decode, levels, both, processor;  // the last: processor time of both
 };
 ImageCost measure_image_cost(int edge, int repeat, const std::function<void(const std::string&)>& on_step);
 

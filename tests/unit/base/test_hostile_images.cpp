@@ -1,4 +1,4 @@
-// Damaged JPEG, WebP, EXR and HDR files: each prefix, and each byte changed. Each is an image within the
+// Damaged PNG, JPEG, WebP, EXR and HDR files: each prefix, and each byte changed. Each is an image within the
 // limits or an error; none crashes or takes long.
 #include <base/image_codecs.h>
 #include <base/limits.h>
@@ -66,6 +66,13 @@ void damage(const std::string& good, bool rows_may_lack) {
 
 }  // namespace
 
+TEST_CASE("damaged PNG files are images or errors") {
+  StoredImage image;
+  image.width = 9, image.height = 7;
+  for (std::size_t i = 0; i < image.pixel_count() * 4; ++i)
+    image.data.push_back(static_cast<std::uint8_t>(i * i % 97));
+  damage(encode_png(image), false);
+}
 TEST_CASE("damaged JPEG files are images or errors") { damage(encode_jpeg(small_image()), false); }
 TEST_CASE("damaged WebP files are images or errors") {
   damage(from_hex(webp_lossless), false);
