@@ -1,4 +1,5 @@
 // sundog's command line: the command does its work; what goes wrong becomes one line and an exit status here.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 #include "app/options/commands.h"
 #include "app/process/exit_status.h"
 #include "base/error.h"
+#include "device/pocl_folder.h"
 #include "render/render.h"
 
 namespace sundog {
@@ -63,16 +65,24 @@ void bound_the_end(int status) {
   ::setitimer(ITIMER_REAL, &patience, nullptr);
 }
 
+/// Ends the process while drivers are at work, which would find their globals destroyed by a return. PoCL
+/// may miss the folder that it writes to: what it says of that, and that it would abort, is of no use.
+[[noreturn]] void end_beside_drivers(int status) {
+  final_status = status;
+  std::fflush(nullptr);
+  std::signal(SIGABRT, [](int) { ::_exit(static_cast<int>(final_status)); });
+  if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0)
+    ::dup2(nowhere, STDERR_FILENO);
+  remove_pocl_folder();
+  ::_exit(status);
+}
+
 }  // namespace
 }  // namespace sundog
 
 int main(int argc, char** argv) {
   const int status = sundog::exit_status_of([&] { return sundog::run_command_line(argc, argv); });
-  if (sundog::threads_left_behind() == 0) {
-    sundog::bound_the_end(status);
-    return status;
-  }
-  // A driver that is still at work would find its own globals destroyed by a return.
-  std::fflush(nullptr);
-  ::_exit(status);
+  if (sundog::threads_left_behind() > 0) sundog::end_beside_drivers(status);
+  sundog::bound_the_end(status);
+  return status;
 }

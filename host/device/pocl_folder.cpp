@@ -44,9 +44,13 @@ bool is_old(const fs::path& folder) {
   return !error && fs::file_time_type::clock::now() - written > std::chrono::hours(1);
 }
 
-void remove_left_over(const fs::path& root) {
+constexpr std::string_view temporary_name = "sundog-pocl-";
+
+/// Folders in `root` whose names begin so, of processes that were killed.
+void remove_left_over(const fs::path& root, std::string_view beginning) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(root, error)) {
+    if (!entry.path().filename().string().starts_with(beginning)) continue;
     const int lock = lock_folder(entry.path(), 0);
     if (lock < 0 && (fs::exists(entry.path() / "lock", error) || !is_old(entry.path()))) continue;
     fs::remove_all(entry.path(), error);
@@ -81,12 +85,14 @@ std::string make_folder(const HostEnvironment& environment) {
   std::error_code error;
   const fs::path root = cache_folder(environment.cache, "pocl");
   if (!root.empty()) try_to_make(root);
-  if (!root.empty() && fs::is_directory(root, error)) remove_left_over(root);
+  if (!root.empty() && fs::is_directory(root, error)) remove_left_over(root, "");
   if (!root.empty() && room_in(root, environment).value_or(0) >= ample_room) {
     std::string folder = (root / "XXXXXX").string();
     if (::mkdtemp(folder.data())) return folder;
   }
-  std::string folder = (fs::temp_directory_path(error) / "sundog-pocl-XXXXXX").string();
+  const fs::path temporary = fs::temp_directory_path(error);
+  remove_left_over(temporary, temporary_name);
+  std::string folder = (temporary / temporary_name).string() + "XXXXXX";
   return ::mkdtemp(folder.data()) ? folder : "";
 }
 
@@ -108,18 +114,20 @@ std::string pocl_folder_problem(const HostEnvironment& environment) {
       folder, *room >> 10, least_room >> 10, users.empty() ? "XDG_CACHE_HOME or TMPDIR" : "POCL_CACHE_DIR");
 }
 
+void remove_pocl_folder() noexcept {
+  std::error_code ignored;
+  if (!own_folder().empty()) fs::remove_all(own_folder(), ignored);
+}
+
 void give_pocl_a_folder(const HostEnvironment& environment) noexcept {
   try {
     if (!environment.driver("POCL_CACHE_DIR").empty()) return;
     const std::string folder = make_folder(environment);
     if (folder.empty() || lock_folder(folder, O_CREAT) < 0) return;
     own_folder() = folder;
-    ::setenv("POCL_CACHE_DIR", folder.c_str(), 0);
+    ::setenv("POCL_CACHE_DIR", folder.c_str(), 1);  // an empty one ends PoCL's process
     // After PoCL's own end, because it is said before PoCL is loaded.
-    std::atexit([] {
-      std::error_code ignored;
-      fs::remove_all(own_folder(), ignored);
-    });
+    std::atexit(remove_pocl_folder);
   } catch (const std::exception&) {
     // PoCL's own folder does as well, as long as it can be written and nothing damages it.
   }

@@ -18,6 +18,9 @@ bool is_pocl(const DeviceInfo& device);
 /// throws.
 void give_pocl_a_folder(const HostEnvironment& environment) noexcept;
 
+/// Removes it before a process ends by _exit(). PoCL may end the process when one of its threads is at work.
+void remove_pocl_folder() noexcept;
+
 /// What keeps PoCL from writing what it compiles, and the mend, for the end of a message; empty: nothing
 /// known. It needs to be asked before: PoCL ends the process, or says nothing of it.
 std::string pocl_folder_problem(const HostEnvironment& environment);
