@@ -12,6 +12,8 @@
 
 void prepare_opencl_environment() {
   setenv("RUSTICL_ENABLE", "llvmpipe", 0);
+  // llvmpipe without LLVM's optimiser compiles a third faster, and draws the same bits.
+  setenv("GALLIVM_PERF", "nopt", 0);
   // Tests move XDG_CACHE_HOME about; Mesa's own cache stays where it is.
   const char *xdg = std::getenv("XDG_CACHE_HOME"), *home = std::getenv("HOME");
   if (xdg && *xdg)
