@@ -8,8 +8,8 @@
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
-#include "lib/shade/parallax.cl"
 #include "lib/shade/relief.cl"
+#include "lib/shade/relief_hits.cl"
 
 // What surfaces and the rays that met them are, for all that is done there.
 typedef struct Shading {
@@ -22,6 +22,7 @@ static inline void shade_hits(const Scene* scene, const SceneRays* rays, const E
                               Shading* at) {
   interact(scene, rays->o, rays->d, &met->hit, &met->face, lanes, &at->s);
   at->s.offset = offset_beyond(met, at->s.offset);
+  note_depth(met, &at->s);
   set_footprints(rays, met->hit.t, &at->s);
   add_parallax(scene, rays->d, lanes, &at->s);
   add_relief(scene, rays->d, lanes, &at->s);
@@ -97,10 +98,11 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
   counts[COUNT_SHADOW] += lane_count(lit);
   SceneRays to_light = *rays;
   start_on_surfaces(scene->info, &to_light, hits, ~s->entering, lit);
-  to_light.o = along3(s->p, s->offset, s->ng);
+  REAL way;
+  to_light.o = along3(leave_relief(s, light.wi, &way), s->offset, leaving_normal(s));
   to_light.d = light.wi;
   to_light.t_min = (REAL)(0.0f);
-  to_light.t_max = light.distance;
+  to_light.t_max = light.distance - way;
   PathStates weights = *paths;
   weights.depth = NO_LANES;
   weights.throughput = multiply3(paths->throughput, possible);

@@ -19,6 +19,10 @@ typedef struct Encounters {
   MASK behind_low, behind_high;  // the words of the MediaStack behind
   REAL apart;                    // how far the faces that touch there may be apart
 #endif
+#if HAS_PARALLAX
+  REAL below;  // how far the hit is below a surface in whose relief it lies; 0 elsewhere
+  REAL3 top;   // that surface's normal
+#endif
 } Encounters;
 
 // The part of light from the rays' ends that the world's fog lets through, of the rays of `lanes` that were

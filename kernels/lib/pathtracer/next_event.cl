@@ -70,14 +70,16 @@ static inline SceneRays rays_to_light(const Scene* scene, const SceneRays* rays,
   const SurfaceInteractions* s = &at->s;
   SceneRays to_light = *rays;
   start_on_surfaces(scene->info, &to_light, &met->hit, ~s->entering, lanes);
-  to_light.o = along3(s->p, select(s->offset, -s->offset, below), s->ng);
+  REAL way;
+  const REAL3 outside = along3(leave_relief(s, light->wi, &way), s->offset, leaving_normal(s));
+  to_light.o = select3(outside, along3(s->p, -s->offset, s->ng), below);
   if (any_lane(below)) {
     start_on_hits(scene->info, &to_light, &met->hit, s->entering, below);
     enter_behind(met, rays, below, &to_light);
   }
   to_light.d = light->wi;
   to_light.t_min = (REAL)(0.0f);
-  to_light.t_max = light->distance;
+  to_light.t_max = select(light->distance - way, light->distance, below);
   return to_light;
 }
 

@@ -69,7 +69,9 @@ static inline void leave_surfaces(const Scene* scene, const Encounters* met, con
   child.t_min = (REAL)(0.0f);
   child.t_max = (REAL)(INFINITY);
   child.d = sample->wi;
-  child.o = along3(s->p, select(s->offset, -s->offset, below), s->ng);
+  REAL way;
+  const REAL3 outside = along3(leave_relief(s, child.d, &way), s->offset, leaving_normal(s));
+  child.o = select3(outside, along3(s->p, -s->offset, s->ng), below);
   spread_scattered(&child, ~sample->specular);
   if (any_lane(below)) {
     start_on_hits(scene->info, &child, &met->hit, s->entering, below);
@@ -166,7 +168,7 @@ NEVER_INLINE MASK scatter(const Scene* scene, const Encounters* met, const Shadi
 NEVER_INLINE MASK step_walks(const Scene* scene, Walks* walks, SceneRays* rays, MASK lanes, bool coherent,
                              u32* counts) {
   Encounters met;
-  const MASK unseen = next_interfaces(scene, rays, lanes, coherent, &met, counts);
+  const MASK unseen = meet_interfaces(scene, rays, lanes, coherent, &met, counts);
   if (HAS_GLOW)
     walks->light =
         carry_select(walks->light, carry_add(walks->light, carried_color(walks, emitted(rays))), lanes);

@@ -32,6 +32,8 @@ typedef struct SurfaceInteractions {
 #if HAS_PARALLAX
   REAL3 shift;  // along the surface to where the ray meets the relief below it; u and v are those there
   REAL sunk;    // how deep that is, of the relief's depth
+  REAL below;   // how far the surface is below another, in whose relief it lies; 0 elsewhere
+  REAL3 top;    // that other's normal
 #endif
 } SurfaceInteractions;
 
@@ -126,6 +128,8 @@ static inline void set_footprint(REAL width, SurfaceInteractions* s) {}
 static inline void start_on_top(SurfaceInteractions* s) {
   s->shift = all3((float3)(0.0f));
   s->sunk = (REAL)(0.0f);
+  s->below = (REAL)(0.0f);
+  s->top = all3((float3)(0.0f));
 }
 #else
 static inline void start_on_top(SurfaceInteractions* s) {}

@@ -6,6 +6,7 @@
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
 #include "lib/shade/cones.cl"
+#include "lib/shade/relief_hits.cl"
 #include "lib/shade/rough.cl"
 
 #if HAS_SECONDARY
@@ -86,7 +87,8 @@ static inline void spawn_children(const Scene* scene, const TileSamples* tile, c
   const REAL curvature = curvatures(scene, s, split.branches);
   spread_reflected(curvature, &child);
   child.d = reflected_by(&facets, wo);
-  child.o = along3(s->p, s->offset, s->ng);
+  REAL way;
+  child.o = along3(leave_relief(s, child.d, &way), s->offset, leaving_normal(s));
   state.throughput = multiply3(paths->throughput, split.kr);
   const MASK simple = MASK_OF(split.kt.x + split.kt.y + split.kt.z == 0.0f) | ~split.transmits;
   weigh_by_facets(&facets, surface, child.d, 1.0f, split.kr, simple, &state.throughput);

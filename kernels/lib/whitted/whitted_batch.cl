@@ -50,7 +50,7 @@ NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, Scen
   Encounters met;
   Shading at;
   REAL3 seen;
-  const MASK unseen = next_interfaces(scene, rays, lanes, coherent, &met, counts);
+  const MASK unseen = meet_interfaces(scene, rays, lanes, coherent, &met, counts);
   const MASK hit = meet_surfaces(scene, tile, rays, paths, lanes, unseen, ALL_LANES, &met, &at, &seen, stack,
                                  radiance, counts);
   add_lights(scene, tile, rays, paths, hit, coherent, stack->count == 0u, &met.hit, &at, shadows, radiance,

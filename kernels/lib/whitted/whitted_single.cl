@@ -19,6 +19,7 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   const bool to_light = paths->depth == 0;
   next_hits(scene, rays, ALL_LANES, to_light, &met.hit, counts);
   if (to_light) return reach_filters(scene, rays, paths, &met.hit, ALL_LANES, radiance, counts);
+  enter_reliefs(scene, rays, ALL_LANES, &met, counts);
   const MASK unseen = reach_interfaces(scene, rays, ALL_LANES, &met, counts);
   const PathStates whole = *paths;
   u32 light = (u32)paths->depth >> DEPTH_BITS;

@@ -111,3 +111,68 @@ TEST_CASE("a surface with heights below it is one without them from behind, and 
     CHECK(double(surfaces::shade(info, surfaces::Part::parallax, black, at(0.3, 1)).sunk.x) == Approx(1));
   });
 }
+
+namespace {
+
+/// A ball and a box that stand in a floor, which is at y = 0 with a relief as deep as `sunk` everywhere, or
+/// lies that deep itself.
+SceneDescription floor_with_things(bool relief, double sunk) {
+  const auto height = static_cast<std::uint8_t>(std::lround(255 * (1 - sunk / depth)));
+  SceneDescription scene = deep_plane({height, height}, TextureFilter::bilinear);
+  scene.camera.position = {1.5, 1.6, 2.2};
+  scene.camera.target = {0, -0.05, 0};
+  scene.camera.up = {0, 1, 0};
+  scene.camera.fov = 35;
+  scene.image.width = scene.image.height = 48;
+  scene.materials[0].diffuse = dvec3(0);
+  scene.materials[0].emission = {0.1, 0.2, 0.9};
+  if (!relief) {
+    scene.materials[0].parallax = 0;
+    scene.materials[0].textures.height = -1;
+    scene.objects[0].world_from_object = glm::translate(dmat4(1), dvec3(0, -sunk, 0));
+  }
+  scenes::place(scene, SphereShape{0.3}, scenes::add_white(scene),
+                glm::translate(dmat4(1), dvec3(-0.4, -0.02, 0.1)));
+  scene.materials.back().emission = {0, 0.3, 0};
+  scenes::place(scene, BoxShape{dvec3(0.2)}, scenes::add_white(scene),
+                glm::rotate(glm::translate(dmat4(1), dvec3(0.45, -0.05, -0.2)), 0.5, dvec3(0, 1, 0)));
+  scene.materials.back().emission = {0.7, 0.1, 0};
+  LightDescription sun;
+  sun.type = LightType::directional;
+  sun.direction = {-0.3, -1, -0.5};
+  scene.lights.push_back(sun);
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("what stands in a relief is seen as in a floor that lies as deep, and light reaches it there") {
+  constexpr double sunk = 0.6 * depth;  // a height of 102 of 255
+  on_picture_devices([&](const DeviceInfo& info) {
+    for (const char* integrator : {"whitted", "path"}) {
+      INFO(integrator);
+      SceneDescription floors[2] = {floor_with_things(true, sunk), floor_with_things(false, sunk)};
+      Image images[2], above;
+      for (int i = 0; i < 2; ++i) {
+        floors[i].render.integrator = integrator;
+        floors[i].render.max_depth = integrator == std::string("path") ? 0 : 1;  // no light that bounces
+        images[i] = scenes::render_on(info, floors[i]).image;
+      }
+      floors[1].objects[0].world_from_object = dmat4(1);
+      above = scenes::render_on(info, floors[1]).image;
+      int differ = 0, changed = 0;
+      for (std::size_t i = 0; i < images[0].data.size(); i += 4) {
+        const auto apart = [&](const Image& a, const Image& b) {
+          double most = 0;
+          for (std::size_t c = 0; c < 3; ++c)
+            most = std::max(most, std::abs(double(a.data[i + c]) - double(b.data[i + c])));
+          return most > 0.01;
+        };
+        differ += apart(images[0], images[1]);
+        changed += apart(above, images[1]);
+      }
+      CHECK(changed > 40);  // of 2304: the things are cut elsewhere by a floor that is not sunk
+      CHECK(differ <= 4);   // where a pixel's ray grazes
+    }
+  });
+}
