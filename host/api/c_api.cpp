@@ -102,6 +102,35 @@ std::span<const std::array<T, count>> groups(const T* values, std::size_t length
   return {reinterpret_cast<const std::array<T, count>*>(values), values ? length : 0};
 }
 
+/// A mesh in C's arrays. Throws Error (usage) for NULL where values are wanted.
+MeshView mesh_of(const float* positions, size_t vertex_count, const uint32_t* triangles,
+                 size_t triangle_count, const float* normals, const float* uvs) {
+  wanted(positions, "positions");
+  wanted(triangles, "triangles");
+  return {.positions = groups<3>(positions, vertex_count),
+          .triangles = groups<3>(triangles, triangle_count),
+          .normals = groups<3>(normals, vertex_count),
+          .uvs = groups<2>(uvs, vertex_count)};
+}
+
+/// Calls back when nobody holds it any more, once it was handed over.
+struct Owner {
+  void (*release)(void* user);
+  void* user;
+  bool handed_over = false;
+
+  Owner(void (*call)(void*), void* with) : release(call), user(with) {}
+  Owner(const Owner&) = delete;
+  Owner& operator=(const Owner&) = delete;
+  ~Owner() {
+    if (!handed_over || !release) return;
+    try {
+      release(user);
+    } catch (...) {  // nobody could be told
+    }
+  }
+};
+
 RenderOptions options_of(const sundog_options* options, std::stop_source& stop) {
   RenderOptions result;
   if (!options) return result;
@@ -125,24 +154,21 @@ RenderOptions options_of(const sundog_options* options, std::stop_source& stop) 
 
 using namespace sundog::v0;
 
-const char* sundog_version(void) {
-  static const std::string text = version();
-  return text.c_str();
-}
+const char* sundog_version(void) noexcept { return version_text(); }
 
-const char* sundog_last_error(void) { return last_error().what.c_str(); }
-const char* sundog_last_error_file(void) { return last_error().file.c_str(); }
-const char* sundog_last_error_place(void) { return last_error().place.c_str(); }
+const char* sundog_last_error(void) noexcept { return last_error().what.c_str(); }
+const char* sundog_last_error_file(void) noexcept { return last_error().file.c_str(); }
+const char* sundog_last_error_place(void) noexcept { return last_error().place.c_str(); }
 
-sundog_status sundog_scene_load(const char* file, sundog_scene** scene) {
+sundog_status sundog_scene_load(const char* file, sundog_scene** scene) noexcept {
   return made(scene, "scene", [&] { return Scene::load(&wanted(file, "file")); });
 }
 
-sundog_status sundog_scene_from_json(const char* text, const char* folder, sundog_scene** scene) {
+sundog_status sundog_scene_from_json(const char* text, const char* folder, sundog_scene** scene) noexcept {
   return made(scene, "scene", [&] { return Scene::from_json(&wanted(text, "text"), folder ? folder : "."); });
 }
 
-sundog_status sundog_scene_set(sundog_scene* scene, const char* pointer, const char* json) {
+sundog_status sundog_scene_set(sundog_scene* scene, const char* pointer, const char* json) noexcept {
   return guarded([&] {
     wanted(scene, "scene").scene.set(&wanted(pointer, "pointer"), std::string_view(&wanted(json, "json")));
   });
@@ -150,45 +176,56 @@ sundog_status sundog_scene_set(sundog_scene* scene, const char* pointer, const c
 
 sundog_status sundog_scene_add_mesh(sundog_scene* scene, const char* name, const float* positions,
                                     size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
-                                    const float* normals, const float* uvs) {
+                                    const float* normals, const float* uvs) noexcept {
   return guarded([&] {
-    wanted(positions, "positions");
-    wanted(triangles, "triangles");
-    const MeshView mesh{.positions = groups<3>(positions, vertex_count),
-                        .triangles = groups<3>(triangles, triangle_count),
-                        .normals = groups<3>(normals, vertex_count),
-                        .uvs = groups<2>(uvs, vertex_count)};
+    const MeshView mesh = mesh_of(positions, vertex_count, triangles, triangle_count, normals, uvs);
     wanted(scene, "scene").scene.add_mesh(&wanted(name, "name"), mesh);
   });
 }
 
-sundog_status sundog_scene_check(const sundog_scene* scene) {
+sundog_status sundog_scene_hold_mesh(sundog_scene* scene, const char* name, const float* positions,
+                                     size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
+                                     const float* normals, const float* uvs, void (*release)(void* user),
+                                     void* user) noexcept {
+  return guarded([&] {
+    MeshView mesh = mesh_of(positions, vertex_count, triangles, triangle_count, normals, uvs);
+    const auto owner = std::make_shared<Owner>(release, user);
+    mesh.owner = owner;
+    wanted(scene, "scene").scene.add_mesh(&wanted(name, "name"), mesh);
+    owner->handed_over = true;
+  });
+}
+
+sundog_status sundog_scene_check(const sundog_scene* scene) noexcept {
   return guarded([&] { (void)wanted(scene, "scene").scene.check(); });
 }
 
-void sundog_scene_free(sundog_scene* scene) { delete scene; }
+void sundog_scene_free(sundog_scene* scene) noexcept { delete scene; }
 
-sundog_status sundog_devices_list(sundog_devices** devices) {
+sundog_status sundog_devices_list(sundog_devices** devices) noexcept {
   return made(devices, "devices", [&] { return sundog::v0::devices(); });
 }
 
-sundog_status sundog_devices_choose(const char* specs, sundog_devices** devices) {
+sundog_status sundog_devices_choose(const char* specs, sundog_devices** devices) noexcept {
   return made(devices, "devices", [&] { return choose_devices(split(specs)); });
 }
 
-size_t sundog_devices_count(const sundog_devices* devices) { return devices ? devices->list.size() : 0; }
+size_t sundog_devices_count(const sundog_devices* devices) noexcept {
+  return devices ? devices->list.size() : 0;
+}
 
-const char* sundog_devices_label(const sundog_devices* devices, size_t index) {
+const char* sundog_devices_label(const sundog_devices* devices, size_t index) noexcept {
   return index < sundog_devices_count(devices) ? devices->list[index].label.c_str() : nullptr;
 }
 
-const char* sundog_devices_problem(const sundog_devices* devices, size_t index) {
+const char* sundog_devices_problem(const sundog_devices* devices, size_t index) noexcept {
   return index < sundog_devices_count(devices) ? devices->list[index].problem.c_str() : nullptr;
 }
 
-void sundog_devices_free(sundog_devices* devices) { delete devices; }
+void sundog_devices_free(sundog_devices* devices) noexcept { delete devices; }
 
-sundog_status sundog_render(const sundog_scene* scene, const sundog_options* options, sundog_film** film) {
+sundog_status sundog_render(const sundog_scene* scene, const sundog_options* options,
+                            sundog_film** film) noexcept {
   return guarded([&]() -> sundog_status {
     sundog_film*& result = wanted(film, "film");
     std::stop_source stop;
@@ -201,10 +238,10 @@ sundog_status sundog_render(const sundog_scene* scene, const sundog_options* opt
   });
 }
 
-int sundog_film_complete(const sundog_film* film) { return film && film->film.complete() ? 1 : 0; }
+int sundog_film_complete(const sundog_film* film) noexcept { return film && film->film.complete() ? 1 : 0; }
 
 sundog_status sundog_film_pixels(const sundog_film* film, const char* aov, const float** pixels, int* width,
-                                 int* height, int* channels) {
+                                 int* height, int* channels) noexcept {
   return guarded([&] {
     const std::string name = aov ? aov : "";
     const auto& images = wanted(film, "film").images;
@@ -218,25 +255,26 @@ sundog_status sundog_film_pixels(const sundog_film* film, const char* aov, const
   });
 }
 
-sundog_status sundog_film_save(const sundog_film* film, const char* file) {
+sundog_status sundog_film_save(const sundog_film* film, const char* file) noexcept {
   return guarded([&] { wanted(film, "film").film.save(&wanted(file, "file")); });
 }
 
-void sundog_film_free(sundog_film* film) { delete film; }
+void sundog_film_free(sundog_film* film) noexcept { delete film; }
 
-sundog_status sundog_session_open(const sundog_devices* devices, sundog_session** session) {
+sundog_status sundog_session_open(const sundog_devices* devices, sundog_session** session) noexcept {
   return made(session, "session", [&] { return Session(devices ? devices->list : std::vector<Device>()); });
 }
 
-sundog_status sundog_session_start(sundog_session* session, const sundog_scene* scene) {
+sundog_status sundog_session_start(sundog_session* session, const sundog_scene* scene) noexcept {
   return guarded([&] { wanted(session, "session").session.start(wanted(scene, "scene").scene); });
 }
 
-sundog_status sundog_session_cancel(sundog_session* session) {
+sundog_status sundog_session_cancel(sundog_session* session) noexcept {
   return guarded([&] { wanted(session, "session").session.cancel(); });
 }
 
-sundog_status sundog_session_wait(const sundog_session* session, double seconds, sundog_state* state) {
+sundog_status sundog_session_wait(const sundog_session* session, double seconds,
+                                  sundog_state* state) noexcept {
   return guarded([&] {
     const Session& waiting = wanted(session, "session").session;
     if (seconds < 0)
@@ -250,7 +288,7 @@ sundog_status sundog_session_wait(const sundog_session* session, double seconds,
 }
 
 sundog_status sundog_session_picture(const sundog_session* session, float* pixels, size_t capacity,
-                                     int* width, int* height) {
+                                     int* width, int* height) noexcept {
   return guarded([&] {
     const Image picture = wanted(session, "session").session.snapshot().picture;
     wanted(width, "width") = picture.width();
@@ -263,4 +301,4 @@ sundog_status sundog_session_picture(const sundog_session* session, float* pixel
   });
 }
 
-void sundog_session_free(sundog_session* session) { delete session; }
+void sundog_session_free(sundog_session* session) noexcept { delete session; }

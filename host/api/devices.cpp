@@ -75,5 +75,10 @@ int tile_of(int tile) {
   return tile;
 }
 
+double seconds_of(const char* name, double seconds) {
+  if (!(seconds >= 0)) throw core::UsageError(std::string(name) + ": wanted seconds, 0 or more");
+  return seconds;
+}
+
 }  // namespace v0
 }  // namespace sundog

@@ -10,10 +10,14 @@ static_assert(SUNDOG_VERSION_MAJOR == SUNDOG_BUILT_MAJOR && SUNDOG_VERSION_MINOR
                   SUNDOG_VERSION_PATCH == SUNDOG_BUILT_PATCH,
               "CMakeLists.txt and include/sundog/version.h name different versions");
 
-std::string version() {
-  return std::to_string(SUNDOG_VERSION_MAJOR) + "." + std::to_string(SUNDOG_VERSION_MINOR) + "." +
-         std::to_string(SUNDOG_VERSION_PATCH);
+#define SUNDOG_TEXT_OF(number) #number
+#define SUNDOG_VERSION_OF(major, minor, patch) \
+  SUNDOG_TEXT_OF(major) "." SUNDOG_TEXT_OF(minor) "." SUNDOG_TEXT_OF(patch)
+const char* version_text() noexcept {
+  return SUNDOG_VERSION_OF(SUNDOG_VERSION_MAJOR, SUNDOG_VERSION_MINOR, SUNDOG_VERSION_PATCH);
 }
+
+std::string version() { return version_text(); }
 
 Error::Error(ErrorKind kind, const std::string& what, ErrorFacts facts)
     : std::runtime_error(what), kind_(kind), facts_(std::move(facts)) {

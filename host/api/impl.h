@@ -14,6 +14,9 @@
 namespace sundog {
 inline namespace v0 {
 
+/// "0.1.0".
+const char* version_text() noexcept;
+
 /// Throws the exception in hand as an Error; those of a program's own callbacks as they are.
 [[noreturn]] void throw_public();
 
@@ -76,6 +79,9 @@ core::WorkGroup group_of(const WorkGroup& group);
 
 /// Throws UsageError for less than 0.
 int tile_of(int tile);
+
+/// Throws UsageError, which names them, for less than 0 and for what is no number.
+double seconds_of(const char* name, double seconds);
 
 }  // namespace v0
 }  // namespace sundog

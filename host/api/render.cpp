@@ -120,8 +120,8 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   wanted.work_group = group_of(options.work_group);
   wanted.tile = tile_of(options.tile);
   wanted.aovs = options.aovs;
-  wanted.time_limit = options.time_limit;
-  wanted.picture_seconds = options.picture_seconds;
+  wanted.time_limit = seconds_of("the time limit", options.time_limit);
+  wanted.picture_seconds = seconds_of("the time between pictures", options.picture_seconds);
   wanted.tuning = [flat](const core::DeviceInfo& device) { return sundog::saved_tuning(device, *flat); };
   callbacks.install(wanted);
   film->result = core::render(flat, devices, wanted);

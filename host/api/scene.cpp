@@ -27,6 +27,21 @@ auto at(std::string_view pointer, const F& f) {
   }
 }
 
+/// Whether a value can be set there: an index is that of a row, or of the next one.
+bool has_room(const json& document, json::json_pointer place) {
+  for (std::size_t depth = 0; !place.empty(); place = place.parent_pointer()) {
+    if (++depth > sundog::max_json_depth) return false;
+    const json::json_pointer around = place.parent_pointer();
+    const json* parent = document.contains(around) ? &document.at(around) : nullptr;
+    if (parent && parent->is_object()) continue;
+    const std::string& key = place.back();
+    const bool index = !key.empty() && key.find_first_not_of("0123456789") == std::string::npos;
+    const std::size_t rows = parent && parent->is_array() ? parent->size() : 0;
+    if (index && (key.size() > 9 || std::stoul(key) > rows)) return false;
+  }
+  return true;
+}
+
 core::LoadOptions options_of(const LoadOptions& options) {
   core::LoadOptions result;
   result.frame = options.frame;
@@ -122,7 +137,11 @@ Scene& Scene::set(std::string_view pointer, std::string_view text) {
     fail_at(pointer, "wanted JSON, found " + std::string(text.substr(0, 40)) + ": " + error.reason);
   }
   json changed = impl_->document;
-  at(pointer, [&](const json::json_pointer& place) { changed[place] = std::move(value); });
+  at(pointer, [&](const json::json_pointer& place) {
+    if (!has_room(changed, place))
+      fail_at(pointer, "wanted a place in the document, or behind an array's last row");
+    changed[place] = std::move(value);
+  });
   impl_->document = std::move(changed);
   return *this;
 }

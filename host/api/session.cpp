@@ -37,7 +37,7 @@ std::uint64_t Session::start(const Scene& scene, const SessionOptions& options) 
                                {.file = {}, .aovs = {}, .passes = true});
     core::SessionSettings settings;
     settings.coarse = options.coarse;
-    settings.patience = options.patience;
+    settings.patience = seconds_of("patience", options.patience);
     settings.work_group = group_of(options.work_group);
     settings.tile = tile_of(options.tile);
     const std::lock_guard lock(impl_->mutex);

@@ -38,8 +38,8 @@ struct RenderOptions {
   int tile = 0;            ///< edge in pixels, 0: chosen by measured speed
   double time_limit = 0;   ///< seconds, after which the film so far is returned; 0: none
   std::stop_token stop{};  ///< a request from any thread: render() returns the film so far
-  /// Called by one thread at a time, not the caller's, some times a second. What it throws ends the render
-  /// and is thrown by render().
+  /// Called by one thread at a time, the caller's or another, some times a second, also before the first
+  /// tile is made. What it throws ends the render and is thrown by render().
   std::function<void(const Progress&)> on_progress{};
   /// The picture so far, every `picture_seconds`; as on_progress.
   std::function<void(const Image&)> on_picture{};

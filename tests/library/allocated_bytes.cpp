@@ -1,23 +1,62 @@
 // See allocated_bytes.h: the program's own operators, which the library calls too.
 #include "allocated_bytes.h"
 
+#include <malloc.h>
+
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <limits>
 #include <new>
 
 namespace {
 
-std::atomic<std::size_t> allocated{0};
+std::atomic<std::size_t> allocated{0}, held_now{0}, most_held{0};
+
+/// What this thread is refused.
+struct Refusal {
+  std::size_t size = std::numeric_limits<std::size_t>::max();
+  int allowed = 0;
+  bool failed = false;
+};
+thread_local Refusal refusal;
+
+void note(void* memory, std::size_t size) {
+  allocated += size;
+  const std::size_t held = held_now += ::malloc_usable_size(memory);
+  std::size_t most = most_held;
+  while (held > most && !most_held.compare_exchange_weak(most, held)) continue;
+}
+
+void give_back(void* memory) {
+  held_now -= ::malloc_usable_size(memory);
+  std::free(memory);
+}
 
 }  // namespace
 
-AllocatedBytes::AllocatedBytes() : before_(allocated) {}
+AllocatedBytes::AllocatedBytes() : before_(allocated), held_before_(held_now) { most_held = held_before_; }
 std::size_t AllocatedBytes::count() const { return allocated - before_; }
+std::size_t AllocatedBytes::held() const {
+  return std::max<std::size_t>(held_now, held_before_) - held_before_;
+}
+std::size_t AllocatedBytes::most() const { return most_held - held_before_; }
+
+LargeAllocationsFail::LargeAllocationsFail(std::size_t size, int allowed) {
+  refusal = {size, allowed, false};
+}
+LargeAllocationsFail::~LargeAllocationsFail() { refusal.size = std::numeric_limits<std::size_t>::max(); }
+bool LargeAllocationsFail::failed() { return refusal.failed; }
 
 [[gnu::noinline]] void* operator new(std::size_t size) {
-  allocated += size;
-  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
-  throw std::bad_alloc();
+  if (size >= refusal.size && --refusal.allowed < 0) {
+    refusal.failed = true;
+    throw std::bad_alloc();
+  }
+  void* memory = std::malloc(size > 0 ? size : 1);
+  if (!memory) throw std::bad_alloc();
+  note(memory, size);
+  return memory;
 }
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { give_back(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { give_back(memory); }

@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "allocated_bytes.h"
 #include "file_bytes.h"
 #include "library_testing.h"
 #include "temporary_folder.h"
@@ -107,6 +108,111 @@ TEST_CASE("no exception crosses the C interface, a callback's neither") {
   sundog_scene_free(scene);
 }
 
+namespace {
+
+/// call() while one allocation after the other fails, until none of them does.
+template <class F>
+void without_memory(const char* name, const F& call) {
+  CAPTURE(name);
+  bool failed = true;
+  for (int allowed = 0; failed; ++allowed) {
+    CAPTURE(allowed);
+    sundog_status status = SUNDOG_OK;
+    {
+      const LargeAllocationsFail fail(1u << 16, allowed);
+      status = call();
+      failed = LargeAllocationsFail::failed();
+    }
+    CHECK(status == (failed ? SUNDOG_INTERNAL : SUNDOG_OK));
+    CHECK((failed || allowed > 0));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a want of memory is a status of C, whatever takes the memory") {
+  const std::string comment(200'000, 'x'), quoted = '"' + comment + '"',
+                                           document = R"({"comment": )" + quoted + "}";
+  std::vector<float> positions(90'000);
+  std::vector<std::uint32_t> triangles(90'000);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    positions[i] = static_cast<float>(i % 100);
+    triangles[i] = static_cast<std::uint32_t>(i / 3);
+  }
+  without_memory("sundog_scene_from_json", [&] {
+    sundog_scene* made = nullptr;
+    const sundog_status status = sundog_scene_from_json(document.c_str(), nullptr, &made);
+    sundog_scene_free(made);
+    return status;
+  });
+  sundog_scene* scene = scene_of(text);
+  without_memory("sundog_scene_set", [&] { return sundog_scene_set(scene, "/comment", quoted.c_str()); });
+  without_memory("sundog_scene_add_mesh", [&] {
+    return sundog_scene_add_mesh(scene, "m", positions.data(), 30'000, triangles.data(), 30'000, nullptr,
+                                 nullptr);
+  });
+  sundog_scene_free(scene);
+  scene = scene_of(text);
+  CHECK(sundog_scene_set(scene, "/image/width", "600") == SUNDOG_OK);
+  sundog_devices* devices = c_device();
+  sundog_options options{};
+  options.devices = devices;
+  without_memory("sundog_render", [&] {
+    sundog_film* film = nullptr;
+    const sundog_status status = sundog_render(scene, &options, &film);
+    CHECK((film != nullptr) == (status == SUNDOG_OK));
+    sundog_film_free(film);
+    return status;
+  });
+  sundog_devices_free(devices);
+  sundog_scene_free(scene);
+}
+
+TEST_CASE("a mesh that C keeps is let go of once, when nobody reads it any more") {
+  const std::vector<float> positions{-9, -9, 0, 9, -9, 0, 0, 9, 0};
+  const std::vector<std::uint32_t> triangles{0, 1, 2}, wrong{0, 1, 3};
+  int released = 0;
+  const auto hold = [&](sundog_scene* scene, const std::uint32_t* corners) {
+    return sundog_scene_hold_mesh(
+        scene, "wall", positions.data(), 3, corners, 1, nullptr, nullptr,
+        [](void* user) {
+          ++*static_cast<int*>(user);
+          throw std::logic_error("from C++");
+        },
+        &released);
+  };
+  sundog_scene* scene = scene_of(text);
+  CHECK(hold(scene, wrong.data()) == SUNDOG_USAGE);
+  CHECK(hold(nullptr, triangles.data()) == SUNDOG_USAGE);
+  CHECK(sundog_scene_hold_mesh(scene, "wall", nullptr, 3, triangles.data(), 1, nullptr, nullptr, nullptr,
+                               nullptr) == SUNDOG_USAGE);
+  CHECK(released == 0);
+  REQUIRE(hold(scene, triangles.data()) == SUNDOG_OK);
+  CHECK(sundog_scene_set(scene, "/objects/-", R"({"type": "mesh", "mesh": "wall", "material": "red"})") ==
+        SUNDOG_OK);
+  sundog_devices* devices = c_device();
+  sundog_session* session = nullptr;
+  REQUIRE(sundog_session_open(devices, &session) == SUNDOG_OK);
+  CHECK(sundog_session_start(session, scene) == SUNDOG_OK);
+  sundog_scene_free(scene);
+  CHECK(released == 0);  // the session draws it
+  sundog_state state = SUNDOG_IDLE;
+  CHECK(sundog_session_wait(session, -1, &state) == SUNDOG_OK);
+  std::vector<float> pixels(24 * 16 * 4);
+  int width = 0, height = 0;
+  CHECK(sundog_session_picture(session, pixels.data(), pixels.size(), &width, &height) == SUNDOG_OK);
+  CHECK(pixels[4 * (8 * 24 + 12)] == Approx(1));
+  sundog_session_free(session);
+  CHECK(released == 1);
+  scene = scene_of(text);
+  REQUIRE(hold(scene, triangles.data()) == SUNDOG_OK);
+  REQUIRE(hold(scene, triangles.data()) == SUNDOG_OK);  // takes the place of the one before
+  CHECK(released == 2);
+  sundog_scene_free(scene);
+  CHECK(released == 3);
+  sundog_devices_free(devices);
+}
+
 TEST_CASE("every function of C reports its errors") {
   sundog_scene* scene = nullptr;
   sundog_devices* devices = nullptr;
@@ -139,6 +245,7 @@ TEST_CASE("every function of C reports its errors") {
   CHECK(sundog_session_wait(nullptr, 0, nullptr) == SUNDOG_USAGE);
   CHECK(sundog_session_picture(session, nullptr, 0, &size, &size) == SUNDOG_USAGE);
   scene = scene_of(text);
+  CHECK(sundog_scene_set(scene, "/objects/4000000000", "1") == SUNDOG_USAGE);
   CHECK(sundog_scene_set(scene, "camera", "1") == SUNDOG_USAGE);
   CHECK(sundog_scene_set(scene, nullptr, "1") == SUNDOG_USAGE);
   CHECK(sundog_scene_add_mesh(scene, "m", nullptr, 0, nullptr, 0, nullptr, nullptr) == SUNDOG_USAGE);

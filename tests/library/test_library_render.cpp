@@ -2,6 +2,7 @@
 #include <atomic>
 #include <chrono>
 #include <fstream>
+#include <limits>
 #include <stdexcept>
 #include <thread>
 
@@ -99,6 +100,20 @@ TEST_CASE("progress and pictures come while a frame is made, and end with it") {
   CHECK(pictures > 0);
 }
 
+TEST_CASE("progress is reported before the first tile is made, and a callback can end the render there") {
+  sundog::Scene scene = long_scene();
+  scene.set_samples(65536);
+  sundog::RenderOptions options{.devices = test_device(), .tile = 1024};
+  int calls = 0;
+  options.on_progress = [&](const sundog::Progress& now) {
+    CHECK(now.pixels_done == 0);
+    CHECK(now.pixels_total == 1024u * 768);
+    if (++calls == 3) throw std::out_of_range("the program's own");
+  };
+  CHECK_THROWS_AS(sundog::render(scene, options), std::out_of_range);
+  CHECK(calls == 3);
+}
+
 TEST_CASE("a render that is stopped from another thread returns what it has") {
   std::stop_source source;
   std::atomic<bool> begun{false};
@@ -152,6 +167,10 @@ TEST_CASE("errors of a render have their kind") {
   CHECK(kind_of({.devices = test_device(), .aovs = {"colour"}}) == ErrorKind::usage);
   CHECK(kind_of({.devices = test_device(), .work_group = {.x = 8, .y = 0}}) == ErrorKind::usage);
   CHECK(kind_of({.devices = test_device(), .tile = -1}) == ErrorKind::usage);
+  for (const double seconds : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    CHECK(kind_of({.devices = test_device(), .time_limit = seconds}) == ErrorKind::usage);
+    CHECK(kind_of({.devices = test_device(), .picture_seconds = seconds}) == ErrorKind::usage);
+  }
   CHECK(kind_of({.devices = {sundog::Device{}}}) == ErrorKind::usage);
   sundog::Device broken = test_device().at(0);
   broken.usable = false;
@@ -164,6 +183,22 @@ TEST_CASE("errors of a render have their kind") {
   CHECK(error_of([&] { film.save(folder / "a.gif"); }).kind() == ErrorKind::usage);
   CHECK(error_of([&] { film.save(folder / "none" / "a.png"); }).kind() == ErrorKind::io);
   CHECK(error_of([&] { sundog::Film().save(folder / "a.png"); }).kind() == ErrorKind::usage);
+}
+
+TEST_CASE("a kernel that does not build is an error with the compiler's log") {
+  const char* text =
+      R"({"image": {"width": 8, "height": 8}, "camera": {"position": [0, 0, 5], "target": [0, 0, 0]},
+    "materials": {"white": {}}, "objects": [{"type": "native", "material": "white", "code": "return no_such_function(p);",
+      "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}}]})";
+  const sundog::Scene scene = sundog::Scene::from_json(text, ".", {.native_code = true});
+  const sundog::Error error = error_of([&] { (void)sundog::render(scene, {.devices = test_device()}); });
+  CHECK(error.kind() == ErrorKind::build);
+  CAPTURE(error.what());
+  CHECK(error.log().find("no_such_function") != std::string::npos);
+  sundog::Session session(test_device());
+  session.start(scene);
+  CHECK(error_of([&] { (void)session.finish(); }).kind() == ErrorKind::device);
+  CHECK(session.snapshot().state == sundog::SessionState::failed);
 }
 
 TEST_CASE("a frame that takes more memory than there is is refused before anything is drawn") {

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <limits>
 
-#include "allocated_bytes.h"
 #include "library_testing.h"
 #include "temporary_folder.h"
 
@@ -51,6 +50,11 @@ TEST_CASE("pointers that lead nowhere are usage errors that name them") {
     CHECK(error_of([&] { scene.remove(pointer); }).kind() == ErrorKind::usage);
   }
   CHECK(error_of([&] { scene.set("/camera/fov/x", 1); }).kind() == ErrorKind::usage);
+  for (const char* pointer : {"/objects/3", "/objects/4000000000", "/objects/-/children/1", "/new/1"}) {
+    CAPTURE(pointer);
+    CHECK(error_of([&] { scene.set(pointer, 1); }).place() == pointer);
+  }
+  CHECK(small_scene().set("/objects/2", "{}").contains("/objects/2"));
   CHECK(error_of([&] { scene.set("/camera/fov", "thirty"); }).kind() == ErrorKind::usage);
   CHECK(error_of([&] { scene.remove(""); }).kind() == ErrorKind::usage);
   CHECK(scene.get("/camera/fov") == "40.0");
@@ -178,43 +182,6 @@ TEST_CASE("a mesh of spans that do not fit each other is refused, and nothing is
   CHECK(error_of([&] { (void)scene.check(); }).kind() == ErrorKind::scene);
   scene.add_mesh("solid", solid.view());
   CHECK(scene.check().empty());
-}
-
-TEST_CASE("a mesh that has an owner is held, not copied") {
-  constexpr std::size_t edge = 300;  // 1 MB of vertices, 2 MB of triangles
-  struct Grid {
-    std::vector<std::array<float, 3>> positions;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-  };
-  auto grid = std::make_shared<Grid>();
-  for (std::uint32_t i = 0; i < edge * edge; ++i) {
-    grid->positions.push_back({float(i % edge), float(i / edge), 0});
-    if (i % edge + 1 == edge || i / edge + 1 == edge) continue;
-    grid->triangles.push_back({i, i + 1, i + std::uint32_t(edge)});
-    grid->triangles.push_back({i + 1, i + std::uint32_t(edge) + 1, i + std::uint32_t(edge)});
-  }
-  sundog::MeshView view{.positions = grid->positions, .triangles = grid->triangles};
-  const std::size_t bytes = 12 * (grid->positions.size() + grid->triangles.size());
-  {
-    sundog::Scene scene = small_scene();
-    const auto added = [&] {
-      const AllocatedBytes allocated;
-      scene.add_mesh("grid", view);
-      return allocated.count();
-    };
-    CHECK(added() >= bytes);  // without an owner there is one copy
-    view.owner = grid;
-    CHECK(added() < bytes / 100);
-    scene.add_instance("grid", {.material = "red"});
-    const AllocatedBytes allocated;
-    CHECK(scene.check().empty());
-    const sundog::Scene copy = scene;
-    CHECK(copy.check().empty());
-    CHECK(allocated.count() < bytes / 10);
-    CHECK(grid.use_count() > 2);
-  }
-  view.owner = nullptr;
-  CHECK(grid.use_count() == 1);  // let go of
 }
 
 TEST_CASE("a mesh in memory and one of the document want two names") {

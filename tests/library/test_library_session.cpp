@@ -131,6 +131,7 @@ TEST_CASE("errors of a session have their kind, and leave it as it was") {
   CHECK(error_of([&] { session.start(small_scene(), {.work_group = {.x = 4, .y = 0}}); }).kind() ==
         ErrorKind::usage);
   CHECK(error_of([&] { session.start(small_scene(), {.tile = -1}); }).kind() == ErrorKind::usage);
+  CHECK(error_of([&] { session.start(small_scene(), {.patience = -1}); }).kind() == ErrorKind::usage);
   CHECK(session.finish().width() == 64);
   sundog::Session moved = std::move(session);
   CHECK(moved.snapshot().generation == 1);

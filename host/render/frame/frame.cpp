@@ -18,6 +18,9 @@ using Phase = Frame::Phase;
 constexpr double launch_grace = 0.15, stop_grace = 0.5, closing_grace = 10;
 constexpr double look_again = 0.02;
 
+// Progress is reported with each tile, and this often while tiles take longer.
+constexpr double progress_seconds = 0.1;
+
 // Below so many pixels, a tile for which resources do not suffice is not made smaller.
 constexpr std::uint64_t least_pixels = 1024;
 
@@ -29,8 +32,10 @@ void set_phase(Frame& frame, std::size_t i, Phase phase) {
   frame.changed.notify_all();
 }
 
+/// The caller holds the frame's mutex.
 void report_progress(Frame& frame) {
   if (!frame.options.on_progress) return;
+  frame.since_progress = Stopwatch();
   frame.options.on_progress(
       {frame.pixels_done, static_cast<std::uint64_t>(frame.film.done.size()), frame.clock.seconds()});
 }
@@ -83,6 +88,12 @@ void show_picture(Frame& frame) {
   }
   frame.options.on_picture(film.film);
   frame.since_picture = Stopwatch();
+}
+
+/// Tells how far the frame is while no tile is finished, so that a callback can end it.
+void show_progress(Frame& frame) {
+  const std::lock_guard lock(frame.mutex);
+  if (frame.since_progress.seconds() >= progress_seconds) report_progress(frame);
 }
 
 /// Ends the frame when its time is over.
@@ -215,6 +226,7 @@ void begin_work(Frame& frame, std::size_t i, const RenderTimes& times) {
 /// Waits until the frame is over, and retires servers that hang.
 void watch(Frame& frame) {
   while (!frame.queue.wait(look_again)) {
+    show_progress(frame);
     look_for_stop(frame);
     look_at_clock(frame);
     keep_checkpoint(frame);

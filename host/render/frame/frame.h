@@ -61,6 +61,7 @@ struct Frame : std::enable_shared_from_this<Frame> {
   std::uint64_t pixels_done = 0, pixels_kept = 0;  // the latter are in the checkpoint
   std::uint64_t key = 0;                           // the checkpoint's
   Stopwatch clock, since_checkpoint, since_picture;
+  Stopwatch since_progress;                        // was reported; guarded by the mutex
   std::function<void(std::size_t)> between_tiles;  // called by each server's thread, with its index
   bool live = false;                               // the servers' figures are kept up to date
   bool over = false;                               // the result is being gathered: nothing more goes in
