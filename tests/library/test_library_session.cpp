@@ -1,4 +1,5 @@
 // Sessions of the public interface.
+#include <chrono>
 #include <cmath>
 #include <thread>
 
@@ -100,6 +101,41 @@ TEST_CASE("a session is cancelled from another thread, and can be started again"
   CHECK(session.snapshot().picture.width() == 640);
   session.start(small_scene());
   CHECK(session.finish().width() == 64);
+}
+
+TEST_CASE(
+    "a storm of edits, cancels and questions from many threads ends with the picture of the last scene") {
+  sundog::Session session(test_device());
+  session.start(small_scene());
+  {
+    std::vector<std::jthread> threads;
+    for (int thread = 0; thread < 3; ++thread)
+      threads.emplace_back([&session, thread] {
+        sundog::Scene scene = small_scene();
+        for (int i = 0; i < 12; ++i) {
+          session.start(scene.set("/camera/fov", 20 + 5 * thread + i), {.patience = 0.01 * thread});
+          if (i % 3 == 1) session.cancel();
+          if (i % 4 == 2) session.wait_for(0.02);
+        }
+      });
+    threads.emplace_back([&session] {
+      for (int i = 0; i < 40; ++i) {
+        const sundog::Snapshot now = session.snapshot(i % 2 == 0);
+        session.wait_for_change(now.revision, 0.01);
+        if (i % 10 == 5) (void)session.pick(i, i);
+      }
+    });
+    threads.emplace_back([&session] {
+      for (int i = 0; i < 4; ++i) {
+        session.use_devices(test_device());
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      }
+    });
+  }
+  sundog::Scene last = small_scene();
+  last.set("/camera/fov", 33);
+  session.start(last);
+  CHECK(same_pixels(session.finish(), sundog::render(last, {.devices = test_device()}).image()));
 }
 
 TEST_CASE("a session names what a pixel shows") {

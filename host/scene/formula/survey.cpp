@@ -123,7 +123,7 @@ class Surveyor {
         outside.push_back(s);
     if (inside.empty() || outside.empty()) return;
     for (std::size_t i = 0; i < 48; ++i) {
-      const dvec3& from = outside[i * 7 % outside.size()].p;
+      const dvec3 from = outside[i * 7 % outside.size()].p;  // a copy: more are added below
       const dvec3 at = surface_between(inside[i % inside.size()], from);
       surface.push_back(at);
       for (const double away : {1e-4, 1e-3, 0.01, 0.05}) {  // and close by, where marches end
