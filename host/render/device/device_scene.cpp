@@ -20,7 +20,8 @@ constexpr std::size_t camera_media_words = 2;
 template <class T>
 bool same_rows(const SharedTable<T>& a, const SharedTable<T>& b) {
   if (a.shares(b)) return true;
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+  if (a.size() != b.size()) return false;
+  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
 /// Writes tables, which must fit into one allocation each, where the device has others.
