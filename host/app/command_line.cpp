@@ -168,6 +168,10 @@ void add_render(Arguments& root, Command& chosen) {
         "write rays, times and devices to this JSON file; -: the standard output");
   values(app, "--aov", "NAME", command.aovs,
          fmt::format("an extra image in the .exr: {}", fmt::join(aov_names(), ", ")));
+  app->add_flag("--denoise", command.denoise,
+                "take the noise out of the picture by Open Image Denoise, a library that is loaded for it");
+  app->add_flag("--metadata", command.metadata,
+                "write scene, settings, devices, version and time into the .png or .exr");
   value(app, "--resume", "FILE", command.resume,
         "checkpoint: written when interrupted, continued from when it is there");
   app->add_flag("--allow-native-code", command.native_code,

@@ -11,6 +11,10 @@ namespace sundog {
 
 /// 8 bits a channel, colours as sRGB, alpha as it is.
 std::string encode_png(const Image& image);
+/// The PNG with texts ahead of its pixels, each an iTXt chunk.
+std::string with_png_texts(std::string png, const ImageTexts& texts);
+/// Those of a file; none where it is no PNG.
+ImageTexts decode_png_texts(std::string_view bytes);
 /// Likewise, without alpha; colours in full resolution.
 std::string encode_jpeg(const Image& image);
 /// The exponent that makes a PNG's samples linear; none: sRGB.
@@ -25,8 +29,11 @@ std::string encode_pfm(const Image& image);
 Image decode_pfm(std::string_view bytes);
 
 /// Throws IoError only: there is nothing it refuses.
-std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color);
+std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color,
+                       const ImageTexts& texts = {});
 Image decode_exr(std::string_view bytes);
 AovImages decode_exr_aovs(std::string_view bytes);
+/// The header's attributes that are texts.
+ImageTexts decode_exr_texts(std::string_view bytes);
 
 }  // namespace sundog

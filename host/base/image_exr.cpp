@@ -6,6 +6,7 @@
 #include <ImfInputFile.h>
 #include <ImfIO.h>
 #include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
 
 #include <algorithm>
 #include <array>
@@ -104,6 +105,7 @@ class Reader {
     origin_ = window.min;
   }
 
+  const Imf::Header& header() const { return file_.header(); }
   const Imf::ChannelList& channels() const { return file_.header().channels(); }
   bool has(const std::string& name) const { return channels().findChannel(name) != nullptr; }
 
@@ -157,9 +159,14 @@ std::size_t greatest_size(const Imf::Header& header) {
 
 }  // namespace
 
-std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color) {
+std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color, const ImageTexts& texts) {
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
+  std::size_t text_bytes = 0;
+  for (const auto& [name, text] : texts) {
+    header.insert(name, Imf::StringAttribute(text));
+    text_bytes += name.size() + text.size() + 32;
+  }
   Imf::FrameBuffer buffer;
   const std::vector<half> halves = color == ExrColor::half ? halves_of(image) : std::vector<half>();
   const Suffixes names = {"R", "G", "B", "A"};
@@ -178,7 +185,7 @@ std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color
     }
   }
   std::string bytes;
-  bytes.reserve(greatest_size(header));  // a string that grows takes twice as much
+  bytes.reserve(greatest_size(header) + text_bytes);  // a string that grows takes twice as much
   MemoryOut out(bytes);
   {
     Imf::OutputFile file(out, header);
@@ -217,6 +224,16 @@ AovImages decode_exr_aovs(std::string_view bytes) {
     aovs[name] = reader.read(channels);
   }
   return aovs;
+}
+
+ImageTexts decode_exr_texts(std::string_view bytes) {
+  refuse_deep_and_parts(bytes);
+  const Reader reader(bytes);
+  ImageTexts texts;
+  for (auto found = reader.header().begin(); found != reader.header().end(); ++found)
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&found.attribute()))
+      texts.emplace_back(found.name(), text->value());
+  return texts;
 }
 
 }  // namespace sundog

@@ -85,15 +85,21 @@ bool has_eight_bits(const fs::path& path) {
   return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
 }
 
-std::string encode_image(const Image& image, const fs::path& path, const AovImages& aovs, ExrColor color) {
+bool keeps_texts(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".png" || extension == ".exr";
+}
+
+std::string encode_image(const Image& image, const fs::path& path, const AovImages& aovs, ExrColor color,
+                         const ImageTexts& texts) {
   check_image_path(path, !aovs.empty());
   const std::string extension = lower_extension(path);
   const auto encode = [&] {
-    if (extension == ".exr") return encode_exr(image, aovs, color);
+    if (extension == ".exr") return encode_exr(image, aovs, color, texts);
     if (extension == ".hdr") return encode_hdr(image);
     if (extension == ".pfm") return encode_pfm(image);
     if (extension == ".jpg" || extension == ".jpeg") return encode_jpeg(image);
-    return encode_png(image);
+    return with_png_texts(encode_png(image), texts);
   };
   try {
     return encode();
@@ -109,6 +115,12 @@ void write_image(const Image& image, const fs::path& path, const AovImages& aovs
 }
 
 Image read_image(const fs::path& path) { return read_named(path, decode); }
+
+ImageTexts read_texts(const fs::path& path) {
+  return read_named(path, [](std::string_view bytes) {
+    return is_exr(bytes) ? decode_exr_texts(bytes) : decode_png_texts(bytes);
+  });
+}
 
 AovImages read_aovs(const fs::path& path) {
   return read_named(

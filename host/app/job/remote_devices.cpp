@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "app/options/output_files.h"
 #include "app/process/environment.h"
 #include "app/process/standard_streams.h"
 #include "base/error.h"
@@ -43,7 +44,7 @@ json remote_settings(const RenderCommand& command, const DeviceInfo& device) {
           {"frame", command.frame ? json(*command.frame) : json()},
           {"native_code", command.native_code},
           {"outside_files", command.outside_files},
-          {"aovs", command.aovs},
+          {"aovs", made_aovs(command)},
           {"work_group", command.work_group},
           {"device", device},
           {"nice", false}};

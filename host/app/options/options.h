@@ -32,6 +32,8 @@ struct RenderCommand : PictureOptions {
   std::optional<double> frame;                        // the one of them that is rendered now
   std::string stats, resume;                          // files; empty: none
   std::vector<std::string> aovs;
+  bool denoise = false;        // the picture, when it is made
+  bool metadata = false;       // the file says what it is of, and what made it
   bool isolate = false;        // each device in a process of its own
   bool native_code = false;    // the scene may carry OpenCL C
   bool outside_files = false;  // the scene and its models may name files outside their folders

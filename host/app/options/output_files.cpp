@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "app/process/save_image.h"
@@ -34,6 +35,14 @@ bool holds_nothing(const std::string& name) {
 
 std::string format_name(const PictureOptions& picture) {
   return is_standard_stream(picture.out) ? "picture." + picture.format : picture.out;
+}
+
+std::vector<std::string> made_aovs(const RenderCommand& command) {
+  std::vector<std::string> aovs = command.aovs;
+  if (command.denoise)
+    for (const char* wanted : {"albedo", "normal"})
+      if (std::ranges::count(aovs, wanted) == 0) aovs.emplace_back(wanted);
+  return aovs;
 }
 
 void check_picture(const PictureOptions& picture, bool with_aovs) {

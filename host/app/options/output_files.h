@@ -11,6 +11,9 @@ namespace sundog {
 /// output.
 std::string format_name(const PictureOptions& picture);
 
+/// The AOVs that a frame makes: those asked for, and those that the denoiser wants.
+std::vector<std::string> made_aovs(const RenderCommand& command);
+
 /// Throws UsageError where the picture's name is of no format, or its format cannot hold what is asked, or
 /// the standard output is a terminal; IoError where the file could not be written.
 void check_picture(const PictureOptions& picture, bool with_aovs);

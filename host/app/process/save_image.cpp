@@ -21,7 +21,7 @@ void write(const Picture& picture, const fs::path& path) {
   const Image shown = shown_in(named(picture, path), picture.image, picture.tone_map);
   write_output(path,
                encode_image(shown, named(picture, path), picture.aovs,
-                            picture.full_floats ? ExrColor::full : ExrColor::half),
+                            picture.full_floats ? ExrColor::full : ExrColor::half, picture.texts),
                program_environment()->faults);
 }
 

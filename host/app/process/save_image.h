@@ -21,6 +21,7 @@ struct Picture {
   bool full_floats = false;
   std::string format = "png";  // of image_formats(), where the path is "-"
   ToneMap tone_map = {};       // for formats of 8 bits
+  ImageTexts texts = {};       // for formats that keep them
 };
 
 /// The channels that a file of this name keeps: 3, or 4 with coverage.

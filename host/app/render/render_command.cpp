@@ -23,6 +23,7 @@
 #include "app/process/standard_streams.h"
 #include "app/process/trace_halo_map.h"
 #include "app/process/warnings.h"
+#include "app/render/denoise.h"
 #include "app/render/render_result.h"
 #include "app/render/stats.h"
 #include "base/cache_folder.h"
@@ -55,6 +56,18 @@ void check_write_every(const RenderCommand& command) {
     throw UsageError(fmt::format("-o {}: --write-every wants an image file", command.out));
 }
 
+/// What is done to a whole picture, and words in its file.
+void check_extras(const RenderCommand& command) {
+  if (command.part && (command.denoise || command.metadata))
+    throw UsageError(
+        fmt::format("{}: a part of a frame is neither denoised nor described: leave --denoise, --metadata or "
+                    "--tiles out",
+                    command.out));
+  if (command.metadata && !keeps_texts(format_name(command)))
+    throw UsageError(fmt::format("{}: --metadata is for .png and .exr files", command.out));
+  if (command.denoise) static_cast<void>(Denoiser());
+}
+
 /// What would otherwise be found out after the render.
 void check_outputs(const RenderCommand& command) {
   if (command.part && !command.out.ends_with(".part"))
@@ -65,6 +78,7 @@ void check_outputs(const RenderCommand& command) {
   if (is_standard_stream(command.resume)) throw UsageError("--resume -: a checkpoint wants a file");
   check_output_files({command.out, command.stats, command.resume}, {command.scene});
   check_write_every(command);
+  check_extras(command);
   if (command.part)
     check_writable(command.out);
   else
@@ -99,7 +113,7 @@ RenderOptions render_options(const RenderCommand& command) {
   options.split = command.split;
   if (command.part) options.part = *command.part;
   options.tile = command.tile;
-  options.aovs = command.aovs;
+  options.aovs = made_aovs(command);
   options.channels = command.part ? 0 : image_channels(format_name(command));
   options.resume = command.resume;
   if (const char* seconds = std::getenv("SUNDOG_CHECKPOINT_EVERY"))
@@ -206,7 +220,7 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
 
   times.render = result.times;
   const Stopwatch writing;
-  save_result(command, *scene.flat, scene.description.image.tone_map, result, checkpoint);
+  save_result(command, scene.description, *scene.flat, result, checkpoint);
   times.write = writing.seconds();
   times.total = clock.seconds();
   if (!command.stats.empty()) {

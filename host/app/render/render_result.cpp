@@ -15,6 +15,8 @@
 #include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
 #include "app/process/warnings.h"
+#include "app/render/denoise.h"
+#include "app/render/metadata.h"
 #include "base/error.h"
 #include "base/image_io.h"
 #include "render/film/hash.h"
@@ -95,22 +97,42 @@ void summarise(const RenderCommand& command, const SceneDescription& scene, cons
              "memory of the frame", pixels * static_cast<double>(each) / (1 << 20), each);
 }
 
+/// The frame's picture, without its noise where that is asked for and the frame was not interrupted.
+Image shown_image(const RenderCommand& command, const RenderResult& result) {
+  Image image = result.image;
+  if (command.denoise && (result.complete || result.time_limited))
+    Denoiser().denoise(image, result.aovs.at("albedo"), result.aovs.at("normal"));
+  return image;
+}
+
+/// Without those that only the denoiser wanted.
+AovImages asked_aovs(const RenderCommand& command, const RenderResult& result) {
+  AovImages aovs;
+  for (const std::string& name : command.aovs) aovs[name] = result.aovs.at(name);
+  return aovs;
+}
+
 }  // namespace
 
 FrameOutput frame_output(const RenderCommand& command, bool passes) {
-  return {format_name(command), command.aovs, !command.resume.empty() || job_rank() >= 0, command.tile,
+  return {format_name(command), made_aovs(command), !command.resume.empty() || job_rank() >= 0, command.tile,
           passes};
 }
 
-void save_result(const RenderCommand& command, const CompiledScene& scene, const ToneMap& tone_map,
+void save_result(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
                  const RenderResult& result, const std::string& checkpoint) {
-  Picture picture{result.image, result.aovs,         result.film,    result.key,
-                  checkpoint,   command.full_floats, command.format, tone_map};
-  if (picture.key == 0) picture.key = hash_scene(scene);
+  const Image image = shown_image(command, result);
+  const AovImages aovs = asked_aovs(command, result);
+  Picture picture{image,      aovs,
+                  result.film, result.key,
+                  checkpoint, command.full_floats,
+                  command.format, scene.image.tone_map,
+                  command.metadata ? metadata(command, scene, result) : ImageTexts()};
+  if (picture.key == 0) picture.key = hash_scene(flat);
   if (!command.part)
     save_image(picture, command.out);
   else if (result.complete)
-    save_part(picture, {*command.part, picture.key, command.scene, settings_of(command, scene), command.aovs},
+    save_part(picture, {*command.part, picture.key, command.scene, settings_of(command, flat), command.aovs},
               command.out);
   if (!result.checkpoint_error.empty()) throw IoError(result.checkpoint_error);
   if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint);

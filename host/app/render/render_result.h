@@ -14,7 +14,7 @@ namespace sundog {
 FrameOutput frame_output(const RenderCommand& command, bool passes);
 
 /// Writes the image, whole or in part, and takes the checkpoint of a whole one away: not before it is safe.
-void save_result(const RenderCommand& command, const CompiledScene& scene, const ToneMap& tone_map,
+void save_result(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
                  const RenderResult& result, const std::string& checkpoint);
 
 /// Writes the picture as far as it is made; what fails is reported when the whole one is written.

@@ -1,0 +1,130 @@
+// See denoise.h. The functions are those of the library's C interface, of which versions 1 and 2 share all
+// that is used here but the name of one.
+#include "app/render/denoise.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+
+namespace sundog {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* file_names[] = {"libOpenImageDenoise.so.2", "libOpenImageDenoise.so.1"};
+constexpr int cpu_device = 1, three_floats = 3;  // OIDN_DEVICE_TYPE_CPU, OIDN_FORMAT_FLOAT3
+
+/// What may be the library, best first.
+std::vector<std::string> candidates() {
+  const char* named = std::getenv("SUNDOG_OIDN");
+  if (!named || !*named) return {std::begin(file_names), std::end(file_names)};
+  if (!fs::is_directory(named)) return {named};
+  std::vector<std::string> files;
+  for (const char* file : file_names) files.push_back((fs::path(named) / file).string());
+  return files;
+}
+
+void* load_library() {
+  std::string why;
+  for (const std::string& file : candidates()) {
+    if (void* library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) return library;
+    why = why.empty() ? ::dlerror() : why;
+  }
+  throw UsageError(
+      fmt::format("--denoise needs Intel's Open Image Denoise: {}. Get it from https://www.openimagedenoise.org, "
+                  "or with `pip install --target FOLDER pyoidn`, and set SUNDOG_OIDN to the folder of "
+                  "libOpenImageDenoise.so.2 (FOLDER/pyoidn/oidn/lib)",
+                  why));
+}
+
+}  // namespace
+
+struct Denoiser::Calls {
+  using Device = void*;
+  using Filter = void*;
+  Device (*new_device)(int type);
+  void (*commit_device)(Device);
+  int (*get_error)(Device, const char** message);
+  void (*release_device)(Device);
+  Filter (*new_filter)(Device, const char* type);
+  void (*set_image)(Filter, const char* name, void* pixels, int format, std::size_t width, std::size_t height,
+                    std::size_t offset, std::size_t pixel_stride, std::size_t row_stride);
+  void (*set_bool)(Filter, const char* name, bool value);
+  void (*commit_filter)(Filter);
+  void (*execute_filter)(Filter);
+  void (*release_filter)(Filter);
+
+  /// Throws what the library reports.
+  void check(Device device) const {
+    const char* message = nullptr;
+    if (get_error(device, &message) != 0)
+      throw std::runtime_error(fmt::format("Open Image Denoise: {}", message ? message : "unknown error"));
+  }
+};
+
+namespace {
+
+template <class Function>
+void find(void* library, const char* name, Function*& function, const char* other_name = nullptr) {
+  void* symbol = ::dlsym(library, name);
+  if (!symbol && other_name) symbol = ::dlsym(library, other_name);
+  if (!symbol)
+    throw UsageError(fmt::format("--denoise: the library that was loaded is no Open Image Denoise of version "
+                                 "1 or 2: it has no {}",
+                                 name));
+  function = reinterpret_cast<Function*>(symbol);
+}
+
+}  // namespace
+
+Denoiser::Denoiser() {
+  void* library = load_library();
+  auto calls = std::make_shared<Calls>();
+  find(library, "oidnNewDevice", calls->new_device);
+  find(library, "oidnCommitDevice", calls->commit_device);
+  find(library, "oidnGetDeviceError", calls->get_error);
+  find(library, "oidnReleaseDevice", calls->release_device);
+  find(library, "oidnNewFilter", calls->new_filter);
+  find(library, "oidnSetSharedFilterImage", calls->set_image);
+  find(library, "oidnSetFilterBool", calls->set_bool, "oidnSetFilter1b");
+  find(library, "oidnCommitFilter", calls->commit_filter);
+  find(library, "oidnExecuteFilter", calls->execute_filter);
+  find(library, "oidnReleaseFilter", calls->release_filter);
+  calls_ = std::move(calls);
+}
+
+void Denoiser::denoise(Image& image, const Image& albedo, const Image& normal) const {
+  const Calls& call = *calls_;
+  const std::shared_ptr<void> device(call.new_device(cpu_device), call.release_device);
+  if (!device) call.check(nullptr);
+  call.commit_device(device.get());
+  call.check(device.get());
+  const std::shared_ptr<void> filter(call.new_filter(device.get(), "RT"), call.release_filter);
+  const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
+  const auto channels = static_cast<std::size_t>(image.channels);
+  Image clean(image.width, image.height, 3);
+  const auto give = [&](const char* name, const Image& from) {  // only "output" is written to
+    call.set_image(filter.get(), name, const_cast<float*>(from.data.data()), three_floats, width, height, 0,
+                   sizeof(float) * static_cast<std::size_t>(from.channels), 0);
+  };
+  give("color", image);
+  give("albedo", albedo);
+  give("normal", normal);
+  give("output", clean);
+  call.set_bool(filter.get(), "hdr", true);
+  call.commit_filter(filter.get());
+  call.execute_filter(filter.get());
+  call.check(device.get());
+  for (std::size_t pixel = 0; pixel < width * height; ++pixel)
+    for (std::size_t c = 0; c < 3; ++c)
+      image.data[channels * pixel + c] = clean.data[3 * pixel + c];
+}
+
+}  // namespace sundog

@@ -1,0 +1,59 @@
+// See metadata.h.
+#include "app/render/metadata.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstdlib>
+#include <ctime>
+
+#include "app/options/output_files.h"
+#include "app/process/revision.h"
+
+namespace sundog {
+namespace {
+
+std::time_t time_of_picture() {
+  const char* set = std::getenv("SOURCE_DATE_EPOCH");
+  return set && *set ? static_cast<std::time_t>(std::strtoll(set, nullptr, 10)) : std::time(nullptr);
+}
+
+std::string settings_text(const RenderCommand& command, const SceneDescription& scene) {
+  std::string text = fmt::format("{}x{} pixels, samples {}, max_depth {}, integrator {}", scene.image.width,
+                                 scene.image.height, scene.render.samples, scene.render.max_depth,
+                                 scene.render.integrator);
+  if (command.frame) text += fmt::format(", frame {}", *command.frame);
+  if (command.denoise) text += ", denoised";
+  for (const std::string& setting : command.overrides) text += ", " + setting;
+  return text;
+}
+
+std::string devices_text(const RenderResult& result) {
+  std::vector<std::string> names;
+  for (const DeviceReport& report : result.devices)
+    if (report.pixels > 0)
+      names.push_back(fmt::format("{}/{} ({})", report.info.platform_name, report.info.name, report.info.driver));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+ImageTexts metadata(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result) {
+  const std::string program = fmt::format("sundog {} ({})", SUNDOG_VERSION, build_revision());
+  const std::string settings = settings_text(command, scene), devices = devices_text(result);
+  const std::tm utc = fmt::gmtime(time_of_picture());
+  if (drops_alpha(format_name(command)))  // PNG's registered keywords, and two more
+    return {{"Software", program},
+            {"Source", command.scene},
+            {"Settings", settings},
+            {"Device", devices},
+            {"Creation Time", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", utc)}};
+  return {{"software", program},
+          {"scene", command.scene},
+          {"settings", settings},
+          {"device", devices},
+          {"capDate", fmt::format("{:%Y:%m:%d %H:%M:%S}", utc)}};  // OpenEXR's standard attribute
+}
+
+}  // namespace sundog
