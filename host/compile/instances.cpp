@@ -150,6 +150,9 @@ class Placer {
     if (material.flags & (MATERIAL_TRANSMITS | MATERIAL_REFLECTS)) out_.features.secondary_rays = true;
     if (material.flags & (MATERIAL_TRANSMITS | MATERIAL_REFLECTS) && material.reflection.w > 0)
       out_.features.rough = true;
+    if (material.kind == MATERIAL_DIELECTRIC && material.flags & MATERIAL_TRANSMITS &&
+        material.reflection.w > 0)
+      out_.features.rough_glass = true;
     const float4& shines = material.emission;
     if (shines.x != 0 || shines.y != 0 || shines.z != 0) out_.features.emission = true;
     if (flags & INSTANCE_TRANSMITS) out_.features.media = true;

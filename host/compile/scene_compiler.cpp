@@ -91,12 +91,20 @@ void set_figures(CompiledScene& out) {
   figures.bytes = sizeof(SceneInfo) + table_bytes(out);
 }
 
-/// The same for all scenes; path tracing has gains too.
-const SharedTable<float>& lobe_energies(bool gains) {
-  static const SharedTable<float> energies(make_lobe_energy(false));
-  if (!gains) return energies;
-  static const SharedTable<float> with_gains(make_lobe_energy(true));
-  return with_gains;
+/// The same for all scenes; path tracing has gains too, rough glass a table more.
+const SharedTable<float>& lobe_energies(bool gains, bool glass) {
+  static const SharedTable<float> energies(make_lobe_energy(false, false));
+  if (!gains && !glass) return energies;
+  if (!glass) {
+    static const SharedTable<float> with_gains(make_lobe_energy(true, false));
+    return with_gains;
+  }
+  if (!gains) {
+    static const SharedTable<float> of_glass(make_lobe_energy(false, true));
+    return of_glass;
+  }
+  static const SharedTable<float> with_all(make_lobe_energy(true, true));
+  return with_all;
 }
 
 /// The lights as surfaces choose them, once it is known what shines.
@@ -218,7 +226,8 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   out.features.camera_inside = is_camera_inside(scene.camera.position - out.origin,
                                                 p.instances.made.instances.rows(), p.instances.boxes);
   finish_lights(scene, p.meshes.placed, out);
-  if (out.features.rough) out.lobe_energy = lobe_energies(traces_paths(out.integrator));
+  if (out.features.rough)
+    out.lobe_energy = lobe_energies(traces_paths(out.integrator), out.features.rough_glass);
   set_counts(out);
   set_figures(out);
   out.figures.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -24,6 +24,10 @@ SUNDOG_SHARED_BEGIN
 
 #define LOBE_STEPS 32u                        // of each table in lobe_energy, along each axis
 #define LOBE_GAINS (LOBE_STEPS * LOBE_STEPS)  // where the second begins
+#define LOBE_GLASS (2u * LOBE_GAINS)          // where the one of dielectrics begins
+#define GLASS_STEPS 20u                       // of that one along alpha and along the cosine
+#define GLASS_INDICES 10u                     // and along 1 - 1 / eta, from 0 to GLASS_REACH
+#define GLASS_REACH 0.75f
 
 // 144 bytes. Each colour is already multiplied by its coefficient.
 typedef struct Material {

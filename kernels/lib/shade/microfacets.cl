@@ -11,6 +11,7 @@
 
 typedef struct Microfacets {
   MASK rough, bends;  // has facets; they also transmit
+  MASK glass;         // of those that transmit the dielectrics
   REAL alpha, lambda_o;
   REAL gain;  // of the viewer's side: see microfacet_gain()
 } Microfacets;
@@ -33,10 +34,13 @@ static inline Microfacets make_microfacets(const Scene* scene, const Bsdfs* bsdf
   }
   facets.rough = split->branches & MASK_OF(facets.alpha >= LEAST_ALPHA);
   facets.bends = facets.rough & split->transmits & MASK_OF(split->eta != 1.0f);
+  facets.glass = rough_glass(scene, bsdf, facets.bends);
   if (!any_lane(facets.rough)) return facets;
   const REAL cosine = dot3(bsdf->ns, wo);
   facets.lambda_o = smith_lambda(cosine, facets.alpha);
   facets.gain = microfacet_gain(scene, cosine, facets.alpha, facets.rough & ~facets.bends);
+  const REAL of_glass = glass_value(scene, split->eta, cosine, facets.alpha, facets.glass);
+  facets.gain = select(facets.gain, of_glass, facets.glass);
   return facets;
 }
 
@@ -60,6 +64,27 @@ static inline REAL facet_reflects(const Microfacets* facets, const SpecularSplit
   const REAL part = r / real_max(r + t, (REAL)(1e-30f));
   return select((REAL)(1.0f), part, facets->bends);
 }
+
+// The gain of rough glass on the colour of what its facets send on, where each of `below` comes from behind.
+#if HAS_ROUGH_GLASS
+static inline void mend_glass_color(const Scene* scene, const Microfacets* facets,
+                                    const SpecularSplits* split, REAL eta, REAL cos_i, MASK lanes, MASK below,
+                                    REAL3* color) {
+  const MASK mends = lanes & facets->glass;
+  if (!any_lane(mends)) return;
+  const REAL of_light = glass_value(scene, select(eta, 1.0f / eta, below), fabs(cos_i), facets->alpha, mends);
+  const REAL share = select(split->f, 1.0f - split->f, below);
+  const REAL more = fma(facets->gain, of_light, (REAL)(-1.0f)) / real_max(share, (REAL)(1e-6f));
+  const REAL3 mended =
+      real3(color->x * fma(color->x, more, (REAL)(1.0f)), color->y * fma(color->y, more, (REAL)(1.0f)),
+            color->z * fma(color->z, more, (REAL)(1.0f)));
+  *color = select3(*color, mended, mends);
+}
+#else
+static inline void mend_glass_color(const Scene* scene, const Microfacets* facets,
+                                    const SpecularSplits* split, REAL eta, REAL cos_i, MASK lanes, MASK below,
+                                    REAL3* color) {}
+#endif
 
 // pi times the BSDF times the cosine of the facets of `lanes`, and the density of wi among the directions
 // that they send light from wo to. Behind an interface the density is that of directions there; the BSDF has
@@ -96,6 +121,7 @@ static inline REAL3 facet_scatter(const Scene* scene, const Bsdfs* bsdf, const M
                                color.z * fma(color.z, more, one));
     color = select3(color, mended, mends);
   }
+  mend_glass_color(scene, facets, &split, eta, cos_i, good, below, &color);
   return select3(all3((float3)(0.0f)), scale3(color, size), good);
 }
 

@@ -49,17 +49,74 @@ static inline REAL lobe_energy(const Scene* scene, REAL c, REAL alpha, MASK lane
   return lobe_energy_at(scene, 0u, c, alpha, lanes);
 }
 
+// Dielectrics that facets bend light at, among the surfaces of `lanes`, and the value of their table of
+// host/compile/lobe_energy.h, by the index behind over the one before, eta; 1 elsewhere.
+#if HAS_ROUGH_GLASS
+static inline MASK rough_glass(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
+  MASK glass = NO_LANES;
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(bsdf->material, &lanes, &index);
+    if (scene->materials[index].kind == MATERIAL_DIELECTRIC) glass |= mine;
+  }
+  return glass;
+}
+static inline float glass_cell(__global const float* at, float x, float y) {
+  const float low = mix(at[0], at[1], x), high = mix(at[GLASS_STEPS], at[GLASS_STEPS + 1u], x);
+  return mix(low, high, y);
+}
+static inline REAL glass_value(const Scene* scene, REAL eta, REAL c, REAL alpha, MASK lanes) {
+  REAL value = (REAL)(1.0f);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    const float e = REAL_LANE(eta, i), less = 1.0f - fmin(e, 1.0f / e);
+    const float z = clamp(less / GLASS_REACH, 0.0f, 1.0f) * (GLASS_INDICES - 1u);
+    const float x = clamp(REAL_LANE(c, i), 0.0f, 1.0f) * (GLASS_STEPS - 1u),
+                y = clamp(REAL_LANE(alpha, i), 0.0f, 1.0f) * (GLASS_STEPS - 1u);
+    const u32 x0 = min((u32)x, GLASS_STEPS - 2u), y0 = min((u32)y, GLASS_STEPS - 2u),
+              z0 = min((u32)z, GLASS_INDICES - 2u), side = e > 1.0f ? 0u : 1u;
+    __global const float* at =
+        scene->lobe_energy + LOBE_GLASS + ((z0 * 2u + side) * GLASS_STEPS + y0) * GLASS_STEPS + x0;
+    const float near = glass_cell(at, x - (float)x0, y - (float)y0),
+                far = glass_cell(at + 2u * GLASS_STEPS * GLASS_STEPS, x - (float)x0, y - (float)y0);
+    REAL_LANE(value, i) = mix(near, far, z - (float)z0);
+  }
+  return value;
+}
+#else
+static inline MASK rough_glass(const Scene* scene, const Bsdfs* bsdf, MASK lanes) { return NO_LANES; }
+static inline REAL glass_value(const Scene* scene, REAL eta, REAL c, REAL alpha, MASK lanes) {
+  return (REAL)(1.0f);
+}
+#endif
+
 // Facets of surfaces: what rays meet in place of the surface.
 typedef struct Facets {
-  MASK rough;
+  MASK rough, glass;  // glass: of those the dielectrics that bend light
   REAL alpha, lambda_o, energy;
   Bsdfs bsdf;  // the surface's, with the facet's normal where it is rough
 } Facets;
+
+// The energy of rough glass in place of a mirror's.
+#if HAS_ROUGH_GLASS
+static inline void mend_glass(const Scene* scene, const Bsdfs* bsdf, REAL cosine, Facets* facets) {
+  const MASK bends = facets->rough & MASK_OF((bsdf->flags & (int)MATERIAL_TRANSMITS) != 0) &
+                     MASK_OF((bsdf->flags & (int)MATERIAL_THIN) == 0);
+  const MASK glass = rough_glass(scene, bsdf, bends);
+  const REAL eta = index_behind(scene, bsdf, glass);
+  facets->glass = glass & MASK_OF(eta != 1.0f);
+  facets->energy =
+      select(facets->energy, glass_value(scene, eta, cosine, facets->alpha, facets->glass), facets->glass);
+}
+#else
+static inline void mend_glass(const Scene* scene, const Bsdfs* bsdf, REAL cosine, Facets* facets) {}
+#endif
 
 static inline Facets make_facets(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL u_x, REAL u_y,
                                  MASK lanes) {
   Facets facets;
   facets.alpha = (REAL)(0.0f);
+  facets.glass = NO_LANES;
   u32 index;
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(bsdf->material, &left, &index);
@@ -72,6 +129,7 @@ static inline Facets make_facets(const Scene* scene, const Bsdfs* bsdf, REAL3 wo
   facets.bsdf.ns = select3(bsdf->ns, visible_normal(bsdf->ns, wo, facets.alpha, u_x, u_y), facets.rough);
   facets.lambda_o = smith_lambda(cosine, facets.alpha);
   facets.energy = lobe_energy(scene, cosine, facets.alpha, facets.rough);
+  mend_glass(scene, bsdf, cosine, &facets);
   return facets;
 }
 

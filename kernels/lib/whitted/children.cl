@@ -47,9 +47,12 @@ static inline REAL3 transmitted_by(const Facets* facets, const SpecularSplits* s
   const REAL3 bent = refract_direction(negate3(wo), bsdf->ns, split->cos_i, split->cos_t, split->eta);
   return select3(transmitted_direction(bsdf, split, wo), bent, facets->rough & MASK_OF(split->eta != 1.0f));
 }
+// `share` is what Fresnel's equations make of glass's own `color`.
 static inline void weigh_by_facets(const Facets* facets, const Bsdfs* surface, REAL3 wi, float side,
-                                   REAL3 color, MASK mends, REAL3* throughput) {
-  *throughput = multiply3(*throughput, facet_weight(facets, surface, wi, side, color, mends));
+                                   REAL3 color, REAL share, MASK mends, REAL3* throughput) {
+  const REAL3 tint = scale3(color, 1.0f / real_max(share, (REAL)(1e-6f)));
+  const REAL3 own = select3(color, tint, facets->glass);
+  *throughput = multiply3(*throughput, facet_weight(facets, surface, wi, side, own, mends | facets->glass));
 }
 #else
 typedef struct Facets {
@@ -67,7 +70,7 @@ static inline REAL3 transmitted_by(const Facets* facets, const SpecularSplits* s
   return transmitted_direction(&facets->bsdf, split, wo);
 }
 static inline void weigh_by_facets(const Facets* facets, const Bsdfs* surface, REAL3 wi, float side,
-                                   REAL3 color, MASK mends, REAL3* throughput) {}
+                                   REAL3 color, REAL share, MASK mends, REAL3* throughput) {}
 #endif
 
 // The children of the surfaces of `lanes`: kr I(reflected) + kt I(transmitted).
@@ -91,7 +94,7 @@ static inline void spawn_children(const Scene* scene, const TileSamples* tile, c
   child.o = along3(leave_relief(s, child.d, &way), s->offset, leaving_normal(s));
   state.throughput = multiply3(paths->throughput, split.kr);
   const MASK simple = MASK_OF(split.kt.x + split.kt.y + split.kt.z == 0.0f) | ~split.transmits;
-  weigh_by_facets(&facets, surface, child.d, 1.0f, split.kr, simple, &state.throughput);
+  weigh_by_facets(&facets, surface, child.d, 1.0f, split.kr, split.f, simple, &state.throughput);
   start_branch(paths, 0u, &state);
   spawn(scene->info, stack, &child, &state, split.branches, COUNT_REFLECTION, counts);
 
@@ -100,7 +103,7 @@ static inline void spawn_children(const Scene* scene, const TileSamples* tile, c
   child.d = transmitted_by(&facets, &split, wo);
   child.o = along3(s->p, -s->offset, s->ng);
   state.throughput = multiply3(paths->throughput, split.kt);
-  weigh_by_facets(&facets, surface, child.d, -1.0f, split.kt, NO_LANES, &state.throughput);
+  weigh_by_facets(&facets, surface, child.d, -1.0f, split.kt, 1.0f - split.f, NO_LANES, &state.throughput);
   start_branch(paths, 1u, &state);
   start_on_hits(scene->info, &child, &met->hit, s->entering, split.transmits);
   enter_behind(met, rays, split.transmits, &child);
