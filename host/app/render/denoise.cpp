@@ -37,11 +37,11 @@ void* load_library() {
     if (void* library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) return library;
     why = why.empty() ? ::dlerror() : why;
   }
-  throw UsageError(
-      fmt::format("--denoise needs Intel's Open Image Denoise: {}. Get it from https://www.openimagedenoise.org, "
-                  "or with `pip install --target FOLDER pyoidn`, and set SUNDOG_OIDN to the folder of "
-                  "libOpenImageDenoise.so.2 (FOLDER/pyoidn/oidn/lib)",
-                  why));
+  throw UsageError(fmt::format(
+      "--denoise needs Intel's Open Image Denoise: {}. Get it from https://www.openimagedenoise.org, "
+      "or with `pip install --target FOLDER pyoidn`, and set SUNDOG_OIDN to the folder of "
+      "libOpenImageDenoise.so.2 (FOLDER/pyoidn/oidn/lib)",
+      why));
 }
 
 }  // namespace
@@ -76,9 +76,10 @@ void find(void* library, const char* name, Function*& function, const char* othe
   void* symbol = ::dlsym(library, name);
   if (!symbol && other_name) symbol = ::dlsym(library, other_name);
   if (!symbol)
-    throw UsageError(fmt::format("--denoise: the library that was loaded is no Open Image Denoise of version "
-                                 "1 or 2: it has no {}",
-                                 name));
+    throw UsageError(
+        fmt::format("--denoise: the library that was loaded is no Open Image Denoise of version "
+                    "1 or 2: it has no {}",
+                    name));
   function = reinterpret_cast<Function*>(symbol);
 }
 
@@ -123,8 +124,7 @@ void Denoiser::denoise(Image& image, const Image& albedo, const Image& normal) c
   call.execute_filter(filter.get());
   call.check(device.get());
   for (std::size_t pixel = 0; pixel < width * height; ++pixel)
-    for (std::size_t c = 0; c < 3; ++c)
-      image.data[channels * pixel + c] = clean.data[3 * pixel + c];
+    for (std::size_t c = 0; c < 3; ++c) image.data[channels * pixel + c] = clean.data[3 * pixel + c];
 }
 
 }  // namespace sundog

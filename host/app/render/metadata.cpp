@@ -20,9 +20,9 @@ std::time_t time_of_picture() {
 }
 
 std::string settings_text(const RenderCommand& command, const SceneDescription& scene) {
-  std::string text = fmt::format("{}x{} pixels, samples {}, max_depth {}, integrator {}", scene.image.width,
-                                 scene.image.height, scene.render.samples, scene.render.max_depth,
-                                 scene.render.integrator);
+  std::string text =
+      fmt::format("{}x{} pixels, samples {}, max_depth {}, integrator {}", scene.image.width,
+                  scene.image.height, scene.render.samples, scene.render.max_depth, scene.render.integrator);
   if (command.frame) text += fmt::format(", frame {}", *command.frame);
   if (command.denoise) text += ", denoised";
   for (const std::string& setting : command.overrides) text += ", " + setting;
@@ -33,7 +33,8 @@ std::string devices_text(const RenderResult& result) {
   std::vector<std::string> names;
   for (const DeviceReport& report : result.devices)
     if (report.pixels > 0)
-      names.push_back(fmt::format("{}/{} ({})", report.info.platform_name, report.info.name, report.info.driver));
+      names.push_back(
+          fmt::format("{}/{} ({})", report.info.platform_name, report.info.name, report.info.driver));
   return fmt::format("{}", fmt::join(names, ", "));
 }
 

@@ -123,10 +123,14 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
                  const RenderResult& result, const std::string& checkpoint) {
   const Image image = shown_image(command, result);
   const AovImages aovs = asked_aovs(command, result);
-  Picture picture{image,      aovs,
-                  result.film, result.key,
-                  checkpoint, command.full_floats,
-                  command.format, scene.image.tone_map,
+  Picture picture{image,
+                  aovs,
+                  result.film,
+                  result.key,
+                  checkpoint,
+                  command.full_floats,
+                  command.format,
+                  scene.image.tone_map,
                   command.metadata ? metadata(command, scene, result) : ImageTexts()};
   if (picture.key == 0) picture.key = hash_scene(flat);
   if (!command.part)
