@@ -94,14 +94,8 @@ void add_gains(std::vector<float>& table) {
   });
 }
 
-// Of dielectrics: the numbers of a facet along an axis, and of rounds of scaling.
-constexpr int glass_draws = 20, glass_rounds = 10;
-
-/// Light that comes from a direction on the viewer's side of an interface (0) or the other (1).
-struct Crossed {
-  u32 from_side;
-  double from, part;
-};
+// Of dielectrics: the numbers of a facet along an axis.
+constexpr int glass_draws = 20;
 
 /// Fresnel's reflectance at the cosine c; eta: the index behind over that before. `bent`: the cosine behind.
 double reflectance(double c, double eta, double& bent) {
@@ -112,69 +106,37 @@ double reflectance(double c, double eta, double& bent) {
   return (s * s + p * p) / 2;
 }
 
-std::vector<Crossed> crossed_to(double cosine, double alpha, double eta) {
+/// The part of light that a white interface's facets reflect or transmit to a viewer without a second
+/// meeting.
+double glass_energy(double cosine, double alpha, double eta) {
   const dvec3 wo(std::sqrt(1 - cosine * cosine), 0, cosine);
   const double seen = 1 + smith_lambda(cosine, alpha);
-  std::vector<Crossed> crossed;
+  double sum = 0;
   for (int i = 0; i < glass_draws; ++i)
     for (int j = 0; j < glass_draws; ++j) {
       const dvec3 h = visible_normal(wo, alpha, (i + 0.5) / glass_draws, (j + 0.5) / glass_draws);
-      const double c = glm::dot(wo, h);
+      const double c = std::clamp(glm::dot(wo, h), 0.0, 1.0);
       double bent = 0;
-      const double f = reflectance(std::clamp(c, 0.0, 1.0), eta, bent);
+      const double f = reflectance(c, eta, bent);
       const double out = (2 * c * h - wo).z, through = ((c / eta - bent) * h - wo / eta).z;
-      if (out > 0) crossed.push_back({0, out, f * seen / (seen + smith_lambda(out, alpha))});
-      if (f < 1 && through < 0)
-        crossed.push_back({1, -through, (1 - f) * seen / (seen + smith_lambda(through, alpha))});
+      if (out > 0) sum += f * seen / (seen + smith_lambda(out, alpha));
+      if (f < 1 && through < 0) sum += (1 - f) * seen / (seen + smith_lambda(through, alpha));
     }
-  return crossed;
+  return sum / (glass_draws * glass_draws);
 }
 
-using GlassRow = std::array<double, GLASS_STEPS>;
-using GlassSides = std::array<GlassRow, 2>;  // of the viewer in the thinner medium, and in the other
-
-double gain_at(const GlassRow& gains, double cosine) {
-  const double x = cosine * (GLASS_STEPS - 1);
-  const auto left = std::min(static_cast<std::size_t>(x), std::size_t{GLASS_STEPS - 2});
-  return std::lerp(gains[left], gains[left + 1], x - double(left));
-}
-
-/// The part of white light that an interface sends on, or the gains that make it all.
-GlassSides glass_rows(double alpha, double eta, bool gains) {
-  std::array<std::array<std::vector<Crossed>, GLASS_STEPS>, 2> crossed;
-  for (u32 side = 0; side < 2; ++side)
-    for (u32 column = 0; column < GLASS_STEPS; ++column)
-      crossed[side][column] =
-          crossed_to(std::max(double(column) / (GLASS_STEPS - 1), 0.01), alpha, side == 0 ? eta : 1 / eta);
-  GlassSides now;
-  now[0].fill(1), now[1].fill(1);
-  for (int round = 0; round < (gains ? glass_rounds : 1); ++round) {
-    GlassSides next;
-    for (u32 side = 0; side < 2; ++side)
-      for (u32 column = 0; column < GLASS_STEPS; ++column) {
-        double sum = 0;
-        for (const Crossed& one : crossed[side][column])
-          sum += one.part * gain_at(now[one.from_side == 0 ? side : 1 - side], one.from);
-        sum /= glass_draws * glass_draws;
-        next[side][column] = gains ? std::sqrt(now[side][column] / sum) : sum;
-      }
-    now = next;
-  }
-  return now;
-}
-
-void add_glass(bool gains, std::vector<float>& table) {
+void add_glass(std::vector<float>& table) {
   table.resize(LOBE_GLASS + GLASS_INDICES * 2 * GLASS_STEPS * GLASS_STEPS);
-  tbb::parallel_for(0u, GLASS_INDICES * GLASS_STEPS, [&](u32 i) {
-    const u32 index = i / GLASS_STEPS, row = i % GLASS_STEPS;
+  tbb::parallel_for(0u, GLASS_INDICES * 2 * GLASS_STEPS, [&](u32 i) {
+    const u32 index = i / (2 * GLASS_STEPS), side = i / GLASS_STEPS % 2, row = i % GLASS_STEPS;
     // Interfaces between equal indices are none: what is nearly so is computed a little beside.
     const double less = std::max(double(GLASS_REACH) * index / (GLASS_INDICES - 1), 1e-3);
-    const GlassSides rows = glass_rows(double(row) / (GLASS_STEPS - 1), 1 / (1 - less), gains);
-    for (u32 side = 0; side < 2; ++side)
-      std::ranges::copy(
-          rows[side],
-          table.begin() + static_cast<std::ptrdiff_t>(LOBE_GLASS + ((index * 2 + side) * GLASS_STEPS + row) *
-                                                                       GLASS_STEPS));
+    const double eta = side == 0 ? 1 / (1 - less) : 1 - less;
+    for (u32 column = 0; column < GLASS_STEPS; ++column) {
+      const double cosine = std::max(double(column) / (GLASS_STEPS - 1), 0.01);
+      table[LOBE_GLASS + i * GLASS_STEPS + column] =
+          static_cast<float>(glass_energy(cosine, double(row) / (GLASS_STEPS - 1), eta));
+    }
   });
 }
 
@@ -187,7 +149,7 @@ std::vector<float> make_lobe_energy(bool gains, bool glass) {
     for (u32 column = 0; column < LOBE_STEPS; ++column)
       table.push_back(static_cast<float>(energy(cosine_of(column), alpha_of(row))));
   if (gains) add_gains(table);
-  if (glass) add_glass(gains, table);
+  if (glass) add_glass(table);
   return table;
 }
 

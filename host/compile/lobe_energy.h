@@ -9,9 +9,10 @@ namespace sundog {
 /// `gains` as many values more: factors g(alpha, cosine) such that the BSDF times g of both its directions
 /// returns all light of a white surrounding. Being the same function for both directions it stays reciprocal,
 /// which a division by the energy of one is not. They are found as Sinkhorn and Knopp (1967) scale a
-/// symmetric matrix. With `glass` the table from LOBE_GLASS on for white dielectrics: by 1 - 1 / eta, side
-/// (the thinner medium's first), alpha and cosine; the energy that their facets reflect and transmit, or with
-/// `gains` factors as above: the étendue of both sides makes it symmetric again.
+/// symmetric matrix. With `glass` the table from LOBE_GLASS on for white dielectrics: by
+/// 1 - 1 / eta, side (the thinner medium's first), alpha and cosine the energy that facets reflect and
+/// transmit. Factors for both directions would be of no use there: they share light between the sides as
+/// they please, and reflections of rough glass get a twentieth of what is theirs.
 std::vector<float> make_lobe_energy(bool gains, bool glass);
 
 }  // namespace sundog

@@ -40,7 +40,7 @@ static inline Microfacets make_microfacets(const Scene* scene, const Bsdfs* bsdf
   facets.lambda_o = smith_lambda(cosine, facets.alpha);
   facets.gain = microfacet_gain(scene, cosine, facets.alpha, facets.rough & ~facets.bends);
   const REAL of_glass = glass_value(scene, split->eta, cosine, facets.alpha, facets.glass);
-  facets.gain = select(facets.gain, of_glass, facets.glass);
+  facets.gain = select(facets.gain, 1.0f / of_glass, facets.glass);
   return facets;
 }
 
@@ -65,24 +65,20 @@ static inline REAL facet_reflects(const Microfacets* facets, const SpecularSplit
   return select((REAL)(1.0f), part, facets->bends);
 }
 
-// The gain of rough glass on the colour of what its facets send on, where each of `below` comes from behind.
+// The gain of rough glass on the colour of what its facets send on, `below` from behind (Turquin 2019: by the
+// viewer's direction alone, so it is not reciprocal; host/compile/lobe_energy.h says why).
 #if HAS_ROUGH_GLASS
-static inline void mend_glass_color(const Scene* scene, const Microfacets* facets,
-                                    const SpecularSplits* split, REAL eta, REAL cos_i, MASK lanes, MASK below,
+static inline void mend_glass_color(const Microfacets* facets, const SpecularSplits* split, MASK below,
                                     REAL3* color) {
-  const MASK mends = lanes & facets->glass;
-  if (!any_lane(mends)) return;
-  const REAL of_light = glass_value(scene, select(eta, 1.0f / eta, below), fabs(cos_i), facets->alpha, mends);
   const REAL share = select(split->f, 1.0f - split->f, below);
-  const REAL more = fma(facets->gain, of_light, (REAL)(-1.0f)) / real_max(share, (REAL)(1e-6f));
+  const REAL more = (facets->gain - 1.0f) / real_max(share, (REAL)(1e-6f));
   const REAL3 mended =
       real3(color->x * fma(color->x, more, (REAL)(1.0f)), color->y * fma(color->y, more, (REAL)(1.0f)),
             color->z * fma(color->z, more, (REAL)(1.0f)));
-  *color = select3(*color, mended, mends);
+  *color = select3(*color, mended, facets->glass);
 }
 #else
-static inline void mend_glass_color(const Scene* scene, const Microfacets* facets,
-                                    const SpecularSplits* split, REAL eta, REAL cos_i, MASK lanes, MASK below,
+static inline void mend_glass_color(const Microfacets* facets, const SpecularSplits* split, MASK below,
                                     REAL3* color) {}
 #endif
 
@@ -121,7 +117,7 @@ static inline REAL3 facet_scatter(const Scene* scene, const Bsdfs* bsdf, const M
                                color.z * fma(color.z, more, one));
     color = select3(color, mended, mends);
   }
-  mend_glass_color(scene, facets, &split, eta, cos_i, good, below, &color);
+  mend_glass_color(facets, &split, below, &color);
   return select3(all3((float3)(0.0f)), scale3(color, size), good);
 }
 

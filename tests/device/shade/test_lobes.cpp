@@ -63,14 +63,15 @@ struct Lobe {
 
 class Tester {
  public:
-  explicit Tester(const DeviceInfo& info)
+  /// `mends`: rough glass gets back what is lost between its facets.
+  explicit Tester(const DeviceInfo& info, bool mends = true)
       : device_(info),
         kernel_(build_text(device_, lobe_kernel,
                            {{"TILE_W", "1"},
                             {"TILE_H", "1"},
                             {"LANES", "1"},
                             {"WIDE_VECTORS", "0"},
-                            {"HAS_ROUGH_GLASS", "1"}})
+                            {"HAS_ROUGH_GLASS", mends ? "1" : "0"}})
                     .kernel<Buffer<Material>, Buffer<Medium>, Buffer<float>, Buffer<float4>, Buffer<float>,
                             float4, u32>("run")),
         energy_(device_.upload<float>(make_lobe_energy(true, true))) {}
@@ -235,7 +236,7 @@ TEST_CASE("light takes the same way through rough surfaces in both directions") 
   const dvec3 o = at_cosine(0.8), above = on_sphere(0.35, 0.1), below = on_sphere(-0.7, 0.05);
   const double index = 1.5;
   on_every_device([&](const DeviceInfo& info) {
-    Tester tester(info);
+    Tester tester(info, false);  // glass is mended for the viewer
     const auto value = [&](const Material& material, const dvec3& wo, const dvec3& wi) {
       return tester.look(material, index, wo, {wi})[0].value.x / std::abs(wi.z);
     };
