@@ -43,6 +43,7 @@ struct SUNDOG_LOCAL Film::Impl {
   core::ToneMap tone_map;
   Image image;
   std::map<std::string, Image> aovs;
+  sundog::ImageTexts texts;  // of an EXR's header
   Figures figures;
   std::vector<std::string> warnings;
 };

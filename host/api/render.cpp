@@ -128,6 +128,10 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   film->tone_map = description->image.tone_map;
   film->figures = figures_of(film->result, compile_seconds);
   film->image = share(std::move(film->result.image));
+  std::vector<std::string> objects, materials;
+  for (const auto& object : description->objects) objects.push_back(object.name);
+  for (const auto& material : description->materials) materials.push_back(material.name);
+  film->texts = sundog::name_cryptomattes(film->result.aovs, objects, materials);
   for (auto& [name, image] : film->result.aovs) film->aovs.emplace(name, share(std::move(image)));
   return film;
 }
@@ -193,7 +197,9 @@ void Film::save(const std::filesystem::path& file) const {
     if (all)
       for (const auto& [name, image] : impl_->aovs) aovs.emplace(name, *image.impl()->image);
     const core::Image& image = *impl_->image.impl()->image;
-    if (all) return core::write_image(image, file, aovs);
+    if (all)
+      return sundog::write_file(file,
+                                core::encode_image(image, file, aovs, sundog::ExrColor::half, impl_->texts));
     core::Image colors = without_coverage(image);
     if (sundog::has_eight_bits(file)) core::apply(impl_->tone_map, colors);
     core::write_image(colors, file);

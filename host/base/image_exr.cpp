@@ -63,7 +63,8 @@ using Suffixes = std::vector<std::string>;
 /// How a layer's channels are called.
 Suffixes channel_suffixes(const std::string& aov, int channels) {
   if (channels == 1) return {aov == "depth" ? "Z" : "Y"};
-  const bool color = aov == "albedo" || channels == 4;
+  if (channels == 2) return {"U", "V"};
+  const bool color = aov == "albedo" || aov == "variance" || channels == 4;
   const Suffixes all = color ? Suffixes{"R", "G", "B", "A"} : Suffixes{"X", "Y", "Z"};
   return {all.begin(), all.begin() + channels};
 }
@@ -216,7 +217,7 @@ AovImages decode_exr_aovs(std::string_view bytes) {
     if (const auto dot = name.rfind('.'); dot != std::string::npos && dot > 0)
       layers[name.substr(0, dot)].push_back(name);
   }
-  constexpr std::string_view order = "RGBAXYZ";
+  constexpr std::string_view order = "RGBAXYZUV";
   AovImages aovs;
   for (auto& [name, channels] : layers) {
     std::ranges::sort(channels, {}, [&](const std::string& channel) { return order.find(channel.back()); });

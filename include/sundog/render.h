@@ -32,7 +32,8 @@ struct WorkGroup {
 struct RenderOptions {
   /// Where to render, all at once; empty: the one estimated fastest.
   std::vector<Device> devices{};
-  /// Further images: "depth", "normal", "position", "albedo", "object", "material".
+  /// Further images: "depth", "normal", "position", "albedo", "object", "material", "geometric_normal", "uv",
+  /// "march_steps", "samples", "variance" (of scenes made in passes), "crypto_object", "crypto_material".
   std::vector<std::string> aovs{};
   WorkGroup work_group{};  ///< of the kernels
   int tile = 0;            ///< edge in pixels, 0: chosen by measured speed
@@ -87,7 +88,8 @@ class SUNDOG_API Film {
   Image image() const;
   /// The image as `curve`, exposure and white balance of the scene show it.
   Image shown() const;
-  /// Of RenderOptions::aovs, with 1 channel (depth, object, material) or 3. Throws Error (usage) for another.
+  /// Of aovs(), with 1 channel (depth, object, material, march_steps, samples), 2 (uv), 4 (the layers
+  /// crypto_object00, crypto_object01 and so on of a Cryptomatte) or 3. Throws Error (usage) for another.
   Image aov(const std::string& name) const;
   /// The names that aov() takes.
   std::vector<std::string> aovs() const;

@@ -1,10 +1,108 @@
 // One stage: what the camera sees first, for the extra images: depth, normal, position, albedo, object and
-// material.
+// material; with ALL_AOVS also the geometric normal, steps of marching, coordinates, and which objects and
+// materials cover the pixel, each with its share.
 #include "lib/core/counters.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
 #include "lib/shade/relief.cl"
 #include "shared/launch.h"
+
+#ifndef ALL_AOVS
+#define ALL_AOVS 0
+#endif
+
+#if ALL_AOVS
+#define AOV_VECTORS 9u
+#define LOOKS_EDGE 4u  // rays a pixel, each way, that find what covers it
+#define LOOKS (LOOKS_EDGE * LOOKS_EDGE)
+#define RANKS 4u  // things a pixel that are kept, those that cover most of it first
+
+// Writes the RANKS of a lane's `ids` (-1: none), LOOKS of them, BATCH apart: (id, share) each, of equal
+// shares the smaller id first; (-1, 0) where there are no more.
+static inline void write_ranks(const int* ids, u32 lane, __global float* out) {
+  u32 last_count = LOOKS + 1u;
+  int last_id = -1;
+  for (u32 rank = 0; rank < RANKS; ++rank) {
+    u32 best_count = 0;
+    int best_id = -1;
+    for (u32 k = 0; k < LOOKS; ++k) {
+      const int id = ids[k * BATCH + lane];
+      u32 count = 0;
+      for (u32 j = 0; j < LOOKS; ++j) count += ids[j * BATCH + lane] == id ? 1u : 0u;
+      const bool fresh = count < last_count || (count == last_count && id > last_id);
+      if (id < 0 || !fresh || count < best_count || (count == best_count && id >= best_id)) continue;
+      best_count = count;
+      best_id = id;
+    }
+    out[2u * rank] = (float)best_id;
+    out[2u * rank + 1u] = (float)best_count / (float)LOOKS;
+    last_count = best_count;
+    last_id = best_id;
+    if (best_count == 0u) last_count = 0u;
+  }
+}
+
+// The steps that the ray of each lane alone marches.
+#if HAS_SDF
+static inline REAL steps_alone(const Scene* scene, const SceneRays* camera, MASK lanes) {
+  REAL steps = (REAL)(0.0f);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    u32 counts[COUNTERS];
+    for (u32 k = 0; k < COUNTERS; ++k) counts[k] = 0;
+    start_marching(counts);
+    SceneRays rays = *camera;
+    Encounters met;
+    SurfaceInteractions s;
+    next_surfaces(scene, &rays, lanes_of(1u << i), true, &met, counts);
+    REAL_LANE(steps, i) = (float)counts[COUNT_MARCH_STEPS];
+  }
+  return steps;
+}
+#else
+static inline REAL steps_alone(const Scene* scene, const SceneRays* camera, MASK lanes) {
+  return (REAL)(0.0f);
+}
+#endif
+
+// The vectors behind the first three, of the pixels about (x, y) whose first surfaces are `s`, where `hit`.
+NEVER_INLINE void write_more(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes, MASK hit,
+                             const SurfaceInteractions* s, u32* counts, __global float4* aovs) {
+  int objects[LOOKS * BATCH], materials[LOOKS * BATCH];
+  for (u32 k = 0; k < LOOKS; ++k) {
+    const float across = ((float)(k % LOOKS_EDGE) + 0.5f) / (float)LOOKS_EDGE - 0.5f,
+                down = ((float)(k / LOOKS_EDGE) + 0.5f) / (float)LOOKS_EDGE - 0.5f;
+    const Rays camera = camera_rays(scene->info, x + across, y + down);
+    SceneRays rays = scene_rays(&camera, stack);
+    Encounters met;
+    start_marching(counts);
+    next_surfaces(scene, &rays, lanes, true, &met, counts);
+    const MASK found = lanes & hit_anything(&met.hit);
+    for (u32 i = 0; i < BATCH; ++i) {
+      const bool seen = MASK_LANE(found, i) != 0;
+      objects[k * BATCH + i] = seen ? (int)scene->instances[MASK_LANE(met.hit.instance, i)].object : -1;
+      materials[k * BATCH + i] = seen ? (int)MASK_LANE(met.face.material, i) : -1;
+    }
+  }
+  const Rays camera = camera_rays(scene->info, x, y);
+  const SceneRays middle = scene_rays(&camera, stack);
+  const REAL steps = steps_alone(scene, &middle, lanes);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    __global float4* out = aovs + AOV_VECTORS * i;
+    const bool seen = MASK_LANE(hit, i) != 0;
+    const float3 ng = seen ? get3(&s->ng, i) : (float3)(0.0f);
+    out[3] = (float4)(ng, REAL_LANE(steps, i));
+    out[4] = (float4)(seen ? REAL_LANE(s->at.u, i) : 0.0f, seen ? REAL_LANE(s->at.v, i) : 0.0f, 0.0f, 0.0f);
+    write_ranks(objects, i, (__global float*)(out + 5));
+    write_ranks(materials, i, (__global float*)(out + 7));
+  }
+}
+#else
+#define AOV_VECTORS 3u
+static inline void write_more(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes, MASK hit,
+                              const SurfaceInteractions* s, u32* counts, __global float4* aovs) {}
+#endif
 
 // One work-item of the kernel below: the pixels from `first` on.
 NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* restrict camera_media,
@@ -42,7 +140,7 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
   const REAL depth = met.hit.t * dot3(rays.d, all3(scene->info->camera_forward.xyz));
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    __global float4* out = aovs + 3u * (first + i);
+    __global float4* out = aovs + AOV_VECTORS * (first + i);
     if (!MASK_LANE(hit, i)) {
       out[0] = (float4)(0.0f, 0.0f, 0.0f, INFINITY);
       out[1] = (float4)(0.0f, 0.0f, 0.0f, -1.0f);
@@ -53,14 +151,14 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
     out[1] = (float4)(get3(&world, i), (float)scene->instances[MASK_LANE(met.hit.instance, i)].object);
     out[2] = (float4)(get3(&bsdf.diffuse, i), (float)MASK_LANE(met.face.material, i));
   }
+  write_more(scene, stack, x, y, lanes, hit, &s, counts, aovs + AOV_VECTORS * first);
   add_finished(counters, lane_count(lanes), pixel_count);
 }
 
-// Reads the scene; writes three float4 a pixel of the rectangle (with `listed`, of the image's pixel that
-// `pixels` has for it), through the pixel's centre: (normal, depth
-// along the view), (position in the world, object), (albedo, material). Where nothing is seen depth is
-// infinite, object and material are -1, the rest is 0; adds the pixels finished to counters. A work-item
-// takes BATCH pixels in a row.
+// Reads the scene; writes AOV_VECTORS float4 a pixel of the rectangle (with `listed`, of the image's pixel
+// that `pixels` has for it), through the pixel's centre: (normal, depth along the view), (position in the
+// world, object), (albedo, material). Where nothing is seen depth is infinite, object and material are -1,
+// the rest is 0; adds the pixels finished to counters. A work-item takes BATCH pixels in a row.
 __kernel void first_surfaces(SCENE_PARAMETERS, __global const u32* restrict camera_media,
                              __global const u32* restrict pixels, __global float4* restrict aovs,
                              __global u32* restrict counters, u32 x0, u32 y0, u32 width, u32 pixel_count,

@@ -63,6 +63,9 @@ void check_extras(const RenderCommand& command) {
         fmt::format("{}: a part of a frame is neither denoised nor described: leave --denoise, --metadata or "
                     "--tiles out",
                     command.out));
+  for (const std::string& name : command.aovs)
+    if (command.part && (name.starts_with("crypto_") || name == "samples" || name == "variance"))
+      throw UsageError(fmt::format("--aov {}: wants a whole frame: leave --tiles out", name));
   if (command.metadata && !keeps_texts(format_name(command)))
     throw UsageError(fmt::format("{}: --metadata is for .png and .exr files", command.out));
   if (command.denoise) static_cast<void>(Denoiser());

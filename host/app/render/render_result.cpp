@@ -19,6 +19,7 @@
 #include "app/render/metadata.h"
 #include "base/error.h"
 #include "base/image_io.h"
+#include "render/film/cryptomatte.h"
 #include "render/film/hash.h"
 #include "render/film/part.h"
 #include "render/film/sampling_report.h"
@@ -105,6 +106,13 @@ Image shown_image(const RenderCommand& command, const RenderResult& result) {
   return image;
 }
 
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& things) {
+  std::vector<std::string> names;
+  for (const Named& thing : things) names.push_back(thing.name);
+  return names;
+}
+
 /// Without those that only the denoiser wanted.
 AovImages asked_aovs(const RenderCommand& command, const RenderResult& result) {
   AovImages aovs;
@@ -122,16 +130,15 @@ FrameOutput frame_output(const RenderCommand& command, bool passes) {
 void save_result(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
                  const RenderResult& result, const std::string& checkpoint) {
   const Image image = shown_image(command, result);
-  const AovImages aovs = asked_aovs(command, result);
-  Picture picture{image,
-                  aovs,
-                  result.film,
-                  result.key,
-                  checkpoint,
-                  command.full_floats,
-                  command.format,
-                  scene.image.tone_map,
-                  command.metadata ? metadata(command, scene, result) : ImageTexts()};
+  AovImages aovs = asked_aovs(command, result);
+  ImageTexts texts = name_cryptomattes(aovs, names_of(scene.objects), names_of(scene.materials));
+  if (command.metadata)
+    for (auto& text : metadata(command, scene, result)) texts.push_back(std::move(text));
+  Picture picture{image,          aovs,
+                  result.film,    result.key,
+                  checkpoint,     command.full_floats,
+                  command.format, scene.image.tone_map,
+                  texts};
   if (picture.key == 0) picture.key = hash_scene(flat);
   if (!command.part)
     save_image(picture, command.out);

@@ -21,10 +21,10 @@ void check_work_group(const DeviceInfo& device, std::size_t most, const WorkGrou
                     device.label(), group.x * group.y, most));
 }
 
-Program build(Device& device, const std::string& entry, FrameKernels& kernels, RenderTimes& times,
-              unsigned* built = nullptr) {
+Program build(Device& device, const std::string& entry, const KernelConfig& config, FrameKernels& kernels,
+              RenderTimes& times, unsigned* built = nullptr) {
   BuildReport report;
-  Program program = device.build(entry, kernels.config.defines, &report, kernels.config.generated);
+  Program program = device.build(entry, config.defines, &report, config.generated);
   times.cached = times.cached && report.cached;
   if (built) *built += !report.cached;
   if (!report.note.empty()) kernels.notes.push_back("no kernel cache: " + report.note);
@@ -50,7 +50,7 @@ void build_integrator(Device& device, const Integrator& integrator, FrameKernels
                       KernelUpdate& update) {
   kernels.integrator =
       scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
-          build(device, integrator.entry, kernels, times, &update.built), integrator.kernel);
+          build(device, integrator.entry, kernels.config, kernels, times, &update.built), integrator.kernel);
   kernels.entry = integrator.entry;
   kernels.first_surfaces = {};
   kernels.find_media = {};
@@ -121,10 +121,13 @@ void build_general_kernels(const Device& device, FrameKernels& kernels) {
 }
 
 void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& times) {
-  if (kernels.first_surfaces.kernel()) return;
+  if (kernels.first_surfaces.kernel() && kernels.has_all_aovs == kernels.wants_all_aovs) return;
+  KernelConfig config = kernels.config;
+  if (kernels.wants_all_aovs) config.defines["ALL_AOVS"] = config.defines["HAS_UV"] = "1";
+  kernels.has_all_aovs = kernels.wants_all_aovs;
   kernels.first_surfaces =
       scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>(
-          build(device, "entry/aov.cl", kernels, times), "first_surfaces");
+          build(device, "entry/aov.cl", config, kernels, times), "first_surfaces");
   limit_group(device.limits(kernels.first_surfaces).work_group, kernels.most_group);
 }
 

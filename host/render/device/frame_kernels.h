@@ -17,15 +17,16 @@ struct FrameKernels {
   DeviceScene tables;
   SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch> integrator;
   SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>
-      first_surfaces;                   // only with AOVs
-  SceneKernel<Buffer<u32>> find_media;  // only where the camera has been inside a solid
-  std::string entry;                    // of the integrator
-  bool camera_inside = false;           // tables.camera_media are not those of the outside
-  std::size_t most_group = 0;           // work-items that a group of theirs may have; 0: not known
-  std::vector<std::string> notes;       // why a cache could not be used
-  KernelBuilder* builder = nullptr;     // builds beside the work while other kernels draw; null: nobody does
-  std::vector<KernelConfig> known;      // that this device has built
-  KernelConfig general;                 // with a builder: those that stand in for the scene's
+      first_surfaces;                                 // only with AOVs
+  bool wants_all_aovs = false, has_all_aovs = false;  // of first_surfaces: all vectors of AOVs
+  SceneKernel<Buffer<u32>> find_media;                // only where the camera has been inside a solid
+  std::string entry;                                  // of the integrator
+  bool camera_inside = false;                         // tables.camera_media are not those of the outside
+  std::size_t most_group = 0;        // work-items that a group of theirs may have; 0: not known
+  std::vector<std::string> notes;    // why a cache could not be used
+  KernelBuilder* builder = nullptr;  // builds beside the work while other kernels draw; null: nobody does
+  std::vector<KernelConfig> known;   // that this device has built
+  KernelConfig general;              // with a builder: those that stand in for the scene's
 };
 
 /// Builds the integrator's kernel, with `aovs` that of the AOVs too, uploads the scene and finds out which

@@ -36,6 +36,7 @@ bool makes_aovs(const CompiledScene& scene, const RenderOptions& options) {
 FrameKernels kernels_with(const RenderOptions& options, KernelBuilder* builder) {
   FrameKernels none;
   none.builder = options.general_kernels ? builder : nullptr;
+  none.wants_all_aovs = aov_vectors(options.aovs) == all_aov_vectors;
   return none;
 }
 
@@ -72,6 +73,7 @@ void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions&
   asked_ = options.work_group;
   samples_ = scene.info.samples;
   kernels_.builder = options.general_kernels ? builder_ : nullptr;
+  kernels_.wants_all_aovs = aov_vectors(options.aovs) == all_aov_vectors;
   kernels_.notes.clear();
   update_ =
       update_frame_kernels(device_, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times);
@@ -110,9 +112,9 @@ void TileRenderer::launch_samples(const TileRequest& request, const StopFlags& f
 }
 
 void TileRenderer::launch_aovs(const TileRequest& request, const Tile& tile, std::vector<float4>& aovs) {
-  const std::size_t pixels = pixel_count(tile);
-  if (aovs_.count < 3 * pixels) aovs_ = device_.make<float4>(3 * pixels);
-  aovs.resize(3 * pixels);
+  const std::size_t pixels = pixel_count(tile), vectors = pixels * aov_vectors(options_->aovs);
+  if (aovs_.count < vectors) aovs_ = device_.make<float4>(vectors);
+  aovs.resize(vectors);
   if (pixels == 0) return;
   constexpr double expected = 3;  // not known: only what stands for minutes is stuck
   const WatchedLaunch watched(watch_, expected, !aovs_launched_,

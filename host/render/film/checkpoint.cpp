@@ -47,7 +47,8 @@ void write_checkpoint(const std::filesystem::path& path, const Film& film, std::
   header.height = film.height;
   header.has_aovs = !film.aovs.empty();
   std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
-  bytes.reserve(bytes.size() + film.done.size() * (film.aovs.empty() ? 21 : 69) + sizeof(std::uint64_t));
+  bytes.reserve(bytes.size() + film.done.size() * (21 + (film.aovs.empty() ? 0 : 16 * film.vectors)) +
+                sizeof(std::uint64_t));
   append(bytes, film.sums);
   append(bytes, film.weights);
   append(bytes, film.aovs);

@@ -6,12 +6,13 @@
 
 namespace sundog {
 
-Film::Film(int width_, int height_, bool with_aovs) : width(width_), height(height_) {
+Film::Film(int width_, int height_, bool with_aovs, std::size_t vectors_)
+    : width(width_), height(height_), vectors(vectors_) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   sums.resize(pixels);
   weights.resize(pixels);
   done.resize(pixels);
-  if (with_aovs) aovs.resize(3 * pixels);
+  if (with_aovs) aovs.resize(vectors * pixels);
 }
 
 namespace {
@@ -43,7 +44,7 @@ std::uint64_t Film::put(const Tile& tile, std::span<const float4> tile_sums,
                         std::span<const float> tile_weights, std::span<const float4> tile_aovs) {
   copy_rows(*this, tile, 1, tile_sums, sums);
   copy_rows(*this, tile, 1, tile_weights, weights);
-  if (!tile_aovs.empty()) copy_rows(*this, tile, 3, tile_aovs, aovs);
+  if (!tile_aovs.empty()) copy_rows(*this, tile, vectors, tile_aovs, aovs);
   std::uint64_t fresh = 0;
   for (int y = tile.y; y < tile.y + tile.height; ++y) {
     const auto row = done.begin() + static_cast<std::ptrdiff_t>(offset(*this, tile.x, y));
@@ -66,35 +67,55 @@ Image Film::develop(int channels) const {
   return image;
 }
 
+namespace {
+
+/// Where an AOV stands in a pixel's vectors: `count` floats from `first` on.
+struct AovPlace {
+  const char* name;
+  std::size_t first, count;
+};
+
+constexpr AovPlace places[] = {
+    {"depth", 3, 1},  {"normal", 0, 3},         {"position", 4, 3},          {"albedo", 8, 3},
+    {"object", 7, 1}, {"material", 11, 1},      {"geometric_normal", 12, 3}, {"march_steps", 15, 1},
+    {"uv", 16, 2},    {"crypto_object", 20, 8}, {"crypto_material", 28, 8}};
+
+const AovPlace* find_place(const std::string& name) {
+  const auto* place =
+      std::find_if(std::begin(places), std::end(places), [&](const AovPlace& p) { return name == p.name; });
+  return place == std::end(places) ? nullptr : place;
+}
+
+}  // namespace
+
 const std::vector<std::string>& aov_names() {
-  static const std::vector<std::string> names{"depth", "normal", "position", "albedo", "object", "material"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const AovPlace& place : places) all.emplace_back(place.name);
+    for (const char* of_samples : {"samples", "variance"}) all.emplace_back(of_samples);
+    return all;
+  }();
   return names;
 }
 
+std::size_t aov_vectors(const std::vector<std::string>& names) {
+  std::size_t vectors = few_aov_vectors;
+  for (const std::string& name : names)
+    if (const AovPlace* place = find_place(name); place && place->first >= 4 * few_aov_vectors)
+      vectors = all_aov_vectors;
+  return vectors;
+}
+
 Image Film::develop_aov(const std::string& name) const {
-  struct Place {
-    const char* name;
-    std::size_t vector;  // of the three a pixel
-    bool scalar;         // its w; else its xyz
-  };
-  static constexpr Place places[] = {{"depth", 0, true},  {"normal", 0, false}, {"position", 1, false},
-                                     {"object", 1, true}, {"albedo", 2, false}, {"material", 2, true}};
-  const auto place =
-      std::find_if(std::begin(places), std::end(places), [&](const Place& p) { return name == p.name; });
-  if (place == std::end(places) || aovs.empty()) throw UsageError("no AOV is called '" + name + "'");
-  Image image(width, height, place->scalar ? 1 : 3);
-  for (std::size_t i = 0; i < done.size(); ++i) {
-    if (!done[i]) continue;
-    const float4& value = aovs[3 * i + place->vector];
-    float* pixel = image.data.data() + static_cast<std::size_t>(image.channels) * i;
-    if (place->scalar) {
-      pixel[0] = value.w;
-    } else {
-      pixel[0] = value.x;
-      pixel[1] = value.y;
-      pixel[2] = value.z;
-    }
-  }
+  const AovPlace* place = find_place(name);
+  if (!place || aovs.empty() || place->first >= 4 * vectors)
+    throw UsageError("no AOV is called '" + name + "'");
+  Image image(width, height, static_cast<int>(place->count));
+  const auto* floats = reinterpret_cast<const float*>(aovs.data());
+  for (std::size_t i = 0; i < done.size(); ++i)
+    if (done[i])
+      std::copy_n(floats + 4 * vectors * i + place->first, place->count,
+                  image.data.begin() + static_cast<std::ptrdiff_t>(place->count * i));
   return image;
 }
 

@@ -19,25 +19,30 @@ struct Tile {
   friend bool operator==(const Tile&, const Tile&) = default;
 };
 
-/// width * height pixels, row 0 at the top. `aovs` holds three float4 a pixel when the frame has AOVs, else
-/// nothing.
+/// float4 a pixel that hold AOVs: what passes ask for, and all that there are (kernels/entry/aov.cl).
+constexpr std::size_t few_aov_vectors = 3, all_aov_vectors = 9;
+
+/// width * height pixels, row 0 at the top. `aovs` holds `vectors` float4 a pixel when the frame has AOVs,
+/// else nothing.
 struct Film {
   int width = 0, height = 0;
+  std::size_t vectors = few_aov_vectors;
   std::vector<float4> sums;    // rgb and coverage
   std::vector<float> weights;  // samples that count
   std::vector<float4> aovs;
   std::vector<std::uint8_t> done;  // 1: the pixel has all its samples
 
   Film() = default;
-  Film(int width, int height, bool with_aovs);
+  Film(int width, int height, bool with_aovs, std::size_t vectors = few_aov_vectors);
   bool is_done(const Tile& tile) const;
-  /// Puts a finished tile's pixels, row by row, in their places. Spans as long as the tile (aovs: three
+  /// Puts a finished tile's pixels, row by row, in their places. Spans as long as the tile (aovs: `vectors`
   /// times, or empty). Returns how many of them were not done before.
   std::uint64_t put(const Tile& tile, std::span<const float4> tile_sums, std::span<const float> tile_weights,
                     std::span<const float4> tile_aovs);
   /// The mean of the samples; alpha, if there are 4 channels, is coverage; pixels that are not done are 0.
   Image develop(int channels = 4) const;
-  /// The named AOV (one of aov_names()); pixels that are not done are 0.
+  /// The named AOV (one of aov_names(), but those that develop_aovs() makes of more than the film); pixels
+  /// that are not done are 0.
   Image develop_aov(const std::string& name) const;
 };
 
@@ -52,7 +57,10 @@ std::optional<std::uint64_t> checkpoint_key(const std::filesystem::path& path);
 /// scene or setting, IoError when it is damaged.
 void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_t key);
 
-/// The AOVs `render` can make: depth, normal, position, albedo, object, material.
+/// The AOVs `render` can make.
 const std::vector<std::string>& aov_names();
+
+/// The vectors a pixel that these AOVs want.
+std::size_t aov_vectors(const std::vector<std::string>& names);
 
 }  // namespace sundog

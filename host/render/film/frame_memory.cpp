@@ -8,17 +8,28 @@
 
 #include "base/image_io.h"
 #include "base/memory.h"
+#include "render/film/film.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
 namespace {
 
-// Sums, weight, and whether it is done; three vectors of AOVs.
+// Sums, weight, and whether it is done; the vectors of AOVs that passes ask for.
 constexpr std::uint64_t film_bytes = 16 + 4 + 1, film_aov_bytes = 48;
+
+/// Bytes of the AOVs in the film.
+std::uint64_t film_aovs(const FrameOutput& output) {
+  return output.aovs.empty() ? 0 : 16 * aov_vectors(output.aovs);
+}
 
 /// Floats of an AOV's image.
 std::uint64_t aov_floats(const std::string& name) {
-  return name == "normal" || name == "position" || name == "albedo" ? 3 : 1;
+  if (name.starts_with("crypto_")) return 8;
+  if (name == "uv") return 2;
+  return name == "geometric_normal" || name == "variance" || name == "normal" || name == "position" ||
+                 name == "albedo"
+             ? 3
+             : 1;
 }
 
 /// What an encoder has at once beside the image: rows as they are written, packed, and the file's bytes,
@@ -42,20 +53,20 @@ constexpr std::uint64_t tile_bytes = 4;
 }  // namespace
 
 std::uint64_t bytes_a_pixel(const FrameOutput& output) {
-  const std::uint64_t film = film_bytes + (output.aovs.empty() ? 0 : film_aov_bytes);
+  const std::uint64_t film = film_bytes + film_aovs(output);
   std::uint64_t aovs = 0;
   for (const std::string& name : output.aovs) aovs += 4 * aov_floats(name);
   const std::uint64_t image = drops_alpha(output.file) ? 12 : 16;
   const bool part = output.file.ends_with(".part");
   const std::uint64_t at_end = film + (part ? film : image + aovs + encoder_bytes(output.file, aovs));
-  return tile_bytes + (output.passes ? passes_bytes : 0) +
+  return tile_bytes + (output.passes ? passes_bytes + film_aovs(output) : 0) +
          (output.checkpoints ? std::max(3 * film, at_end) : at_end);
 }
 
 void check_frame_memory(int width, int height, const FrameOutput& output) {
   const auto pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   const auto edge = [&](int whole) { return static_cast<std::uint64_t>(std::min(output.tile, whole)); };
-  const std::uint64_t film = film_bytes + (output.aovs.empty() ? 0 : film_aov_bytes);
+  const std::uint64_t film = film_bytes + film_aovs(output);
   const std::uint64_t wanted = pixels * bytes_a_pixel(output) + 2 * film * edge(width) * edge(height);
   const auto there = available_memory();
   if (!there || wanted <= *there) return;

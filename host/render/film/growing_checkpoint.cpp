@@ -78,7 +78,7 @@ void read_growing_checkpoint(const std::filesystem::path& path, GrowingFilm& fil
   pass.width = header.pass_width, pass.height = header.pass_height;
   pass.first_sample = header.first_sample, pass.sample_count = header.sample_count;
   pass.surfaces = header.surfaces != 0;
-  made = Film(pass.width, pass.height, header.has_aovs != 0);
+  made = Film(pass.width, pass.height, header.has_aovs != 0, film.film.vectors);
   film.stage = header.stage, film.step = header.step;
   film.surfaces_seen = header.surfaces_seen;
   std::size_t at = sizeof header;

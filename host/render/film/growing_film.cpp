@@ -44,7 +44,8 @@ Pass list_pass(std::vector<u32> indices, int image_width, u32 first_sample, u32 
   return pass;
 }
 
-GrowingFilm::GrowingFilm(int width, int height, bool with_aovs) : film(width, height, with_aovs) {
+GrowingFilm::GrowingFilm(int width, int height, bool with_aovs, std::size_t vectors)
+    : film(width, height, with_aovs, vectors) {
   taken.resize(film.done.size());
   states.resize(film.done.size());
   earlier.resize(film.done.size());
@@ -65,8 +66,8 @@ void add_pass(GrowingFilm& film, const Pass& pass, const Film& made, bool comple
     if (found < 0) continue;
     const auto p = static_cast<std::size_t>(found);
     if (pass.surfaces && !whole.aovs.empty())
-      std::copy_n(made.aovs.begin() + static_cast<std::ptrdiff_t>(3 * i), 3,
-                  whole.aovs.begin() + static_cast<std::ptrdiff_t>(3 * p));
+      std::copy_n(made.aovs.begin() + static_cast<std::ptrdiff_t>(made.vectors * i), made.vectors,
+                  whole.aovs.begin() + static_cast<std::ptrdiff_t>(whole.vectors * p));
     film.surfaces_seen += pass.surfaces;
     if (film.states[p] == PixelState::empty) film.states[p] = PixelState::looked_at;
     if (pass.sample_count == 0) continue;
@@ -101,6 +102,29 @@ std::vector<float> pixel_errors(const GrowingFilm& film) {
     errors[p] = moved / std::sqrt(std::sqrt(std::max(light, darkest)));
   }
   return errors;
+}
+
+Image develop_variance(const GrowingFilm& film) {
+  Image image(film.film.width, film.film.height, 3);
+  for (std::size_t p = 0; p < film.taken.size(); ++p) {
+    if (film.states[p] != PixelState::sampled) continue;
+    const float4 &sum = film.film.sums[p], &before = film.earlier[p];
+    const float weight = film.film.weights[p];
+    const bool known = weight > 0 && before.w > 0;
+    const float now[3] = {sum.x / weight, sum.y / weight, sum.z / weight};
+    const float then[3] = {before.x / before.w, before.y / before.w, before.z / before.w};
+    for (std::size_t c = 0; c < 3; ++c)
+      image.data[3 * p + c] =
+          known ? (now[c] - then[c]) * (now[c] - then[c]) : std::numeric_limits<float>::infinity();
+  }
+  return image;
+}
+
+Image develop_samples(const Film& film, const std::vector<u32>& taken) {
+  Image image(film.width, film.height, 1);
+  for (std::size_t p = 0; p < film.done.size(); ++p)
+    if (film.done[p]) image.data[p] = taken.empty() ? film.weights[p] : static_cast<float>(taken[p]);
+  return image;
 }
 
 }  // namespace sundog

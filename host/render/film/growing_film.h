@@ -36,7 +36,7 @@ struct GrowingFilm {
   std::uint64_t surfaces_seen = 0;  // pixels looked at by a ray of their own, for the surface alone
 
   GrowingFilm() = default;
-  GrowingFilm(int width, int height, bool with_aovs);
+  GrowingFilm(int width, int height, bool with_aovs, std::size_t vectors = few_aov_vectors);
 };
 
 /// The image's pixel (y * width + x) that pixel `i` of the pass stands for; -1: none.
@@ -51,6 +51,13 @@ void add_pass(GrowingFilm& film, const Pass& pass, const Film& made, bool comple
 /// lies between the errors that are measured and those that are seen. Infinite where nothing is known, 0
 /// where no sample is.
 std::vector<float> pixel_errors(const GrowingFilm& film);
+
+/// The variance of each pixel's colour, by the same difference: unbiased, of each channel. 0 where no sample
+/// is, infinite where nothing is known.
+Image develop_variance(const GrowingFilm& film);
+
+/// The samples of each pixel: `taken`, or those that count in a frame without passes.
+Image develop_samples(const Film& film, const std::vector<u32>& taken);
 
 /// The state of an unfinished frame: the film before the pass in hand, and as much of it as is made.
 void write_growing_checkpoint(const std::filesystem::path& path, const GrowingFilm& film, const Pass& pass,

@@ -97,12 +97,12 @@ void check_all_there(const std::map<int, std::string>& found, int count) {
 
 /// Copies the pixels that are done.
 void add(Film& whole, const Film& part) {
-  const std::size_t aovs = whole.aovs.empty() ? 0 : 3;
+  const std::size_t aovs = whole.aovs.empty() ? 0 : whole.vectors;
   for (std::size_t i = 0; i < part.done.size(); ++i) {
     if (!part.done[i]) continue;
     whole.sums[i] = part.sums[i];
     whole.weights[i] = part.weights[i];
-    for (std::size_t k = 0; k < aovs; ++k) whole.aovs[3 * i + k] = part.aovs[3 * i + k];
+    for (std::size_t k = 0; k < aovs; ++k) whole.aovs[aovs * i + k] = part.aovs[aovs * i + k];
     whole.done[i] = 1;
   }
 }
@@ -117,7 +117,7 @@ PartFile merge_parts(const std::vector<std::filesystem::path>& paths) {
     PartFile file = read_part(path);
     if (found.empty()) {
       static_cast<PartHeader&>(whole) = file;
-      whole.film = Film(file.film.width, file.film.height, !file.aovs.empty());
+      whole.film = Film(file.film.width, file.film.height, !file.aovs.empty(), file.film.vectors);
     } else if (const std::string why = difference(whole, file); !why.empty()) {
       throw SceneError(path.string(), "",
                        fmt::format("does not belong to {}: it is {}", found.begin()->second, why));

@@ -90,7 +90,7 @@ std::optional<PartFile> read_header(const json& head) {
 void check_memory(const std::filesystem::path& path, const PartFile& file) {
   const auto pixels =
       static_cast<std::uint64_t>(file.film.width) * static_cast<std::uint64_t>(file.film.height);
-  const std::uint64_t wanted = pixels * (file.aovs.empty() ? 21 : 69),
+  const std::uint64_t wanted = pixels * (21 + (file.aovs.empty() ? 0 : 16 * aov_vectors(file.aovs))),
                       there = available_memory().value_or(wanted);
   if (wanted > there)
     throw SceneError(
@@ -102,10 +102,10 @@ void check_memory(const std::filesystem::path& path, const PartFile& file) {
 
 /// The film after the header, of a file whose checksum is right. Memory is taken for no more pixels than the
 /// file has flags for.
-bool read_film(const std::string& bytes, std::size_t at, bool with_aovs, Film& film) {
+bool read_film(const std::string& bytes, std::size_t at, const std::vector<std::string>& aovs, Film& film) {
   const auto pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
   if (pixels > bytes.size() - at) return false;
-  film = Film(film.width, film.height, with_aovs);
+  film = Film(film.width, film.height, !aovs.empty(), aov_vectors(aovs));
   std::memcpy(film.done.data(), bytes.data() + at, pixels);
   at += pixels;
   if (std::ranges::any_of(film.done, [](std::uint8_t done) { return done > 1; })) return false;
@@ -122,7 +122,8 @@ void write_part(const std::filesystem::path& path, const PartHeader& header, con
                      {"width", film.width},   {"height", film.height},     {"settings", header.settings}};
   std::string bytes = head.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
   const auto done = static_cast<std::size_t>(std::ranges::count(film.done, std::uint8_t{1}));
-  bytes.reserve(bytes.size() + film.done.size() + done * (film.aovs.empty() ? 20 : 68) + checksum_digits);
+  bytes.reserve(bytes.size() + film.done.size() + done * (20 + (film.aovs.empty() ? 0 : 16 * film.vectors)) +
+                checksum_digits);
   bytes.append(reinterpret_cast<const char*>(film.done.data()), film.done.size());
   append_done(bytes, film.sums, film.done);
   append_done(bytes, film.weights, film.done);
@@ -149,7 +150,7 @@ PartFile read_part(const std::filesystem::path& path) {
     throw refuse(damaged.c_str());
   }
   if (file) check_memory(path, *file);
-  if (!file || !read_film(bytes, line + 1, !file->aovs.empty(), file->film)) throw refuse(damaged.c_str());
+  if (!file || !read_film(bytes, line + 1, file->aovs, file->film)) throw refuse(damaged.c_str());
   return std::move(*file);
 }
 

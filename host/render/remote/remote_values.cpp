@@ -61,10 +61,10 @@ TileRequest unpack_request(const nlohmann::json& values, const std::string& data
 PackedTile pack_tile(const TileResult& result) {
   const std::size_t pixels = pixel_count(result.tile);
   PackedTile packed;
-  packed.values = {{"tile", result.tile}, {"counts", result.counts}, {"aovs", !result.aovs.empty()}};
+  packed.values = {{"tile", result.tile}, {"counts", result.counts}, {"aovs", result.aovs.size()}};
   append(packed.data, result.sums, pixels);
   append(packed.data, result.weights, pixels);
-  if (!result.aovs.empty()) append(packed.data, result.aovs, 3 * pixels);
+  if (!result.aovs.empty()) append(packed.data, result.aovs, result.aovs.size());
   return packed;
 }
 
@@ -72,8 +72,9 @@ TileResult unpack_tile(const nlohmann::json& values, const std::string& data) {
   TileResult result;
   result.tile = values.at("tile").get<Tile>();
   result.counts = values.at("counts").get<RayCounts>();
-  const std::size_t pixels = pixel_count(result.tile), aovs = values.at("aovs").get<bool>() ? 3 * pixels : 0;
-  if (data.size() != pixels * (sizeof(float4) + sizeof(float)) + aovs * sizeof(float4))
+  const std::size_t pixels = pixel_count(result.tile), aovs = values.at("aovs").get<std::size_t>();
+  if (aovs > all_aov_vectors * pixels ||
+      data.size() != pixels * (sizeof(float4) + sizeof(float)) + aovs * sizeof(float4))
     throw DeviceError("a tile came with too many or too few bytes");
   std::size_t at = 0;
   result.sums = take<float4>(data, at, pixels);

@@ -21,6 +21,13 @@ void check_aovs(const std::vector<std::string>& names) {
           fmt::format("no AOV is called '{}'; there are {}", name, fmt::join(aov_names(), ", ")));
 }
 
+/// A variance is known where samples were doubled.
+void check_variance(const std::vector<std::string>& names, const Sampling& sampling) {
+  if (std::ranges::count(names, "variance") > 0 && !in_passes(sampling))
+    throw UsageError(
+        "the AOV 'variance' wants a frame in passes: make it adaptive, or set /render/progressive to true");
+}
+
 void check_shares(const Split& split, const std::vector<ServerPlan>& devices) {
   if (split.shares.empty() || split.shares.size() == devices.size()) return;
   std::vector<std::string> labels;
@@ -43,7 +50,8 @@ FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devi
   FramePasses passes;
   const int width = static_cast<int>(scene->info.width), height = static_cast<int>(scene->info.height);
   passes.plan = {scene->sampling, scene->info.samples, options.noise, !options.aovs.empty()};
-  passes.film = GrowingFilm(width, height, !options.aovs.empty() || needs_surfaces(scene->sampling));
+  passes.film = GrowingFilm(width, height, !options.aovs.empty() || needs_surfaces(scene->sampling),
+                            aov_vectors(options.aovs));
   passes.tiles = [options, shares = estimates(devices)](const Film& of_pass) {
     return plan_tiles(options, of_pass, shares);
   };
@@ -52,13 +60,14 @@ FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devi
     return passes;
   }
   passes.pass = *next_pass(passes.film, passes.plan);
-  film = Film(passes.pass.width, passes.pass.height, passes.pass.surfaces);
+  film = Film(passes.pass.width, passes.pass.height, passes.pass.surfaces, passes.film.film.vectors);
   return passes;
 }
 
 /// A film that holds what a checkpoint has of the frame.
 Film begin_film(const CompiledScene& scene, const RenderOptions& options, std::uint64_t key) {
-  Film film(static_cast<int>(scene.info.width), static_cast<int>(scene.info.height), !options.aovs.empty());
+  Film film(static_cast<int>(scene.info.width), static_cast<int>(scene.info.height), !options.aovs.empty(),
+            aov_vectors(options.aovs));
   if (!options.resume.empty() && std::filesystem::exists(options.resume))
     read_checkpoint(options.resume, film, key);
   return film;
@@ -145,6 +154,8 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   keep_checkpoint(frame, result);
   if (frame.passes) {
     GrowingFilm film = film_so_far(frame);
+    if (std::ranges::count(frame.options.aovs, "variance") > 0)
+      result.aovs["variance"] = develop_variance(film);
     result.film = std::move(film.film);
     result.taken = std::move(film.taken);
     result.surfaces_seen = film.surfaces_seen;
@@ -156,7 +167,11 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   result.counts = frame.counts;
   if (frame.options.channels > 0) {
     result.image = result.film.develop(frame.options.channels);
-    for (const std::string& name : frame.options.aovs) result.aovs[name] = result.film.develop_aov(name);
+    for (const std::string& name : frame.options.aovs)
+      if (name == "samples")
+        result.aovs[name] = develop_samples(result.film, result.taken);
+      else if (name != "variance")
+        result.aovs[name] = result.film.develop_aov(name);
   }
   result.times = frame.times;
   result.times.readback = frame.readback;
@@ -171,6 +186,7 @@ RenderResult render_frame(const Scene& scene, const std::vector<ServerPlan>& dev
                           const RenderOptions& options,
                           const std::function<void(const std::shared_ptr<Frame>&)>& run) {
   check_aovs(options.aovs);
+  check_variance(options.aovs, scene->sampling);
   if (devices.empty()) throw DeviceError("no device to render on");
   check_shares(options.split, devices);
   const std::uint64_t key = checkpoint_path(options).empty() ? 0 : hash_scene(*scene);

@@ -1,0 +1,98 @@
+// See cryptomatte.h.
+#include "render/film/cryptomatte.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <nlohmann/json.hpp>
+
+namespace sundog {
+namespace {
+
+constexpr std::uint32_t first_factor = 0xcc9e2d51u, second_factor = 0x1b873593u;
+
+std::uint32_t mixed(std::uint32_t block) { return std::rotl(block * first_factor, 15) * second_factor; }
+
+/// Up to four bytes, the first of them lowest.
+std::uint32_t block_of(std::string_view bytes) {
+  std::uint32_t block = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    block |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
+  return block;
+}
+
+std::string name_at(const std::vector<std::string>& names, float index) {
+  const auto i = static_cast<std::size_t>(index);
+  return i < names.size() && !names[i].empty() ? names[i] : "default";
+}
+
+/// Two of the four pairs as a layer; without a name neither id nor share.
+Image layer_of(const Image& pairs, std::size_t first, const std::vector<std::string>& names) {
+  std::vector<float> ids;
+  for (std::size_t i = 0; i <= names.size(); ++i)
+    ids.push_back(std::bit_cast<float>(id_bits(name_at(names, static_cast<float>(i)))));
+  Image layer(pairs.width, pairs.height, 4);
+  for (std::size_t pixel = 0; pixel < layer.data.size() / 4; ++pixel)
+    for (std::size_t pair = 0; pair < 2; ++pair) {
+      const float* from = &pairs.data[8 * pixel + 2 * (first + pair)];
+      if (!(from[0] >= 0) || !(from[1] > 0)) continue;
+      layer.data[4 * pixel + 2 * pair] = ids[std::min(static_cast<std::size_t>(from[0]), names.size())];
+      layer.data[4 * pixel + 2 * pair + 1] = from[1];
+    }
+  return layer;
+}
+
+std::string manifest_of(const std::vector<std::string>& names) {
+  nlohmann::json manifest = nlohmann::json::object();
+  for (std::size_t i = 0; i <= names.size(); ++i) {
+    const std::string name = name_at(names, static_cast<float>(i));
+    manifest[name] = fmt::format("{:08x}", id_bits(name));
+  }
+  return manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+void split(AovImages& aovs, const std::string& name, const std::vector<std::string>& names,
+           ImageTexts& texts) {
+  const auto found = aovs.find(name);
+  if (found == aovs.end()) return;
+  const Image pairs = std::move(found->second);
+  aovs.erase(found);
+  aovs[name + "00"] = layer_of(pairs, 0, names);
+  aovs[name + "01"] = layer_of(pairs, 2, names);
+  const std::string key = fmt::format("cryptomatte/{:.7}/", fmt::format("{:08x}", hash_name(name)));
+  texts.emplace_back(key + "name", name);
+  texts.emplace_back(key + "hash", "MurmurHash3_32");
+  texts.emplace_back(key + "conversion", "uint32_to_float32");
+  texts.emplace_back(key + "manifest", manifest_of(names));
+}
+
+}  // namespace
+
+std::uint32_t hash_name(std::string_view name) {
+  std::uint32_t hash = 0;
+  std::string_view rest = name;
+  for (; rest.size() >= 4; rest.remove_prefix(4))
+    hash = std::rotl(hash ^ mixed(block_of(rest.substr(0, 4))), 13) * 5 + 0xe6546b64u;
+  if (!rest.empty()) hash ^= mixed(block_of(rest));
+  hash ^= static_cast<std::uint32_t>(name.size());
+  hash = (hash ^ hash >> 16) * 0x85ebca6bu;
+  hash = (hash ^ hash >> 13) * 0xc2b2ae35u;
+  return hash ^ hash >> 16;
+}
+
+std::uint32_t id_bits(std::string_view name) {
+  const std::uint32_t hash = hash_name(name);
+  const std::uint32_t exponent = std::clamp((hash >> 23) & 0xffu, 1u, 254u);
+  return (hash & 0x807fffffu) | exponent << 23;
+}
+
+ImageTexts name_cryptomattes(AovImages& aovs, const std::vector<std::string>& objects,
+                             const std::vector<std::string>& materials) {
+  ImageTexts texts;
+  split(aovs, "crypto_object", objects, texts);
+  split(aovs, "crypto_material", materials, texts);
+  return texts;
+}
+
+}  // namespace sundog

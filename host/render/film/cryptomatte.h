@@ -1,0 +1,27 @@
+// Object and material ids as mattes that compositing programs know: the Cryptomatte specification 1.2
+// (Friedman and Jones 2015, "Fully automatic ID mattes with support for motion blur and transparency").
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/image_io.h"
+
+namespace sundog {
+
+/// MurmurHash3 of 32 bits (Austin Appleby), with the seed 0.
+std::uint32_t hash_name(std::string_view name);
+
+/// The bits of the float that stands for a name: its hash, with an exponent that makes no NaN, infinity or
+/// denormal.
+std::uint32_t id_bits(std::string_view name);
+
+/// Replaces each of the AOVs crypto_object and crypto_material (Film::develop_aov(): four pairs of an index
+/// and the share of the pixel that it covers) by two layers of two pairs, crypto_object00 and
+/// crypto_object01, whose ids are those of the names. Returns what an EXR's header says of them: hash,
+/// conversion, and a manifest of all names. An index without a name is "default".
+ImageTexts name_cryptomattes(AovImages& aovs, const std::vector<std::string>& objects,
+                             const std::vector<std::string>& materials);
+
+}  // namespace sundog
