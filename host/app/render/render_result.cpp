@@ -113,10 +113,11 @@ std::vector<std::string> names_of(const std::vector<Named>& things) {
   return names;
 }
 
-/// Without those that only the denoiser wanted.
+/// Without those that only the denoiser wanted; of a part none are developed.
 AovImages asked_aovs(const RenderCommand& command, const RenderResult& result) {
   AovImages aovs;
-  for (const std::string& name : command.aovs) aovs[name] = result.aovs.at(name);
+  for (const std::string& name : command.aovs)
+    if (const auto found = result.aovs.find(name); found != result.aovs.end()) aovs.insert(*found);
   return aovs;
 }
 
