@@ -5,6 +5,7 @@
 
 #include "catch.h"
 #include "devices.h"
+#include "same_bits.h"
 #include "scenes.h"
 #include "surface_testing.h"
 
@@ -173,6 +174,23 @@ TEST_CASE("what stands in a relief is seen as in a floor that lies as deep, and 
       }
       CHECK(changed > 40);  // of 2304: the things are cut elsewhere by a floor that is not sunk
       CHECK(differ <= 4);   // where a pixel's ray grazes
+    }
+  });
+}
+
+TEST_CASE("a frame with an image and a relief has the same bits for every work-group and tile") {
+  const SceneDescription scene = floor_with_things(true, 0.6 * depth);
+  on_picture_devices([&](const DeviceInfo& info) {
+    const Image whole = scenes::render_on(info, scene).image;
+    for (const std::size_t size : {1u, 3u, 64u}) {
+      RenderOptions options;
+      options.work_group = {WorkGroup::Kind::fixed, size, 1};
+      CHECK(same_bits(scenes::render_on(info, scene, options).image, whole));
+    }
+    for (const int tile : {4, 17, 33}) {
+      RenderOptions options;
+      options.tile = tile;
+      CHECK(same_bits(scenes::render_on(info, scene, options).image, whole));
     }
   });
 }
