@@ -10,7 +10,7 @@
 
 namespace sundog {
 
-/// Plans the frame, or goes on with its checkpoint; has `run` run it; gathers what was made. Throws what
+/// Plans the frame, or continues its checkpoint; has `run` run it; gathers what was made. Throws what
 /// render() does (render.h).
 RenderResult render_frame(const std::shared_ptr<const CompiledScene>& scene,
                           const std::vector<ServerPlan>& devices, const RenderOptions& options,

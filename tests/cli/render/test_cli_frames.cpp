@@ -1,4 +1,4 @@
-// Animations: numbered files, an image a frame, going on after an interruption.
+// Animations: numbered files, an image a frame, continued after an interruption.
 #include <base/file.h>
 #include <base/image_compare.h>
 #include <base/image_io.h>

@@ -1,4 +1,4 @@
-// The page: the bar above, the picture, the panels beside it, the line below that says what is going on.
+// The page: the bar above, the picture, the panels beside it, the line below that says what is happening.
 import {html, render, Button, useEffect, useState, useStore, short, seconds} from './ui.js';
 import {store} from './store.js';
 import {View} from './view.js';
