@@ -20,20 +20,37 @@ bool is_zero(const dvec3& color) { return color == dvec3(0); }
 
 Medium make_medium(const MediumDescription& medium) {
   Medium packed{};
-  packed.absorption = pack(medium.absorption, medium.ior);
+  packed.absorption = pack(medium.absorption + medium.scattering, medium.ior);
+  packed.scattering = pack(medium.scattering, medium.anisotropy);
   packed.priority = medium.priority;
   return packed;
 }
 
 bool same(const Medium& a, const Medium& b) {
-  return a.absorption == b.absorption && a.priority == b.priority && a.spectrum == b.spectrum;
+  return a.absorption == b.absorption && a.scattering == b.scattering && a.priority == b.priority &&
+         a.spectrum == b.spectrum;
+}
+
+/// The world's medium, with its fog where that scatters.
+MediumDescription world_medium(const SceneDescription& scene) {
+  MediumDescription medium = scene.media.empty() ? MediumDescription{} : scene.media[0];
+  if (!fog_scatters(scene)) return medium;
+  if (!is_zero(medium.scattering))
+    throw SceneError(scene.file.string(), "/world/fog/anisotropy",
+                     "the world's medium scatters by itself: leave out \"anisotropy\", or the medium's "
+                     "\"scattering\"");
+  const dvec3 scattering = scene.fog.density * glm::min(scene.fog.color, dvec3(1));
+  medium.scattering = scattering;
+  medium.absorption += dvec3(scene.fog.density) - scattering;
+  medium.anisotropy = *scene.fog.anisotropy;
+  return medium;
 }
 
 /// The media without duplicates, and for each of the description its index there.
 std::vector<u32> add_media(const SceneDescription& scene, CompiledScene& out) {
   std::vector<Medium>& media = out.media.edit();
   SpectraMaker spectra(scene);
-  media.push_back(make_medium(scene.media.empty() ? MediumDescription{} : scene.media[0]));
+  media.push_back(make_medium(world_medium(scene)));
   if (!scene.media.empty()) media[0].spectrum = spectra.add(scene.media[0].dispersion);
   std::vector<u32> index_of(scene.media.size(), 0);
   for (std::size_t i = 1; i < scene.media.size(); ++i) {
@@ -157,7 +174,12 @@ void add_lights(const SceneDescription& scene, CompiledScene& out) {
   out.info.ambient = pack(ambient);
 }
 
+bool fog_scatters(const SceneDescription& scene) {
+  return traces_paths(scene.render.integrator) && scene.fog.anisotropy && scene.fog.density > 0;
+}
+
 void add_fog(const SceneDescription& scene, CompiledScene& out) {
+  if (fog_scatters(scene)) return;
   out.info.fog = pack(scene.fog.color, scene.fog.density);
   out.features.fog = scene.fog.density > 0;
 }

@@ -23,7 +23,10 @@ void add_lights(const SceneDescription& scene, CompiledScene& out);
 void add_light(const SceneDescription& scene, const LightDescription& light, const std::string& place,
                CompiledScene& out);
 
-/// The world's fog, into `out.info`.
+/// Whether the world's fog is a medium that scatters, and no fog with a light of its own.
+bool fog_scatters(const SceneDescription& scene);
+
+/// The world's fog, into `out.info`, unless it scatters.
 void add_fog(const SceneDescription& scene, CompiledScene& out);
 
 }  // namespace sundog

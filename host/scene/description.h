@@ -142,7 +142,9 @@ struct MediumDescription {
   double ior = 1;             // at the d line
   dvec3 absorption{0, 0, 0};  // per unit of world length
   int priority = 0;
-  Dispersion dispersion{};  // path tracing: the index by the wavelength
+  Dispersion dispersion{};    // path tracing: the index by the wavelength
+  dvec3 scattering{0, 0, 0};  // per unit of world length; whitted takes it as absorption
+  double anisotropy = 0;      // path tracing: the mean cosine of scattered light's turns
 };
 
 enum class MaterialType { phong, dielectric };
@@ -270,7 +272,8 @@ struct Object {
 /// from the fog. Only in the world's medium.
 struct FogDescription {
   dvec3 color{0};
-  double density = 0;  // per unit of world length
+  double density = 0;                // per unit of world length
+  std::optional<double> anisotropy;  // path tracing: the fog is a medium that scatters the part `color`
 };
 
 struct SceneDescription {

@@ -15,6 +15,7 @@
   FEATURE(bool, HAS_SHADOW_FILTERS, shadow_filters) /* shadow rays look through transmissive things */  \
   FEATURE(bool, HAS_FRACTIONAL_EXPONENTS, fractional_exponents) /* some highlight's exponent is no integer */ \
   FEATURE(bool, HAS_DISPERSION, dispersion)         /* paths carry wavelengths: some medium disperses */ \
+  FEATURE(bool, HAS_SCATTERING, scattering)         /* paths: some medium scatters */                   \
   FEATURE(bool, HAS_GUIDES, guides)                 /* paths are sent to balls where light comes from */ \
   FEATURE(bool, HAS_FOG, fog)                       /* the world has fog */                             \
   FEATURE(bool, HAS_GLOW, glow)                     /* some field glows */                              \

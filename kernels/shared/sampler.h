@@ -34,6 +34,10 @@ SUNDOG_SHARED_BEGIN
 #define BOUNCE_DIRECTION 4u     // two: the direction that the surface scatters to
 #define BOUNCE_LOBE 6u          // one: reflection or transmission
 #define BOUNCE_ROULETTE 7u      // one: whether the path ends
+// What a medium that scatters needs on the way to that surface, eight from here on; each interface that the
+// ray has crossed unseen takes its own.
+#define DIMENSION_STRETCH 0x10000u
+#define DIMENSIONS_A_CROSSING 0x1000000u
 
 // The first dimension of what is sampled at the surface that a ray of `depth` (1: from the camera) meets, for
 // the light of index `light` (0 where it is no light's).

@@ -48,14 +48,15 @@ SUNDOG_SHARED_SIZE(Material, 144)
 
 #define MAX_MEDIA 255  // a ray's stack of media keeps an index in a byte
 
-// 32 bytes. Medium 0 is the world's.
+// 48 bytes. Medium 0 is the world's.
 typedef struct Medium {
-  float4 absorption;  // Beer-Lambert, per unit of world length; w = index of refraction
+  float4 absorption;  // light lost, scattered light too, per unit of world length; w = index of refraction
+  float4 scattering;  // light scattered, per unit of world length; w = the mean cosine of its turns
   i32 priority;       // the highest wins in an overlap; if equal, the last entered (Schmidt, Budge 2002)
   u32 spectrum;  // path tracing: where its indices begin in the table `spectra`; NO_SPECTRUM: absorption.w
   u32 pad0, pad1;
 } Medium;
-SUNDOG_SHARED_SIZE(Medium, 32)
+SUNDOG_SHARED_SIZE(Medium, 48)
 
 // Which ways of finding light path tracing adds: both, each by its share; lights chosen at surfaces alone
 // where these can be chosen; those that scattered rays meet alone where they can be met.

@@ -172,6 +172,7 @@ void add_bench(Arguments& root, Command& chosen) {
   add_bench_threads(*bench, chosen);
   add_bench_rays(*bench, chosen);
   add_bench_samples(*bench, chosen);
+  add_bench_quality(*bench, chosen);
   add_bench_textures(*bench, chosen);
   add_bench_devices(*bench, chosen);
   add_bench_kernels(*bench, chosen);

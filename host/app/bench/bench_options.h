@@ -77,6 +77,7 @@ void add_bench_kernels(Arguments& bench, Command& chosen);
 void add_bench_workgroup(Arguments& bench, Command& chosen);
 void add_bench_rays(Arguments& bench, Command& chosen);
 void add_bench_samples(Arguments& bench, Command& chosen);
+void add_bench_quality(Arguments& bench, Command& chosen);
 void add_bench_textures(Arguments& bench, Command& chosen);
 
 }  // namespace sundog

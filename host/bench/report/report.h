@@ -45,11 +45,12 @@ struct Curve {
   std::string name;
   std::vector<CurvePoint> points;  // ascending x
 };
-/// Curves over an axis that counts in powers of two; with `ideal` the line y = x is drawn too.
+/// Curves over an axis that counts in powers of two; with `ideal` the line y = x is drawn too. With
+/// `logarithmic` both axes have powers of ten, and all values are above 0.
 struct CurvePlot {
   std::string title, x_label, y_label;
   std::vector<Curve> curves;
-  bool ideal = false;
+  bool ideal = false, logarithmic = false;
 };
 
 struct Bar {

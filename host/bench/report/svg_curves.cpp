@@ -16,13 +16,19 @@ constexpr double plot_width = width - left - right, plot_height = height - top -
 constexpr int styles = 8;
 
 struct Axes {
-  double low = 0, high = 1;  // log2 of x
-  double most = 1;           // y
+  double low = 0, high = 1;        // log2 of x
+  double most = 1;                 // y
+  double bottom_y = 0, top_y = 1;  // log2 of y
+  bool logarithmic = false;        // y is, and the ticks are round numbers
+  std::vector<double> ticks_x, ticks_y;
 
   double x(double value) const {
     return left + (high > low ? (std::log2(value) - low) / (high - low) : 0.5) * plot_width;
   }
-  double y(double value) const { return top + (1 - value / most) * plot_height; }
+  double y(double value) const {
+    const double part = logarithmic ? (std::log2(value) - bottom_y) / (top_y - bottom_y) : value / most;
+    return top + (1 - part) * plot_height;
+  }
 };
 
 /// A curve's marker about a point: disc, square, triangle, diamond in turn.
@@ -51,7 +57,35 @@ std::set<double> all_x(const CurvePlot& plot) {
   return values;
 }
 
+/// The numbers 1, 2 and 5 times powers of ten from below the least value to above the greatest.
+std::vector<double> round_ticks(double least, double most) {
+  std::vector<double> ticks;
+  for (double power = std::pow(10.0, std::floor(std::log10(least))); power <= most; power *= 10)
+    for (const double factor : {1.0, 2.0, 5.0}) ticks.push_back(factor * power);
+  ticks.push_back(10 * ticks[ticks.size() - 3]);
+  while (ticks.size() > 2 && ticks[1] <= least) ticks.erase(ticks.begin());
+  while (ticks.size() > 2 && ticks[ticks.size() - 2] >= most) ticks.pop_back();
+  return ticks;
+}
+
+/// Axes of powers of ten about all points.
+Axes logarithmic_axes(const CurvePlot& plot) {
+  std::set<double> ys;
+  for (const Curve& curve : plot.curves)
+    for (const CurvePoint& point : curve.points) ys.insert({point.y.min, point.y.max});
+  const std::set<double> xs = all_x(plot);
+  Axes axes;
+  if (xs.empty()) return axes;
+  axes.logarithmic = true;
+  axes.ticks_x = round_ticks(*xs.begin(), *xs.rbegin());
+  axes.ticks_y = round_ticks(*ys.begin(), *ys.rbegin());
+  axes.low = std::log2(axes.ticks_x.front()), axes.high = std::log2(axes.ticks_x.back());
+  axes.bottom_y = std::log2(axes.ticks_y.front()), axes.top_y = std::log2(axes.ticks_y.back());
+  return axes;
+}
+
 Axes make_axes(const CurvePlot& plot) {
+  if (plot.logarithmic) return logarithmic_axes(plot);
   Axes axes;
   const std::set<double> values = all_x(plot);
   double most = 0;
@@ -63,18 +97,20 @@ Axes make_axes(const CurvePlot& plot) {
     // The whole of y = x where it does not press the curves into less than half of the plot.
     if (plot.ideal && *values.rbegin() <= 2 * most) most = std::max(most, *values.rbegin());
   }
-  axes.most = axis_ticks(most > 0 ? most : 1).back();
+  axes.ticks_x.assign(values.begin(), values.end());
+  axes.ticks_y = axis_ticks(most > 0 ? most : 1);
+  axes.most = axes.ticks_y.back();
   return axes;
 }
 
 std::string frame(const CurvePlot& plot, const Axes& axes) {
   std::string text;
-  for (const double tick : axis_ticks(axes.most))
+  for (const double tick : axes.ticks_y)
     text += fmt::format(
         "<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/><text class=\"end\" "
         "x=\"{3}\" y=\"{4:.1f}\">{5}</text>",
         left, width - right, axes.y(tick), left - 8, axes.y(tick) + 4, fmt::format("{:g}", tick));
-  for (const double value : all_x(plot))
+  for (const double value : axes.ticks_x)
     text += fmt::format("<text class=\"mid\" x=\"{:.1f}\" y=\"{}\">{}</text>", axes.x(value),
                         height - bottom + 20, number_text(value));
   text += fmt::format("<text class=\"mid axis\" x=\"{}\" y=\"{}\">{}</text>", left + plot_width / 2,

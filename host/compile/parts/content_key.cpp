@@ -131,10 +131,10 @@ KeyMaker& KeyMaker::add_halo(const EnvironmentDescription& environment) {
 }
 
 KeyMaker& KeyMaker::add(const MediumDescription& medium) {
-  const auto& [name, ior, absorption, priority, dispersion] = medium;
+  const auto& [name, ior, absorption, priority, dispersion, scattering, anisotropy] = medium;
   (void)name;
   for (const double coefficient : dispersion.coefficients) add(coefficient);
-  return add_each(ior, dispersion.kind, absorption, priority);
+  return add_each(ior, dispersion.kind, absorption, scattering, anisotropy, priority);
 }
 
 KeyMaker& KeyMaker::add(const ImageDescription& image) {

@@ -17,6 +17,11 @@ bool absorbs(const Medium& medium) {
   return a.x != 0 || a.y != 0 || a.z != 0;
 }
 
+bool scatters(const Medium& medium) {
+  const float4& s = medium.scattering;
+  return s.x != 0 || s.y != 0 || s.z != 0;
+}
+
 /// As highlight() of kernels/lib/shade/bsdf.cl tells them.
 bool has_fractional_exponent(const Material& material) {
   const float exponent = material.specular.w;
@@ -28,7 +33,7 @@ bool has_fractional_exponent(const Material& material) {
 ContentKey lights_key(const SceneDescription& scene, const dvec3& origin) {
   KeyMaker key;
   key.add(origin).add_all(scene.lights).add(scene.environment);
-  return key.add(scene.fog.color).add(scene.fog.density).key();
+  return key.add(scene.fog.color).add(scene.fog.density).add(fog_scatters(scene)).key();
 }
 
 ContentKey halo_key(const SceneDescription& scene) {
@@ -58,6 +63,7 @@ ScenePart make_lights(const SceneDescription& scene, const dvec3& origin, const 
 ContentKey surfaces_key(const SceneDescription& scene) {
   KeyMaker key;
   key.add_all(scene.media).add_all(scene.images).add_all(scene.textures).add_all(scene.materials);
+  if (fog_scatters(scene)) key.add(scene.fog.color).add(scene.fog.density).add(*scene.fog.anisotropy);
   return key.add(lacks_materials(scene)).add(traces_paths(scene.render.integrator)).key();
 }
 
@@ -68,6 +74,8 @@ SurfacesPart make_surfaces(const SceneDescription& scene) {
   add_textures(scene, made);
   made.features.media = absorbs(made.media[0]);
   made.features.absorption = std::ranges::any_of(made.media, absorbs);
+  made.features.scattering =
+      traces_paths(scene.render.integrator) && std::ranges::any_of(made.media, scatters);
   made.features.fractional_exponents = std::ranges::any_of(made.materials, has_fractional_exponent);
   return part;
 }

@@ -285,6 +285,8 @@ MediumDescription read_medium(const JsonValue& value, std::string name) {
     MediumDescription medium{.name = std::move(name)};
     read_index(object, medium);
     if (const auto absorption = object.find("absorption")) medium.absorption = read_absorption(*absorption);
+    if (const auto scattering = object.find("scattering")) medium.scattering = scattering->vec3(at_least_0);
+    medium.anisotropy = object.number("anisotropy", medium.anisotropy, mean_cosines);
     medium.priority = object.integer("priority", medium.priority, -1000, 1000);
     return medium;
   });

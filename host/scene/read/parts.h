@@ -27,6 +27,8 @@ LightDescription read_light(const JsonValue& value);
 /// `read_picture` reads the image file that a value names.
 EnvironmentDescription read_environment(const JsonValue& value,
                                         const std::function<Image(const JsonValue&)>& read_picture);
+/// Of scattered light's turns; at 1 it would not be scattered.
+inline constexpr Range mean_cosines{.low = -0.99, .high = 0.99};
 FogDescription read_fog(const JsonValue& value);
 
 MediumDescription read_medium(const JsonValue& value, std::string name);

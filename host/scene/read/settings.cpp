@@ -224,6 +224,7 @@ FogDescription read_fog(const JsonValue& value) {
     FogDescription fog;
     fog.color = object.color("color", dvec3(1));
     fog.density = object.at("density", "a number per unit of length").number(at_least_0);
+    if (const auto anisotropy = object.find("anisotropy")) fog.anisotropy = anisotropy->number(mean_cosines);
     return fog;
   });
 }

@@ -134,6 +134,21 @@ static inline SceneRays scene_rays(const Rays* camera, MediaStack media) {
   return rays;
 }
 
+// The lanes of `lanes` become those of `others`.
+static inline void join_rays(SceneRays* rays, const SceneRays* others, MASK lanes) {
+  rays->o = select3(rays->o, others->o, lanes);
+  rays->d = select3(rays->d, others->d, lanes);
+  rays->t_min = select(rays->t_min, others->t_min, lanes);
+  rays->t_max = select(rays->t_max, others->t_max, lanes);
+  rays->media_low = select(rays->media_low, others->media_low, lanes);
+  rays->media_high = select(rays->media_high, others->media_high, lanes);
+  join_medium(rays, others, lanes);
+  join_crossings(rays, others, lanes);
+  join_footprints(rays, others, lanes);
+  join_cones(rays, others, lanes);
+  join_glow(rays, others, lanes);
+}
+
 static inline MediaStack get_media(const SceneRays* rays, u32 i) {
   return (MediaStack)(u32)MASK_LANE(rays->media_high, i) << 32 | (u32)MASK_LANE(rays->media_low, i);
 }

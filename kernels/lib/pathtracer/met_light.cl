@@ -10,9 +10,10 @@
 static inline REAL density_in_tree(const Scene* scene, const Walks* walks, u32 index, REAL density,
                                    MASK lanes) {
   REAL chosen = density;
+  const REAL3 from = chosen_from(walks);
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    REAL_LANE(chosen, i) *= light_probability(scene, scene->light_leaves[index], get3(&walks->from, i));
+    REAL_LANE(chosen, i) *= light_probability(scene, scene->light_leaves[index], get3(&from, i));
   }
   return chosen;
 }
@@ -23,7 +24,7 @@ static inline REAL density_in_tree(const Scene* scene, const Walks* walks, u32 i
 }
 #endif
 
-// The density with which the surfaces walks->from choose the lights `light` at the points p, which the rays
+// The density with which the places walks->from choose the lights `light` at the points p, which the rays
 // met in the directions d.
 NEVER_INLINE REAL chosen_density(const Scene* scene, const Walks* walks, REAL3 d, REAL3 p, MASK light,
                                  MASK lanes) {
@@ -37,6 +38,7 @@ NEVER_INLINE REAL chosen_density(const Scene* scene, const Walks* walks, REAL3 d
     if (lamp->position.w != 0.0f) continue;
     density = select(density, area_light_density(lamp, walks->from, d, distance), mine);
     density = density_in_tree(scene, walks, index, density, mine);
+    density = select(density, density_on_stretch(walks, lamp, density), mine);
   }
   return density / (float)scene->info->light_count;
 }
@@ -91,12 +93,15 @@ static inline REAL3 met_sky(const Scene* scene, const Walks* walks, REAL3 d, MAS
   if (!HAS_SKY) return background_along(scene->info, d);
   const float chance = 1.0f / (float)max(scene->info->light_count, 1u);
   REAL3 light = distant_along(scene, d, lanes);
-  if (sees_environment(scene))
-    light = scale3(light, weight_of_met(scene, walks, environment_density(scene, d, lanes) * chance));
+  if (sees_environment(scene)) {
+    const REAL chosen = environment_density(scene, d, lanes) * chance;
+    light = scale3(light, weight_of_met(scene, walks, density_on_stretch(walks, 0, chosen)));
+  }
   for (u32 index = 0; index < scene->info->table_lights; ++index) {
     __global const Light* sun = scene->lights + index;
     if (sun->kind != LIGHT_SUN) continue;
-    const REAL weight = weight_of_met(scene, walks, (REAL)(sun_density(sun, chance)));
+    const REAL chosen = density_on_stretch(walks, 0, (REAL)(sun_density(sun, chance)));
+    const REAL weight = weight_of_met(scene, walks, chosen);
     light = select3(light, along3(light, weight, all3(sun->color.xyz)), in_sun(sun, d));
   }
   return light;

@@ -24,20 +24,26 @@ static inline void choose_in_tree(const Scene* scene, REAL3 p, REAL u, MASK lane
                                   REAL* chance) {}
 #endif
 
-// A way to one of the lights for each of the points p, with its density among all; `seen`: rays may meet it.
-static inline LightSamples choose_one(const Scene* scene, REAL3 p, const FourNumbers* u, MASK lanes,
-                                      MASK* seen) {
-  const REAL count = (REAL)((float)scene->info->light_count), turn = u->z * count;
+// One of the lights for each of the points p, and the chance that it is chosen with.
+static inline MASK choose_index(const Scene* scene, REAL3 p, REAL u, MASK lanes, REAL* chance) {
+  const REAL count = (REAL)((float)scene->info->light_count), turn = u * count;
   const REAL slot = real_min(floor(turn), count - 1.0f);
   MASK chosen = NO_LANES;
-  REAL chance = 1.0f / count;
+  *chance = 1.0f / count;
   u32 index;
   for (MASK left = lanes, slots = TO_MASK(slot); any_lane(left);) {
     const MASK mine = take_alike(slots, &left, &index);
     chosen = select(chosen, (MASK)((int)scene->light_rays[index].light), mine);
   }
-  choose_in_tree(scene, p, turn - slot, lanes, &chosen, &chance);
+  choose_in_tree(scene, p, turn - slot, lanes, &chosen, chance);
+  return chosen;
+}
+
+// A way from the points p to their lights; `seen`: rays may meet it.
+static inline LightSamples sample_chosen(const Scene* scene, REAL3 p, REAL u_x, REAL u_y, MASK chosen,
+                                         MASK lanes, MASK* seen) {
   LightSamples light;
+  u32 index;
   light.wi = all3((float3)(0.0f));
   light.distance = (REAL)(0.0f);
   light.radiance = all3((float3)(0.0f));
@@ -46,7 +52,7 @@ static inline LightSamples choose_one(const Scene* scene, REAL3 p, const FourNum
   *seen = NO_LANES;
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(chosen, &left, &index);
-    const LightSamples one = sample_light(scene, index, p, u->x, u->y);
+    const LightSamples one = sample_light(scene, index, p, u_x, u_y);
     light.wi = select3(light.wi, one.wi, mine);
     light.distance = select(light.distance, one.distance, mine);
     light.radiance = select3(light.radiance, one.radiance, mine);
@@ -59,6 +65,15 @@ static inline LightSamples choose_one(const Scene* scene, REAL3 p, const FourNum
     if (met) *seen |= mine;
   }
   *seen &= ~light.delta;
+  return light;
+}
+
+// A way to one of the lights for each of the points p, with its density among all.
+static inline LightSamples choose_one(const Scene* scene, REAL3 p, const FourNumbers* u, MASK lanes,
+                                      MASK* seen) {
+  REAL chance;
+  const MASK chosen = choose_index(scene, p, u->z, lanes, &chance);
+  LightSamples light = sample_chosen(scene, p, u->x, u->y, chosen, lanes, seen);
   // Of a delta light the chance counts for the light, not for a direction.
   light.density *= chance;
   return light;

@@ -5,19 +5,20 @@
 #include "lib/pathtracer/guides.cl"
 #include "lib/pathtracer/met_light.cl"
 #include "lib/pathtracer/next_event.cl"
+#include "lib/pathtracer/scatter_media.cl"
 
 static inline Walks start_walks(const Scene* scene, const LaneSamples* at, MASK lanes) {
-  const REAL3 none = all3((float3)(0.0f));
-  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
-  const Walks walks = {carry_all(1.0f),
-                       carry_all(0.0f),
-                       none,
-                       zero,
-                       one,
-                       (MASK)(1),
-                       NO_LANES,
-                       *at,
-                       choose_wavelengths(scene, at, lanes)};
+  Walks walks;
+  walks.throughput = carry_all(1.0f);
+  walks.light = carry_all(0.0f);
+  walks.from = all3((float3)(0.0f));
+  walks.density = (REAL)(0.0f);
+  walks.spread = (REAL)(1.0f);
+  walks.depth = (MASK)(1);
+  walks.met = NO_LANES;
+  walks.at = *at;
+  walks.wavelengths = choose_wavelengths(scene, at, lanes);
+  forget_stretches(&walks);
   return walks;
 }
 
@@ -34,30 +35,7 @@ static inline void join_walks(Walks* walks, const Walks* other, MASK lanes) {
   walks->at.y = select(walks->at.y, other->at.y, lanes);
   walks->at.sample = select(walks->at.sample, other->at.sample, lanes);
   join_wavelengths(&walks->wavelengths, &other->wavelengths, lanes);
-}
-static inline void join_rays(SceneRays* rays, const SceneRays* others, MASK lanes) {
-  rays->o = select3(rays->o, others->o, lanes);
-  rays->d = select3(rays->d, others->d, lanes);
-  rays->t_min = select(rays->t_min, others->t_min, lanes);
-  rays->t_max = select(rays->t_max, others->t_max, lanes);
-  rays->media_low = select(rays->media_low, others->media_low, lanes);
-  rays->media_high = select(rays->media_high, others->media_high, lanes);
-  join_medium(rays, others, lanes);
-  join_crossings(rays, others, lanes);
-  join_footprints(rays, others, lanes);
-  join_cones(rays, others, lanes);
-  join_glow(rays, others, lanes);
-}
-
-// Paths of `lanes` that continue after Russian roulette: they stand for those that end.
-// What refraction took from the radiance comes back when the ray leaves the medium, and says nothing of its
-// worth.
-static inline MASK play_roulette(const Scene* scene, Walks* walks, REAL u, MASK lanes) {
-  const MASK playing = lanes & MASK_OF(walks->depth >= (int)scene->info->roulette_depth);
-  const REAL worth = carry_worth(walks->throughput) * walks->spread;
-  const REAL chance = select((REAL)(1.0f), real_min(worth, (REAL)(0.95f)), playing);
-  walks->throughput = carry_scale(walks->throughput, 1.0f / real_max(chance, (REAL)(1e-20f)));
-  return lanes & MASK_OF(u < chance);
+  join_scattered(walks, other, lanes);
 }
 
 // The rays of `lanes` in the directions that their surfaces sampled.
@@ -153,6 +131,7 @@ NEVER_INLINE MASK scatter(const Scene* scene, const Encounters* met, const Shadi
   const MASK turns = lanes & ~passes;
   walks->density = select(walks->density, select(sample.density, zero, sample.specular), turns);
   walks->from = select3(walks->from, at->s.p, turns);
+  leave_stretch(walks, turns);
   MASK going = some & MASK_OF(walks->depth <= (int)scene->info->max_depth);
   counts[COUNT_DEPTH_LIMIT] += lane_count(some & ~going);
   going = play_roulette(scene, walks, u.w, going);
@@ -168,24 +147,28 @@ NEVER_INLINE MASK scatter(const Scene* scene, const Encounters* met, const Shadi
 NEVER_INLINE MASK step_walks(const Scene* scene, Walks* walks, SceneRays* rays, MASK lanes, bool coherent,
                              u32* counts) {
   Encounters met;
-  const MASK unseen = meet_interfaces(scene, rays, lanes, coherent, &met, counts);
+  const BegunRays begun = begun_rays_of(rays);
+  const MASK crossing = meet_interfaces(scene, rays, lanes, coherent, &met, counts);
   if (HAS_GLOW)
     walks->light =
         carry_select(walks->light, carry_add(walks->light, carried_color(walks, emitted(rays))), lanes);
   forget_glow(rays);
+  MASK going;
+  const MASK scattered = scatter_in_media(scene, walks, &begun, rays, &met, lanes, &going, counts);
+  const MASK there = lanes & ~scattered, unseen = crossing & there;
   walks->throughput =
       carry_select(walks->throughput,
-                   carry_multiply(walks->throughput, carry_kept(&walks->wavelengths, met.absorbed)), lanes);
+                   carry_multiply(walks->throughput, carry_kept(&walks->wavelengths, met.absorbed)), there);
   // An interface that cannot be seen may stop shadow rays all the same.
   walks->density = select(walks->density, (REAL)(0.0f),
                           unseen & MASK_OF((met.face.flags & (int)MATERIAL_SHADOW_OPAQUE) != 0));
-  const MASK ended = lanes & ~unseen, hit = ended & hit_anything(&met.hit), lost = ended & ~hit;
+  const MASK ended = there & ~unseen, hit = ended & hit_anything(&met.hit), lost = ended & ~hit;
   Carried light = carry_all(0.0f);
   if (HAS_FOG) light = met_fog(scene, &met, ended, walks);
   if (any_lane(lost))
     light = carry_select(light, carry_add(light, carried_color(walks, met_sky(scene, walks, rays->d, lost))),
                          lost);
-  MASK going = unseen;
+  going |= unseen;
   if (any_lane(hit)) {
     Shading at;
     const MASK first = hit & MASK_OF(walks->depth == 1);

@@ -7,11 +7,12 @@
 #include "lib/light/choose_light.cl"
 #include "lib/light/light.cl"
 #include "lib/pathtracer/carried.cl"
+#include "lib/pathtracer/media_stretch.cl"
 
 typedef struct Walks {
   Carried throughput;
   Carried light;  // gathered so far
-  REAL3 from;     // the surface that chose the ray's direction, with the density `density`
+  REAL3 from;     // the place that chose the ray's direction, with the density `density`
   REAL density;   // 0: no light that is chosen at surfaces counts twice on this ray
   // The factor of the throughput that says nothing of the path's worth: radiance spread by refraction since
   // the camera (squared index by squared index), and paths drawn to guides.
@@ -20,7 +21,57 @@ typedef struct Walks {
   MASK met;    // the camera's ray has hit something
   LaneSamples at;
   Wavelengths wavelengths;
+#if HAS_SCATTERING
+  Scattered scattered;  // the density is then that of the place on the stretch and of the direction
+#endif
 } Walks;
+
+// What a stretch makes of the density with which its light `lamp` is chosen: in place of a surface a place on
+// it is chosen, too. For distant lights `lamp` is 0.
+#if HAS_SCATTERING
+static inline REAL density_on_stretch(const Walks* walks, __global const Light* lamp, REAL density) {
+  const Scattered* s = &walks->scattered;
+  REAL chance = s->chance;
+  if (lamp) {
+    const SeenStretch seen = see_stretch(s->o, s->d, s->length, s->decay, middle_of_light(lamp));
+    chance = density_towards(&seen, s->at, chance);
+  }
+  return select(density, density * chance, s->lanes);
+}
+// The places for which lights of the tree were chosen.
+static inline REAL3 chosen_from(const Walks* walks) {
+  const Scattered* s = &walks->scattered;
+  return select3(walks->from, place_for_lights(s->o, s->d, s->length, s->decay), s->lanes);
+}
+static inline void join_stretch(Walks* walks, const Scattered* other, MASK lanes) {
+  Scattered* s = &walks->scattered;
+  s->lanes = select(s->lanes, other->lanes, lanes);
+  s->o = select3(s->o, other->o, lanes);
+  s->d = select3(s->d, other->d, lanes);
+  s->length = select(s->length, other->length, lanes);
+  s->at = select(s->at, other->at, lanes);
+  s->decay = select(s->decay, other->decay, lanes);
+  s->chance = select(s->chance, other->chance, lanes);
+}
+static inline void join_scattered(Walks* walks, const Walks* other, MASK lanes) {
+  join_stretch(walks, &other->scattered, lanes);
+}
+static inline void leave_stretch(Walks* walks, MASK lanes) { walks->scattered.lanes &= ~lanes; }
+static inline void forget_stretches(Walks* walks) {
+  const REAL zero = (REAL)(0.0f);
+  const REAL3 none = all3((float3)(0.0f));
+  const Scattered nowhere = {NO_LANES, none, none, zero, zero, zero, zero};
+  walks->scattered = nowhere;
+}
+#else
+static inline REAL density_on_stretch(const Walks* walks, __global const Light* lamp, REAL density) {
+  return density;
+}
+static inline REAL3 chosen_from(const Walks* walks) { return walks->from; }
+static inline void join_scattered(Walks* walks, const Walks* other, MASK lanes) {}
+static inline void leave_stretch(Walks* walks, MASK lanes) {}
+static inline void forget_stretches(Walks* walks) {}
+#endif
 
 // Light of a colour that a path has met, as it gets to the camera.
 static inline Carried carried_color(const Walks* walks, REAL3 color) {

@@ -272,6 +272,43 @@ TEST_CASE("bench samples tells time and error by samples, and the error falls") 
   CHECK(is_one_error_line(result.err));
 }
 
+TEST_CASE("bench quality tells the error of each way by time, against a picture that is given") {
+  const CliFolder folder;
+  REQUIRE(run_sundog({"render", folder.scene, "-o", folder.file("r.exr"), "--samples", "64", "--device",
+                      "portable", "--quiet"})
+              .status == 0);
+  const auto run = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"bench",    "quality",     folder.scene,         "--device",
+                                          "portable", "--reference", folder.file("r.exr"), "--repeat",
+                                          "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_sundog(arguments);
+  };
+  CommandResult result =
+      run({"--counts", "1,8", "--samplers", "auto,independent", "--integrators", "whitted", "--goal", "0.01",
+           "--json", folder.file("t.json"), "--html", folder.file("t.html")});
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  CHECK_THAT(result.out, ContainsSubstring("error by time"));
+  const json rows = json::parse(sundog::read_file(folder.file("t.json"))).at("measurements");
+  REQUIRE(rows.size() == 4);
+  for (std::size_t i = 0; i < 4; i += 2) {
+    CHECK(rows[i].at("sampler") == (i == 0 ? "auto" : "independent"));
+    CHECK(rows[i].at("problem").is_null());
+    CHECK(rows[i + 1].at("samples") == 8);
+    for (const char* error : {"rms_error", "perceived_difference"}) {
+      CHECK(rows[i + 1].at(error) < rows[i].at(error));
+      CHECK(rows[i + 1].at(error) > 0);
+    }
+  }
+  CHECK_THAT(sundog::read_file(folder.file("t.html")), ContainsSubstring("rms error by time"));
+
+  result = run({"--size", "5x4"});
+  CHECK(result.status == 2);
+  CHECK(is_one_error_line(result.err));
+  CHECK_THAT(result.err, ContainsSubstring("5x4"));
+}
+
 TEST_CASE("bench textures times a frame with textures and without, and the loading of images") {
   const CliFolder folder;
   const CommandResult result =

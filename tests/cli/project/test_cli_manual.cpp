@@ -28,6 +28,7 @@ const std::map<std::string, std::string> pages{{"render", "command-line"},
                                                {"bench devices", "benchmarks"},
                                                {"bench rays", "benchmarks"},
                                                {"bench samples", "benchmarks"},
+                                               {"bench quality", "benchmarks"},
                                                {"bench kernels", "benchmarks"},
                                                {"bench textures", "benchmarks"},
                                                {"halo", "halo"}};

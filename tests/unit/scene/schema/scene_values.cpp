@@ -79,8 +79,9 @@ std::string line(const SdfDescription& f) {
 }
 
 std::string line(const MediumDescription& m) {
-  return fmt::format("medium {} {} {} {} {} {}\n", m.name, m.ior, text(m.absorption), m.priority,
-                     static_cast<int>(m.dispersion.kind), fmt::join(m.dispersion.coefficients, " "));
+  return fmt::format("medium {} {} {} {} {} {} {} {}\n", m.name, m.ior, text(m.absorption), m.priority,
+                     static_cast<int>(m.dispersion.kind), fmt::join(m.dispersion.coefficients, " "),
+                     text(m.scattering), m.anisotropy);
 }
 
 std::string line(const MaterialDescription& m) {
@@ -121,7 +122,8 @@ std::string all_values(const SceneDescription& scene) {
   const auto add = [&](const auto& table) {
     for (const auto& entry : table) out += line(entry);
   };
-  out += fmt::format("fog {} {}\n", text(scene.fog.color), scene.fog.density);
+  out += fmt::format("fog {} {} {}\n", text(scene.fog.color), scene.fog.density,
+                     scene.fog.anisotropy.value_or(0));
   add(scene.lights), add(scene.media), add(scene.textures), add(scene.materials), add(scene.meshes),
       add(scene.fields), add(scene.objects);
   return out;

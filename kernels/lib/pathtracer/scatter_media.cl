@@ -1,0 +1,223 @@
+// Media that scatter, on the way of paths to their next interfaces: each stretch of a ray gets light from one
+// lamp, at a place that is chosen for it, and may end the ray at another, from where the path continues. A
+// path a lane.
+#ifndef SUNDOG_LIB_SCATTER_MEDIA_CL
+#define SUNDOG_LIB_SCATTER_MEDIA_CL
+#include "lib/pathtracer/next_event.cl"
+#include "lib/pathtracer/walk_state.cl"
+
+// Paths of `lanes` that continue after Russian roulette: they stand for those that end.
+// What refraction took from the radiance comes back when the ray leaves the medium, and says nothing of its
+// worth.
+static inline MASK play_roulette(const Scene* scene, Walks* walks, REAL u, MASK lanes) {
+  const MASK playing = lanes & MASK_OF(walks->depth >= (int)scene->info->roulette_depth);
+  const REAL worth = carry_worth(walks->throughput) * walks->spread;
+  const REAL chance = select((REAL)(1.0f), real_min(worth, (REAL)(0.95f)), playing);
+  walks->throughput = carry_scale(walks->throughput, 1.0f / real_max(chance, (REAL)(1e-20f)));
+  return lanes & MASK_OF(u < chance);
+}
+
+#if HAS_SCATTERING
+// What rays are before they go to their next interfaces.
+typedef struct BegunRays {
+  REAL t_min, since;
+  MASK media_low, media_high, crossings;
+} BegunRays;
+
+static inline BegunRays begun_rays_of(const SceneRays* rays) {
+  const BegunRays begun = {rays->t_min, rays->since, rays->media_low, rays->media_high, rays->crossings};
+  return begun;
+}
+
+// Stretches of rays in media that scatter.
+typedef struct Stretches {
+  MASK lanes;
+  REAL3 o, d;   // where they begin
+  REAL length;  // to the next interface
+  REAL begin;   // what of the medium lies before them, for absorption
+  REAL3 decay;  // light lost per unit of length
+  REAL3 scattering;
+  REAL g;        // mean cosine of turns
+  REAL mean;     // of the decay
+  REAL3 shares;  // of the colours, in the choice of the place where the path is scattered
+  REAL3 drawn;   // and of the one that gets light
+} Stretches;
+
+#if HAS_DISPERSION
+static inline REAL3 carried_shares(const Carried* throughput) { return all3((float3)(1.0f / 3.0f)); }
+#else
+static inline REAL3 carried_shares(const Carried* throughput) { return shares_of(*throughput); }
+#endif
+
+static inline Stretches find_stretches(const Scene* scene, const BegunRays* begun, const SceneRays* rays,
+                                       const Encounters* met, const Walks* walks, MASK lanes) {
+  const REAL zero = (REAL)(0.0f);
+  Stretches s;
+  s.lanes = NO_LANES;
+  s.o = along3(rays->o, begun->t_min, rays->d);
+  s.d = rays->d;
+  s.length = real_max(met->hit.t - begun->t_min, zero);
+  s.begin = begun->t_min - begun->since;
+  s.decay = all3((float3)(0.0f));
+  s.scattering = s.decay;
+  s.g = zero;
+  u32 index;
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(met->before, &left, &index);
+    const float4 scattering = scene->media[index].scattering;
+    if (scattering.x + scattering.y + scattering.z <= 0.0f) continue;
+    s.lanes |= mine;
+    s.decay = select3(s.decay, all3(scene->media[index].absorption.xyz), mine);
+    s.scattering = select3(s.scattering, all3(scattering.xyz), mine);
+    s.g = select(s.g, (REAL)(scattering.w), mine);
+  }
+  s.mean = (s.decay.x + s.decay.y + s.decay.z) * (1.0f / 3.0f);
+  s.shares = carried_shares(&walks->throughput);
+  s.drawn = shares_of(real3(select(zero, s.shares.x, MASK_OF(s.scattering.x > 0.0f)),
+                            select(zero, s.shares.y, MASK_OF(s.scattering.y > 0.0f)),
+                            select(zero, s.shares.z, MASK_OF(s.scattering.z > 0.0f))));
+  return s;
+}
+
+// What arrives at the distance `at` of light that comes from the stretches' ends, and is scattered there.
+static inline Carried scattered_at(const Walks* walks, const Stretches* s, REAL at) {
+  const Carried kept = carry_kept(&walks->wavelengths, kept_over3(s->decay, s->begin + at));
+  return carry_multiply(carry_multiply(walks->throughput, kept),
+                        carry_color(&walks->wavelengths, s->scattering));
+}
+
+// The density of the distance `at` as the place where a path is scattered, and the chance that none is.
+static inline REAL free_density(const Stretches* s, REAL at) {
+  const REAL3 kept = kept_over3(s->decay, at);
+  return dot3(multiply3(s->shares, s->decay), kept);
+}
+static inline REAL chance_to_pass(const Stretches* s) {
+  return dot3(s->shares, kept_over3(s->decay, s->length));
+}
+
+// Rays of `lanes` that begin at the distance `at` of the stretches.
+static inline SceneRays rays_from_stretch(const Scene* scene, const BegunRays* begun, const SceneRays* rays,
+                                          const Stretches* s, REAL at, REAL3 d, REAL t_max, MASK lanes) {
+  SceneRays made = *rays;
+  const Hits nothing = no_hits(begun->t_min + at);
+  start_on_surfaces(scene->info, &made, &nothing, NO_LANES, lanes);
+  made.o = along3(s->o, at, s->d);
+  made.d = d;
+  made.t_min = (REAL)(0.0f);
+  made.t_max = t_max;
+  made.media_low = begun->media_low;
+  made.media_high = begun->media_high;
+  return made;
+}
+
+// A distance on each stretch that suits its light, with its density.
+static inline REAL distance_for_light(const Scene* scene, const Stretches* s, MASK chosen, REAL u_way, REAL u,
+                                      REAL u_color, MASK lanes, REAL* density) {
+  REAL at = next_distance(s->decay, s->drawn, s->length, u, u_color);
+  *density = next_density(s->decay, s->drawn, s->length, at);
+  u32 index;
+  for (MASK left = lanes; any_lane(left);) {
+    const MASK mine = take_alike(chosen, &left, &index);
+    __global const Light* lamp = scene->lights + index;
+    if (!is_near_light(lamp)) continue;
+    const SeenStretch seen = see_stretch(s->o, s->d, s->length, s->mean, middle_of_light(lamp));
+    at = select(at, distance_by_angle(&seen, s->length, u), mine & MASK_OF(u_way < seen.part));
+    const REAL chance = next_density(s->decay, s->drawn, s->length, at);
+    *density = select(*density, density_towards(&seen, at, chance), mine);
+  }
+  return at;
+}
+
+// Light of one lamp that the stretches of `lanes` scatter towards their beginnings.
+NEVER_INLINE Carried light_on_stretch(const Scene* scene, const Walks* walks, const BegunRays* begun,
+                                      const SceneRays* rays, const Stretches* s, MASK dimension, MASK lanes,
+                                      u32* counts) {
+  const REAL zero = (REAL)(0.0f);
+  const FourNumbers u = sample_lanes(&walks->at, dimension), v = sample_lanes(&walks->at, dimension + 4);
+  const REAL3 place = place_for_lights(s->o, s->d, s->length, s->mean);
+  REAL chance, density;
+  const MASK chosen = choose_index(scene, place, u.z, lanes, &chance);
+  const REAL at = distance_for_light(scene, s, chosen, u.w, v.z, v.w, lanes, &density);
+  MASK seen;
+  const LightSamples light = sample_chosen(scene, along3(s->o, at, s->d), u.x, u.y, chosen, lanes, &seen);
+  const REAL turned = phase_density(s->g, dot3(s->d, light.wi));
+  density *= light.density * chance;
+  const REAL weight = weight_of_chosen(scene, density, select(zero, free_density(s, at) * turned, seen));
+  const REAL over = select((REAL)(1.0f), (REAL)(M_PI_F), light.delta) * turned * weight / density;
+  Carried possible =
+      carry_multiply(scattered_at(walks, s, at), carry_color(&walks->wavelengths, light.radiance));
+  possible = carry_scale(possible, over);
+  const MASK lit = lanes & MASK_OF(carry_greatest(possible) >= FLT_MIN) & MASK_OF(light.distance > 0.0f);
+  if (!any_lane(lit)) return carry_all(0.0f);
+  counts[COUNT_SHADOW] += lane_count(lit);
+  SceneRays to_light = rays_from_stretch(scene, begun, rays, s, at, light.wi, light.distance, lit);
+  return carry_select(carry_all(0.0f),
+                      carried_to_light(scene, &walks->wavelengths, &to_light, possible, lit, counts), lit);
+}
+
+// The paths of `lanes` are scattered at the distances `at` of their stretches. Returns those that continue.
+static inline MASK turn_on_stretch(const Scene* scene, Walks* walks, const BegunRays* begun, SceneRays* rays,
+                                   const Stretches* s, REAL at, MASK lanes, u32* counts) {
+  const FourNumbers u = sample_lanes(
+      &walks->at, (walks->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + BOUNCE_DIRECTION));
+  const REAL density = free_density(s, at), cosine = phase_cosine(s->g, u.x);
+  const Carried left = carry_scale(scattered_at(walks, s, at), 1.0f / real_max(density, (REAL)(1e-30f)));
+  walks->throughput = carry_select(walks->throughput, left, lanes);
+  const Scattered scattered = {
+      lanes, s->o, s->d, s->length, at, s->mean, next_density(s->decay, s->drawn, s->length, at)};
+  join_stretch(walks, &scattered, lanes);
+  walks->density = select(walks->density, density * phase_density(s->g, cosine), lanes);
+  walks->from = select3(walks->from, along3(s->o, at, s->d), lanes);
+  MASK going = lanes & MASK_OF(carry_greatest(walks->throughput) > 0.0f);
+  const MASK allowed = going & MASK_OF(walks->depth <= (int)scene->info->max_depth);
+  counts[COUNT_DEPTH_LIMIT] += lane_count(going & ~allowed);
+  going = play_roulette(scene, walks, u.w, allowed);
+  walks->depth -= lanes;
+  counts[COUNT_REFLECTION] += lane_count(going);
+  SceneRays child = rays_from_stretch(scene, begun, rays, s, at, direction_about(s->d, cosine, u.y),
+                                      (REAL)(INFINITY), lanes);
+  spread_scattered(&child, lanes);
+  join_rays(rays, &child, lanes);
+  return going;
+}
+
+// The paths of `lanes` on their ways to what they have met. Returns those that do not get there, with those
+// of them that continue.
+NEVER_INLINE MASK scatter_in_media(const Scene* scene, Walks* walks, const BegunRays* begun, SceneRays* rays,
+                                   const Encounters* met, MASK lanes, MASK* going, u32* counts) {
+  const Stretches s = find_stretches(scene, begun, rays, met, walks, lanes);
+  *going = NO_LANES;
+  if (!any_lane(s.lanes)) return NO_LANES;
+  const MASK dimension = (MASK)((int)DIMENSION_STRETCH) + (walks->depth - 1) * (int)DIMENSIONS_A_BOUNCE +
+                         begun->crossings * (int)DIMENSIONS_A_CROSSING;
+  const MASK lit = s.lanes & MASK_OF(walks->depth <= (int)scene->info->max_depth);
+  if (scene->info->light_count && any_lane(lit)) {
+    const Carried light = light_on_stretch(scene, walks, begun, rays, &s, dimension, lit, counts);
+    walks->light = carry_select(walks->light, carry_add(walks->light, light), lit);
+  }
+  const FourNumbers v = sample_lanes(&walks->at, dimension + 4);
+  const REAL chosen = by_share(s.decay, s.shares, v.y);
+  const REAL at = select((REAL)(INFINITY), depth_of_lost(v.x) / nonzero(chosen), MASK_OF(chosen > 0.0f));
+  const MASK turning = s.lanes & MASK_OF(at < s.length), passing = s.lanes & ~turning;
+  const REAL passed = real_max(chance_to_pass(&s), (REAL)(1e-30f));
+  walks->throughput = carry_select(walks->throughput, carry_scale(walks->throughput, 1.0f / passed), passing);
+  if (any_lane(turning)) *going = turn_on_stretch(scene, walks, begun, rays, &s, at, turning, counts);
+  return turning;
+}
+
+#else
+typedef struct BegunRays {
+  MASK unused;
+} BegunRays;
+static inline BegunRays begun_rays_of(const SceneRays* rays) {
+  const BegunRays none = {NO_LANES};
+  return none;
+}
+static inline MASK scatter_in_media(const Scene* scene, Walks* walks, const BegunRays* begun, SceneRays* rays,
+                                    const Encounters* met, MASK lanes, MASK* going, u32* counts) {
+  *going = NO_LANES;
+  return NO_LANES;
+}
+#endif
+
+#endif
