@@ -18,7 +18,7 @@ struct QualityOptions : BenchOptions {
 };
 
 /// "a,b" -> a, b.
-std::vector<std::string> names(const std::string& text) {
+std::vector<std::string> split_names(const std::string& text) {
   std::vector<std::string> parts;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t comma = std::min(text.find(',', at), text.size());
@@ -30,9 +30,9 @@ std::vector<std::string> names(const std::string& text) {
 
 /// Every integrator with every sampler; without --integrators the scene's own.
 std::vector<QualityWay> quality_ways(const QualityOptions& options, const std::string& file) {
-  std::vector<std::string> integrators = names(options.integrators);
+  std::vector<std::string> integrators = split_names(options.integrators);
   if (integrators.empty()) integrators.push_back(bench_description(file, options).render.integrator);
-  const std::vector<std::string> samplers = names(options.samplers);
+  const std::vector<std::string> samplers = split_names(options.samplers);
   if (samplers.empty()) throw UsageError("--samplers: wanted names with commas between, such as auto,sobol");
   std::vector<QualityWay> ways;
   for (const std::string& integrator : integrators)

@@ -46,7 +46,7 @@ struct QualityRunner {
 
 std::string name_of(const QualityWay& way) { return way.integrator + ", " + way.sampler; }
 
-Spread milliseconds(const Spread& seconds) {
+Spread in_milliseconds(const Spread& seconds) {
   return {1e3 * seconds.median, 1e3 * seconds.min, 1e3 * seconds.max};
 }
 
@@ -131,7 +131,7 @@ void add_quality(Report& report, const QualityPlan& plan, const std::vector<Qual
   for (const QualityTime& time : times) {
     std::vector<Cell> row{time.way.integrator, time.way.sampler, static_cast<double>(time.samples)};
     if (time.problem.empty())
-      row.insert(row.end(), {milliseconds(time.seconds), time.rms, time.perceived, Cell()});
+      row.insert(row.end(), {in_milliseconds(time.seconds), time.rms, time.perceived, Cell()});
     else
       row.insert(row.end(), {Cell(), Cell(), Cell(), time.problem});
     std::vector<Cell> tidy{plan.scene, plan.device.label(), static_cast<double>(plan.repeat)};

@@ -5,6 +5,7 @@
 #define SUNDOG_LIB_MEDIA_STRETCH_CL
 #include "lib/core/directions.cl"
 #include "lib/core/tables.h"
+#include "lib/pathtracer/carried.cl"
 
 #if HAS_SCATTERING
 // What a scattered path remembers of the stretch that it was scattered on.
@@ -23,9 +24,6 @@ typedef struct Scattered {
 static inline REAL kept_over(REAL decay, REAL distance) {
   return select(real_exp(-decay * distance), (REAL)(1.0f), MASK_OF(decay == 0.0f));
 }
-static inline REAL3 kept_over3(REAL3 decay, REAL distance) {
-  return real3(kept_over(decay.x, distance), kept_over(decay.y, distance), kept_over(decay.z, distance));
-}
 
 // 1 - exp(-x), and -log(1 - y), exact for small numbers.
 static inline REAL lost_part(REAL x) {
@@ -37,32 +35,72 @@ static inline REAL depth_of_lost(REAL y) {
   return select(-real_log(real_max(1.0f - y, (REAL)(0x1p-24f))), small, MASK_OF(y < 0.01f));
 }
 
-// The component of `of` that the number u chooses by the shares, whose sum is 1.
-static inline REAL by_share(REAL3 of, REAL3 shares, REAL u) {
-  const REAL rest = select(of.y, of.z, MASK_OF(u >= shares.x + shares.y) & MASK_OF(shares.z > 0.0f));
-  return select(rest, of.x, MASK_OF(u < shares.x));
-}
-
-// Positive numbers as shares; where all are 0, thirds.
-static inline REAL3 shares_of(REAL3 a) {
-  const REAL sum = a.x + a.y + a.z, third = (REAL)(1.0f / 3.0f);
-  const MASK some = MASK_OF(sum > 0.0f) & MASK_OF(sum < INFINITY);
-  return select3(real3(third, third, third), scale3(a, 1.0f / select((REAL)(1.0f), sum, some)), some);
-}
-
-// A distance within the length by the decay, and its density; u chooses it, u_color the decay's component.
-static inline REAL next_distance(REAL3 decay, REAL3 shares, REAL length, REAL u, REAL u_color) {
-  const REAL chosen = by_share(decay, shares, u_color);
-  return real_min(depth_of_lost(u * lost_part(chosen * length)) / nonzero(chosen), length);
-}
+// The density of a distance within the length by one decay, times its share.
 static inline REAL next_of(REAL decay, REAL share, REAL length, REAL at) {
   const MASK some = MASK_OF(share * decay > 0.0f);
   const REAL lost = lost_part(decay * length);
   return select((REAL)(0.0f), share * decay * kept_over(decay, at) / select((REAL)(1.0f), lost, some), some);
 }
-static inline REAL next_density(REAL3 decay, REAL3 shares, REAL length, REAL at) {
+
+// Of decays and shares, one a colour or a wavelength: what is kept over a distance; the sum; the decay that
+// the number u chooses by the shares, whose sum is 1; and the density of a distance by all of them.
+#if HAS_DISPERSION
+static inline Carried carry_over(Carried decay, REAL distance) {
+  Carried kept;
+  EACH_WAVELENGTH(i) kept.of[i] = kept_over(decay.of[i], distance);
+  return kept;
+}
+static inline REAL carry_sum(Carried a) { return (a.of[0] + a.of[1]) + (a.of[2] + a.of[3]); }
+static inline REAL by_share(Carried of, Carried shares, REAL u) {
+  REAL chosen = of.of[0], sum = shares.of[0];
+  for (u32 i = 1; i < WAVELENGTHS; ++i) {
+    chosen = select(chosen, of.of[i], MASK_OF(u >= sum) & MASK_OF(shares.of[i] > 0.0f));
+    sum += shares.of[i];
+  }
+  return chosen;
+}
+static inline REAL next_density(Carried decay, Carried shares, REAL length, REAL at) {
+  REAL density = (REAL)(0.0f);
+  EACH_WAVELENGTH(i) density += next_of(decay.of[i], shares.of[i], length, at);
+  return density;
+}
+static inline Carried where_positive(Carried a, Carried b) {
+  Carried made;
+  EACH_WAVELENGTH(i) made.of[i] = select((REAL)(0.0f), a.of[i], MASK_OF(b.of[i] > 0.0f));
+  return made;
+}
+#else
+static inline Carried carry_over(Carried decay, REAL distance) {
+  return real3(kept_over(decay.x, distance), kept_over(decay.y, distance), kept_over(decay.z, distance));
+}
+static inline REAL carry_sum(Carried a) { return a.x + a.y + a.z; }
+static inline REAL by_share(Carried of, Carried shares, REAL u) {
+  const REAL two = select(of.x, of.y, MASK_OF(u >= shares.x) & MASK_OF(shares.y > 0.0f));
+  return select(two, of.z, MASK_OF(u >= shares.x + shares.y) & MASK_OF(shares.z > 0.0f));
+}
+static inline REAL next_density(Carried decay, Carried shares, REAL length, REAL at) {
   return next_of(decay.x, shares.x, length, at) + next_of(decay.y, shares.y, length, at) +
          next_of(decay.z, shares.z, length, at);
+}
+static inline Carried where_positive(Carried a, Carried b) {
+  const REAL zero = (REAL)(0.0f);
+  return real3(select(zero, a.x, MASK_OF(b.x > 0.0f)), select(zero, a.y, MASK_OF(b.y > 0.0f)),
+               select(zero, a.z, MASK_OF(b.z > 0.0f)));
+}
+#endif
+
+// Numbers that are not negative as shares; where all are 0, even ones.
+static inline Carried shares_of(Carried a) {
+  const REAL sum = carry_sum(a), all = carry_sum(carry_all(1.0f));
+  const MASK some = MASK_OF(sum > 0.0f) & MASK_OF(sum < INFINITY);
+  return carry_select(carry_scale(carry_all(1.0f), 1.0f / all),
+                      carry_scale(a, 1.0f / select((REAL)(1.0f), sum, some)), some);
+}
+
+// A distance within the length by the decay; u chooses it, u_color the decay's component.
+static inline REAL next_distance(Carried decay, Carried shares, REAL length, REAL u, REAL u_color) {
+  const REAL chosen = by_share(decay, shares, u_color);
+  return real_min(depth_of_lost(u * lost_part(chosen * length)) / nonzero(chosen), length);
 }
 
 // A stretch as a light sees it: the place nearest to the light, how far that is, the way from there to the

@@ -32,22 +32,16 @@ static inline BegunRays begun_rays_of(const SceneRays* rays) {
 // Stretches of rays in media that scatter.
 typedef struct Stretches {
   MASK lanes;
-  REAL3 o, d;   // where they begin
-  REAL length;  // to the next interface
-  REAL begin;   // what of the medium lies before them, for absorption
-  REAL3 decay;  // light lost per unit of length
-  REAL3 scattering;
-  REAL g;        // mean cosine of turns
-  REAL mean;     // of the decay
-  REAL3 shares;  // of the colours, in the choice of the place where the path is scattered
-  REAL3 drawn;   // and of the one that gets light
+  REAL3 o, d;          // where they begin
+  REAL length;         // to the next interface
+  REAL begin;          // what of the medium lies before them, for absorption
+  Carried decay;       // light lost per unit of length
+  Carried scattering;  // light scattered
+  REAL g;              // mean cosine of turns
+  REAL mean;           // of the decay's colours
+  Carried shares;      // of the colours, in the choice of the place where the path is scattered
+  Carried drawn;       // and of the one that gets light
 } Stretches;
-
-#if HAS_DISPERSION
-static inline REAL3 carried_shares(const Carried* throughput) { return all3((float3)(1.0f / 3.0f)); }
-#else
-static inline REAL3 carried_shares(const Carried* throughput) { return shares_of(*throughput); }
-#endif
 
 static inline Stretches find_stretches(const Scene* scene, const BegunRays* begun, const SceneRays* rays,
                                        const Encounters* met, const Walks* walks, MASK lanes) {
@@ -58,41 +52,38 @@ static inline Stretches find_stretches(const Scene* scene, const BegunRays* begu
   s.d = rays->d;
   s.length = real_max(met->hit.t - begun->t_min, zero);
   s.begin = begun->t_min - begun->since;
-  s.decay = all3((float3)(0.0f));
-  s.scattering = s.decay;
+  REAL3 decay = all3((float3)(0.0f)), scattering = decay;
   s.g = zero;
   u32 index;
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(met->before, &left, &index);
-    const float4 scattering = scene->media[index].scattering;
-    if (scattering.x + scattering.y + scattering.z <= 0.0f) continue;
+    const float4 some = scene->media[index].scattering;
+    if (some.x + some.y + some.z <= 0.0f) continue;
     s.lanes |= mine;
-    s.decay = select3(s.decay, all3(scene->media[index].absorption.xyz), mine);
-    s.scattering = select3(s.scattering, all3(scattering.xyz), mine);
-    s.g = select(s.g, (REAL)(scattering.w), mine);
+    decay = select3(decay, all3(scene->media[index].absorption.xyz), mine);
+    scattering = select3(scattering, all3(some.xyz), mine);
+    s.g = select(s.g, (REAL)(some.w), mine);
   }
-  s.mean = (s.decay.x + s.decay.y + s.decay.z) * (1.0f / 3.0f);
-  s.shares = carried_shares(&walks->throughput);
-  s.drawn = shares_of(real3(select(zero, s.shares.x, MASK_OF(s.scattering.x > 0.0f)),
-                            select(zero, s.shares.y, MASK_OF(s.scattering.y > 0.0f)),
-                            select(zero, s.shares.z, MASK_OF(s.scattering.z > 0.0f))));
+  s.mean = (decay.x + decay.y + decay.z) * (1.0f / 3.0f);
+  s.decay = carry_color(&walks->wavelengths, decay);
+  s.scattering = carry_color(&walks->wavelengths, scattering);
+  s.shares = shares_of(walks->throughput);
+  s.drawn = shares_of(where_positive(walks->throughput, s.scattering));
   return s;
 }
 
 // What arrives at the distance `at` of light that comes from the stretches' ends, and is scattered there.
 static inline Carried scattered_at(const Walks* walks, const Stretches* s, REAL at) {
-  const Carried kept = carry_kept(&walks->wavelengths, kept_over3(s->decay, s->begin + at));
-  return carry_multiply(carry_multiply(walks->throughput, kept),
-                        carry_color(&walks->wavelengths, s->scattering));
+  const Carried kept = carry_over(s->decay, s->begin + at);
+  return carry_multiply(carry_multiply(walks->throughput, kept), s->scattering);
 }
 
 // The density of the distance `at` as the place where a path is scattered, and the chance that none is.
 static inline REAL free_density(const Stretches* s, REAL at) {
-  const REAL3 kept = kept_over3(s->decay, at);
-  return dot3(multiply3(s->shares, s->decay), kept);
+  return carry_sum(carry_multiply(carry_multiply(s->shares, s->decay), carry_over(s->decay, at)));
 }
 static inline REAL chance_to_pass(const Stretches* s) {
-  return dot3(s->shares, kept_over3(s->decay, s->length));
+  return carry_sum(carry_multiply(s->shares, carry_over(s->decay, s->length)));
 }
 
 // Rays of `lanes` that begin at the distance `at` of the stretches.
