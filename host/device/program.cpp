@@ -34,30 +34,31 @@ std::filesystem::path made_folder(const char* variable, const std::string& folde
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed)
-    throw IoError(fmt::format("{}: {}, which {} names, cannot be made: name a folder that can be written",
-                              folder, failed.message(), variable));
+    throw IoError(
+        fmt::format("{}: {} ({}): name a folder that can be written", folder, failed.message(), variable));
   return folder;
 }
 
-/// SUNDOG_DUMP_KERNELS=folder keeps each program's final text there.
+/// HostEnvironment::dump_folder keeps each program's final text there.
 void dump_source(const std::string& folder, const std::string& entry, const std::string& source) {
   if (folder.empty()) return;
   const std::string stem = std::filesystem::path(entry).stem().string();
-  write_file(made_folder("SUNDOG_DUMP_KERNELS", folder) / fmt::format("{}-{:.8}.cl", stem, hash128(source)),
-             source);
+  write_file(
+      made_folder("the folder of kernel texts", folder) / fmt::format("{}-{:.8}.cl", stem, hash128(source)),
+      source);
 }
 
-/// SUNDOG_BUILD_LOG=folder keeps what the compiler said of each program there, and of what. One that is built
-/// again with other options has a file for each.
+/// HostEnvironment::build_log keeps what the compiler said of each program there, and of what. One that is
+/// built again with other options has a file for each.
 void keep_log(const ProgramRecord& record, const std::string& options, const std::string& log,
               cl_int status) {
   const std::string& folder = value_of(record.device.environment).build_log;
   if (folder.empty()) return;
   const std::string stem = std::filesystem::path(record.entry).stem().string();
   const DeviceInfo& info = record.device;
-  write_file(made_folder("SUNDOG_BUILD_LOG", folder) / fmt::format("{}-{}.{}-{:.8}.txt", stem, info.platform,
-                                                                   info.device,
-                                                                   hash128(options + "\n" + record.key)),
+  write_file(made_folder("the folder of build logs", folder) /
+                 fmt::format("{}-{}.{}-{:.8}.txt", stem, info.platform, info.device,
+                             hash128(options + "\n" + record.key)),
              fmt::format("program  {}\ndevice   {}\ndriver   {}, {}\noptions  {}\nstatus   {}\n\n"
                          "== log ==\n{}\n\n== source ==\n{}",
                          record.entry, info.label(), info.driver, info.version, options,
@@ -155,7 +156,7 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
   keep_log(record, options, report.log, status);
   if (status == CL_SUCCESS) return;
   if (options_are_bad(record, context, device))
-    throw BuildError(fmt::format("SUNDOG_BUILD_OPTIONS '{}': {} builds nothing with them: {} ({})",
+    throw BuildError(fmt::format("the build options '{}': {} builds nothing with them: {} ({})",
                                  value_of(record.device.environment).build_options, record.device.label(),
                                  cl_status_name(status), first_error(report.log)),
                      report.log);

@@ -24,6 +24,11 @@ constexpr Phrase phrases[] = {
     {"an .exr name or no AOV", "an .exr name or no --aov"},
     {" as part ", " with --tiles "},
     {"a render of one part writes them", "`sundog render --tiles` writes them"},
+    {"the folder of kernel texts", "SUNDOG_DUMP_KERNELS"},
+    {"the folder of kernel files", "SUNDOG_KERNEL_DIR"},
+    {"the folder of build logs", "SUNDOG_BUILD_LOG"},
+    {"the build options '", "SUNDOG_BUILD_OPTIONS '"},
+    {"faults on demand: ", "SUNDOG_FAULTS: "},
     {"as tunings are exported", "as `sundog tune --export` writes it"},
 };
 

@@ -122,15 +122,20 @@ TEST_CASE("variables of the process are read by the program, and in one source b
   CHECK(callers == std::set<std::string>{"api/devices.cpp", "app/process/environment.cpp"});
 }
 
-TEST_CASE("code below the program names no option of the command line, which puts them in place of phrases") {
+TEST_CASE("code below the program names no option and no variable, which it puts in place of phrases") {
   const std::regex literal(R"--("([^"\\]|\\.)*")--"), option(R"(["` (]--[a-z])"),
-      string_break(R"("\s*\n\s*")"), phrase(R"--(\{"([^"]+)",)--");
+      variable(R"(SUNDOG_(FAULTS|DEVICE|[A-Z]+_[A-Z]+))"), string_break(R"("\s*\n\s*")"),
+      phrase(R"--(\{"([^"]+)",)--");
   std::string all;
   for_each_line(layers_below, [&](const std::string& file, const std::string& line) {
     CAPTURE(file, line);
     for (std::sregex_iterator it(line.begin(), line.end(), literal), end; it != end; ++it) {
       const std::string text = it->str();
       CHECK_FALSE(std::regex_search(text, option));
+      if (file != "base/environment.cpp" && line.find('#') == std::string::npos)
+        CHECK_FALSE((std::regex_search(text, variable) &&
+                     text.find("SUNDOG_GENERATED") == std::string::npos &&
+                     text.find("SUNDOG_INCLUDED") == std::string::npos));
     }
     all += line + "\n";
   });
