@@ -87,8 +87,8 @@ trap 'rm -rf "$work"' EXIT
 if [[ $keep ]]; then mkdir -p -- "$keep" || exit 2; keep=$(readlink -f -- "$keep"); else keep=$work; fi
 
 aovs_of() { "$1" render --help | tr '\n' ' ' | sed -n 's/.*an extra image in the .exr: \([a-z_, ]*\);.*/\1/p' | tr -d ' ' | tr , '\n' | sort; }
-aovs=()
-for aov in $(comm -12 <(aovs_of "$old") <(aovs_of "$new")); do aovs+=(--aov "$aov"); done
+aovs=()  # but the variance, which only frames in passes have
+for aov in $(comm -12 <(aovs_of "$old") <(aovs_of "$new")); do [[ $aov == variance ]] || aovs+=(--aov "$aov"); done
 
 # What a scene file lacks: the benchmark's model is one that its user gives.
 extra_of() {

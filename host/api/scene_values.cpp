@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "api/impl.h"
+#include "scene/kinds.h"
 
 namespace sundog {
 inline namespace v0 {
@@ -33,22 +34,17 @@ void append(json& document, const char* list, json value) {
   member(document, list, json::array()).push_back(std::move(value));
 }
 
-json aimed(const Light& light) { return {{"position", light.position}, {"direction", light.direction}}; }
-
 json light_json(const Light& light) {
   json value{{"type", light.type}, {"color", light.color}, {"intensity", light.intensity}};
-  if (light.type == "directional") value["direction"] = light.direction;
-  if (light.type == "point") value["position"] = light.position;
-  if (light.type == "spot") {
-    value.update(aimed(light));
-    value["outer_angle"] = light.angle;
-  }
-  if (light.type == "rectangle" || light.type == "disk") value.update(aimed(light));
+  const auto facts = std::ranges::find(sundog::light_types, light.type, &sundog::LightTypeFacts::name);
+  if (facts == sundog::light_types.end()) return value;  // the reader of scenes lists the types
+  if (facts->placed) value["position"] = light.position;
+  if (facts->aimed) value["direction"] = light.direction;
+  if (facts->extent) value["samples"] = light.samples;
+  if (light.type == "spot") value["outer_angle"] = light.angle;
   if (light.type == "rectangle") value["size"] = light.size;
-  if (light.type == "sphere") value["position"] = light.position;
   if (light.type == "disk" || light.type == "sphere") value["radius"] = light.radius;
-  if (light.type == "rectangle" || light.type == "disk" || light.type == "sphere")
-    value["samples"] = light.samples;
+  for (const auto& [key, number] : light.more) value[key] = number;
   return value;
 }
 

@@ -2,8 +2,11 @@
 #include "base/environment.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 
+#include "base/clock.h"
 #include "base/faults.h"
 
 namespace sundog {
@@ -56,6 +59,14 @@ std::string HostEnvironment::driver(const std::string& name) const {
 const HostEnvironment& value_of(const EnvironmentPtr& environment) {
   static const HostEnvironment none;
   return environment ? *environment : none;
+}
+
+std::optional<ProgramEnd> wait_for_end(StartedProgram& program, double seconds) {
+  const Stopwatch clock;
+  std::optional<ProgramEnd> end;
+  while (!(end = program.ended()) && clock.seconds() < seconds)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  return end;
 }
 
 HostEnvironment read_environment(const std::function<void(const std::string& kind)>& end_process) {

@@ -1,12 +1,11 @@
 // What a program hands down to the layers below it: what it has read from its environment, and how processes
 // are started. Nothing below reads a variable of its own.
 #pragma once
-#include <sys/types.h>
-
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +20,28 @@ struct HandedDown {
   int here, there;
 };
 
+/// How a process ended: with a status, unless a signal above 0 ended it.
+struct ProgramEnd {
+  int status = 0, signal = 0;
+};
+
+/// A process that was started. One that still runs when this goes is left to itself.
+class StartedProgram {
+ public:
+  virtual ~StartedProgram() = default;
+  /// Nothing while it runs.
+  virtual std::optional<ProgramEnd> ended() = 0;
+  /// Has it end at once, whatever it does; does not wait until it has.
+  virtual void end() = 0;
+};
+
 /// Starts a process that answers to the arguments "worker" and "compile" as sundog's own program does. Throws
 /// IoError.
-using StartProgram =
-    std::function<pid_t(std::vector<std::string> arguments, std::vector<HandedDown> descriptors)>;
+using StartProgram = std::function<std::unique_ptr<StartedProgram>(std::vector<std::string> arguments,
+                                                                   std::vector<HandedDown> descriptors)>;
+
+/// Waits for the end, but no longer than so many seconds.
+std::optional<ProgramEnd> wait_for_end(StartedProgram& program, double seconds);
 
 struct HostEnvironment {
   std::filesystem::path cache;        // of kernels and tunings; empty: none

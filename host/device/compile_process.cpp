@@ -2,19 +2,15 @@
 #include "device/compile_process.h"
 
 #include <fmt/format.h>
-#include <signal.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <thread>
 #include <utility>
 
-#include "base/clock.h"
 #include "base/environment.h"
 #include "base/error.h"
 #include "base/faults.h"
@@ -71,9 +67,10 @@ std::optional<CompileProcess> CompileProcess::start(const DeviceInfo& device, co
   try {
     if (in >= 0 && out >= 0) {
       const std::string place = fmt::format("{}:{}", device.platform, device.device);
-      const pid_t started = start_program(
-          {"compile", place}, {{in, STDIN_FILENO}, {out, STDOUT_FILENO}, {nowhere, STDERR_FILENO}});
-      process.emplace(CompileProcess(started, out));
+      process.emplace(
+          CompileProcess(start_program({"compile", place},
+                                       {{in, STDIN_FILENO}, {out, STDOUT_FILENO}, {nowhere, STDERR_FILENO}}),
+                         out));
     }
   } catch (const std::exception&) {
     // no process can be started
@@ -83,28 +80,25 @@ std::optional<CompileProcess> CompileProcess::start(const DeviceInfo& device, co
   return process;
 }
 
+CompileProcess::CompileProcess(std::unique_ptr<StartedProgram> process, int result)
+    : process_(std::move(process)), result_(result) {}
+
 CompileProcess::CompileProcess(CompileProcess&& other) noexcept
-    : process_(std::exchange(other.process_, 0)), result_(std::exchange(other.result_, -1)) {}
+    : process_(std::move(other.process_)), result_(std::exchange(other.result_, -1)) {}
 
 CompileProcess::~CompileProcess() {
-  if (process_ > 0) {
-    ::kill(process_, SIGKILL);
-    while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) continue;
+  if (process_) {
+    process_->end();
+    wait_for_end(*process_, longest_wait);
   }
   if (result_ >= 0) ::close(result_);
 }
 
 std::string CompileProcess::wait() noexcept {
-  int status = 0;
-  pid_t ended = 0;
-  const Stopwatch clock;
-  while ((ended = ::waitpid(process_, &status, WNOHANG)) == 0) {
-    if (clock.seconds() > longest_wait) return {};
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  process_ = 0;
-  if (ended < 0) return {};  // someone else has waited for it: who knows how it ended
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? contents(result_) : std::string();
+  const std::optional<ProgramEnd> end = wait_for_end(*process_, longest_wait);
+  if (!end) return {};
+  process_.reset();
+  return end->signal == 0 && end->status == 0 ? contents(result_) : std::string();
 }
 
 void serve_compile(const EnvironmentPtr& environment, const std::string& place, int in, int out) {

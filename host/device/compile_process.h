@@ -1,13 +1,14 @@
 // The compiler's front end in a process of its own. Internal to the device layer, but for serve_compile().
 #pragma once
-#include <sys/types.h>
-
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "device/devices.h"
 
 namespace sundog {
+
+class StartedProgram;
 
 /// A program that is being compiled, not linked, by another process. PoCL reads 10 MB of its own built-in
 /// functions (half a second) before it can link a process's first program, and holds one lock meanwhile.
@@ -26,9 +27,9 @@ class CompileProcess {
   std::string wait() noexcept;
 
  private:
-  CompileProcess(pid_t process, int result) : process_(process), result_(result) {}
-  pid_t process_;  // 0: ended, and waited for
-  int result_;     // a file in memory that it writes
+  CompileProcess(std::unique_ptr<StartedProgram> process, int result);
+  std::unique_ptr<StartedProgram> process_;  // null: ended
+  int result_;                               // a file in memory that it writes
 };
 
 /// The other side (`sundog compile P:D`): compiles the source and options in the file `in` for the device

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -63,6 +64,8 @@ struct Light {
   double radius = 0.5;         ///< disk, sphere: in scene units, above 0
   std::array<double, 2> size{1, 1};  ///< rectangle: width, height in scene units, above 0
   int samples = 1;                   ///< shadow rays of each surface to an extent, 1..1024
+  /// Further keys of scene files with their numbers, such as {"inner_angle", 10} of a spot; they come last.
+  std::map<std::string, double> more{};
 };
 
 /// Triangles in memory. Spans of `normals`, `uvs` and `colors` are empty or as long as `positions`. Without

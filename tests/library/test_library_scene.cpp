@@ -58,6 +58,8 @@ TEST_CASE("pointers that lead nowhere are usage errors that name them") {
   CHECK(error_of([&] { scene.set("/camera/fov", "thirty"); }).kind() == ErrorKind::usage);
   CHECK(error_of([&] { scene.remove(""); }).kind() == ErrorKind::usage);
   CHECK(scene.get("/camera/fov") == "40.0");
+  scene.set("/lights", "[]").add_light({.type = "spot", .angle = 20, .more = {{"inner_angle", 5}}});
+  CHECK(scene.get("/lights/0/inner_angle") == "5.0");
   scene.set("/lights", "3");
   CHECK(error_of([&] { scene.add_light({}); }).place() == "/lights");
 }

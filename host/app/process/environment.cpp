@@ -22,9 +22,7 @@ void end_process(const std::string& kind) {
 
 EnvironmentPtr read_program_environment() {
   HostEnvironment environment = read_environment(end_process);
-  environment.start_program = [](std::vector<std::string> arguments, std::vector<HandedDown> descriptors) {
-    return spawn_self(std::move(arguments), std::move(descriptors));
-  };
+  environment.start_program = start_self;
   environment.step_back = [] { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 19); };
   return std::make_shared<const HostEnvironment>(std::move(environment));
 }

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "base/error.h"
 
@@ -33,6 +34,28 @@ std::vector<std::string> environment_with(const std::vector<std::string>& variab
   }
   return result;
 }
+
+class SpawnedSelf : public StartedProgram {
+ public:
+  explicit SpawnedSelf(pid_t process) : process_(process) {}
+  std::optional<ProgramEnd> ended() override {
+    if (end_) return end_;
+    int status = 0;
+    const pid_t ended = ::waitpid(process_, &status, WNOHANG);
+    if (ended == process_)
+      end_ = WIFSIGNALED(status) ? ProgramEnd{0, WTERMSIG(status)} : ProgramEnd{WEXITSTATUS(status), 0};
+    else if (ended < 0 && errno != EINTR)
+      end_ = ProgramEnd{-1, 0};  // someone else has waited for it: who knows how it ended
+    return end_;
+  }
+  void end() override {
+    if (!ended()) ::kill(process_, SIGKILL);
+  }
+
+ private:
+  pid_t process_;
+  std::optional<ProgramEnd> end_;
+};
 
 }  // namespace
 
@@ -62,6 +85,11 @@ pid_t spawn_self(std::vector<std::string> arguments, std::vector<HandedDown> des
   ::posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) throw IoError(std::string("sundog cannot start itself: ") + std::strerror(failed));
   return process;
+}
+
+std::unique_ptr<StartedProgram> start_self(std::vector<std::string> arguments,
+                                           std::vector<HandedDown> descriptors) {
+  return std::make_unique<SpawnedSelf>(spawn_self(std::move(arguments), std::move(descriptors)));
 }
 
 int wait_for_end(pid_t process) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <sys/types.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,10 @@ namespace sundog {
 /// nowhere. Throws IoError.
 pid_t spawn_self(std::vector<std::string> arguments, std::vector<HandedDown> descriptors,
                  const std::vector<std::string>& variables = {});
+
+/// The same for the layers below (base/environment.h).
+std::unique_ptr<StartedProgram> start_self(std::vector<std::string> arguments,
+                                           std::vector<HandedDown> descriptors);
 
 /// Waits until the process has ended; its status as waitpid gives it.
 int wait_for_end(pid_t process);

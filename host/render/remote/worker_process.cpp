@@ -1,16 +1,14 @@
 #include "render/remote/worker_process.h"
 
 #include <fmt/format.h>
-#include <signal.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
-#include <thread>
+#include <optional>
+#include <utility>
 
 #include "base/environment.h"
 #include "base/error.h"
@@ -23,16 +21,17 @@ constexpr int worker_descriptor = 3;
 
 class WorkerChannel : public Channel {
  public:
-  WorkerChannel(int socket, pid_t process, std::string name, double limit)
+  WorkerChannel(int socket, std::unique_ptr<StartedProgram> process, std::string name, double limit)
       : limit_(limit),
         socket_(std::make_unique<SocketChannel>(socket)),
-        process_(process),
+        process_(std::move(process)),
         name_(std::move(name)) {}
   ~WorkerChannel() override {
     socket_.reset();  // which tells it to end
-    wait_for_end(2);
-    if (process_ > 0) ::kill(process_, SIGKILL);
-    wait_for_end(2);
+    await_end(2);
+    if (end_) return;
+    process_->end();
+    await_end(2);
   }
   void send(const Message& message) override {
     try {
@@ -55,29 +54,24 @@ class WorkerChannel : public Channel {
   }
 
  private:
-  void wait_for_end(double seconds) {
-    for (double waited = 0; process_ > 0 && waited <= seconds; waited += 0.01) {
-      if (::waitpid(process_, &status_, WNOHANG) == process_)
-        process_ = 0;
-      else
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
+  void await_end(double seconds) {
+    if (!end_) end_ = wait_for_end(*process_, seconds);
   }
   [[noreturn]] void throw_end() {
-    wait_for_end(1);
+    await_end(1);
     std::string how = "closed its channel";
-    if (process_ == 0 && WIFSIGNALED(status_))
-      how = fmt::format("was killed by signal {} ({})", WTERMSIG(status_), ::strsignal(WTERMSIG(status_)));
-    else if (process_ == 0)
-      how = fmt::format("ended with status {}", WEXITSTATUS(status_));
+    if (end_ && end_->signal > 0)
+      how = fmt::format("was killed by signal {} ({})", end_->signal, ::strsignal(end_->signal));
+    else if (end_)
+      how = fmt::format("ended with status {}", end_->status);
     throw ChannelClosed(fmt::format("{}: its worker process {}", name_, how));
   }
 
   /// It is stopped, or hangs as a whole: it will not end by itself.
   [[noreturn]] void throw_silent() {
     const double seconds = silence_.seconds();
-    ::kill(process_, SIGKILL);
-    wait_for_end(2);
+    process_->end();
+    await_end(2);
     throw ChannelClosed(fmt::format("{}: its worker process had not been heard of for {:.1f} s and was ended",
                                     name_, seconds));
   }
@@ -85,12 +79,13 @@ class WorkerChannel : public Channel {
   Silence silence_;
   const double limit_;  // of its silence, in seconds
   std::unique_ptr<SocketChannel> socket_;
-  pid_t process_;  // 0: ended, and waited for
-  int status_ = 0;
+  std::unique_ptr<StartedProgram> process_;
+  std::optional<ProgramEnd> end_;
   std::string name_;
 };
 
-pid_t spawn(const HostEnvironment& environment, int socket, const std::string& name) {
+std::unique_ptr<StartedProgram> spawn(const HostEnvironment& environment, int socket,
+                                      const std::string& name) {
   if (!environment.start_program)
     throw DeviceError(fmt::format("{}: this program starts no worker processes", name));
   try {
@@ -108,9 +103,9 @@ std::unique_ptr<Channel> start_worker(const HostEnvironment& environment, const 
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
     throw DeviceError(fmt::format("{}: no socket for its worker process: {}", name, std::strerror(errno)));
   try {
-    const pid_t process = spawn(environment, ends[1], name);
+    std::unique_ptr<StartedProgram> process = spawn(environment, ends[1], name);
     ::close(ends[1]);
-    return std::make_unique<WorkerChannel>(ends[0], process, name, environment.silence_limit);
+    return std::make_unique<WorkerChannel>(ends[0], std::move(process), name, environment.silence_limit);
   } catch (const DeviceError&) {
     ::close(ends[0]);
     ::close(ends[1]);

@@ -8,6 +8,8 @@ using namespace sundog;
 namespace {
 
 std::string text(const dvec3& v) { return fmt::format("[{} {} {}]", v.x, v.y, v.z); }
+std::string text(const dvec2& v) { return fmt::format("[{} {}]", v.x, v.y); }
+std::string text(double v) { return fmt::format("{}", v); }
 
 struct ShapeText {
   std::string operator()(const MeshShape& s) const { return fmt::format("mesh {}", s.mesh); }
@@ -56,10 +58,11 @@ std::string settings(const SceneDescription& scene) {
 }
 
 std::string line(const LightDescription& l) {
-  return fmt::format("light {} {} {} {} {} {} {} {}", static_cast<int>(l.type), text(l.color), l.intensity,
-                     text(l.position), text(l.direction), l.inner_angle, l.outer_angle, text(l.falloff)) +
-         fmt::format(" {} {} {} {} {} {}", l.size.x, l.size.y, text(l.up), l.radius, l.samples, l.visible) +
-         fmt::format(" {}\n", l.angle);
+  std::string out = fmt::format("light {}", static_cast<int>(l.type));
+#define SUNDOG_LIGHT_TEXT(type, name, ...) out += " " + text(l.name);
+  LIGHT_KEYS(SUNDOG_LIGHT_TEXT)
+#undef SUNDOG_LIGHT_TEXT
+  return out + "\n";
 }
 
 std::string tree(const SdfNode& n) {
