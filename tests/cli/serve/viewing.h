@@ -37,8 +37,12 @@ struct Viewer {
   void settle() { wait("return settled()"); }
   /// The picture at rest, as a number.
   std::uint64_t picture() {
-    settle();
-    return run("return hash()");
+    json seen;
+    do {
+      settle();
+      seen = run("return settled() ? hash() : null");  // another picture may have come meanwhile
+    } while (seen.is_null());
+    return seen;
   }
   void tab(const std::string& name) {
     run("document.getElementById('tab-' + args[0]).click(); await new Promise((r) => setTimeout(r, 30))",
