@@ -67,8 +67,9 @@ Contestant contestant(std::string name, Device& device, Buffer<PeerRay>& rays, c
   result.run = [kernels, &device, &rays, group](const RaySet& set) {
     auto& kernel = set.any ? *kernels->any : kernels->nearest;
     device.forget_times();
-    std::apply([&](const auto&... tables) { device.run(kernel, {rays.count, 1, group, 1}, tables..., rays); },
-               kernels->tables);
+    const LaunchSize size{rays.count, 1, group, 1};
+    const auto run = [&](const auto&... tables) { device.run(kernel, size, tables..., rays); };
+    std::apply(run, kernels->tables);
     device.finish();
     return 1e-3 * device.times().at(kernel.name).device_ms;
   };

@@ -28,7 +28,7 @@ constexpr double longest_wait = 30;  // seconds: something hangs
 bool reads_a_library(const DeviceInfo& device) { return is_pocl(device) && device.type == "cpu"; }
 
 std::string contents(int file) {
-  struct stat size{};
+  struct stat size = {};
   if (::fstat(file, &size) != 0 || size.st_size <= 0) return {};
   std::string text(static_cast<std::size_t>(size.st_size), '\0');
   std::size_t got = 0;

@@ -78,7 +78,7 @@ static inline u32 owen_hash(u32 x, u32 seed) {
 #define SOBOL_SAMPLES 65536u
 
 // Adds (mod 2) the columns that bit `bit` of the reversed index `order` stands for. `order` may be a vector.
-#define SOBOL_COLUMN(bit, columns) ((columns) & (0u - (order >> (bit) & 1u)))
+#define SOBOL_COLUMN(bit, columns) ((columns) & (0u - ((order >> (bit)) & 1u)))
 
 // The dimensions 0 and 1 (in the low and the high 16 bits), reversed, of the sample whose reversed index is
 // `order`. Direction numbers: van der Corput, and x + 1.

@@ -1,52 +1,45 @@
-// What programs see of drivers that fail: by faults on demand, which the library reads once a process, so
-// that each is tried in one of its own.
+// What programs see of drivers that fail: by faults on demand, in a program of its own
+// (tests/faulty_program).
+#include <algorithm>
+
 #include "library_testing.h"
 #include "run_command.h"
+#include "temporary_folder.h"
 
-namespace fs = std::filesystem;
 using sundog::ErrorKind;
 
 namespace {
 
-/// Runs a hidden test of this program with a fault on the tests' device.
-void try_with(const std::string& fault, const std::string& hidden_test) {
-  const std::string label = test_device().at(0).label, place = label.substr(0, label.find(' '));
+/// What the program prints of a device with that fault, such as "launch=-36" or "build" with the count "#2".
+std::string seen_of(const std::string& what, const std::string& fault, const std::string& count = "") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", small_scene().to_json());
+  const std::string label = test_device().at(0).label, place = label.substr(0, label.find_first_of(" @"));
   CommandOptions options;
-  options.environment["SUNDOG_FAULTS"] = fault + "@" + place.substr(0, place.find('@'));
-  if (fault.find('#') != std::string::npos)
-    options.environment["SUNDOG_FAULTS"] =
-        fault.substr(0, fault.find('#')) + "@" + place + fault.substr(fault.find('#'));
+  options.environment["SUNDOG_FAULTS"] = fault + "@" + place + count;
   const CommandResult tried =
-      run_command({fs::read_symlink("/proc/self/exe").string(), hidden_test}, options);
+      run_command({SUNDOG_FAULTY_PROGRAM, what, test_spec(), (folder / "scene.json").string()}, options);
   CAPTURE(tried.out, tried.err);
   CHECK(tried.status == 0);
-  CHECK(tried.out.find("All tests passed") != std::string::npos);
+  return tried.out;
 }
+
+std::string kind(ErrorKind kind) { return "kind " + std::to_string(static_cast<int>(kind)); }
 
 }  // namespace
 
-TEST_CASE("a device whose launches fail is an error with OpenCL's code", "[.][launches-fail]") {
-  const sundog::Error error =
-      error_of([] { (void)sundog::render(small_scene(), {.devices = test_device()}); });
-  CHECK(error.kind() == ErrorKind::device);
-  CHECK(error.status() == -36);
-  sundog::Session session(test_device());
-  session.start(small_scene());
-  CHECK(error_of([&] { (void)session.finish(); }).kind() == ErrorKind::device);
-  CAPTURE(session.snapshot().error);
-  CHECK(session.snapshot().error.find(test_device()[0].label) != std::string::npos);
+TEST_CASE("a device whose launches fail is an error with OpenCL's code") {
+  const std::string seen = seen_of("launch", "launch=-36");
+  CAPTURE(seen);
+  CHECK(seen.find("render: " + kind(ErrorKind::device) + ", status -36\n") != std::string::npos);
+  CHECK(seen.find("finish: " + kind(ErrorKind::device)) != std::string::npos);
+  const std::string snapshot = seen.substr(std::min(seen.size(), seen.find("snapshot: ")));
+  CHECK(snapshot.find(test_device()[0].label) != std::string::npos);
 }
 
-TEST_CASE("a kernel for picks that does not build is an error, and the picture stays",
-          "[.][second-build-fails]") {
-  sundog::Session session(test_device());
-  session.start(small_scene());
-  session.wait();
-  CHECK(error_of([&] { (void)session.pick(1, 1); }).kind() == ErrorKind::build);
-  CHECK(session.finish().width() == 64);
-}
-
-TEST_CASE("drivers that fail are errors of their kind") {
-  try_with("launch=-36", "[launches-fail]");
-  try_with("build#2", "[second-build-fails]");
+TEST_CASE("a kernel for picks that does not build is an error, and the picture stays") {
+  const std::string seen = seen_of("pick", "build", "#2");
+  CAPTURE(seen);
+  CHECK(seen.find("pick: " + kind(ErrorKind::build)) != std::string::npos);
+  CHECK(seen.find("picture: 64\n") != std::string::npos);
 }

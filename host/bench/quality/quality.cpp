@@ -58,14 +58,14 @@ std::vector<std::vector<QualityTime>> by_way(const QualityPlan& plan, const std:
 }
 
 CurvePlot curves(const QualityPlan& plan, const std::vector<std::vector<QualityTime>>& groups,
-                 const std::string& what, double QualityTime::* error) {
+                 const std::string& what, const std::function<double(const QualityTime&)>& error_of) {
   CurvePlot plot{
       fmt::format("{}: {} by time", plan.scene, what), "time of a frame, ms", what, {}, false, true};
   for (const auto& group : groups) {
     Curve curve{name_of(group.front().way), {}};
     for (const QualityTime& time : group)
-      if (time.problem.empty() && time.*error > 0 && time.seconds.median > 0)
-        curve.points.push_back({1e3 * time.seconds.median, Cell(time.*error).spread});
+      if (time.problem.empty() && error_of(time) > 0 && time.seconds.median > 0)
+        curve.points.push_back({1e3 * time.seconds.median, Cell(error_of(time)).spread});
     plot.curves.push_back(std::move(curve));
   }
   return plot;

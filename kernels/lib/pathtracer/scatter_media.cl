@@ -34,7 +34,7 @@ typedef struct Stretches {
   MASK lanes;
   REAL3 o, d;          // where they begin
   REAL length;         // to the next interface
-  REAL begin;          // what of the medium lies before them, for absorption
+  REAL begin;          // length in the medium before them, for absorption
   Carried decay;       // light lost per unit of length
   Carried scattering;  // light scattered
   REAL g;              // mean cosine of turns

@@ -87,3 +87,8 @@ struct Viewer {
     settle();
   }
 };
+
+inline Viewer& viewer() {
+  static Viewer one;
+  return one;
+}

@@ -1,0 +1,89 @@
+// The viewer's pages in a real browser: after a restart of their server, two at once, and without its token.
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "catch.h"
+#include "run_command.h"
+#include "viewing.h"
+
+using nlohmann::json;
+
+namespace {
+
+/// A port that no connection is given by itself: while the server is away, the page that tries to reach it
+/// could otherwise be given the server's own port to come from, and meet itself there.
+int free_port() {
+  for (int port = 20000 + ::getpid() % 10000;; ++port) {
+    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    const bool free = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    ::close(socket);
+    if (free) return port;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("pages come back when the server is started anew, and give it their scene") {
+  TemporaryFolder folder;
+  folder.write("scene.json", viewer_scene);
+  const std::vector<std::string> command = {
+      SUNDOG_BINARY, "serve", "scene.json", "--token-file", "token", "--port", std::to_string(free_port())};
+  auto server = std::make_unique<BackgroundProgram>(command, folder.path());
+  const std::string url = server->line_with("http://");
+  Viewer& v = viewer();
+  v.browser.open_tab(url);
+  v.settle();
+  v.run("store.set('/camera/fov', 31)");
+  const auto changed = v.picture();
+  const json frames = v.run("return Number(canvas.dataset.frame)");
+  server.reset();
+  v.wait("return store.state.connected === 'no'");
+  server = std::make_unique<BackgroundProgram>(command, folder.path());
+  CHECK(server->line_with("http://") == url);
+  v.wait(
+      "return store.state.connected === 'yes' && store.state.document.camera.fov === 31 && "
+      "store.state.version <= 2");
+  // The old server's picture has the same version: a new one is waited for.
+  v.wait("return Number(canvas.dataset.frame) > " + frames.dump());
+  CHECK(v.picture() == changed);
+  v.browser.use_tab(0);
+}
+
+TEST_CASE("two pages see each other's changes, and a page that is loaded again is as before") {
+  Viewer& v = viewer();
+  const auto before = v.picture();
+  v.browser.open_tab(v.served.url);
+  v.settle();
+  CHECK(v.picture() == before);
+  v.tab("light");
+  v.type("Intensity", "0.2");
+  const auto after = v.picture();
+  CHECK(after != before);
+  v.browser.use_tab(0);
+  v.settle();
+  CHECK(v.picture() == after);
+  v.browser.reload();
+  v.settle();
+  CHECK(v.picture() == after);
+  v.undo_all();
+  CHECK(v.picture() == before);
+}
+
+TEST_CASE("a page with a wrong token says so and shows nothing") {
+  Viewer& v = viewer();
+  v.browser.open_tab("about:blank");
+  v.browser.open(v.served.url.substr(0, v.served.url.find('#')) + "#token=00000000000000000000000000000000");
+  v.wait("return document.querySelector('.status')?.dataset.state === 'token'");
+  CHECK(v.run("return canvas.dataset.frame ?? 'none'") == "none");
+  v.browser.use_tab(0);
+}

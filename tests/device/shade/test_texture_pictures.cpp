@@ -1,0 +1,218 @@
+// Pictures of surfaces with textures whose values are known.
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+
+#include "catch.h"
+#include "compile/textures.h"
+#include "devices.h"
+#include "scenes.h"
+#include "surface_testing.h"
+
+using namespace sundog;
+using glm::dvec4;
+
+namespace {
+
+int add_image(SceneDescription& scene, int width, std::vector<std::uint8_t> data, int channels = 1) {
+  ImageDescription image;
+  image.srgb = false;
+  image.pixels.width = width;
+  image.pixels.channels = channels;
+  image.pixels.height = static_cast<int>(data.size()) / width / channels;
+  image.pixels.data = std::move(data);
+  TextureDescription texture;
+  texture.kind = TEXTURE_IMAGE;
+  texture.image = static_cast<int>(scene.images.size());
+  scene.images.push_back(image);
+  scene.textures.push_back(texture);
+  return texture.image;
+}
+
+/// A clamped image without filter.
+int add_halves(SceneDescription& scene, std::uint8_t left, std::uint8_t right) {
+  const int texture = add_image(scene, 2, {left, right});
+  scene.textures.back().wrap[0] = scene.textures.back().wrap[1] = Wrap::clamp;
+  scene.textures.back().filter = TextureFilter::nearest;
+  return texture;
+}
+
+constexpr float leaf_at = 10, bent_at = 20, front_at = 30, wall_at = 40, back_at = 50;
+
+void place_disk(SceneDescription& scene, const MaterialDescription& material, dvec3 at, double radius) {
+  scene.materials.push_back(material);
+  scenes::place(scene, DiskShape{radius, 0}, static_cast<int>(scene.materials.size()) - 1,
+                glm::translate(glm::dmat4(1), at));
+}
+
+/// Many things in one scene, whose kernels drivers compile once: a floor that glows in a checker of texels
+/// and above it disks, along x. The sun stands at 0.8 over the disks, towards +x.
+SceneDescription many_disks() {
+  SceneDescription scene = scenes::line_of_sight({0, 5, 0}, {0, 0, 0}, {0, 0, 1});
+  scene.image.background_bottom = scene.image.background_top = dvec3(0.25);
+  LightDescription sun;
+  sun.type = LightType::directional;
+  sun.direction = {-0.6, -0.8, 0};
+  scene.lights.push_back(sun);
+  std::vector<std::uint8_t> cells;
+  for (int i = 0; i < 64 * 64; ++i) cells.push_back((i / 64 + i) % 2 ? 255 : 0);
+  MaterialDescription glow, white;
+  white.ambient = dvec3(0), white.diffuse = dvec3(1);
+  glow.ambient = glow.diffuse = dvec3(0);
+  glow.emission = dvec3(1, 0.5, 0.25);
+  glow.textures.emission = add_image(scene, 64, std::move(cells));
+  scene.materials.push_back(glow);
+  scenes::place(scene, PlaneShape{}, 0);
+  MaterialDescription leaf = glow;
+  leaf.emission = {0, 1, 0};
+  leaf.textures = {};
+  leaf.textures.opacity = add_halves(scene, 255, 0);
+  leaf.cutoff = 0.5;
+  place_disk(scene, white, {leaf_at, 1, 0}, 3);
+  place_disk(scene, leaf, {leaf_at, 2, 0}, 1);
+  MaterialDescription bent = white;
+  bent.textures.normal = add_image(scene, 1, {179, 128, 230, 255}, 4);
+  place_disk(scene, bent, {bent_at, 1, 0}, 1);
+  MaterialDescription front = white;
+  front.ambient = dvec3(1), front.diffuse = dvec3(0);
+  front.one_sided = true;
+  place_disk(scene, front, {front_at, 1, 0}, 1);
+  // From above and from the sun only their backs would be seen, which are not there.
+  place_disk(scene, white, {back_at, 0.5, 0}, 3);
+  place_disk(scene, front, {back_at, 1, 0}, 1);
+  scene.objects.back().world_from_object =
+      glm::rotate(scene.objects.back().world_from_object, std::numbers::pi, dvec3(1, 0, 0));
+  MaterialDescription wall = white;
+  wall.textures.height = add_halves(scene, 0, 255);
+  wall.bump = 0;
+  wall.parallax = 0.2;
+  place_disk(scene, wall, {wall_at, 1, 0}, 1);
+  return scene;
+}
+
+dvec3 seen(const DeviceInfo& info, const SceneDescription& scene, dvec3 from, dvec3 to, double fov = 1e-3) {
+  SceneDescription view = scene;
+  view.camera.position = from;
+  view.camera.target = to;
+  view.camera.fov = fov;
+  return scenes::pixel_on(info, view);
+}
+
+}  // namespace
+
+TEST_CASE("pictures have what textures make of surfaces") {
+  const SceneDescription scene = many_disks();
+  on_every_device([&](const DeviceInfo& info) {
+    if (info.native_vector_width == 1) return;  // whose drivers compile so many features for minutes
+    const auto below = [&](double x, double height) { return seen(info, scene, {x, height, 0}, {x, 0, 0}); };
+    // 70 repeats of the checker in a pixel are its mean; near by a texel is what it is.
+    const dvec3 far = seen(info, scene, {-300, 2000, 0.1}, {-300, 0, 0.1}, 2);
+    CHECK(far.x == Approx(0.5).epsilon(1e-2));
+    CHECK(far.y == Approx(0.25).epsilon(1e-2));
+    const dvec3 texel{-5 + 20.5 / 64, 0, 11.5 / 64 - 1};
+    CHECK(seen(info, scene, texel + dvec3(0, 1e-3, 0), texel).x == Approx((11 + 20) % 2).margin(2e-3));
+    // The leaf's left half is there, with its shadow 0.75 to the left; the right half lets all through.
+    CHECK(below(leaf_at - 0.7, 5).y == Approx(1));
+    CHECK(below(leaf_at - 0.7, 5).x == Approx(0).margin(1e-6));
+    CHECK(below(leaf_at + 0.5, 5).x == Approx(0.8));
+    CHECK(below(leaf_at - 1.2, 1.5).x == Approx(0).margin(1e-6));
+    CHECK(below(leaf_at - 0.1, 1.5).x == Approx(0.8));
+    const dvec3 n = glm::normalize(dvec3(179 / 127.5 - 1, 230 / 127.5 - 1, 1 - 128 / 127.5));
+    // Less what the terminator takes (Conty Estevez and others 2019).
+    const double lit = glm::dot(n, dvec3(0.6, 0.8, 0)), alpha2 = 0.125 * (1 - n.y * n.y) / (n.y * n.y);
+    CHECK(below(bent_at, 3).x == Approx(lit * 2 / (1 + std::sqrt(1 + alpha2 * 0.36 / 0.64))).margin(2e-3));
+    CHECK(below(front_at, 3).x == Approx(1));
+    CHECK(seen(info, scene, {front_at, 0.5, 0}, {front_at, 3, 0}).x == Approx(0.25));
+    CHECK(below(back_at, 3).x == Approx(0.8));
+    // Left of the wall, which is 0.2 high, its shadow is 0.15 wide.
+    CHECK(below(wall_at - 0.07, 3).x == Approx(0).margin(1e-6));
+    CHECK(below(wall_at - 0.3, 3).x == Approx(0.8));
+    CHECK(below(wall_at + 0.3, 3).x == Approx(0.8));
+  });
+}
+
+TEST_CASE("heights on a further set of coordinates bend normals and sink in as on the first") {
+  SceneDescription scene = scenes::line_of_sight({0, 5, 0}, {0, 0, 0}, {0, 0, 1});
+  LightDescription sun;
+  sun.type = LightType::directional;
+  sun.direction = {-0.6, -0.8, 0};
+  scene.lights.push_back(sun);
+  Mesh quad;
+  quad.normals.assign(4, {0, 1, 0});
+  for (const glm::vec2 corner : {glm::vec2(-1, 1), glm::vec2(1, 1), glm::vec2(1, -1), glm::vec2(-1, -1)}) {
+    quad.positions.push_back({corner.x, 0, corner.y});
+    quad.uvs.push_back({0.5f + 0.5f * corner.x, 0.5f - 0.5f * corner.y});
+  }
+  quad.triangles = {{0, 1, 2}, {0, 2, 3}};
+  quad.further_uvs = {quad.uvs};
+  // The second set is that of the first; the first of the other quad is turned by a quarter.
+  Mesh other = quad;
+  for (glm::vec2& uv : other.uvs) uv = {1 - uv.y, uv.x};
+  scene.meshes = {quad, other};
+  const int image = add_image(scene, 8, {0, 10, 40, 90, 160, 200, 230, 255});
+  MaterialDescription material;
+  material.ambient = dvec3(0), material.diffuse = dvec3(1);
+  material.textures.height = image;
+  material.bump = 0.2;
+  material.parallax = 0.1;
+  scene.materials.assign(2, material);
+  scene.textures.push_back(scene.textures[static_cast<std::size_t>(image)]);
+  scene.textures.back().uv_set = 1;
+  scene.materials[1].textures.height = static_cast<int>(scene.textures.size()) - 1;
+  scenes::place(scene, MeshShape{0}, 0);
+  scenes::place(scene, MeshShape{1}, 1, glm::translate(glm::dmat4(1), dvec3(10, 0, 0)));
+  on_picture_devices([&](const DeviceInfo& info) {
+    for (const double x : {-0.6, -0.1, 0.35}) {
+      INFO(x);
+      const double first = seen(info, scene, {x + 1, 3, 0.2}, {x, 0, 0.2}).x,
+                   further = seen(info, scene, {x + 11, 3, 0.2}, {x + 10, 0, 0.2}).x;
+      CHECK(std::abs(first - 0.8) > 0.01);  // of a flat surface
+      CHECK(further == Approx(first).margin(2e-3));
+    }
+  });
+}
+
+TEST_CASE("an opacity cut off lets rays and light through where the texture says") {
+  // The left half of the disk is there, the right half is not; a floor that glows, and one that is lit,
+  // below.
+  ImageDescription image;
+  image.srgb = false;
+  image.pixels.width = 2;
+  image.pixels.height = 1;
+  image.pixels.channels = 1;
+  image.pixels.data = {255, 0};
+  SceneDescription scene = scenes::line_of_sight({0, 5, 0}, {0, 0, 0}, {0, 0, 1});
+  TextureDescription texture;
+  texture.kind = TEXTURE_IMAGE;
+  texture.image = 0;
+  texture.wrap[0] = texture.wrap[1] = Wrap::clamp;
+  scene.images.push_back(image);
+  scene.textures.push_back(texture);
+  MaterialDescription leaf;
+  leaf.ambient = leaf.diffuse = dvec3(0);
+  leaf.emission = {0, 1, 0};
+  leaf.textures.opacity = 0;
+  leaf.cutoff = 0.5;
+  scene.materials.push_back(leaf);
+  scenes::place(scene, DiskShape{1, 0}, 0, glm::translate(glm::dmat4(1), dvec3(0, 1, 0)));
+  scenes::place(scene, PlaneShape{}, scenes::add_white(scene));
+  LightDescription sun;
+  sun.type = LightType::directional;
+  sun.direction = {0, -1, 0};
+  scene.lights.push_back(sun);
+  on_every_device([&](const DeviceInfo& info) {
+    const auto at = [&](double x, double height) {
+      SceneDescription view = scene;
+      view.camera.position = {x, height, 0};
+      view.camera.target = {x, 0, 0};
+      return scenes::pixel_on(info, view);
+    };
+    CHECK(at(-0.7, 5).y == Approx(1));  // the leaf
+    CHECK(at(-0.7, 5).x == Approx(0));
+    CHECK(at(0.7, 5).x == Approx(1));     // the lit floor through it
+    CHECK(at(-0.7, 0.5).x == Approx(0));  // its shadow
+    CHECK(at(0.7, 0.5).x == Approx(1));   // no shadow
+  });
+}
