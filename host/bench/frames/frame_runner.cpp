@@ -3,52 +3,52 @@
 
 #include <fmt/format.h>
 
-#include "base/clock.h"
 #include "base/error.h"
-#include "render/plan/tiles.h"
+#include "render/device/device_server.h"
 
 namespace sundog {
+namespace {
+
+/// Opened here, so that what keeps it from working is known before any frame.
+RenderTimes open(DeviceServer& server, const std::shared_ptr<const CompiledScene>& scene,
+                 const RenderOptions& options) {
+  server.show(scene, options);
+  return server.open();
+}
+
+/// A bench develops the film where it wants a picture: that is no part of a frame's time.
+RenderOptions without_pictures(RenderOptions options) {
+  options.channels = 0;
+  return options;
+}
+
+}  // namespace
 
 FrameRunner::FrameRunner(const DeviceInfo& device, const CompiledScene& scene, const RenderOptions& options)
-    : device_(device),
-      options_(options),
-      film_(static_cast<int>(scene.info.width), static_cast<int>(scene.info.height), !options.aovs.empty()) {
-  if (options_.tuning) speed_.tile_seconds = 1e-3 * options_.tuning(device).tile_ms;
-  renderer_ = std::make_unique<TileRenderer>(device_, scene, options_, times_, watch_);
-}
+    : scene_(std::shared_ptr<void>(), &scene),
+      options_(without_pictures(options)),
+      server_(std::make_shared<DeviceServer>(device, scene_, options_)),
+      times_(open(*server_, scene_, options_)),
+      session_(std::vector<std::shared_ptr<SceneServer>>{server_}) {}
 
-std::vector<Tile> FrameRunner::tiles() const {
-  if (options_.tile > 0) return cut_tiles(film_.width, film_.height, options_.tile);
-  return {{0, 0, film_.width, film_.height}};
-}
+std::size_t FrameRunner::greatest_group() const { return server_->greatest_group(); }
 
 double FrameRunner::run() {
-  const Stopwatch clock;
-  counts_.fill(0);
-  device_.forget_times();
-  WaitingTiles waiting(tiles());
-  while (waiting.pixels() > 0) {
-    const std::uint64_t wanted = guided_pixels(std::span(&speed_, 1), 0, waiting.pixels());
-    const Tile tile = options_.tile > 0 ? *waiting.take_whole() : *waiting.take(wanted);
-    const Stopwatch busy;
-    const TileResult result = renderer_->render(tile, {});
-    speed_.sample = static_cast<double>(pixel_count(tile));
-    speed_.measured = speed_.sample / busy.seconds();
-    film_.put(result.tile, result.sums, result.weights, result.aovs);
-    for (std::size_t i = 0; i < COUNTERS; ++i) counts_[i] += result.counts[i];
-  }
-  const double seconds = clock.seconds();
+  last_ = session_.render(scene_, options_);
+  const DeviceReport& report = last_.devices.front();
+  if (!report.messages.empty()) throw DeviceError(report.messages.front());
+  kernel_times_ = report.kernels;
   // A group that the driver refused was made smaller: the time is not that of what was asked for.
   const WorkGroup& group = options_.work_group;
   const std::size_t most = greatest_group();
   if (group.kind == WorkGroup::Kind::fixed && most > 0 && group.x * group.y > most)
     throw DeviceError(fmt::format("the driver takes groups of at most {} here", most));
-  return seconds;
+  return last_.times.render + last_.times.readback;
 }
 
 double FrameRunner::kernel_seconds(const std::string& kernel) const {
-  const auto found = device_.times().find(kernel);
-  if (found == device_.times().end()) return 0;
+  const auto found = kernel_times_.find(kernel);
+  if (found == kernel_times_.end()) return 0;
   return 1e-3 * (found->second.device_ms > 0 ? found->second.device_ms : found->second.host_ms);
 }
 

@@ -1,13 +1,12 @@
-// One device that renders one scene again and again, for timing whole frames.
+// One device that renders one scene again and again, for timing whole frames: a session of that device.
 #pragma once
 #include <memory>
 
-#include "render/device/tile_renderer.h"
-#include "render/film/film.h"
-#include "render/plan/plan.h"
-#include "render/render.h"
+#include "render/session/render_session.h"
 
 namespace sundog {
+
+class DeviceServer;
 
 /// Kernels are built and tables uploaded once. The scene must outlive it.
 class FrameRunner {
@@ -17,42 +16,37 @@ class FrameRunner {
   FrameRunner(const FrameRunner&) = delete;
   FrameRunner& operator=(const FrameRunner&) = delete;
 
-  /// Renders the frame in the tiles that `sundog render` would take, and returns the wall seconds from the
-  /// first launch until the film is on the host.
+  /// Renders the frame as `sundog render` does, and returns the wall seconds from when the device has kernels
+  /// and tables until the film is on the host. Throws DeviceError for a launch that failed, even if the frame
+  /// was finished without it: the time would not be that of what was asked for.
   double run();
 
   /// For the runs from now on. The size must be one that render() would take.
   void use(const WorkGroup& group) { options_.work_group = group; }
 
   /// Most work-items that a group of its kernels may have; 0: nobody says.
-  std::size_t greatest_group() const { return renderer_->greatest_group(); }
-
-  /// Keeps what the driver has compiled so far for other programs and the next start.
-  void save_programs() { device_.save_programs(); }
+  std::size_t greatest_group() const;
 
   /// Of the last run: on the device, of all launches of a kernel; by the host's clock where the driver gives
   /// no times.
   double kernel_seconds(const std::string& kernel) const;
   /// Of the last run, for each kernel.
-  const std::map<std::string, KernelTimes>& kernel_times() const { return device_.times(); }
-  const Film& film() const { return film_; }
-  Image image() const { return film_.develop(); }
-  const RayCounts& counts() const { return counts_; }
+  const std::map<std::string, KernelTimes>& kernel_times() const { return kernel_times_; }
+  const Film& film() const { return last_.film; }
+  Image image() const { return last_.film.develop(); }
+  const RayCounts& counts() const { return last_.counts; }
 
   /// Kernels and tables; not part of any run.
   const RenderTimes& times() const { return times_; }
 
  private:
-  std::vector<Tile> tiles() const;
-
-  Device device_;
+  std::shared_ptr<const CompiledScene> scene_;
   RenderOptions options_;
-  LaunchWatch watch_;
-  DeviceSpeed speed_;
-  Film film_;
-  RayCounts counts_{};
+  std::shared_ptr<DeviceServer> server_;
   RenderTimes times_;
-  std::unique_ptr<TileRenderer> renderer_;
+  RenderSession session_;
+  RenderResult last_;
+  std::map<std::string, KernelTimes> kernel_times_;
 };
 
 }  // namespace sundog

@@ -43,7 +43,6 @@ struct ThreadRunner {
     part.sub_units = result.threads;
     const auto frames = std::make_shared<FrameRunner>(part, scene);
     frames->run();
-    frames->save_programs();  // the next size's runner need not compile again
     run = [frames] { return frames->run(); };
     image = [frames] { return frames->image(); };
   }
@@ -173,7 +172,6 @@ PixelCost pixel_cost(const ThreadScaling& plan) {
     if (part.sub_units <= part.compute_units) {
       FrameRunner frames(part, scene);
       frames.run();
-      frames.save_programs();
       cost.device = frames.run() * std::min(part.sub_units, plan.cores) / pixels;
     }
     if (plan.plain && plain_refusal(scene).empty()) {

@@ -87,7 +87,6 @@ class Candidate {
     const Stopwatch clock;
     frames_ = std::make_unique<FrameRunner>(device, scene, options);
     frames_->run();
-    frames_->save_programs();
     start_seconds_ = clock.seconds();
   }
   const Film& film() const { return frames_->film(); }

@@ -88,17 +88,20 @@ UploadFigures update_scene(Device& device, const CompiledScene& scene, DeviceSce
   const bool compact = traces_compact(scene, info);
   if (compact != std::exchange(held.compact, compact)) held.nodes = {};
   Uploader upload(device, compact);
+  const bool other_numbers = !std::ranges::equal(std::as_bytes(std::span(&held.held_info, 1)),
+                                                 std::as_bytes(std::span(&scene.info, 1)));
   if (!held.info.memory())
     held.info = device.upload(std::span<const SceneInfo>(&scene.info, 1));
-  else if (!std::ranges::equal(std::as_bytes(std::span(&held.held_info, 1)),
-                               std::as_bytes(std::span(&scene.info, 1))))
+  else if (other_numbers)
     device.write(held.info, std::span<const SceneInfo>(&scene.info, 1));
   held.held_info = scene.info;
 #define SUNDOG_UPLOAD_TABLE(type, host_type, name, label) \
   upload(label, scene.name, held.held.name, held.name);
   SCENE_TABLES(SUNDOG_UPLOAD_TABLE)
 #undef SUNDOG_UPLOAD_TABLE
-  return upload.figures();
+  UploadFigures figures = upload.figures();
+  figures.numbers = other_numbers;
+  return figures;
 }
 
 DeviceScene upload_scene(Device& device, const CompiledScene& scene) {

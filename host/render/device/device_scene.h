@@ -21,6 +21,7 @@ struct DeviceScene {
 /// What was written to a device.
 struct UploadFigures {
   std::uint64_t tables = 0, bytes = 0;
+  bool numbers = false;  // SceneInfo too, which is not counted
 };
 
 /// Bytes that upload_scene will take.

@@ -68,6 +68,10 @@ void DeviceServer::rest() {
   if (works_) renderer_->rest();
 }
 
+void DeviceServer::keep_programs() {
+  if (works_) renderer_->keep_programs();
+}
+
 ServerFigures DeviceServer::figures() const {
   ServerFigures sum = closed_;
   if (!renderer_) return sum;

@@ -18,6 +18,9 @@ class DeviceServer : public SceneServer {
   void prepare_surfaces() override { renderer_->prepare_surfaces(); }
   bool is_open() const override { return works_ && !other_scene_; }
   void rest() override;
+  void keep_programs() override;
+  /// Most work-items that a group of its kernels may have; 0: nobody says, or it is not open.
+  std::size_t greatest_group() const { return renderer_ ? renderer_->greatest_group() : 0; }
   std::size_t kernels_waiting() const override { return builder_.waiting(); }
 
   const DeviceInfo& info() const override { return info_; }

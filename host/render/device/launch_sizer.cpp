@@ -68,6 +68,12 @@ LaunchSize LaunchSizer::group_items(std::size_t columns, std::size_t rows) const
   return within_limits({items, 1, wanted, 1});
 }
 
+void LaunchSizer::ask_for(const WorkGroup& group) {
+  asked_ = group;
+  most_group_ = limits_.most_group;
+  alone_ = false;
+}
+
 void LaunchSizer::calm() {
   next_size_ = std::max<std::size_t>(next_size_ / 4, 1);
   sample_seconds_ = 0;

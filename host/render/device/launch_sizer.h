@@ -39,6 +39,8 @@ class LaunchSizer {
   /// `fields`: launches begin small, since a field's sample may take a thousand times as long as others.
   LaunchSizer(const LaunchLimits& limits, const WorkGroup& asked, const Tuning& tuning, bool fields);
 
+  /// Other groups from now on; what launches have taken stays known.
+  void ask_for(const WorkGroup& group);
   /// What is made may cost more from now on: begins with shorter launches again.
   void calm();
   /// Begins a tile, or begins it again.

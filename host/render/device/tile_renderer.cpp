@@ -67,7 +67,7 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
 void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions& options,
                                 RenderTimes& times) {
   const Tuning tuning = tuning_of(options, device_.info());
-  const bool same_launches = options.work_group == asked_ && tuning == tuning_;
+  const bool same_tuning = tuning == tuning_, same_group = options.work_group == asked_;
   options_ = &options;
   tuning_ = tuning;
   asked_ = options.work_group;
@@ -77,11 +77,16 @@ void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions&
   kernels_.notes.clear();
   update_ =
       update_frame_kernels(device_, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times);
-  if (update_.changed || !same_launches)
+  const bool same_scene = update_.uploads.bytes == 0 && !update_.uploads.numbers;
+  if (update_.changed || !same_tuning || !(same_group || same_scene))
     sizer_ = LaunchSizer(limits_of(device_.info(), kernels_), asked_, tuning_, !scene.sdf_fields.empty());
-  else
+  else if (!same_group)
+    sizer_.ask_for(asked_);
+  else if (!same_scene)
     sizer_.calm();
 }
+
+void TileRenderer::keep_programs() { device_.save_programs(); }
 
 void TileRenderer::rest() {
   device_.save_programs();

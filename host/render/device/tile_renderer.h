@@ -24,6 +24,9 @@ class TileRenderer {
   /// others. `options` must outlive it. After an exception it is of no use. Throws as the constructor does.
   void change_scene(const CompiledScene& scene, const RenderOptions& options, RenderTimes& times);
 
+  /// Keeps what the driver has compiled so far for the next start.
+  void keep_programs();
+
   /// Called when nothing is to be drawn: keeps what was compiled, and has general kernels built.
   void rest();
 

@@ -301,13 +301,12 @@ void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& pat
 }
 
 void leave_frame(Frame& frame, std::size_t i, bool closes) {
-  if (closes) {
-    set_phase(frame, i, Phase::closing);
-    try {
-      frame.servers[i].server->close();
-    } catch (const std::exception&) {
-      // It is let go of as well as can be; the frame has what it made.
-    }
+  set_phase(frame, i, Phase::closing);
+  try {
+    TileServer& server = *frame.servers[i].server;
+    closes ? server.close() : server.keep_programs();
+  } catch (const std::exception&) {
+    // It is let go of as well as can be; the frame has what it made.
   }
   set_phase(frame, i, Phase::gone);
 }

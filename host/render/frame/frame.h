@@ -101,7 +101,7 @@ void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& pat
 void look_for_stop(Frame& frame);
 
 /// Called by a server's thread behind serve_frame(), of a frame that watch_frame() watches: closes the server
-/// where it is not needed any more.
+/// where it is not needed any more; else it keeps what was compiled.
 void leave_frame(Frame& frame, std::size_t i, bool closes);
 
 /// Waits for the frame's end: finished, stopped (options.stop), or out of servers. With `wait`, every server

@@ -63,6 +63,8 @@ class TileServer {
   /// Makes what is asked for. Throws DeviceError; then it must be opened again.
   virtual TileResult render(const TileRequest& request, const StopFlags& flags) = 0;
   virtual ServerFigures figures() const = 0;
+  /// Keeps what was compiled so far for the next time, and stays open.
+  virtual void keep_programs() {}
   /// Lets go of the device, and keeps its compiled kernels for the next time.
   virtual void close() = 0;
   /// Seconds that a launch has run when it has passed its limit, else 0: the driver hangs.

@@ -91,6 +91,8 @@ std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerP
   for (std::size_t i = 0; i < devices.size(); ++i) {
     speeds[i].estimate = devices[i].info.estimate;
     speeds[i].processor = devices[i].processor;
+    speeds[i].measured = devices[i].pixels_a_second;
+    speeds[i].sample = devices[i].measured_pixels;
     if (options.tuning) speeds[i].tile_seconds = 1e-3 * options.tuning(devices[i].info).tile_ms;
   }
   auto frame = std::make_shared<Frame>(options, std::move(film), std::move(plan), std::move(speeds));

@@ -150,15 +150,24 @@ RenderResult RenderSession::render(const std::shared_ptr<const CompiledScene>& s
     const std::lock_guard lock(state_->mutex);
     for (const auto& worker : state_->workers)
       plans.push_back({worker->server->info(), worker->server->processor(),
-                       [server = worker->server](const RenderOptions&) { return server; }});
+                       [server = worker->server](const RenderOptions&) { return server; }, 0, 0});
   }
-  return render_frame(scene, plans, options, [&](const std::shared_ptr<Frame>& frame) {
+  // Nobody waits for a tile of a device alone, however wrong its speed is by now.
+  const bool alone = plans.size() == 1;
+  if (alone) plans[0].pixels_a_second = state_->pixels_a_second;
+  if (alone) plans[0].measured_pixels = state_->measured_pixels;
+  RenderResult result = render_frame(scene, plans, options, [&](const std::shared_ptr<Frame>& frame) {
     const auto mine = std::make_shared<SessionFrame>();
     mine->flat = scene;
     mine->frame = frame;
     mine->final = true;
     state_->run(mine, false);
   });
+  const DeviceReport& report = result.devices.front();
+  const bool measured = alone && report.busy_seconds > 0;
+  state_->pixels_a_second = measured ? static_cast<double>(report.pixels) / report.busy_seconds : 0;
+  state_->measured_pixels = measured ? static_cast<double>(report.pixels) : 0;
+  return result;
 }
 
 void RenderSession::wait() const {

@@ -63,6 +63,8 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
   std::thread control;
   SceneCompiler compiler;  // the control thread's
   std::mutex rendering;    // taken before `mutex`: one frame at a time is rendered to its end
+  // Of the last such frame, by a session's only device:
+  double pixels_a_second = 0, measured_pixels = 0;
 
   mutable std::mutex picture_mutex;
   mutable std::shared_ptr<const Image> picture;
