@@ -31,7 +31,7 @@ using sundog::AovImages;
 using sundog::apply;
 using sundog::apply_animation;
 using sundog::BuildError;
-using sundog::change_view;
+using sundog::change_scene;
 using sundog::compile;
 using sundog::CompiledScene;
 using sundog::DeviceError;

@@ -72,7 +72,8 @@ std::shared_ptr<const core::SceneDescription> Scene::Impl::describe() const {
   std::shared_ptr<const core::SceneDescription> old, next;
   const std::lock_guard lock(mutex_);
   if (described_ && described_document_ == document) return described_;
-  if (described_ && !options.frame) next = core::change_view(*described_, described_document_, document);
+  if (described_ && !options.frame)
+    next = core::change_scene(*described_, described_document_, document, options);
   if (!next) {
     json moved = document;
     if (options.frame) core::apply_animation(moved, *options.frame, core::JsonContext{.file = file});

@@ -14,6 +14,7 @@
 #include "app/job/job.h"
 #include "app/options/commands.h"
 #include "app/process/exit_status.h"
+#include "app/process/interrupt.h"
 #include "base/error.h"
 #include "device/pocl_folder.h"
 #include "render/render.h"
@@ -27,7 +28,10 @@ int run(const InfoCommand& command) { return info_command(command); }
 int run(const MergeCommand& command) { return merge_command(command); }
 int run(const CompareCommand& command) { return compare_command(command); }
 /// In a thread of its own: drivers that work in the caller's thread need more stack than the first one has.
-int run(const RunLater& command) { return std::async(std::launch::async, command.run).get(); }
+int run(const RunLater& command) {
+  if (command.stops_on_signal) hold_back({SIGINT, SIGTERM, SIGHUP, SIGCONT});
+  return std::async(std::launch::async, command.run).get();
+}
 int run(const ShowText& command) {
   if (command.status == exit_done || job_rank() <= 0)
     fmt::print(command.status == exit_done ? stdout : stderr, "{}", command.text);

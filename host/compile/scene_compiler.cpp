@@ -212,8 +212,8 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   take_part(p.instances.made, out);
   parts_->set_numbers(out);
   if (out.features.media) {
-    renew(p.touching, touching_key(scene, p.instances, out.origin),
-          [&] { return make_touching(scene, p.instances, out.origin); });
+    work_.touching += renew(p.touching, touching_key(scene, p.instances, out.origin),
+                            [&] { return make_touching(scene, p.instances, out.origin); });
     out.features.touching = p.touching.made.features.touching;
     out.instances = p.touching.made.instances;
   }

@@ -15,6 +15,7 @@ struct CompileWork {
   std::uint64_t surfaces = 0;   // parts of materials, media and textures
   std::uint64_t fields = 0;     // parts of fields
   std::uint64_t instances = 0;  // parts of instances
+  std::uint64_t touching = 0;   // searches for solids that lie on others
   friend bool operator==(const CompileWork&, const CompileWork&) = default;
 };
 

@@ -8,10 +8,11 @@
 #include "base/error.h"
 #include "scene/json/parse.h"
 #include "scene/json/value.h"
-#include "scene/kinds.h"
+#include "scene/lamps.h"
 #include "scene/model_scene.h"
 #include "scene/read/parts.h"
 #include "scene/read/scene_reader.h"
+#include "scene/read/surfaces.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -19,22 +20,53 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::array view_keys = {"camera", "image", "render", "lights"};
+constexpr std::array<std::string_view, 4> view_keys = {"camera", "image", "render", "lights"};
 
-bool same_but_view(const json& before, const json& after) {
+bool is_among(std::string_view key, Names keys) { return std::ranges::count(keys, key) > 0; }
+
+bool same_but(const json& before, const json& after, const auto& is_left_out) {
   if (!before.is_object() || !after.is_object()) return false;
-  const auto is_view = [](const std::string& key) { return std::ranges::count(view_keys, key) > 0; };
   for (const auto& [key, value] : before.items())
-    if (!is_view(key) && (!after.contains(key) || after[key] != value)) return false;
+    if (!is_left_out(key) && (!after.contains(key) || after[key] != value)) return false;
   for (const auto& [key, value] : after.items())
-    if (!is_view(key) && !before.contains(key)) return false;
+    if (!is_left_out(key) && !before.contains(key)) return false;
   return true;
 }
 
-/// Lights that rays meet are objects too (lamps.h).
-bool has_lamps(const std::vector<LightDescription>& lights) {
-  return std::ranges::any_of(
-      lights, [](const LightDescription& light) { return facts_of(light.type).extent && light.visible; });
+bool same_section(const json& before, const json& after, std::string_view key) {
+  const auto a = before.find(key), b = after.find(key);
+  return a == before.end() ? b == after.end() : b != after.end() && *a == *b;
+}
+
+/// Lights that rays meet are objects too, of a material each, the last ones of a scene (lamps.h).
+void drop_lamps(SceneDescription& scene) {
+  while (!scene.objects.empty() && scene.objects.back().light >= 0) {
+    scene.objects.pop_back();
+    scene.materials.pop_back();
+  }
+}
+
+void change_lights(SceneDescription& scene, const json& after, const JsonContext& context) {
+  drop_lamps(scene);
+  scene.lights.clear();
+  if (const auto lights = after.find("lights"); lights != after.end())
+    for (const JsonValue& light : JsonValue(*lights, context, "/lights").items("lights"))
+      scene.lights.push_back(read_light(light));
+  add_lamps(scene);
+}
+
+/// Copies of the description hold the same vertices.
+void share_meshes(SceneDescription& scene) {
+  const auto share = [](auto& array) {
+    using Array = std::remove_reference_t<decltype(array)>;
+    const auto owner =
+        std::make_shared<const std::vector<typename Array::value_type>>(std::move(array.values()));
+    array = Array::held(*owner, owner);
+  };
+  for (Mesh& mesh : scene.meshes) {
+    share(mesh.positions), share(mesh.normals), share(mesh.uvs);
+    share(mesh.tangents), share(mesh.colors), share(mesh.triangles);
+  }
 }
 
 bool has_place(const json& document) {
@@ -73,13 +105,18 @@ SceneDescription load_scene_document(const json& document, const fs::path& file,
                             .outside_files = options.outside_files};
   SceneDescription scene = read_scene(JsonValue(document, context), std::nullopt, made);
   scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
+  if (made.empty()) share_meshes(scene);  // those of programs are held already
   return scene;
 }
 
-std::shared_ptr<const SceneDescription> change_view(const SceneDescription& scene, const json& before,
-                                                    const json& after) {
-  if (!has_place(after) || !same_but_view(before, after)) return nullptr;
-  const JsonContext context{.file = scene.file};
+std::shared_ptr<const SceneDescription> change_scene(const SceneDescription& scene, const json& before,
+                                                     const json& after, const LoadOptions& options) {
+  const auto is_read_here = [](const std::string& key) {
+    return is_among(key, view_keys) || is_among(key, surface_sections());
+  };
+  if (!same_but(before, after, is_read_here) || !has_place(after)) return nullptr;
+  const JsonContext context{
+      .file = scene.file, .native_code = options.native_code, .outside_files = options.outside_files};
   const auto section = [&](const char* key) {
     return JsonValue(after[key], context, std::string("/") + key);
   };
@@ -87,17 +124,13 @@ std::shared_ptr<const SceneDescription> change_view(const SceneDescription& scen
   bool placed = false;
   changed->camera = read_camera(section("camera"), placed);
   changed->image = after.contains("image") ? read_image(section("image")) : ImageSettings{};
-  if (!after.contains("lights") || after["lights"] != before.value("lights", json())) {
-    if (has_lamps(scene.lights)) return nullptr;
-    changed->lights.clear();
-    if (after.contains("lights"))
-      for (const JsonValue& light : section("lights").items("lights"))
-        changed->lights.push_back(read_light(light));
-    if (has_lamps(changed->lights)) return nullptr;
-  }
   changed->render = after.contains("render") ? read_render(section("render")) : RenderSettings{};
   // Images were made smaller to fit what they may take.
   if (changed->render.texture_memory != scene.render.texture_memory && !scene.images.empty()) return nullptr;
+  const bool same_surfaces = std::ranges::all_of(
+      surface_sections(), [&](std::string_view key) { return same_section(before, after, key); });
+  if (!same_surfaces && !change_surfaces(*changed, before, after, context)) return nullptr;
+  if (!same_section(before, after, "lights")) change_lights(*changed, after, context);
   return changed;
 }
 

@@ -20,11 +20,12 @@ SceneDescription load_scene_document(const nlohmann::json& document, const std::
                                      const LoadOptions& options = {}, const NamedMeshes& made = {});
 
 /// The scene of `after`, where that differs from `before` (whose scene is `scene`) in nothing but the camera,
-/// the size and background, the render settings, and lights that rays do not meet: no file is read again and
-/// no formula tried out. Null where more differs, or where the camera has no place of its own. Throws
-/// SceneError.
-std::shared_ptr<const SceneDescription> change_view(const SceneDescription& scene,
-                                                    const nlohmann::json& before,
-                                                    const nlohmann::json& after);
+/// the size and background, the render settings, lights, media, textures and materials: no file is read
+/// again, no mesh made, no formula of a field tried out. Null where more differs (change_surfaces() has
+/// cases), or where the camera has no place of its own. Throws SceneError.
+std::shared_ptr<const SceneDescription> change_scene(const SceneDescription& scene,
+                                                     const nlohmann::json& before,
+                                                     const nlohmann::json& after,
+                                                     const LoadOptions& options = {});
 
 }  // namespace sundog

@@ -149,6 +149,29 @@ void Browser::double_click(int x, int y) {
   perform({{{"type", "pointer"}, {"id", "mouse"}, {"actions", {to, down, up, down, up}}}});
 }
 
+void Browser::touch(const std::vector<std::vector<std::pair<int, int>>>& fingers) {
+  json all = json::array();
+  for (std::size_t i = 0; i < fingers.size(); ++i) {
+    json steps = json::array();
+    for (const auto& [x, y] : fingers[i]) {
+      steps.push_back({{"type", "pointerMove"}, {"x", x}, {"y", y}, {"duration", steps.empty() ? 0 : 60}});
+      if (steps.size() == 1) steps.push_back({{"type", "pointerDown"}, {"button", 0}});
+    }
+    steps.push_back({{"type", "pointerUp"}, {"button", 0}});
+    all.push_back({{"type", "pointer"},
+                   {"id", "finger" + std::to_string(i)},
+                   {"parameters", {{"pointerType", "touch"}}},
+                   {"actions", steps}});
+  }
+  perform(all);
+}
+
+void Browser::prefer_dark(bool dark) {
+  const json scheme = {{"name", "prefers-color-scheme"}, {"value", dark ? "dark" : "light"}};
+  command("POST", "/goog/cdp/execute",
+          {{"cmd", "Emulation.setEmulatedMedia"}, {"params", {{"features", {scheme}}}}});
+}
+
 void Browser::keys(const std::vector<std::string>& keys) {
   json steps = json::array();
   for (const std::string& key : keys) steps.push_back({{"type", "keyDown"}, {"value", key}});

@@ -69,7 +69,8 @@ struct ShowText {
 
 /// A command that needs no value here: its own file declares its options and does its work.
 struct RunLater {
-  std::function<int()> run;  // returns the exit status
+  std::function<int()> run;      // returns the exit status
+  bool stops_on_signal = false;  // it has a StopOnSignal: no thread is to end by the signals themselves
 };
 
 using Command = std::variant<RenderCommand, DevicesOptions, InfoCommand, CompareCommand, MergeCommand,

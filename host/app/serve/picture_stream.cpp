@@ -8,8 +8,8 @@
 
 #include "app/serve/messages.h"
 #include "base/clock.h"
-#include "base/image_io.h"
 #include "base/pixels/preview.h"
+#include "base/pixels/quick_png.h"
 
 namespace sundog {
 namespace {
@@ -18,15 +18,6 @@ constexpr double status_seconds = 0.1;    // between two status messages while f
 constexpr double picture_seconds = 0.03;  // between two pictures
 constexpr double idle_seconds = 0.25;     // without a change
 constexpr int quality_full = 90, quality_coarse = 82;
-
-/// Colours without coverage, as `sundog render` keeps them in a PNG.
-Image opaque(const Image& image) {
-  Image out(image.width, image.height, 3);
-  const auto channels = static_cast<std::size_t>(image.channels);
-  for (std::size_t i = 0; i < out.data.size() / 3; ++i)
-    for (std::size_t c = 0; c < 3; ++c) out.data[3 * i + c] = image.data[channels * i + c];
-  return out;
-}
 
 }  // namespace
 
@@ -40,7 +31,7 @@ std::string picture_message(const Snapshot& now, std::uint64_t version) {
   std::string bytes;
   for (unsigned shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(text.size() >> shift & 255);
   bytes += text;
-  bytes += settled ? encode_image(opaque(image), "picture.png")
+  bytes += settled ? encode_quick_png(image)  // the pixels of the PNG of `sundog render`
                    : encode_preview(image, now.block > 1 ? quality_coarse : quality_full);
   return bytes;
 }

@@ -97,7 +97,7 @@ void SceneDocument::replace(json document, const fs::path& file) { begin(std::mo
 
 /// Reads the scene of `next`, and takes both.
 void SceneDocument::take(json next) {
-  auto scene = scene_ ? change_view(*scene_, now_, next) : nullptr;
+  auto scene = scene_ ? change_scene(*scene_, now_, next) : nullptr;
   if (!scene) scene = std::make_shared<const SceneDescription>(load_scene_document(next, file_));
   scene_ = std::move(scene);
   now_ = std::move(next);

@@ -111,7 +111,7 @@ void add_serve(Arguments& root, Command& chosen) {
         "keep the token in this file, so that open pages come back when the server is started anew");
   app->callback([options, &chosen] {
     for (const std::string& host : options->hosts) check_host(host);
-    chosen = RunLater{[options] { return serve(*options); }};
+    chosen = RunLater{[options] { return serve(*options); }, true};
   });
 }
 

@@ -2,6 +2,7 @@
 #include "compile/instances.h"
 #include "compile/parts/parts.h"
 #include "compile/textures.h"
+#include "compile/touching/touching.h"
 
 namespace sundog {
 namespace {
@@ -79,8 +80,7 @@ InstancesPart make_instances(const SceneDescription& scene, const MeshesPart& me
 }
 
 ContentKey touching_key(const SceneDescription& scene, const InstancesPart& instances, const dvec3& origin) {
-  const dvec3 camera = glm::abs(scene.camera.position - origin);
-  return KeyMaker().add(instances.key).add(std::max({camera.x, camera.y, camera.z})).key();
+  return KeyMaker().add(instances.key).add(camera_reach(scene, origin)).key();
 }
 
 ScenePart make_touching(const SceneDescription& scene, const InstancesPart& instances, const dvec3& origin) {

@@ -176,8 +176,7 @@ bool touch(const Body& a, const Body& b, double tolerance) {
 class Search {
  public:
   Search(const SceneDescription& scene, std::span<PlacedBody> placed, const dvec3& origin) {
-    const dvec3 camera = glm::abs(scene.camera.position - origin);
-    camera_ = std::max({camera.x, camera.y, camera.z});
+    camera_ = camera_reach(scene, origin);
     for (const PlacedBody& body : placed) bodies_.push_back(make_body(scene, body, origin));
   }
 
@@ -236,6 +235,12 @@ class Search {
 };
 
 }  // namespace
+
+double camera_reach(const SceneDescription& scene, const dvec3& origin) {
+  const dvec3 camera = glm::abs(scene.camera.position - origin);
+  const double reach = std::max({camera.x, camera.y, camera.z});
+  return reach > 0 ? std::exp2(std::ceil(std::log2(reach))) : 0;
+}
 
 void mark_touching(const SceneDescription& scene, std::span<PlacedBody> bodies, const dvec3& origin,
                    SceneFeatures& features) {

@@ -33,16 +33,26 @@ void DeviceServer::show(std::shared_ptr<const CompiledScene> scene, const Render
   scene_ = std::move(scene);
   options_ = &options;
   other_scene_ = true;
+  builder_.may_wait();
   closed_ = {};
   readback_before_ = renderer_ ? renderer_->readback_seconds() : 0;
   if (device_) device_->forget_times();
+}
+
+void DeviceServer::change_scene(RenderTimes& times) {
+  try {
+    renderer_->change_scene(*scene_, *options_, times);
+  } catch (const NotWantedAnyMore&) {
+    works_ = other_scene_ = true;  // it has what it had before
+    throw;
+  }
 }
 
 RenderTimes DeviceServer::open() {
   RenderTimes times;
   if (std::exchange(other_scene_, false) && works_) {
     works_ = false;
-    renderer_->change_scene(*scene_, *options_, times);
+    change_scene(times);
   } else {
     close();
     readback_before_ = 0;

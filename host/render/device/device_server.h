@@ -17,6 +17,7 @@ class DeviceServer : public SceneServer {
   void show(std::shared_ptr<const CompiledScene> scene, const RenderOptions& options) override;
   void prepare_surfaces() override { renderer_->prepare_surfaces(); }
   bool is_open() const override { return works_ && !other_scene_; }
+  void hurry() override { builder_.wants_no_more(); }
   void rest() override;
   void keep_programs() override;
   /// Most work-items that a group of its kernels may have; 0: nobody says, or it is not open.
@@ -34,6 +35,8 @@ class DeviceServer : public SceneServer {
   void be_nice() override;
 
  private:
+  void change_scene(RenderTimes& times);
+
   DeviceInfo info_;
   std::shared_ptr<const CompiledScene> scene_;
   const RenderOptions* options_;

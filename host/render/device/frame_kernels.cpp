@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/clock.h"
+#include "base/environment.h"
 #include "base/error.h"
 #include "scene/integrators.h"
 
@@ -62,11 +63,23 @@ bool same_kernels(const KernelConfig& a, const KernelConfig& b) {
   return a.defines == b.defines && a.generated == b.generated;
 }
 
+bool keeps_programs(const Device& device) {
+  const HostEnvironment& environment = value_of(device.info().environment);
+  return environment.kernel_cache && !environment.cache.empty();
+}
+
+/// Has the kernels built beside the work and waits for them, so that the device's thread is free again as
+/// soon as something else is to be drawn.
+void wait_for_kernels(const Device& device, KernelBuilder& builder, const KernelOrder& order) {
+  if (!keeps_programs(device)) return;
+  if (!builder.wait_for(order) && !builder.is_waited_for())
+    throw NotWantedAnyMore("the scene was replaced before its kernels were built");
+}
+
 /// What to draw with: the wanted kernels where they are there or nothing stands in for them.
 KernelConfig choose_config(const Device& device, const Integrator& integrator, KernelConfig wanted,
                            const FrameKernels& kernels) {
-  if (!kernels.builder || traces_paths(integrator.name)) return wanted;
-  if (device.has(integrator.entry, wanted.defines, wanted.generated)) return wanted;
+  if (!kernels.builder || device.has(integrator.entry, wanted.defines, wanted.generated)) return wanted;
   std::vector<KernelConfig> candidates = kernels.builder->built();
   candidates.insert(candidates.end(), kernels.known.rbegin(), kernels.known.rend());
   candidates.push_back(kernels.general);
@@ -75,6 +88,7 @@ KernelConfig choose_config(const Device& device, const Integrator& integrator, K
       kernels.builder->want({integrator.entry, integrator.kernel, std::move(wanted)});
       return general;
     }
+  wait_for_kernels(device, *kernels.builder, {integrator.entry, integrator.kernel, wanted});
   return wanted;
 }
 

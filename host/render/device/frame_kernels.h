@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "render/device/device_scene.h"
 #include "render/device/kernel_builder.h"
 #include "render/device/kernel_config.h"
@@ -11,6 +12,11 @@
 #include "shared/launch.h"
 
 namespace sundog {
+
+/// The kernels of a scene are still being built, and another is to be drawn. What was there is as it was.
+struct NotWantedAnyMore : DeviceError {
+  using DeviceError::DeviceError;
+};
 
 struct FrameKernels {
   KernelConfig config;

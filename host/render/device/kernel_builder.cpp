@@ -61,7 +61,7 @@ struct KernelBuilder::State {
   Stopwatch since_wish;
   std::optional<KernelOrder> in_hand;
   std::vector<KernelOrder> done, failed;
-  bool ends = false;
+  bool ends = false, is_waited_for = true;
 
   bool is_known(const KernelOrder& order) const {
     return is_among(done, order) || is_among(failed, order) || (in_hand && same(*in_hand, order));
@@ -118,6 +118,31 @@ void KernelBuilder::want_later(KernelOrder order) {
   state_->note_wish();
 }
 
+bool KernelBuilder::wait_for(KernelOrder order) {
+  want(order);
+  std::unique_lock lock(state_->mutex);
+  state_->changed.wait(lock, [&] {
+    return !state_->is_waited_for || is_among(state_->done, order) || is_among(state_->failed, order);
+  });
+  return is_among(state_->done, order);
+}
+
+void KernelBuilder::may_wait() {
+  const std::lock_guard lock(state_->mutex);
+  state_->is_waited_for = true;
+}
+
+void KernelBuilder::wants_no_more() {
+  const std::lock_guard lock(state_->mutex);
+  state_->is_waited_for = false;
+  state_->changed.notify_all();
+}
+
+bool KernelBuilder::is_waited_for() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->is_waited_for;
+}
+
 std::vector<KernelConfig> KernelBuilder::built() const {
   const std::lock_guard lock(state_->mutex);
   std::vector<KernelConfig> configs;
@@ -165,6 +190,7 @@ void KernelBuilder::State::run() {
     lock.lock();
     (works ? done : failed).push_back(std::move(*in_hand));
     in_hand.reset();
+    changed.notify_all();
   }
 }
 

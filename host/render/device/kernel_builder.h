@@ -24,11 +24,19 @@ class KernelBuilder {
   KernelBuilder(const KernelBuilder&) = delete;
   KernelBuilder& operator=(const KernelBuilder&) = delete;
 
-  // Both are called by one thread, the server's.
+  // Called by one thread, the server's, but for what says otherwise.
   /// To be built next. What waits already is built after it; what was built, or failed to, is not again.
   void want(KernelOrder order);
   /// To be built when nothing else was wanted for a second. Takes the place of what waits so already.
   void want_later(KernelOrder order);
+  /// The same, and waits for it. False when it does not build, or wants_no_more() comes first: then it is
+  /// built nevertheless.
+  bool wait_for(KernelOrder order);
+  /// From now on wait_for() waits, until wants_no_more().
+  void may_wait();
+  /// Nobody wants what wait_for() waits for. Any thread.
+  void wants_no_more();
+  bool is_waited_for() const;
   /// What was built so far, the latest first.
   std::vector<KernelConfig> built() const;
   /// How many wait or are in hand. Any thread.

@@ -89,6 +89,9 @@ class SceneServer : public TileServer {
   virtual void prepare_surfaces() = 0;
   /// It was opened, and nothing has failed since.
   virtual bool is_open() const = 0;
+  /// What open() is asked for is of no use any more: where it waits for a compiler, it throws DeviceError
+  /// instead. Until the next show(). Any thread.
+  virtual void hurry() {}
   /// Nothing is to be drawn for now: it may prepare for what comes, without delay for it.
   virtual void rest() {}
   /// Kernels that are being built beside the work. Any thread.

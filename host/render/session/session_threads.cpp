@@ -9,7 +9,8 @@ namespace {
 
 CompileWork difference(const CompileWork& now, const CompileWork& before) {
   return {now.meshes - before.meshes,     now.bvhs - before.bvhs,     now.lights - before.lights,
-          now.surfaces - before.surfaces, now.fields - before.fields, now.instances - before.instances};
+          now.surfaces - before.surfaces, now.fields - before.fields, now.instances - before.instances,
+          now.touching - before.touching};
 }
 
 Picked picked_from(const TileResult& made) {
@@ -53,6 +54,8 @@ void RenderSession::State::drop_frame() {
   if (!current) return;
   current->frame->stop = true;
   current->frame->queue.close();
+  for (const auto& worker : workers)
+    if (worker->of_scenes) worker->of_scenes->hurry();
 }
 
 void RenderSession::State::drop_picks() {

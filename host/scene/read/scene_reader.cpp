@@ -19,6 +19,7 @@
 #include "scene/procedural/procedural.h"
 #include "scene/read/library.h"
 #include "scene/read/parts.h"
+#include "scene/read/surfaces.h"
 #include "scene/read/textures.h"
 
 namespace sundog {
@@ -31,7 +32,7 @@ class SceneReader {
   SceneReader(const JsonValue& root, std::optional<Model> known, const NamedMeshes& made)
       : root_(root), made_(made), library_(scene_) {
     scene_.file = root.context().file;
-    scene_.media.push_back({.name = "vacuum", .priority = world_priority});
+    scene_.media.push_back(outer_vacuum());
     if (known) library_.keep(scene_.file, std::move(*known));
   }
 
@@ -65,21 +66,7 @@ class SceneReader {
   }
 
   void read_tables(JsonObject& object) {
-    if (const auto media = object.find("media"))
-      for (const auto& [name, value] : media->members("media")) {
-        media_.emplace(name, static_cast<int>(scene_.media.size()));
-        scene_.media.push_back(read_medium(value, name));
-      }
-    if (const auto world = object.find("world")) read_world(*world);
-    if (const auto textures = object.find("textures")) {
-      for (const auto& [name, value] : textures->members("textures")) textures_.read(value, name);
-      textures_.check_names();
-    }
-    if (const auto materials = object.find("materials"))
-      for (const auto& [name, value] : materials->members("materials")) {
-        materials_.emplace(name, static_cast<int>(scene_.materials.size()));
-        scene_.materials.push_back(read_material(value, name, media_, scene_.media, textures_));
-      }
+    names_ = read_surfaces([&](std::string_view key) { return object.find(key); }, scene_, textures_);
     if (const auto meshes = object.find("meshes"))
       for (const auto& [name, value] : meshes->members("meshes"))
         meshes_.emplace(name, read_mesh(value, name));
@@ -89,17 +76,6 @@ class SceneReader {
         fields_.emplace(name, static_cast<int>(scene_.fields.size()));
         scene_.fields.push_back(read_named_field(value, name));
       }
-  }
-
-  /// The world gets a copy of its medium that gives way to all others, whatever the named one's priority.
-  void read_world(const JsonValue& value) {
-    value.object("world", [&](JsonObject& object) {
-      if (const auto name = object.find("medium")) {
-        scene_.media[0] = scene_.media[static_cast<std::size_t>(find_name(*name, media_, "medium"))];
-        scene_.media[0].priority = world_priority;
-      }
-      if (const auto fog = object.find("fog")) scene_.fog = read_fog(*fog);
-    });
   }
 
   /// A file named in the scene, by a path from the scene's own folder.
@@ -222,7 +198,7 @@ class SceneReader {
     placement.place = object.value().pointer();
     placement.name = object.text("name", parent.name);
     if (const auto material = object.find("material"))
-      placement.material = find_name(*material, materials_, "material");
+      placement.material = find_name(*material, names_.materials, "material");
     if (const auto transform = object.find("transform")) {
       placement.world_from_object = parent.world_from_object * read_transform(*transform);
       check_transform(placement.world_from_object, *transform);
@@ -249,7 +225,8 @@ class SceneReader {
   SceneDescription scene_;
   ModelLibrary library_;
   TextureLibrary textures_{scene_};
-  NameTable media_, materials_, fields_;
+  SurfaceNames names_;
+  NameTable fields_;
   std::map<std::string, ModelLibrary::Parts, std::less<>> meshes_;
 };
 

@@ -293,9 +293,18 @@ int TextureLibrary::use(const std::string& name, TextureUse use) {
   return index;
 }
 
+void TextureLibrary::add_known_image(const std::string& file, bool srgb) {
+  const auto found = std::ranges::find_if(
+      *known_, [&](const ImageDescription& image) { return image.file == file && image.srgb == srgb; });
+  lacks_images_ |= found == known_->end();
+  scene_.images.push_back(found == known_->end() ? ImageDescription{} : *found);
+}
+
 int TextureLibrary::use_image(const Entry& entry, bool srgb) {
   const auto [found, added] = images_.try_emplace({entry.file, srgb}, static_cast<int>(scene_.images.size()));
-  if (added) {
+  if (added && known_) {
+    add_known_image(entry.file, srgb);
+  } else if (added) {
     ImageDescription image;
     image.name = fs::path(entry.file).filename().string();
     image.file = entry.file;

@@ -15,8 +15,10 @@ enum class TextureUse { color, number, data };
 
 class TextureLibrary {
  public:
-  /// Adds to `scene`, which must outlive the library.
-  explicit TextureLibrary(SceneDescription& scene) : scene_(scene) {}
+  /// Adds to `scene`, which must outlive the library. With `known` images it reads no file: what is not among
+  /// them is lacking.
+  explicit TextureLibrary(SceneDescription& scene, const std::vector<ImageDescription>* known = nullptr)
+      : scene_(scene), known_(known) {}
 
   /// Reads an entry of `textures`. Throws SceneError.
   void read(const JsonValue& value, const std::string& name);
@@ -26,6 +28,9 @@ class TextureLibrary {
 
   /// The index in the scene of a texture that `name` names. Throws SceneError.
   int use(const JsonValue& name, TextureUse use);
+
+  /// Of known images: whether one was wanted that is not among them.
+  bool lacks_images() const { return lacks_images_; }
 
  private:
   struct Entry {
@@ -49,8 +54,11 @@ class TextureLibrary {
   std::string add_color(const dvec3& color);
   int use(const std::string& name, TextureUse use);
   int use_image(const Entry& entry, bool srgb);
+  void add_known_image(const std::string& file, bool srgb);
 
   SceneDescription& scene_;
+  const std::vector<ImageDescription>* known_;
+  bool lacks_images_ = false;
   std::vector<JsonValue> references_;
   std::map<std::string, Entry, std::less<>> entries_;
   std::map<std::pair<std::string, TextureUse>, int> used_;

@@ -165,6 +165,29 @@ TEST_CASE("a page's scene may neither carry native code nor name files outside i
   CHECK(json::parse(get("/api/scene", served().with_token()).body)["objects"].size() == 2);
 }
 
+TEST_CASE("the folder of what was dropped on the page goes when a signal ends the server") {
+  const TemporaryFolder folder, temporary;
+  folder.write("scene.json", viewer_scene);
+  BackgroundProgram program({SUNDOG_BINARY, "serve", "scene.json"}, folder.path(),
+                            {{"TMPDIR", temporary.path().string()}});
+  const std::string url = program.line_with("http://");
+  const int port = std::stoi(url.substr(url.find(':', 7) + 1));
+  const std::string token = "X-Sundog-Token: " + url.substr(url.find("token=") + 6) + "\r\n";
+  const auto uploads = [&] {
+    int count = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(temporary.path()))
+      count += entry.path().filename() == "dropped.obj";
+    return count;
+  };
+  const HttpReply dropped = http(port, http_request(port, "POST", "/api/scene?name=dropped.obj", token,
+                                                    "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  CHECK(dropped.status == 200);
+  CHECK(uploads() == 1);
+  program.end();  // SIGTERM
+  CHECK(uploads() == 0);
+  CHECK(temporary.entries() == 0);
+}
+
 TEST_CASE("bodies, heads and messages are bounded") {
   const std::string huge = "Content-Length: 900000000\r\n";
   CHECK(http(served().port, "POST /api/scene HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(served().port) +

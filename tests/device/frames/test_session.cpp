@@ -2,13 +2,17 @@
 // uploads no geometry; a pick shows what the AOVs show.
 #include "render/session/render_session.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "catch.h"
 #include "devices.h"
 #include "render/device/kernel_config.h"
 #include "same_bits.h"
+#include "scene/document.h"
 #include "scene/load.h"
 #include "scenes.h"
 #include "test_meshes.h"
@@ -216,4 +220,35 @@ TEST_CASE("a session renders frames to their end, and draws between them") {
   CHECK(session.snapshot().shown == shown);
   CHECK_FALSE(session.pick(1, 1));
   check_settled(session, scene, device);
+}
+
+TEST_CASE("while the kernel of a new formula is built, other edits are drawn; then it needs no compiler") {
+  const DeviceInfo& device = test_devices().front();
+  RenderSession session(std::vector<DeviceInfo>{device});
+  const SceneDescription usual = shipped("spheres");
+  check_settled(session, usual, device);
+  // A number that no run before had, so that its kernel is in no cache.
+  const auto now = std::chrono::system_clock::now().time_since_epoch().count() % 1000000007;
+  const nlohmann::json document = {{"image", {{"width", 37}, {"height", 26}}},
+                                   {"lights", {{{"type", "ambient"}}}},
+                                   {"materials", {{"grey", {{"color", {0.5, 0.5, 0.5}}}}}},
+                                   {"objects",
+                                    {{{"type", "formula"},
+                                      {"material", "grey"},
+                                      {"distance", fmt::format("length(p) - 1 + {}e-12", now)}}}}};
+  const SceneDescription field = load_scene_document(document, "new.json");
+  session.start(std::make_shared<const SceneDescription>(field));
+  while (session.snapshot(false).kernels_waiting == 0) session.wait_for_change(0, 0.01);
+  SceneDescription turned = usual;
+  turned.camera.position += dvec3(0.2, 0, 0);
+  check_settled(session, turned, device);
+  const Snapshot drawn = session.snapshot();
+  CHECK(drawn.kernels_waiting > 0);
+  CHECK(drawn.work.kernels_built == 0);
+  CHECK(drawn.work.bytes_uploaded == 0);
+  session.start(std::make_shared<const SceneDescription>(field));
+  session.wait();
+  CHECK(session.snapshot().state == SessionState::settled);
+  CHECK(session.snapshot().work.kernels_built == 0);
+  check_settled(session, field, device);
 }

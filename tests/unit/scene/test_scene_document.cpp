@@ -60,12 +60,12 @@ TEST_CASE("a change of the view alone gives the scene that reading everything gi
   after["camera"]["lens"] = {{"radius", 0.1}};
   after["image"]["width"] = 64;
   after["render"] = {{"samples", 9}, {"filter", "tent"}};
-  const auto changed = change_view(scene, before, after);
+  const auto changed = change_scene(scene, before, after);
   REQUIRE(changed);
   CHECK(hash_of(*changed) == hash_of(load_scene_document(after, file)));
   after.erase("image");
   after.erase("render");
-  const auto shorter = change_view(scene, before, after);
+  const auto shorter = change_scene(scene, before, after);
   REQUIRE(shorter);
   CHECK(hash_of(*shorter) == hash_of(load_scene_document(after, file)));
 }
@@ -74,32 +74,87 @@ TEST_CASE("a change of lights that rays do not meet gives the scene that reading
   const auto file = scenes / "spheres.json";
   const json before = read_scene_document(file);
   const SceneDescription scene = load_scene_document(before, file);
-  json brighter = before, dark = before, more = before;
+  json brighter = before, dark = before, more = before, lamp = before;
   brighter["lights"][1]["intensity"] = 3;
   dark.erase("lights");
   more["lights"].push_back(
       {{"type", "disk"}, {"position", {0, 3, 0}}, {"direction", {0, -1, 0}}, {"visible", false}});
-  for (const json& after : {brighter, dark, more}) {
-    const auto changed = change_view(scene, before, after);
+  lamp["lights"].push_back({{"type", "sphere"}, {"position", {0, 3, 0}}});  // rays meet it
+  for (const json& after : {brighter, dark, more, lamp}) {
+    const auto changed = change_scene(scene, before, after);
     REQUIRE(changed);
     CHECK(hash_of(*changed) == hash_of(load_scene_document(after, file)));
   }
+  const auto lit = change_scene(scene, before, lamp), unlit = change_scene(*lit, lamp, before);
+  REQUIRE(unlit);
+  CHECK(hash_of(*unlit) == hash_of(scene));
 }
 
-TEST_CASE("more than the view is not taken for the view") {
+TEST_CASE(
+    "a change of materials, media or textures reads no mesh, and gives the scene that reading all gives") {
+  const TemporaryFolder folder;
+  const std::string model = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
+  folder.write("one.obj", "mtllib one.mtl\n" + model);
+  folder.write("one.mtl", "newmtl a\nKd 0.1 0.2 0.3\nTf 0.5 0.5 0.5\nd 0.5\nNi 1.4\n");
+  write_image(Image(4, 4, 3), folder / "dots.png");
+  const auto file = folder / "scene.json";
+  const json before = json::parse(R"({
+    "camera": {"position": [0, 0, 5], "target": [0, 0, 0]},
+    "media": {"glass": {"ior": 1.5, "absorption": [0.1, 0.2, 0.3]}},
+    "textures": {"dots": {"type": "image", "file": "dots.png"}, "check": {"type": "checker"}},
+    "materials": {"clear": {"type": "dielectric", "medium": "glass"}, "plain": {"color": "dots"},
+                  "own": {"type": "dielectric", "ior": 1.3}},
+    "meshes": {"one": {"file": "one.obj"}},
+    "objects": [{"type": "mesh", "mesh": "one"}, {"type": "sphere", "radius": 0.5, "material": "clear"},
+                {"type": "box", "half": [1, 1, 1], "material": "plain"}]
+  })");
+  const SceneDescription scene = load_scene_document(before, file);
+  const auto edited = [&](const char* pointer, const json& value) {
+    json after = before;
+    after[json::json_pointer(pointer)] = value;
+    return after;
+  };
+  const std::vector<json> edits = {edited("/materials/plain/color", {0.1, 0.7, 0.2}),
+                                   edited("/materials/plain/color", "check"),
+                                   edited("/materials/plain/color", "dots"),
+                                   edited("/materials/own", {{"color", {1, 0, 0}}}),
+                                   edited("/materials/clear/medium", "air"),
+                                   edited("/media/glass/ior", 1.7),
+                                   edited("/media/air", {{"ior", 1}}),
+                                   edited("/textures/check/size", 2),
+                                   edited("/world", {{"medium", "glass"}, {"fog", {{"density", 0.1}}}})};
+  std::vector<std::uint64_t> wanted;
+  for (const json& after : edits)
+    wanted.push_back(
+        after["materials"]["clear"]["medium"] == "air" ? 0 : hash_of(load_scene_document(after, file)));
+  for (const char* name : {"one.obj", "one.mtl"}) std::filesystem::remove(folder / name);
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    INFO(edits[i].dump());
+    if (wanted[i] == 0) {
+      CHECK_THROWS_AS(change_scene(scene, before, edits[i]), SceneError);
+      continue;
+    }
+    const auto changed = change_scene(scene, before, edits[i]);
+    REQUIRE(changed);
+    CHECK(hash_of(*changed) == wanted[i]);
+    CHECK(changed->meshes[0].positions.span().data() == scene.meshes[0].positions.span().data());
+  }
+  CHECK_FALSE(change_scene(scene, before, edited("/materials/more", {{"color", {1, 0, 0}}})));
+}
+
+TEST_CASE("a change of what is placed, or of the names of materials, is left to reading everything") {
   const auto file = scenes / "spheres.json";
   const json before = read_scene_document(file);
   const SceneDescription scene = load_scene_document(before, file);
-  json light = before, removed = before, added = before, unplaced = before;
-  light["lights"].push_back({{"type", "sphere"}, {"position", {0, 3, 0}}});  // rays meet it
+  json removed = before, added = before, unplaced = before;
   removed.erase("materials");
-  added["world"] = json::object();
+  added["meshes"] = json::object();
   unplaced["camera"] = {{"fov", 30}};
-  for (const json& after : {light, removed, added, unplaced}) CHECK_FALSE(change_view(scene, before, after));
+  for (const json& after : {removed, added, unplaced}) CHECK_FALSE(change_scene(scene, before, after));
   json wrong = before;
   wrong["camera"]["fov"] = 200;
   try {
-    change_view(scene, before, wrong);
+    change_scene(scene, before, wrong);
     FAIL("an angle of 200 degrees was taken");
   } catch (const SceneError& error) {
     CHECK(error.place == "/camera/fov");
