@@ -4,6 +4,7 @@
 #pragma once
 #include <nlohmann/json.hpp>
 
+#include "base/driver_threads.h"
 #include "base/environment.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -36,6 +37,7 @@ using sundog::compile;
 using sundog::CompiledScene;
 using sundog::DeviceError;
 using sundog::DeviceInfo;
+using sundog::DriverThreads;
 using sundog::encode_image;
 using sundog::enumerate_devices;
 using sundog::EnvironmentPtr;
@@ -61,7 +63,6 @@ using sundog::select_devices;
 using sundog::SessionSettings;
 using sundog::SessionState;
 using sundog::Snapshot;
-using sundog::threads_left_behind;
 using sundog::ToneCurve;
 using sundog::ToneMap;
 using sundog::UsageError;

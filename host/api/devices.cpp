@@ -1,11 +1,14 @@
 // Devices as programs see them.
 #include "api/impl.h"
 
+#include <set>
+
 namespace sundog {
 inline namespace v0 {
 namespace {
 
-Device device_of(const core::DeviceInfo& info) {
+Device device_of(core::DeviceInfo info, const std::shared_ptr<core::DriverThreads>& threads) {
+  info.threads = threads;
   Device device;
   device.label = info.label();
   device.platform = info.platform;
@@ -20,7 +23,7 @@ Device device_of(const core::DeviceInfo& info) {
   device.estimate = info.estimate;
   device.usable = info.usable();
   device.problem = info.problem;
-  device.handle = std::make_shared<const Device::Handle>(Device::Handle{info});
+  device.handle = std::make_shared<const Device::Handle>(Device::Handle{std::move(info), threads});
   return device;
 }
 
@@ -31,9 +34,10 @@ const core::EnvironmentPtr& environment() {
 }
 
 std::vector<Device> devices_of_host(const std::vector<core::DeviceInfo>& all) {
+  const auto threads = std::make_shared<core::DriverThreads>();
   std::vector<Device> result;
   result.reserve(all.size());
-  for (const core::DeviceInfo& info : all) result.push_back(device_of(info));
+  for (const core::DeviceInfo& info : all) result.push_back(device_of(info, threads));
   return result;
 }
 
@@ -51,15 +55,30 @@ std::vector<Device> choose_devices(const std::vector<std::string>& specs,
   });
 }
 
-std::vector<core::DeviceInfo> devices_of(const std::vector<Device>& devices) {
-  if (devices.empty()) return core::select_devices(core::enumerate_devices(environment()), {});
-  std::vector<core::DeviceInfo> infos;
+unsigned threads_left_behind(const std::vector<Device>& devices) {
+  std::set<core::DriverThreads*> all;
+  for (const Device& device : devices)
+    if (device.handle) all.insert(device.handle->threads.get());
+  unsigned count = 0;
+  for (core::DriverThreads* threads : all) count += threads->count();
+  return count;
+}
+
+HostDevices devices_of(const std::vector<Device>& devices,
+                       const std::shared_ptr<core::DriverThreads>& threads) {
+  HostDevices result;
+  if (devices.empty()) {
+    result.infos = core::select_devices(core::enumerate_devices(environment()), {});
+    for (core::DeviceInfo& info : result.infos) info.threads = threads;
+    result.threads = {threads};
+  }
   for (const Device& device : devices) {
     if (!device.handle) throw core::UsageError("a device wants to come from devices() or choose_devices()");
     if (!device.usable) throw core::DeviceError(device.label + ": " + device.problem);
-    infos.push_back(device.handle->info);
+    result.infos.push_back(device.handle->info);
+    result.threads.push_back(device.handle->threads);
   }
-  return infos;
+  return result;
 }
 
 core::WorkGroup group_of(const WorkGroup& group) {

@@ -36,6 +36,13 @@ struct SUNDOG_LOCAL Image::Impl {
 
 struct SUNDOG_LOCAL Device::Handle {
   core::DeviceInfo info;
+  std::shared_ptr<core::DriverThreads> threads;  // of all devices that were listed with it
+};
+
+/// Rows with those who own their threads.
+struct SUNDOG_LOCAL HostDevices {
+  std::vector<std::shared_ptr<core::DriverThreads>> threads;
+  std::vector<core::DeviceInfo> infos;
 };
 
 struct SUNDOG_LOCAL Film::Impl {
@@ -54,6 +61,8 @@ struct SUNDOG_LOCAL Scene::Impl {
   std::filesystem::path file;
   core::LoadOptions options;
   core::NamedMeshes meshes;
+  /// Of renders on a device that was not named; copies share them.
+  const std::shared_ptr<core::DriverThreads> threads;
 
   Impl();
   Impl(const Impl& other);
@@ -73,8 +82,9 @@ struct SUNDOG_LOCAL Scene::Impl {
 Image share(core::Image image);
 Image share(std::shared_ptr<const core::Image> image);
 
-/// Of the handles, or the default device. Throws DeviceError, UsageError.
-std::vector<core::DeviceInfo> devices_of(const std::vector<Device>& devices);
+/// Of the handles, or the default device, whose threads `threads` takes. Throws DeviceError, UsageError.
+HostDevices devices_of(const std::vector<Device>& devices,
+                       const std::shared_ptr<core::DriverThreads>& threads);
 
 core::WorkGroup group_of(const WorkGroup& group);
 

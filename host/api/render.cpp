@@ -112,9 +112,9 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   sundog::check_frame_memory(
       static_cast<int>(flat->info.width), static_cast<int>(flat->info.height),
       {.file = {}, .aovs = options.aovs, .tile = options.tile, .passes = sundog::in_passes(flat->sampling)});
-  const std::vector<core::DeviceInfo> devices = devices_of(options.devices);
+  const HostDevices devices = devices_of(options.devices, scene.impl().threads);
   film->warnings = description->warnings;
-  for (std::string& warning : sundog::view_warnings(*flat, devices))
+  for (std::string& warning : sundog::view_warnings(*flat, devices.infos))
     film->warnings.push_back(std::move(warning));
   core::RenderOptions wanted;
   wanted.work_group = group_of(options.work_group);
@@ -124,7 +124,7 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   wanted.picture_seconds = seconds_of("the time between pictures", options.picture_seconds);
   wanted.tuning = [flat](const core::DeviceInfo& device) { return sundog::saved_tuning(device, *flat); };
   callbacks.install(wanted);
-  film->result = core::render(flat, devices, wanted);
+  film->result = core::render(flat, devices.infos, wanted);
   film->tone_map = description->image.tone_map;
   film->figures = figures_of(film->result, compile_seconds);
   film->image = share(std::move(film->result.image));
@@ -157,8 +157,6 @@ Film render(const Scene& scene, const RenderOptions& options) {
   callbacks->close();
   return Film(std::move(film));
 }
-
-unsigned threads_left_behind() noexcept { return core::threads_left_behind(); }
 
 Film::Film() : impl_(std::make_shared<const Impl>()) {}
 Film::Film(std::shared_ptr<const Impl> impl) noexcept : impl_(std::move(impl)) {}

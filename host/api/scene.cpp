@@ -53,10 +53,17 @@ core::LoadOptions options_of(const LoadOptions& options) {
 
 }  // namespace
 
-Scene::Impl::Impl() : document({{"objects", json::array()}}), file(no_file) {}
+Scene::Impl::Impl()
+    : document({{"objects", json::array()}}),
+      file(no_file),
+      threads(std::make_shared<core::DriverThreads>()) {}
 
 Scene::Impl::Impl(const Impl& other)
-    : document(other.document), file(other.file), options(other.options), meshes(other.meshes) {
+    : document(other.document),
+      file(other.file),
+      options(other.options),
+      meshes(other.meshes),
+      threads(other.threads) {
   const std::lock_guard lock(other.mutex_);
   described_document_ = other.described_document_;
   described_ = other.described_;

@@ -7,11 +7,13 @@ namespace sundog {
 inline namespace v0 {
 
 struct SUNDOG_LOCAL Session::Impl {
-  core::RenderSession session;
   mutable std::mutex mutex;
+  std::vector<std::shared_ptr<core::DriverThreads>>
+      threads;  // guarded by the mutex; they outlive the session
+  core::RenderSession session;
   std::shared_ptr<const core::SceneDescription> newest;  // guarded by the mutex
 
-  explicit Impl(const std::vector<core::DeviceInfo>& devices) : session(devices) {}
+  explicit Impl(HostDevices devices) : threads(std::move(devices.threads)), session(devices.infos) {}
 };
 
 namespace {
@@ -25,7 +27,9 @@ Vec3 values_of(const glm::dvec3& vector) { return {vector.x, vector.y, vector.z}
 }  // namespace
 
 Session::Session(const std::vector<Device>& devices)
-    : impl_(translated([&] { return std::make_unique<Impl>(devices_of(devices)); })) {}
+    : impl_(translated([&] {
+        return std::make_unique<Impl>(devices_of(devices, std::make_shared<core::DriverThreads>()));
+      })) {}
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
@@ -49,7 +53,14 @@ std::uint64_t Session::start(const Scene& scene, const SessionOptions& options) 
 void Session::cancel() { impl_->session.cancel(); }
 
 void Session::use_devices(const std::vector<Device>& devices) {
-  translated([&] { impl_->session.use_devices(devices_of(devices)); });
+  translated([&] {
+    HostDevices chosen = devices_of(devices, std::make_shared<core::DriverThreads>());
+    {
+      const std::lock_guard lock(impl_->mutex);
+      impl_->threads.insert(impl_->threads.end(), chosen.threads.begin(), chosen.threads.end());
+    }
+    impl_->session.use_devices(chosen.infos);
+  });
 }
 
 Snapshot Session::snapshot(bool with_picture) const {

@@ -13,11 +13,11 @@
 #include "app/commands/devices_command.h"
 #include "app/job/job.h"
 #include "app/options/commands.h"
+#include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/interrupt.h"
 #include "base/error.h"
 #include "device/pocl_folder.h"
-#include "render/render.h"
 
 namespace sundog {
 namespace {
@@ -77,7 +77,7 @@ void bound_the_end(int status) {
   std::signal(SIGABRT, [](int) { ::_exit(static_cast<int>(final_status)); });
   if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0)
     ::dup2(nowhere, STDERR_FILENO);
-  remove_pocl_folder();
+  pocl_folder(*program_environment()).remove();
   ::_exit(status);
 }
 
@@ -86,7 +86,7 @@ void bound_the_end(int status) {
 
 int main(int argc, char** argv) {
   const int status = sundog::exit_status_of([&] { return sundog::run_command_line(argc, argv); });
-  if (sundog::threads_left_behind() > 0) sundog::end_beside_drivers(status);
+  if (sundog::driver_threads()->count() > 0) sundog::end_beside_drivers(status);
   sundog::bound_the_end(status);
   return status;
 }

@@ -7,13 +7,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <random>
 #include <thread>
 
 #include "base/error.h"
@@ -42,10 +42,10 @@ std::string temporary_prefix(const fs::path& path) {
 class Temporary {
  public:
   explicit Temporary(const fs::path& path) {
-    static std::atomic<unsigned> serial{0};
+    std::random_device random;
     do {
       close();
-      path_ = path.parent_path() / fmt::format("{}{}.{}.tmp", temporary_prefix(path), ::getpid(), serial++);
+      path_ = path.parent_path() / fmt::format("{}{}.{}.tmp", temporary_prefix(path), ::getpid(), random());
       file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     } while (file_ < 0 ? errno == EEXIST : taken_away());
   }
@@ -77,7 +77,7 @@ class Temporary {
  private:
   /// Another process may have removed it before it was locked.
   bool taken_away() const {
-    struct stat now{};
+    struct stat now = {};
     const bool locked = ::flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
     return !locked || (::fstat(file_, &now) == 0 && now.st_nlink == 0);
   }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <mutex>
 #include <thread>
 
 #include "base/environment.h"
@@ -53,10 +52,8 @@ cl::Device sub_device(cl::Device parent, const DeviceInfo& info) {
 /// PoCL's threads may still be at the last event of a queue whose work is done, and crash when its sub-device
 /// goes under them. A sub-device's queue takes little: it stays until the process ends.
 void keep_for_good(const cl::Device& device, const cl::CommandQueue& queue) {
-  static std::mutex mutex;
-  static auto* kept = new std::vector<std::pair<cl::Device, cl::CommandQueue>>;
-  const std::lock_guard lock(mutex);
-  kept->emplace_back(device, queue);
+  clRetainDevice(device());
+  clRetainCommandQueue(queue());
 }
 
 /// An event's time on the device; 0 where the driver does not measure. Rusticl on llvmpipe stamps begin and
@@ -76,7 +73,21 @@ bool has_fma_instruction(const cl::Device& device, const DeviceInfo& info) {
   return info.type != "cpu" && (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_FMA) != 0;
 }
 
+cl::Context make_context(const cl::Device& device, const DeviceInfo& info) {
+  cl_int status = CL_SUCCESS;
+  cl::Context context(device, nullptr, nullptr, nullptr, &status);
+  check_cl(status, info, "clCreateContext");
+  return context;
+}
+
 }  // namespace
+
+DeviceInfo share_context(DeviceInfo info) {
+  if (info.usable() && info.sub_units == 0 && !info.context)
+    info.context = std::make_shared<cl::Context>(
+        make_context(cl::Device(static_cast<cl_device_id>(info.handle), true), info));
+  return info;
+}
 
 struct Device::Pending {
   cl::Event event;
@@ -88,9 +99,9 @@ Device::Device(DeviceInfo info) : info_(std::move(info)) {
   if (!info_.usable()) throw DeviceError(fmt::format("{}: {}", info_.label(), info_.problem));
   device_ = cl::Device(static_cast<cl_device_id>(info_.handle), true);
   if (info_.sub_units > 0) device_ = sub_device(device_, info_);
+  context_ = info_.context && info_.sub_units == 0 ? *static_cast<const cl::Context*>(info_.context.get())
+                                                   : make_context(device_, info_);
   cl_int status = CL_SUCCESS;
-  context_ = cl::Context(device_, nullptr, nullptr, nullptr, &status);
-  check_cl(status, info_, "clCreateContext");
   queue_ = cl::CommandQueue(context_, device_, CL_QUEUE_PROFILING_ENABLE, &status);
   check_cl(status, info_, "clCreateCommandQueue");
   fma_ = has_fma_instruction(device_, info_);

@@ -93,6 +93,11 @@ class Program {
 /// not tell.
 std::vector<std::string> argument_types(const cl::Kernel& kernel);
 
+/// The row with an OpenCL context that all Devices opened of it share, unless it has one; not of a
+/// sub-device. Some drivers' compilers begin anew in each context (PoCL 3.1 reads its library for 0.6 s). A
+/// context that one Device's fault ends is lost to all of them. Throws DeviceError.
+DeviceInfo share_context(DeviceInfo info);
+
 /// Not shared between threads: one host thread a device.
 class Device {
  public:

@@ -8,6 +8,7 @@
 
 namespace sundog {
 
+class DriverThreads;
 struct HostEnvironment;
 
 /// How a device wants to be fed (design: by what it reports, never by its name).
@@ -34,6 +35,8 @@ struct DeviceInfo {
   std::string host;      // that process's machine; empty: there is only this process
   void* handle = nullptr;                                // cl_device_id
   std::shared_ptr<const HostEnvironment> environment{};  // what enumerate_devices() was given
+  std::weak_ptr<DriverThreads> threads{};                // takes over those that its driver has not let go of
+  std::shared_ptr<void> context{};                       // share_context()'s; null: each Device has its own
 
   bool usable() const { return problem.empty() && device >= 0; }
   /// "0:1 Portable Computing Language / pthread-...", with "/2" for a sub-device of two units, "/2@4" where

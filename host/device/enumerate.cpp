@@ -9,7 +9,6 @@
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
-#include <mutex>
 #include <thread>
 
 #include "base/environment.h"
@@ -163,7 +162,8 @@ void list_platform(DeviceInfo platform, cl_platform_id id, std::vector<DeviceInf
   cl_uint count = 0;
   cl_int status = clGetDeviceIDs(id, CL_DEVICE_TYPE_ALL, 0, nullptr, &count);
   if (status == CL_DEVICE_NOT_FOUND || (status == CL_SUCCESS && count == 0)) {
-    const std::string why = is_pocl(platform) ? pocl_folder_problem(value_of(platform.environment)) : "";
+    const HostEnvironment& environment = value_of(platform.environment);
+    const std::string why = is_pocl(platform) ? pocl_folder(environment).problem(environment) : "";
     return problem("the platform has no device" + (why.empty() ? "" : ": " + why));
   }
   if (status != CL_SUCCESS) return problem("clGetDeviceIDs: " + cl_status_name(status));
@@ -192,21 +192,19 @@ void enlarge_thread_stacks() {
 
 /// Drivers' settings that must stand before the first OpenCL call; what the user set stays. They know no
 /// other way than the process's own variables.
-void prepare_drivers(const HostEnvironment& environment) {
-  static std::once_flag once;
-  std::call_once(once, [&] {
-    for (const auto& [name, value] : environment.drivers) setenv(name.c_str(), value.c_str(), 0);
-    if (!environment.build_log.empty()) bypass_driver_caches();
-    give_pocl_a_folder(environment);
-    describe_machine_to_drivers(environment);
-    enlarge_thread_stacks();
-  });
+bool prepare_drivers(const HostEnvironment& environment) {
+  for (const auto& [name, value] : environment.drivers) setenv(name.c_str(), value.c_str(), 0);
+  if (!environment.build_log.empty()) bypass_driver_caches();
+  (void)pocl_folder(environment);
+  describe_machine_to_drivers(environment);
+  enlarge_thread_stacks();
+  return true;
 }
 
 }  // namespace
 
 std::vector<DeviceInfo> enumerate_devices(const EnvironmentPtr& environment) {
-  prepare_drivers(value_of(environment));
+  [[maybe_unused]] static const bool prepared = prepare_drivers(value_of(environment));
   cl_uint count = 0;
   // No platform at all is an error status too (CL_PLATFORM_NOT_FOUND_KHR): an empty list says the same.
   if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};

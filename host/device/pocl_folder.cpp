@@ -24,11 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string& own_folder() {
-  static std::string folder;
-  return folder;
-}
-
 /// A descriptor that holds the folder's lock; negative when another has it, or there is none to hold.
 int lock_folder(const fs::path& folder, int more_flags) {
   const int file = ::open((folder / "lock").c_str(), O_RDWR | O_CLOEXEC | more_flags, 0600);
@@ -100,9 +95,25 @@ std::string make_folder(const HostEnvironment& environment) {
 
 bool is_pocl(const DeviceInfo& device) { return device.platform_name == "Portable Computing Language"; }
 
-std::string pocl_folder_problem(const HostEnvironment& environment) {
-  const std::string users = environment.driver("POCL_CACHE_DIR"),
-                    folder = users.empty() ? own_folder() : users;
+PoclFolder::PoclFolder(const HostEnvironment& environment) noexcept {
+  try {
+    if (!environment.driver("POCL_CACHE_DIR").empty()) return;
+    const std::string folder = make_folder(environment);
+    if (folder.empty() || lock_folder(folder, O_CREAT) < 0) return;
+    own_ = folder;
+    ::setenv("POCL_CACHE_DIR", folder.c_str(), 1);  // an empty one ends PoCL's process
+  } catch (const std::exception&) {
+    // PoCL's own folder does as well, as long as it can be written and nothing damages it.
+  }
+}
+
+void PoclFolder::remove() const noexcept {
+  std::error_code ignored;
+  if (!own_.empty()) fs::remove_all(own_, ignored);
+}
+
+std::string PoclFolder::problem(const HostEnvironment& environment) const {
+  const std::string users = environment.driver("POCL_CACHE_DIR"), folder = users.empty() ? own_ : users;
   if (folder.empty())
     return "no folder can be made for what PoCL writes: name one that can be written by XDG_CACHE_HOME or "
            "TMPDIR";
@@ -114,23 +125,9 @@ std::string pocl_folder_problem(const HostEnvironment& environment) {
       folder, *room >> 10, least_room >> 10, users.empty() ? "XDG_CACHE_HOME or TMPDIR" : "POCL_CACHE_DIR");
 }
 
-void remove_pocl_folder() noexcept {
-  std::error_code ignored;
-  if (!own_folder().empty()) fs::remove_all(own_folder(), ignored);
-}
-
-void give_pocl_a_folder(const HostEnvironment& environment) noexcept {
-  try {
-    if (!environment.driver("POCL_CACHE_DIR").empty()) return;
-    const std::string folder = make_folder(environment);
-    if (folder.empty() || lock_folder(folder, O_CREAT) < 0) return;
-    own_folder() = folder;
-    ::setenv("POCL_CACHE_DIR", folder.c_str(), 1);  // an empty one ends PoCL's process
-    // After PoCL's own end, because it is said before PoCL is loaded.
-    std::atexit(remove_pocl_folder);
-  } catch (const std::exception&) {
-    // PoCL's own folder does as well, as long as it can be written and nothing damages it.
-  }
+const PoclFolder& pocl_folder(const HostEnvironment& environment) {
+  static const PoclFolder folder(environment);
+  return folder;
 }
 
 }  // namespace sundog

@@ -12,17 +12,29 @@ bool is_pocl(const DeviceInfo& device);
 
 /// PoCL keeps compiled kernels in a folder that all its processes share, and aborts the process when a file
 /// there is damaged. Sundog's own cache holds the same binaries behind a checksum, so each process gives PoCL
-/// an empty folder, "pocl/*" in the cache, which goes at its end; those of processes that were killed
-/// go too. Where the cache cannot be written it is one among the temporary files: PoCL has no device without
-/// a folder. A POCL_CACHE_DIR that the user set stays. To be called before the first OpenCL call; never
-/// throws.
-void give_pocl_a_folder(const HostEnvironment& environment) noexcept;
+/// an empty folder, "pocl/*" in the cache, which is removed at its end; those of processes that were killed
+/// are removed too. Where the cache cannot be written it is one among the temporary files: PoCL has no device
+/// without a folder. A POCL_CACHE_DIR that the user set stays.
+class PoclFolder {
+ public:
+  /// To be made before the first OpenCL call; never throws.
+  explicit PoclFolder(const HostEnvironment& environment) noexcept;
+  /// After PoCL's own end, where it was made before PoCL was loaded.
+  ~PoclFolder() { remove(); }
+  PoclFolder(const PoclFolder&) = delete;
+  PoclFolder& operator=(const PoclFolder&) = delete;
 
-/// Removes it before a process ends by _exit(). PoCL may end the process when one of its threads is at work.
-void remove_pocl_folder() noexcept;
+  /// For a process that ends by _exit(). PoCL may end the process when one of its threads is at work.
+  void remove() const noexcept;
+  /// What keeps PoCL from writing what it compiles, and the mend, for the end of a message; empty: nothing
+  /// known. It needs to be asked before: PoCL ends the process, or says nothing of it.
+  std::string problem(const HostEnvironment& environment) const;
 
-/// What keeps PoCL from writing what it compiles, and the mend, for the end of a message; empty: nothing
-/// known. It needs to be asked before: PoCL ends the process, or says nothing of it.
-std::string pocl_folder_problem(const HostEnvironment& environment);
+ private:
+  std::string own_;  // empty: PoCL has the user's, or its own
+};
+
+/// The process's own, which the first call makes: drivers take their settings once a process.
+const PoclFolder& pocl_folder(const HostEnvironment& environment);
 
 }  // namespace sundog

@@ -19,16 +19,12 @@ RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& d
                     const RenderOptions& options = {});
 
 /// The same, but does not wait for a driver that compiles, or is in a launch, when the frame is finished: its
-/// thread is left behind, holding the scene.
+/// thread, which holds the scene, goes to DeviceInfo::threads.
 RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options = {});
 
 /// The same on devices that may be other processes'.
 RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<ServerPlan>& servers,
                     const RenderOptions& options = {});
-
-/// Threads left behind in drivers. While there are any, a process should end by _exit(): what static
-/// destructors and drivers' exit handlers take down is still in use.
-unsigned threads_left_behind();
 
 }  // namespace sundog

@@ -10,7 +10,10 @@
 namespace sundog {
 inline namespace v0 {
 
-/// What a device reports. Made by devices() and choose_devices(); copies are the same device.
+/// What a device reports. Made by devices() and choose_devices(); copies are the same device. A driver cannot
+/// be interrupted: when a picture is stopped, the thread that is in a driver's compiler stays there, and
+/// belongs to the devices that were listed together. The last copy of the last of them waits for it, as long
+/// as a minute; a driver that has not returned then hangs, and its thread is detached.
 struct Device {
   std::string label{};          ///< "0:1 Portable Computing Language / cpu-..."
   int platform = 0;             ///< as `clinfo -l` numbers them, from 0
@@ -40,6 +43,11 @@ SUNDOG_API std::vector<Device> devices();
 /// another text. `warnings`, when given, gets what was likely meant otherwise. Any thread.
 SUNDOG_API std::vector<Device> choose_devices(const std::vector<std::string>& specs = {},
                                               std::vector<std::string>* warnings = nullptr);
+
+/// How many threads drivers have not let go of, of these devices and of those listed with them: they compile
+/// for a picture that was stopped, or hang. While there are any, end the process by _exit(), because static
+/// destructors would take away what they use. Any thread.
+SUNDOG_API unsigned threads_left_behind(const std::vector<Device>& devices);
 
 }  // namespace v0
 }  // namespace sundog

@@ -111,13 +111,9 @@ class SUNDOG_API Film {
 
 /// Renders and waits. Several threads may render at once. Throws Error: scene; usage for an AOV or device
 /// that is none; device when every device failed; build when the kernels build on none; internal for a frame
-/// that takes more memory than there is; and what callbacks throw.
+/// that takes more memory than there is; and what callbacks throw. A stopped render does not wait for a
+/// driver that compiles: that thread is owned by the devices, or by the scene when none were given.
 SUNDOG_API Film render(const Scene& scene, const RenderOptions& options = {});
-
-/// Threads of renders and sessions that are inside of a driver. After the last of them has returned: those
-/// that a driver keeps because it hangs, or still compiles for a picture that was stopped. While there are
-/// any, end the process by _exit(), because static destructors would take away what they use. Any thread.
-SUNDOG_API unsigned threads_left_behind() noexcept;
 
 }  // namespace v0
 }  // namespace sundog

@@ -8,7 +8,7 @@
 
 namespace {
 
-void print_error(const char* what, const std::function<void()>& act) {
+void print_error_of(const char* what, const std::function<void()>& act) {
   try {
     act();
     std::printf("%s: no error\n", what);
@@ -18,10 +18,10 @@ void print_error(const char* what, const std::function<void()>& act) {
 }
 
 void fail_launches(const sundog::Scene& scene, const std::vector<sundog::Device>& devices) {
-  print_error("render", [&] { (void)sundog::render(scene, {.devices = devices}); });
+  print_error_of("render", [&] { (void)sundog::render(scene, {.devices = devices}); });
   sundog::Session session(devices);
   session.start(scene);
-  print_error("finish", [&] { (void)session.finish(); });
+  print_error_of("finish", [&] { (void)session.finish(); });
   std::printf("snapshot: %s\n", session.snapshot().error.c_str());
 }
 
@@ -29,7 +29,7 @@ void fail_pick(const sundog::Scene& scene, const std::vector<sundog::Device>& de
   sundog::Session session(devices);
   session.start(scene);
   session.wait();
-  print_error("pick", [&] { (void)session.pick(1, 1); });
+  print_error_of("pick", [&] { (void)session.pick(1, 1); });
   std::printf("picture: %d\n", static_cast<int>(session.finish().width()));
 }
 

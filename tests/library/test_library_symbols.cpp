@@ -57,8 +57,9 @@ std::string text_of(const fs::path& path) {
 /// All tests of the library.
 std::string all_tests() {
   std::string text;
-  for (const auto& entry : fs::directory_iterator(fs::path(SUNDOG_SOURCE_DIR) / "tests/library"))
-    text += text_of(entry.path());
+  for (const char* folder : {"tests/library", "tests/faulty_program"})
+    for (const auto& entry : fs::directory_iterator(fs::path(SUNDOG_SOURCE_DIR) / folder))
+      text += text_of(entry.path());
   return text;
 }
 

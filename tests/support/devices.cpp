@@ -28,7 +28,9 @@ const std::vector<sundog::DeviceInfo>& test_devices() {
     std::istringstream in(listed ? listed : "all");
     std::vector<std::string> specs;
     for (std::string spec; std::getline(in, spec, ',');) specs.push_back(spec);
-    return sundog::select_devices(sundog::enumerate_devices(sundog::plain_environment()), specs);
+    auto chosen = sundog::select_devices(sundog::enumerate_devices(sundog::plain_environment()), specs);
+    for (sundog::DeviceInfo& device : chosen) device = sundog::share_context(std::move(device));
+    return chosen;
   }();
   return devices;
 }

@@ -72,6 +72,7 @@ class Choice {
         warnings_.push_back(fmt::format("{}: {}", job_.name(rank), warning));
       for (DeviceInfo& device : mine.devices) {
         device.rank = rank;
+        device.threads = driver_threads();
         device.host = job_.host(rank);
       }
     } catch (const DeviceError& error) {

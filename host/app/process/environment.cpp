@@ -34,7 +34,16 @@ const EnvironmentPtr& program_environment() {
   return environment;
 }
 
-std::vector<DeviceInfo> list_devices() { return enumerate_devices(program_environment()); }
+const std::shared_ptr<DriverThreads>& driver_threads() {
+  static const auto threads = std::make_shared<DriverThreads>();
+  return threads;
+}
+
+std::vector<DeviceInfo> list_devices() {
+  std::vector<DeviceInfo> devices = enumerate_devices(program_environment());
+  for (DeviceInfo& device : devices) device.threads = driver_threads();
+  return devices;
+}
 
 LoadOptions with_streams(LoadOptions options) {
   options.standard_input = standard_input;

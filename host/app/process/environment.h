@@ -1,7 +1,9 @@
 // What this program hands down to the layers below (base/environment.h), with its own way to start itself.
 #pragma once
+#include <memory>
 #include <vector>
 
+#include "base/driver_threads.h"
 #include "base/environment.h"
 #include "device/devices.h"
 #include "scene/load.h"
@@ -11,6 +13,10 @@ namespace sundog {
 /// Read at the first call, which a command makes before it has threads. Throws UsageError for SUNDOG_FAULTS
 /// that are none.
 const EnvironmentPtr& program_environment();
+
+/// The threads that drivers have not let go of. While there are any, the process ends by _exit(): what static
+/// destructors and drivers' exit handlers take down is in use.
+const std::shared_ptr<DriverThreads>& driver_threads();
 
 /// The devices of this process.
 std::vector<DeviceInfo> list_devices();

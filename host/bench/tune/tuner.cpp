@@ -83,7 +83,7 @@ class Candidate {
       : kernel_(choices.kernel) {
     RenderOptions options;
     options.tuning = [tuning = choices.at(point)](const DeviceInfo&) { return tuning; };
-    if (kernel_ == surfaces_kernel) options.aovs = aov_names();
+    if (kernel_ == surfaces_kernel) options.aovs = {"depth"};
     const Stopwatch clock;
     frames_ = std::make_unique<FrameRunner>(device, scene, options);
     frames_->run();

@@ -9,7 +9,6 @@
 #include "base/clock.h"
 #include "base/environment.h"
 #include "render/device/device_scene.h"
-#include "render/frame/frame.h"
 #include "shared/launch.h"
 
 namespace sundog {
@@ -77,17 +76,15 @@ struct KernelBuilder::State {
 KernelBuilder::KernelBuilder(DeviceInfo info) : state_(std::make_shared<State>(std::move(info))) {}
 
 void KernelBuilder::begin() {
-  if (thread_.joinable()) return;
-  count_left_behind(1);
-  thread_ = std::thread([state = state_]() mutable {
+  if (thread_.thread.joinable()) return;
+  thread_ = start_thread([state = state_]() mutable {
     state->run();
     state.reset();
-    count_left_behind(-1);
   });
 }
 
 KernelBuilder::~KernelBuilder() {
-  if (!thread_.joinable()) return;
+  if (!thread_.thread.joinable()) return;
   bool compiles = false;
   {
     const std::lock_guard lock(state_->mutex);
@@ -96,9 +93,9 @@ KernelBuilder::~KernelBuilder() {
     state_->changed.notify_all();
   }
   if (compiles)
-    thread_.detach();
+    leave_thread(state_->info.threads, std::move(thread_));
   else
-    thread_.join();
+    thread_.thread.join();
 }
 
 void KernelBuilder::want(KernelOrder order) {
@@ -178,12 +175,14 @@ std::optional<KernelOrder> KernelBuilder::State::take(std::unique_lock<std::mute
 void KernelBuilder::State::run() {
   // The compiler takes only time that nobody else wants.
   if (const auto& step_back = value_of(info.environment).step_back) step_back();
+  DeviceInfo device = info;
   std::unique_lock lock(mutex);
   while ((in_hand = take(lock))) {
     lock.unlock();
     bool works = true;
     try {
-      build(info, *in_hand);
+      device = share_context(std::move(device));
+      build(device, *in_hand);
     } catch (const std::exception&) {
       works = false;  // whoever needs it builds it again, and reports why not
     }

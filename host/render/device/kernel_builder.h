@@ -3,9 +3,9 @@
 #pragma once
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "base/driver_threads.h"
 #include "render/device/kernel_config.h"
 
 namespace sundog {
@@ -19,7 +19,7 @@ struct KernelOrder {
 class KernelBuilder {
  public:
   explicit KernelBuilder(DeviceInfo info);
-  /// Leaves a compiler that is at work behind (threads_left_behind()).
+  /// A compiler that is at work keeps its thread, which goes to DeviceInfo::threads.
   ~KernelBuilder();
   KernelBuilder(const KernelBuilder&) = delete;
   KernelBuilder& operator=(const KernelBuilder&) = delete;
@@ -46,7 +46,7 @@ class KernelBuilder {
   struct State;
   void begin();
   std::shared_ptr<State> state_;
-  std::thread thread_;
+  DriverThread thread_;
 };
 
 }  // namespace sundog

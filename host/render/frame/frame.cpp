@@ -24,8 +24,6 @@ constexpr double progress_seconds = 0.1;
 // Below so many pixels, a tile for which resources do not suffice is not made smaller.
 constexpr std::uint64_t least_pixels = 1024;
 
-std::atomic<unsigned> left_behind{0};
-
 void set_phase(Frame& frame, std::size_t i, Phase phase) {
   const std::lock_guard lock(frame.mutex);
   frame.servers[i].phase = phase;
@@ -258,10 +256,6 @@ void wait_for_threads(Frame& frame, bool stopped) {
 }
 
 }  // namespace
-
-unsigned threads_left_behind() { return left_behind; }
-
-void count_left_behind(int threads) { left_behind += static_cast<unsigned>(threads); }
 
 void retire_server(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error) {
   frame.queue.retire(i);

@@ -88,9 +88,6 @@ void serve_frame(Frame& frame, std::size_t i);
 /// Takes a server out of the frame: what it holds goes to others; without any other, the frame ends.
 void retire_server(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error);
 
-/// Counts threads that are left behind in drivers; may be negative.
-void count_left_behind(int threads);
-
 /// What there is of the picture: of a frame in passes with what is done of the one in hand.
 GrowingFilm film_so_far(const Frame& frame);
 

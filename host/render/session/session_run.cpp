@@ -33,9 +33,9 @@ void RenderSession::State::end() {
     const bool joins = worker->gone;
     lock.unlock();
     if (joins)
-      worker->thread.join();
+      worker->thread.thread.join();
     else
-      worker->thread.detach();
+      leave_thread(worker->server->info().threads, std::move(worker->thread));
   }
 }
 

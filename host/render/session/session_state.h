@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 
+#include "base/driver_threads.h"
 #include "render/frame/frame.h"
 #include "render/session/render_session.h"
 #include "render/session/session_frame.h"
@@ -33,7 +34,7 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
   struct Worker {
     std::shared_ptr<TileServer> server;
     std::shared_ptr<SceneServer> of_scenes;  // the same; null: its scene is the only one
-    std::thread thread;
+    DriverThread thread;
     std::shared_ptr<SessionFrame> seen;  // the last frame that it took part in
     bool opening = false;                // it may be in a driver's compiler
     bool closed = false;                 // the server, behind a frame

@@ -40,12 +40,10 @@ void RenderSession::State::add_worker(std::shared_ptr<TileServer> server) {
   worker->of_scenes = std::dynamic_pointer_cast<SceneServer>(server);
   worker->server = std::move(server);
   workers.push_back(worker);
-  count_left_behind(1);
-  worker->thread = std::thread([self = shared_from_this(), worker]() mutable {
+  worker->thread = start_thread([self = shared_from_this(), worker]() mutable {
     self->run_worker(*worker);
     worker.reset();
     self.reset();
-    count_left_behind(-1);
   });
 }
 

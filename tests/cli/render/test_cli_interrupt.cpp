@@ -242,7 +242,7 @@ TEST_CASE(
        "mkdir kept; touch kept/c.1.tmp; "
        "SUNDOG_FAULTS=stall@c SUNDOG_CHECKPOINT_EVERY=0 \"$0\" render scene.json -o a.png --size 640x480 "
        "--samples 2000 --tile 16 --resume kept/c & "
-       "until ls kept/c.*.*.0.tmp; do sleep 0.1; done >/dev/null 2>&1; sleep 0.1; "
+       "until ls kept/c.*.*.*.tmp; do sleep 0.1; done >/dev/null 2>&1; sleep 0.1; "
        "\"$0\" render scene.json -o b.png --quiet --resume kept/c; ls kept | wc -l; "
        "kill -KILL $!; wait $!; ls kept | wc -l; "
        "\"$0\" render scene.json -o b.png --quiet --resume kept/c; ls kept",

@@ -1,0 +1,45 @@
+#include "base/driver_threads.h"
+
+namespace sundog {
+namespace {
+
+bool has_ended(const DriverThread& thread) {
+  return thread.ended.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+}  // namespace
+
+DriverThreads::~DriverThreads() {
+  const auto limit = std::chrono::steady_clock::now() + patience_;
+  for (DriverThread& left : threads_) {
+    const bool own = left.thread.get_id() == std::this_thread::get_id();  // which lets go of its owner last
+    if (!own && left.ended.wait_until(limit) == std::future_status::ready)
+      left.thread.join();
+    else
+      left.thread.detach();
+  }
+}
+
+void DriverThreads::take(DriverThread thread) {
+  const std::lock_guard lock(mutex_);
+  threads_.push_back(std::move(thread));
+}
+
+unsigned DriverThreads::count() {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(threads_, [](DriverThread& left) {
+    if (!has_ended(left)) return false;
+    left.thread.join();
+    return true;
+  });
+  return static_cast<unsigned>(threads_.size());
+}
+
+void leave_thread(const std::weak_ptr<DriverThreads>& to, DriverThread thread) {
+  if (const auto owner = to.lock())
+    owner->take(std::move(thread));
+  else
+    thread.thread.join();
+}
+
+}  // namespace sundog
