@@ -18,22 +18,24 @@ static int show(uint64_t done, uint64_t total, double seconds, void* user) {
 }
 
 int main(int argc, char** argv) {
+  if (argc < 2) return fprintf(stderr, "usage: %s OUT [DEVICE]\n", argv[0]), 2;
   sundog_scene* scene = NULL;
   sundog_devices* devices = NULL;
   sundog_film* film = NULL;
+  sundog_error* error = sundog_error_new();
   sundog_options options = {0};
   unsigned calls = 0;
-  if (argc < 2) return fprintf(stderr, "usage: %s OUT [DEVICE]\n", argv[0]), 2;
-  sundog_status status = sundog_scene_from_json(scene_text, NULL, &scene);
-  if (status == SUNDOG_OK) status = sundog_devices_choose(argc > 2 ? argv[2] : NULL, &devices);
+  sundog_status status = sundog_scene_from_json(scene_text, NULL, &scene, error);
+  if (status == SUNDOG_OK) status = sundog_devices_choose(argc > 2 ? argv[2] : NULL, &devices, error);
   options.devices = devices;
   options.progress = show;
   options.user = &calls;
-  if (status == SUNDOG_OK) status = sundog_render(scene, &options, &film);
-  if (status == SUNDOG_OK) status = sundog_film_save(film, argv[1]);
-  if (status != SUNDOG_OK) fprintf(stderr, "%s\n", sundog_last_error());
+  if (status == SUNDOG_OK) status = sundog_render(scene, &options, &film, error);
+  if (status == SUNDOG_OK) status = sundog_film_save(film, argv[1], error);
+  if (status != SUNDOG_OK) fprintf(stderr, "%s\n", sundog_error_line(error));
   sundog_film_free(film);
   sundog_devices_free(devices);
   sundog_scene_free(scene);
+  sundog_error_free(error);
   return status;
 }

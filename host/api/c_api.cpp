@@ -1,4 +1,5 @@
-// The C interface over the C++ one: every exception becomes a status and a line kept for its thread.
+// The C interface over the C++ one: every exception becomes a status and what the caller's error handle
+// holds.
 #include "api/impl.h"
 // The public headers come after the host's.
 #include <sundog/session.h>
@@ -6,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 #include <stop_token>
 
 struct sundog_scene {
@@ -21,27 +23,21 @@ struct sundog_film {
 struct sundog_session {
   sundog::v0::Session session;
 };
+struct sundog_error {
+  std::string line, file, place;
+};
 
 namespace sundog {
 inline namespace v0 {
 namespace {
 
-/// Of this thread's last call that failed.
-struct LastError {
-  std::string what, file, place;
-};
-
-LastError& last_error() noexcept {
-  thread_local LastError error;
-  return error;
-}
-
-sundog_status keep(sundog_status status, const char* what, const std::string& file = {},
+sundog_status keep(sundog_error* error, sundog_status status, const char* line, const std::string& file = {},
                    const std::string& place = {}) noexcept {
+  if (!error) return status;
   try {
-    last_error() = {what, file, place};
+    *error = {line, file, place};
   } catch (...) {
-    last_error().what.clear();  // there is no memory even for the message
+    *error = {};  // there is no memory even for the message
   }
   return status;
 }
@@ -54,7 +50,7 @@ static_assert(static_cast<int>(SessionState::failed) == SUNDOG_FAILED);
 
 /// f(), which may throw or return a status of its own.
 template <class F>
-sundog_status guarded(const F& f) noexcept {
+sundog_status guarded(sundog_error* kept, const F& f) noexcept {
   try {
     if constexpr (std::is_void_v<decltype(f())>) {
       f();
@@ -63,11 +59,11 @@ sundog_status guarded(const F& f) noexcept {
       return f();
     }
   } catch (const Error& error) {
-    return keep(status_of(error.kind()), error.what(), error.file(), error.place());
+    return keep(kept, status_of(error.kind()), error.what(), error.file(), error.place());
   } catch (const std::exception& error) {
-    return keep(SUNDOG_INTERNAL, error.what());
+    return keep(kept, SUNDOG_INTERNAL, error.what());
   } catch (...) {
-    return keep(SUNDOG_INTERNAL, "an unknown exception");
+    return keep(kept, SUNDOG_INTERNAL, "an unknown exception");
   }
 }
 
@@ -89,8 +85,8 @@ std::vector<std::string> split(const char* list) {
 
 /// A new handle of what `make` returns.
 template <class Handle, class F>
-sundog_status made(Handle** handle, const char* name, const F& make) noexcept {
-  return guarded([&] {
+sundog_status made(sundog_error* error, Handle** handle, const char* name, const F& make) noexcept {
+  return guarded(error, [&] {
     Handle*& result = wanted(handle, name);
     result = std::make_unique<Handle>(make()).release();
   });
@@ -156,28 +152,35 @@ using namespace sundog::v0;
 
 const char* sundog_version(void) noexcept { return version_text(); }
 
-const char* sundog_last_error(void) noexcept { return last_error().what.c_str(); }
-const char* sundog_last_error_file(void) noexcept { return last_error().file.c_str(); }
-const char* sundog_last_error_place(void) noexcept { return last_error().place.c_str(); }
+sundog_error* sundog_error_new(void) noexcept { return new (std::nothrow) sundog_error; }
+const char* sundog_error_line(const sundog_error* error) noexcept { return error ? error->line.c_str() : ""; }
+const char* sundog_error_file(const sundog_error* error) noexcept { return error ? error->file.c_str() : ""; }
+const char* sundog_error_place(const sundog_error* error) noexcept {
+  return error ? error->place.c_str() : "";
+}
+void sundog_error_free(sundog_error* error) noexcept { delete error; }
 
-sundog_status sundog_scene_load(const char* file, sundog_scene** scene) noexcept {
-  return made(scene, "scene", [&] { return Scene::load(&wanted(file, "file")); });
+sundog_status sundog_scene_load(const char* file, sundog_scene** scene, sundog_error* error) noexcept {
+  return made(error, scene, "scene", [&] { return Scene::load(&wanted(file, "file")); });
 }
 
-sundog_status sundog_scene_from_json(const char* text, const char* folder, sundog_scene** scene) noexcept {
-  return made(scene, "scene", [&] { return Scene::from_json(&wanted(text, "text"), folder ? folder : "."); });
+sundog_status sundog_scene_from_json(const char* text, const char* folder, sundog_scene** scene,
+                                     sundog_error* error) noexcept {
+  return made(error, scene, "scene",
+              [&] { return Scene::from_json(&wanted(text, "text"), folder ? folder : "."); });
 }
 
-sundog_status sundog_scene_set(sundog_scene* scene, const char* pointer, const char* json) noexcept {
-  return guarded([&] {
+sundog_status sundog_scene_set(sundog_scene* scene, const char* pointer, const char* json,
+                               sundog_error* error) noexcept {
+  return guarded(error, [&] {
     wanted(scene, "scene").scene.set(&wanted(pointer, "pointer"), std::string_view(&wanted(json, "json")));
   });
 }
 
 sundog_status sundog_scene_add_mesh(sundog_scene* scene, const char* name, const float* positions,
                                     size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
-                                    const float* normals, const float* uvs) noexcept {
-  return guarded([&] {
+                                    const float* normals, const float* uvs, sundog_error* error) noexcept {
+  return guarded(error, [&] {
     const MeshView mesh = mesh_of(positions, vertex_count, triangles, triangle_count, normals, uvs);
     wanted(scene, "scene").scene.add_mesh(&wanted(name, "name"), mesh);
   });
@@ -186,8 +189,8 @@ sundog_status sundog_scene_add_mesh(sundog_scene* scene, const char* name, const
 sundog_status sundog_scene_hold_mesh(sundog_scene* scene, const char* name, const float* positions,
                                      size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
                                      const float* normals, const float* uvs, void (*release)(void* user),
-                                     void* user) noexcept {
-  return guarded([&] {
+                                     void* user, sundog_error* error) noexcept {
+  return guarded(error, [&] {
     MeshView mesh = mesh_of(positions, vertex_count, triangles, triangle_count, normals, uvs);
     const auto owner = std::make_shared<Owner>(release, user);
     mesh.owner = owner;
@@ -196,18 +199,19 @@ sundog_status sundog_scene_hold_mesh(sundog_scene* scene, const char* name, cons
   });
 }
 
-sundog_status sundog_scene_check(const sundog_scene* scene) noexcept {
-  return guarded([&] { (void)wanted(scene, "scene").scene.check(); });
+sundog_status sundog_scene_check(const sundog_scene* scene, sundog_error* error) noexcept {
+  return guarded(error, [&] { (void)wanted(scene, "scene").scene.check(); });
 }
 
 void sundog_scene_free(sundog_scene* scene) noexcept { delete scene; }
 
-sundog_status sundog_devices_list(sundog_devices** devices) noexcept {
-  return made(devices, "devices", [&] { return sundog::v0::devices(); });
+sundog_status sundog_devices_list(sundog_devices** devices, sundog_error* error) noexcept {
+  return made(error, devices, "devices", [&] { return sundog::v0::devices(); });
 }
 
-sundog_status sundog_devices_choose(const char* specs, sundog_devices** devices) noexcept {
-  return made(devices, "devices", [&] { return choose_devices(split(specs)); });
+sundog_status sundog_devices_choose(const char* specs, sundog_devices** devices,
+                                    sundog_error* error) noexcept {
+  return made(error, devices, "devices", [&] { return choose_devices(split(specs)); });
 }
 
 size_t sundog_devices_count(const sundog_devices* devices) noexcept {
@@ -224,9 +228,9 @@ const char* sundog_devices_problem(const sundog_devices* devices, size_t index) 
 
 void sundog_devices_free(sundog_devices* devices) noexcept { delete devices; }
 
-sundog_status sundog_render(const sundog_scene* scene, const sundog_options* options,
-                            sundog_film** film) noexcept {
-  return guarded([&]() -> sundog_status {
+sundog_status sundog_render(const sundog_scene* scene, const sundog_options* options, sundog_film** film,
+                            sundog_error* error) noexcept {
+  return guarded(error, [&]() -> sundog_status {
     sundog_film*& result = wanted(film, "film");
     std::stop_source stop;
     auto made = std::make_unique<sundog_film>();
@@ -234,15 +238,16 @@ sundog_status sundog_render(const sundog_scene* scene, const sundog_options* opt
     made->images.emplace_back("", made->film.image());
     for (const std::string& name : made->film.aovs()) made->images.emplace_back(name, made->film.aov(name));
     result = made.release();
-    return stop.stop_requested() ? keep(SUNDOG_STOPPED, "the progress callback ended the render") : SUNDOG_OK;
+    return stop.stop_requested() ? keep(error, SUNDOG_STOPPED, "the progress callback ended the render")
+                                 : SUNDOG_OK;
   });
 }
 
 int sundog_film_complete(const sundog_film* film) noexcept { return film && film->film.complete() ? 1 : 0; }
 
 sundog_status sundog_film_pixels(const sundog_film* film, const char* aov, const float** pixels, int* width,
-                                 int* height, int* channels) noexcept {
-  return guarded([&] {
+                                 int* height, int* channels, sundog_error* error) noexcept {
+  return guarded(error, [&] {
     const std::string name = aov ? aov : "";
     const auto& images = wanted(film, "film").images;
     const auto found = std::ranges::find(images, name, &std::pair<std::string, Image>::first);
@@ -255,27 +260,30 @@ sundog_status sundog_film_pixels(const sundog_film* film, const char* aov, const
   });
 }
 
-sundog_status sundog_film_save(const sundog_film* film, const char* file) noexcept {
-  return guarded([&] { wanted(film, "film").film.save(&wanted(file, "file")); });
+sundog_status sundog_film_save(const sundog_film* film, const char* file, sundog_error* error) noexcept {
+  return guarded(error, [&] { wanted(film, "film").film.save(&wanted(file, "file")); });
 }
 
 void sundog_film_free(sundog_film* film) noexcept { delete film; }
 
-sundog_status sundog_session_open(const sundog_devices* devices, sundog_session** session) noexcept {
-  return made(session, "session", [&] { return Session(devices ? devices->list : std::vector<Device>()); });
+sundog_status sundog_session_open(const sundog_devices* devices, sundog_session** session,
+                                  sundog_error* error) noexcept {
+  return made(error, session, "session",
+              [&] { return Session(devices ? devices->list : std::vector<Device>()); });
 }
 
-sundog_status sundog_session_start(sundog_session* session, const sundog_scene* scene) noexcept {
-  return guarded([&] { wanted(session, "session").session.start(wanted(scene, "scene").scene); });
+sundog_status sundog_session_start(sundog_session* session, const sundog_scene* scene,
+                                   sundog_error* error) noexcept {
+  return guarded(error, [&] { wanted(session, "session").session.start(wanted(scene, "scene").scene); });
 }
 
-sundog_status sundog_session_cancel(sundog_session* session) noexcept {
-  return guarded([&] { wanted(session, "session").session.cancel(); });
+sundog_status sundog_session_cancel(sundog_session* session, sundog_error* error) noexcept {
+  return guarded(error, [&] { wanted(session, "session").session.cancel(); });
 }
 
-sundog_status sundog_session_wait(const sundog_session* session, double seconds,
-                                  sundog_state* state) noexcept {
-  return guarded([&] {
+sundog_status sundog_session_wait(const sundog_session* session, double seconds, sundog_state* state,
+                                  sundog_error* error) noexcept {
+  return guarded(error, [&] {
     const Session& waiting = wanted(session, "session").session;
     if (seconds < 0)
       waiting.wait();
@@ -288,8 +296,8 @@ sundog_status sundog_session_wait(const sundog_session* session, double seconds,
 }
 
 sundog_status sundog_session_picture(const sundog_session* session, float* pixels, size_t capacity,
-                                     int* width, int* height) noexcept {
-  return guarded([&] {
+                                     int* width, int* height, sundog_error* error) noexcept {
+  return guarded(error, [&] {
     const Image picture = wanted(session, "session").session.snapshot().picture;
     wanted(width, "width") = picture.width();
     wanted(height, "height") = picture.height();

@@ -2,10 +2,10 @@
  * The C interface: opaque handles, error codes, no exceptions. The C++ headers beside it say more about each
  * thing; this is the part of them that other languages need.
  *
- * Functions return SUNDOG_OK or the kind of error, whose line sundog_last_error() then has; what they give
- * back comes through the last arguments, which stay as they were when they fail. A handle is used by one
- * thread at a time unless it says otherwise, and freed by its own function, which takes NULL too. Texts are
- * UTF-8. */
+ * Functions return SUNDOG_OK or the kind of error, and put its line, file and place into `error`, their last
+ * argument, which may be NULL. What they give back comes through the arguments before it, which stay as they
+ * were when they fail. A handle is used by one thread at a time unless it says otherwise, and freed by its
+ * own function, which takes NULL too. Texts are UTF-8. */
 #ifndef SUNDOG_SUNDOG_H
 #define SUNDOG_SUNDOG_H
 
@@ -43,36 +43,44 @@ typedef struct sundog_devices sundog_devices;
 typedef struct sundog_film sundog_film;
 /** Devices that stay open. */
 typedef struct sundog_session sundog_session;
+/** What the last function that failed with it had to say. */
+typedef struct sundog_error sundog_error;
 
 /** "0.1.0". Valid for ever. */
 SUNDOG_C_API const char* sundog_version(void) SUNDOG_NOEXCEPT;
 
-/** What the last function of this thread that failed had to say, in one line; valid until this thread's next
- * call. Never NULL. */
-SUNDOG_C_API const char* sundog_last_error(void) SUNDOG_NOEXCEPT;
-/** The file at fault, and the place in it (a JSON pointer, "line 12"); empty where there is none. As above.
- */
-SUNDOG_C_API const char* sundog_last_error_file(void) SUNDOG_NOEXCEPT;
-/** As sundog_last_error_file(), of the place. */
-SUNDOG_C_API const char* sundog_last_error_place(void) SUNDOG_NOEXCEPT;
+/* --- errors ------------------------------------------------------------------------------------------- */
+
+/** A handle for any number of calls, one after the other; NULL for want of memory. */
+SUNDOG_C_API sundog_error* sundog_error_new(void) SUNDOG_NOEXCEPT;
+/** One line; empty before the first failure, and for NULL. Valid until the next call with `error` fails. */
+SUNDOG_C_API const char* sundog_error_line(const sundog_error* error) SUNDOG_NOEXCEPT;
+/** The file at fault; empty where there is none. As above. */
+SUNDOG_C_API const char* sundog_error_file(const sundog_error* error) SUNDOG_NOEXCEPT;
+/** The place in it: a JSON pointer, "line 12". As above. */
+SUNDOG_C_API const char* sundog_error_place(const sundog_error* error) SUNDOG_NOEXCEPT;
+/** Any handle, or NULL. */
+SUNDOG_C_API void sundog_error_free(sundog_error* error) SUNDOG_NOEXCEPT;
 
 /* --- scenes ------------------------------------------------------------------------------------------- */
 
 /** A scene or model file. */
-SUNDOG_C_API sundog_status sundog_scene_load(const char* file, sundog_scene** scene) SUNDOG_NOEXCEPT;
+SUNDOG_C_API sundog_status sundog_scene_load(const char* file, sundog_scene** scene,
+                                             sundog_error* error) SUNDOG_NOEXCEPT;
 /** The text of a scene; names of files in it count from `folder` (NULL: the current one). */
-SUNDOG_C_API sundog_status sundog_scene_from_json(const char* text, const char* folder,
-                                                  sundog_scene** scene) SUNDOG_NOEXCEPT;
+SUNDOG_C_API sundog_status sundog_scene_from_json(const char* text, const char* folder, sundog_scene** scene,
+                                                  sundog_error* error) SUNDOG_NOEXCEPT;
 /** Sets the value at a JSON pointer to that of a JSON text. */
-SUNDOG_C_API sundog_status sundog_scene_set(sundog_scene* scene, const char* pointer,
-                                            const char* json) SUNDOG_NOEXCEPT;
+SUNDOG_C_API sundog_status sundog_scene_set(sundog_scene* scene, const char* pointer, const char* json,
+                                            sundog_error* error) SUNDOG_NOEXCEPT;
 /** Adds or replaces a mesh that objects {"type": "mesh", "mesh": NAME} place. `positions` are x, y, z each;
  * `triangles` three indices each, counterclockwise seen from outside; `normals` (x, y, z) and `uvs` (u, v)
  * NULL or one a vertex. The numbers are copied. */
 SUNDOG_C_API sundog_status sundog_scene_add_mesh(sundog_scene* scene, const char* name,
                                                  const float* positions, size_t vertex_count,
                                                  const uint32_t* triangles, size_t triangle_count,
-                                                 const float* normals, const float* uvs) SUNDOG_NOEXCEPT;
+                                                 const float* normals, const float* uvs,
+                                                 sundog_error* error) SUNDOG_NOEXCEPT;
 /** The same without a copy: the scene, its renders and sessions read the numbers where they are. When the
  * last of them needs them no longer, `release` is called with `user`, once and by any thread; an exception
  * that it throws is dropped. The numbers stay as they are until then. When this fails, `release` is not
@@ -81,20 +89,22 @@ SUNDOG_C_API sundog_status sundog_scene_hold_mesh(sundog_scene* scene, const cha
                                                   const float* positions, size_t vertex_count,
                                                   const uint32_t* triangles, size_t triangle_count,
                                                   const float* normals, const float* uvs,
-                                                  void (*release)(void* user), void* user) SUNDOG_NOEXCEPT;
+                                                  void (*release)(void* user), void* user,
+                                                  sundog_error* error) SUNDOG_NOEXCEPT;
 /** Reads the whole scene: SUNDOG_SCENE with the place at fault. */
-SUNDOG_C_API sundog_status sundog_scene_check(const sundog_scene* scene) SUNDOG_NOEXCEPT;
+SUNDOG_C_API sundog_status sundog_scene_check(const sundog_scene* scene, sundog_error* error) SUNDOG_NOEXCEPT;
 /** Any handle, or NULL. */
 SUNDOG_C_API void sundog_scene_free(sundog_scene* scene) SUNDOG_NOEXCEPT;
 
 /* --- devices ------------------------------------------------------------------------------------------ */
 
 /** Every device, the broken ones too. */
-SUNDOG_C_API sundog_status sundog_devices_list(sundog_devices** devices) SUNDOG_NOEXCEPT;
+SUNDOG_C_API sundog_status sundog_devices_list(sundog_devices** devices, sundog_error* error) SUNDOG_NOEXCEPT;
 /** Those that a list of specs means ("cpu", "0:1", ...), separated by commas; NULL: the one estimated
  * fastest.
  */
-SUNDOG_C_API sundog_status sundog_devices_choose(const char* specs, sundog_devices** devices) SUNDOG_NOEXCEPT;
+SUNDOG_C_API sundog_status sundog_devices_choose(const char* specs, sundog_devices** devices,
+                                                 sundog_error* error) SUNDOG_NOEXCEPT;
 /** 0 for NULL. */
 SUNDOG_C_API size_t sundog_devices_count(const sundog_devices* devices) SUNDOG_NOEXCEPT;
 /** Valid as long as `devices`; NULL for an index out of range. */
@@ -125,15 +135,17 @@ typedef struct sundog_options {
 /** Renders and waits. `options` NULL: all defaults. Several threads may render the same scene at once. With
  * SUNDOG_STOPPED and after the time limit there is a film too: sundog_film_complete() says 0. */
 SUNDOG_C_API sundog_status sundog_render(const sundog_scene* scene, const sundog_options* options,
-                                         sundog_film** film) SUNDOG_NOEXCEPT;
+                                         sundog_film** film, sundog_error* error) SUNDOG_NOEXCEPT;
 /** 1: every pixel has all its samples; 0: stopped, out of time, or NULL. */
 SUNDOG_C_API int sundog_film_complete(const sundog_film* film) SUNDOG_NOEXCEPT;
 /** The picture (`aov` NULL: linear RGBA) or an AOV: width * height * channels floats, row 0 at the top. Valid
  * as long as the film; any of the arguments behind `pixels` may be NULL. */
 SUNDOG_C_API sundog_status sundog_film_pixels(const sundog_film* film, const char* aov, const float** pixels,
-                                              int* width, int* height, int* channels) SUNDOG_NOEXCEPT;
+                                              int* width, int* height, int* channels,
+                                              sundog_error* error) SUNDOG_NOEXCEPT;
 /** By the file's extension: .png .jpg .exr .hdr .pfm, as `sundog render -o` does. */
-SUNDOG_C_API sundog_status sundog_film_save(const sundog_film* film, const char* file) SUNDOG_NOEXCEPT;
+SUNDOG_C_API sundog_status sundog_film_save(const sundog_film* film, const char* file,
+                                            sundog_error* error) SUNDOG_NOEXCEPT;
 /** Any handle, or NULL. */
 SUNDOG_C_API void sundog_film_free(sundog_film* film) SUNDOG_NOEXCEPT;
 
@@ -151,20 +163,22 @@ typedef enum sundog_state {
 } sundog_state;
 
 /** Functions of a session are called by any thread; it is freed when no other call is in it. */
-SUNDOG_C_API sundog_status sundog_session_open(const sundog_devices* devices,
-                                               sundog_session** session) SUNDOG_NOEXCEPT;
+SUNDOG_C_API sundog_status sundog_session_open(const sundog_devices* devices, sundog_session** session,
+                                               sundog_error* error) SUNDOG_NOEXCEPT;
 /** Draws the scene as it is now; the newest one wins. Returns once it is read. */
-SUNDOG_C_API sundog_status sundog_session_start(sundog_session* session,
-                                                const sundog_scene* scene) SUNDOG_NOEXCEPT;
+SUNDOG_C_API sundog_status sundog_session_start(sundog_session* session, const sundog_scene* scene,
+                                                sundog_error* error) SUNDOG_NOEXCEPT;
 /** Stops drawing; the picture so far stays. */
-SUNDOG_C_API sundog_status sundog_session_cancel(sundog_session* session) SUNDOG_NOEXCEPT;
+SUNDOG_C_API sundog_status sundog_session_cancel(sundog_session* session,
+                                                 sundog_error* error) SUNDOG_NOEXCEPT;
 /** Waits at most so many seconds (below 0: for ever) for the picture to settle; `state` as it then is. */
 SUNDOG_C_API sundog_status sundog_session_wait(const sundog_session* session, double seconds,
-                                               sundog_state* state) SUNDOG_NOEXCEPT;
+                                               sundog_state* state, sundog_error* error) SUNDOG_NOEXCEPT;
 /** Copies the picture so far, linear RGBA, into `pixels`, which has room for `capacity` floats. Its size is
  * given in any case: 0x0 before the first pixel. SUNDOG_USAGE where there is too little room. */
 SUNDOG_C_API sundog_status sundog_session_picture(const sundog_session* session, float* pixels,
-                                                  size_t capacity, int* width, int* height) SUNDOG_NOEXCEPT;
+                                                  size_t capacity, int* width, int* height,
+                                                  sundog_error* error) SUNDOG_NOEXCEPT;
 /** Any handle, or NULL. */
 SUNDOG_C_API void sundog_session_free(sundog_session* session) SUNDOG_NOEXCEPT;
 

@@ -20,15 +20,26 @@ constexpr const char* text = R"({"image": {"width": 24, "height": 16, "backgroun
 
 sundog_scene* scene_of(const char* json) {
   sundog_scene* scene = nullptr;
-  REQUIRE(sundog_scene_from_json(json, nullptr, &scene) == SUNDOG_OK);
+  REQUIRE(sundog_scene_from_json(json, nullptr, &scene, nullptr) == SUNDOG_OK);
   return scene;
 }
 
 sundog_devices* c_device() {
   sundog_devices* devices = nullptr;
-  REQUIRE(sundog_devices_choose(test_spec().empty() ? nullptr : test_spec().c_str(), &devices) == SUNDOG_OK);
+  REQUIRE(sundog_devices_choose(test_spec().empty() ? nullptr : test_spec().c_str(), &devices, nullptr) ==
+          SUNDOG_OK);
   return devices;
 }
+
+struct Failure {
+  sundog_error* error = sundog_error_new();
+
+  Failure() = default;
+  Failure(const Failure&) = delete;
+  Failure& operator=(const Failure&) = delete;
+  ~Failure() { sundog_error_free(error); }
+  std::string line() const { return sundog_error_line(error); }
+};
 
 }  // namespace
 
@@ -37,34 +48,37 @@ TEST_CASE("C renders a mesh of its own and reads the pixels") {
   sundog_devices* devices = c_device();
   const float positions[] = {-9, -9, 0, 9, -9, 0, 0, 9, 0};
   const std::uint32_t triangles[] = {0, 1, 2};
-  CHECK(sundog_scene_add_mesh(scene, "wall", positions, 3, triangles, 1, nullptr, nullptr) == SUNDOG_OK);
-  CHECK(sundog_scene_set(scene, "/objects/-", R"({"type": "mesh", "mesh": "wall", "material": "red"})") ==
+  CHECK(sundog_scene_add_mesh(scene, "wall", positions, 3, triangles, 1, nullptr, nullptr, nullptr) ==
         SUNDOG_OK);
-  CHECK(sundog_scene_check(scene) == SUNDOG_OK);
+  CHECK(sundog_scene_set(scene, "/objects/-", R"({"type": "mesh", "mesh": "wall", "material": "red"})",
+                         nullptr) == SUNDOG_OK);
+  CHECK(sundog_scene_check(scene, nullptr) == SUNDOG_OK);
   sundog_options options{};
   options.devices = devices;
   options.aovs = "depth,normal";
   options.work_group_x = 8;
   sundog_film* film = nullptr;
-  REQUIRE(sundog_render(scene, &options, &film) == SUNDOG_OK);
+  REQUIRE(sundog_render(scene, &options, &film, nullptr) == SUNDOG_OK);
   CHECK(sundog_film_complete(film) == 1);
   const float* pixels = nullptr;
   int width = 0, height = 0, channels = 0;
-  REQUIRE(sundog_film_pixels(film, nullptr, &pixels, &width, &height, &channels) == SUNDOG_OK);
+  REQUIRE(sundog_film_pixels(film, nullptr, &pixels, &width, &height, &channels, nullptr) == SUNDOG_OK);
   CHECK((width == 24 && height == 16 && channels == 4));
   const float* middle = pixels + 4 * (8 * 24 + 12);
   CHECK(middle[0] == Approx(1));
   CHECK(middle[1] == Approx(0).margin(1e-6));
-  REQUIRE(sundog_film_pixels(film, "depth", &pixels, nullptr, nullptr, &channels) == SUNDOG_OK);
+  REQUIRE(sundog_film_pixels(film, "depth", &pixels, nullptr, nullptr, &channels, nullptr) == SUNDOG_OK);
   CHECK(channels == 1);
   CHECK(pixels[8 * 24 + 12] == Approx(5));
   const TemporaryFolder folder;
-  CHECK(sundog_film_save(film, (folder / "a.png").c_str()) == SUNDOG_OK);
+  CHECK(sundog_film_save(film, (folder / "a.png").c_str(), nullptr) == SUNDOG_OK);
   CHECK(file_bytes(folder / "a.png").starts_with("\x89PNG"));
-  CHECK(sundog_film_save(film, (folder / "a.gif").c_str()) == SUNDOG_USAGE);
-  CHECK(sundog_film_save(film, (folder / "none/a.png").c_str()) == SUNDOG_IO);
-  CHECK(sundog_film_pixels(film, "albedo", &pixels, nullptr, nullptr, nullptr) == SUNDOG_USAGE);
-  CHECK(std::string(sundog_last_error()).find("albedo") != std::string::npos);
+  CHECK(sundog_film_save(film, (folder / "a.gif").c_str(), nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_film_save(film, (folder / "none/a.png").c_str(), nullptr) == SUNDOG_IO);
+  const Failure failure;
+  CHECK(sundog_film_pixels(film, "albedo", &pixels, nullptr, nullptr, nullptr, failure.error) ==
+        SUNDOG_USAGE);
+  CHECK(failure.line().find("albedo") != std::string::npos);
   sundog_film_free(film);
   sundog_devices_free(devices);
   sundog_scene_free(scene);
@@ -72,8 +86,9 @@ TEST_CASE("C renders a mesh of its own and reads the pixels") {
 
 TEST_CASE("a C callback ends a render, and gets its user pointer") {
   sundog_scene* scene = scene_of(text);
-  CHECK(sundog_scene_set(scene, "/render/samples", "65536") == SUNDOG_OK);
-  CHECK(sundog_scene_set(scene, "/objects/-", R"({"type": "sphere", "material": "red"})") == SUNDOG_OK);
+  CHECK(sundog_scene_set(scene, "/render/samples", "65536", nullptr) == SUNDOG_OK);
+  CHECK(sundog_scene_set(scene, "/objects/-", R"({"type": "sphere", "material": "red"})", nullptr) ==
+        SUNDOG_OK);
   sundog_devices* devices = c_device();
   sundog_options options{};
   int calls = 0;
@@ -84,7 +99,7 @@ TEST_CASE("a C callback ends a render, and gets its user pointer") {
     return total == 24u * 16 ? 1 : 0;
   };
   sundog_film* film = nullptr;
-  CHECK(sundog_render(scene, &options, &film) == SUNDOG_STOPPED);
+  CHECK(sundog_render(scene, &options, &film, nullptr) == SUNDOG_STOPPED);
   REQUIRE(film != nullptr);
   CHECK(calls > 0);
   sundog_film_free(film);
@@ -101,8 +116,9 @@ TEST_CASE("no exception crosses the C interface, a callback's neither") {
     throw std::logic_error("from C++");
   };
   sundog_film* film = nullptr;
-  CHECK(sundog_render(scene, &options, &film) == SUNDOG_INTERNAL);
-  CHECK(std::string(sundog_last_error()) == "from C++");
+  const Failure failure;
+  CHECK(sundog_render(scene, &options, &film, failure.error) == SUNDOG_INTERNAL);
+  CHECK(failure.line() == "from C++");
   CHECK(film == nullptr);
   sundog_devices_free(devices);
   sundog_scene_free(scene);
@@ -141,25 +157,26 @@ TEST_CASE("a want of memory is a status of C, whatever takes the memory") {
   }
   without_memory("sundog_scene_from_json", [&] {
     sundog_scene* made = nullptr;
-    const sundog_status status = sundog_scene_from_json(document.c_str(), nullptr, &made);
+    const sundog_status status = sundog_scene_from_json(document.c_str(), nullptr, &made, nullptr);
     sundog_scene_free(made);
     return status;
   });
   sundog_scene* scene = scene_of(text);
-  without_memory("sundog_scene_set", [&] { return sundog_scene_set(scene, "/comment", quoted.c_str()); });
+  without_memory("sundog_scene_set",
+                 [&] { return sundog_scene_set(scene, "/comment", quoted.c_str(), nullptr); });
   without_memory("sundog_scene_add_mesh", [&] {
     return sundog_scene_add_mesh(scene, "m", positions.data(), 30'000, triangles.data(), 30'000, nullptr,
-                                 nullptr);
+                                 nullptr, nullptr);
   });
   sundog_scene_free(scene);
   scene = scene_of(text);
-  CHECK(sundog_scene_set(scene, "/image/width", "600") == SUNDOG_OK);
+  CHECK(sundog_scene_set(scene, "/image/width", "600", nullptr) == SUNDOG_OK);
   sundog_devices* devices = c_device();
   sundog_options options{};
   options.devices = devices;
   without_memory("sundog_render", [&] {
     sundog_film* film = nullptr;
-    const sundog_status status = sundog_render(scene, &options, &film);
+    const sundog_status status = sundog_render(scene, &options, &film, nullptr);
     CHECK((film != nullptr) == (status == SUNDOG_OK));
     sundog_film_free(film);
     return status;
@@ -179,28 +196,28 @@ TEST_CASE("a mesh that C keeps is let go of once, when nobody reads it any more"
           ++*static_cast<int*>(user);
           throw std::logic_error("from C++");
         },
-        &released);
+        &released, nullptr);
   };
   sundog_scene* scene = scene_of(text);
   CHECK(hold(scene, wrong.data()) == SUNDOG_USAGE);
   CHECK(hold(nullptr, triangles.data()) == SUNDOG_USAGE);
   CHECK(sundog_scene_hold_mesh(scene, "wall", nullptr, 3, triangles.data(), 1, nullptr, nullptr, nullptr,
-                               nullptr) == SUNDOG_USAGE);
+                               nullptr, nullptr) == SUNDOG_USAGE);
   CHECK(released == 0);
   REQUIRE(hold(scene, triangles.data()) == SUNDOG_OK);
-  CHECK(sundog_scene_set(scene, "/objects/-", R"({"type": "mesh", "mesh": "wall", "material": "red"})") ==
-        SUNDOG_OK);
+  CHECK(sundog_scene_set(scene, "/objects/-", R"({"type": "mesh", "mesh": "wall", "material": "red"})",
+                         nullptr) == SUNDOG_OK);
   sundog_devices* devices = c_device();
   sundog_session* session = nullptr;
-  REQUIRE(sundog_session_open(devices, &session) == SUNDOG_OK);
-  CHECK(sundog_session_start(session, scene) == SUNDOG_OK);
+  REQUIRE(sundog_session_open(devices, &session, nullptr) == SUNDOG_OK);
+  CHECK(sundog_session_start(session, scene, nullptr) == SUNDOG_OK);
   sundog_scene_free(scene);
   CHECK(released == 0);  // the session draws it
   sundog_state state = SUNDOG_IDLE;
-  CHECK(sundog_session_wait(session, -1, &state) == SUNDOG_OK);
+  CHECK(sundog_session_wait(session, -1, &state, nullptr) == SUNDOG_OK);
   std::vector<float> pixels(24 * 16 * 4);
   int width = 0, height = 0;
-  CHECK(sundog_session_picture(session, pixels.data(), pixels.size(), &width, &height) == SUNDOG_OK);
+  CHECK(sundog_session_picture(session, pixels.data(), pixels.size(), &width, &height, nullptr) == SUNDOG_OK);
   CHECK(pixels[4 * (8 * 24 + 12)] == Approx(1));
   sundog_session_free(session);
   CHECK(released == 1);
@@ -219,39 +236,40 @@ TEST_CASE("every function of C reports its errors") {
   sundog_film* film = nullptr;
   sundog_session* session = nullptr;
   int size = 0;
-  CHECK(sundog_scene_load("/none/such.json", &scene) == SUNDOG_SCENE);
-  CHECK(std::string(sundog_last_error_file()) == "/none/such.json");
-  CHECK(sundog_scene_load(nullptr, &scene) == SUNDOG_USAGE);
-  CHECK(sundog_scene_load("x.json", nullptr) == SUNDOG_USAGE);
-  CHECK(sundog_scene_from_json("{", nullptr, &scene) == SUNDOG_SCENE);
-  CHECK(sundog_scene_from_json(nullptr, nullptr, &scene) == SUNDOG_USAGE);
+  const Failure failure;
+  CHECK(sundog_scene_load("/none/such.json", &scene, failure.error) == SUNDOG_SCENE);
+  CHECK(std::string(sundog_error_file(failure.error)) == "/none/such.json");
+  CHECK(sundog_scene_load(nullptr, &scene, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_scene_load("x.json", nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_scene_from_json("{", nullptr, &scene, nullptr) == SUNDOG_SCENE);
+  CHECK(sundog_scene_from_json(nullptr, nullptr, &scene, nullptr) == SUNDOG_USAGE);
   CHECK(scene == nullptr);
-  CHECK(sundog_devices_choose("no such device", &devices) == SUNDOG_DEVICE);
-  CHECK(sundog_devices_list(nullptr) == SUNDOG_USAGE);
-  CHECK(sundog_devices_choose(nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_devices_choose("no such device", &devices, nullptr) == SUNDOG_DEVICE);
+  CHECK(sundog_devices_list(nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_devices_choose(nullptr, nullptr, nullptr) == SUNDOG_USAGE);
   CHECK(sundog_devices_count(nullptr) == 0);
   CHECK(sundog_devices_label(nullptr, 0) == nullptr);
   CHECK(sundog_devices_problem(nullptr, 0) == nullptr);
-  CHECK(sundog_scene_check(nullptr) == SUNDOG_USAGE);
-  CHECK(sundog_scene_set(nullptr, "/camera", "1") == SUNDOG_USAGE);
+  CHECK(sundog_scene_check(nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_scene_set(nullptr, "/camera", "1", nullptr) == SUNDOG_USAGE);
   CHECK(devices == nullptr);
-  CHECK(sundog_render(nullptr, nullptr, &film) == SUNDOG_USAGE);
-  CHECK(sundog_film_pixels(nullptr, nullptr, nullptr, nullptr, nullptr, nullptr) == SUNDOG_USAGE);
-  CHECK(sundog_film_save(nullptr, "a.png") == SUNDOG_USAGE);
+  CHECK(sundog_render(nullptr, nullptr, &film, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_film_pixels(nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_film_save(nullptr, "a.png", nullptr) == SUNDOG_USAGE);
   CHECK(sundog_film_complete(nullptr) == 0);
-  CHECK(sundog_session_open(nullptr, nullptr) == SUNDOG_USAGE);
-  CHECK(sundog_session_start(nullptr, nullptr) == SUNDOG_USAGE);
-  CHECK(sundog_session_cancel(nullptr) == SUNDOG_USAGE);
-  CHECK(sundog_session_wait(nullptr, 0, nullptr) == SUNDOG_USAGE);
-  CHECK(sundog_session_picture(session, nullptr, 0, &size, &size) == SUNDOG_USAGE);
+  CHECK(sundog_session_open(nullptr, nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_session_start(nullptr, nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_session_cancel(nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_session_wait(nullptr, 0, nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_session_picture(session, nullptr, 0, &size, &size, nullptr) == SUNDOG_USAGE);
   scene = scene_of(text);
-  CHECK(sundog_scene_set(scene, "/objects/4000000000", "1") == SUNDOG_USAGE);
-  CHECK(sundog_scene_set(scene, "camera", "1") == SUNDOG_USAGE);
-  CHECK(sundog_scene_set(scene, nullptr, "1") == SUNDOG_USAGE);
-  CHECK(sundog_scene_add_mesh(scene, "m", nullptr, 0, nullptr, 0, nullptr, nullptr) == SUNDOG_USAGE);
-  CHECK(sundog_scene_set(scene, "/camera/fov", "0") == SUNDOG_OK);
-  CHECK(sundog_scene_check(scene) == SUNDOG_SCENE);
-  CHECK(std::string(sundog_last_error_place()) == "/camera/fov");
+  CHECK(sundog_scene_set(scene, "/objects/4000000000", "1", nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_scene_set(scene, "camera", "1", nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_scene_set(scene, nullptr, "1", nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_scene_add_mesh(scene, "m", nullptr, 0, nullptr, 0, nullptr, nullptr, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_scene_set(scene, "/camera/fov", "0", nullptr) == SUNDOG_OK);
+  CHECK(sundog_scene_check(scene, failure.error) == SUNDOG_SCENE);
+  CHECK(std::string(sundog_error_place(failure.error)) == "/camera/fov");
   sundog_scene_free(scene);
   sundog_scene_free(nullptr);
   sundog_devices_free(nullptr);
@@ -259,16 +277,28 @@ TEST_CASE("every function of C reports its errors") {
   sundog_session_free(nullptr);
 }
 
-TEST_CASE("each thread has an error of its own") {
-  CHECK(sundog_scene_load("/none/mine.json", nullptr) == SUNDOG_USAGE);
-  const std::string mine = sundog_last_error();
-  std::thread([] { CHECK(std::strlen(sundog_last_error()) == 0); }).join();
-  CHECK(sundog_last_error() == mine);
+TEST_CASE("an error handle keeps the last failure, and none is needed") {
+  Failure mine, other;
+  CHECK(std::strlen(sundog_error_line(mine.error)) == 0);
+  std::thread([&] {
+    CHECK(sundog_scene_load("/none/other.json", nullptr, other.error) == SUNDOG_USAGE);
+  }).join();
+  CHECK(mine.line().empty());
+  CHECK(other.line() == "scene: wanted a value, found NULL");
+  sundog_scene* scene = nullptr;
+  CHECK(sundog_scene_from_json(text, nullptr, &scene, other.error) == SUNDOG_OK);
+  CHECK(other.line() == "scene: wanted a value, found NULL");
+  sundog_scene_free(scene);
+  CHECK(sundog_scene_load("/none/other.json", &scene, nullptr) == SUNDOG_SCENE);
+  CHECK(std::strlen(sundog_error_line(nullptr)) + std::strlen(sundog_error_file(nullptr)) +
+            std::strlen(sundog_error_place(nullptr)) ==
+        0);
+  sundog_error_free(nullptr);
 }
 
 TEST_CASE("C lists devices and draws in a session") {
   sundog_devices* all = nullptr;
-  REQUIRE(sundog_devices_list(&all) == SUNDOG_OK);
+  REQUIRE(sundog_devices_list(&all, nullptr) == SUNDOG_OK);
   REQUIRE(sundog_devices_count(all) > 0);
   CHECK(sundog_devices_label(all, 0) != nullptr);
   CHECK(sundog_devices_problem(all, 0) != nullptr);
@@ -276,21 +306,21 @@ TEST_CASE("C lists devices and draws in a session") {
   sundog_devices_free(all);
   sundog_devices* devices = c_device();
   sundog_session* session = nullptr;
-  REQUIRE(sundog_session_open(devices, &session) == SUNDOG_OK);
+  REQUIRE(sundog_session_open(devices, &session, nullptr) == SUNDOG_OK);
   sundog_scene* scene = scene_of(text);
   std::vector<float> pixels(24 * 16 * 4);
   int width = -1, height = -1;
-  CHECK(sundog_session_picture(session, pixels.data(), pixels.size(), &width, &height) == SUNDOG_OK);
+  CHECK(sundog_session_picture(session, pixels.data(), pixels.size(), &width, &height, nullptr) == SUNDOG_OK);
   CHECK(width == 0);
-  CHECK(sundog_session_start(session, scene) == SUNDOG_OK);
+  CHECK(sundog_session_start(session, scene, nullptr) == SUNDOG_OK);
   sundog_state state = SUNDOG_IDLE;
-  CHECK(sundog_session_wait(session, -1, &state) == SUNDOG_OK);
+  CHECK(sundog_session_wait(session, -1, &state, nullptr) == SUNDOG_OK);
   CHECK(state == SUNDOG_SETTLED);
-  CHECK(sundog_session_picture(session, pixels.data(), 3, &width, &height) == SUNDOG_USAGE);
-  CHECK(sundog_session_picture(session, pixels.data(), pixels.size(), &width, &height) == SUNDOG_OK);
+  CHECK(sundog_session_picture(session, pixels.data(), 3, &width, &height, nullptr) == SUNDOG_USAGE);
+  CHECK(sundog_session_picture(session, pixels.data(), pixels.size(), &width, &height, nullptr) == SUNDOG_OK);
   CHECK((width == 24 && height == 16));
   CHECK(pixels[2] == 1);
-  CHECK(sundog_session_cancel(session) == SUNDOG_OK);
+  CHECK(sundog_session_cancel(session, nullptr) == SUNDOG_OK);
   sundog_session_free(session);
   sundog_scene_free(scene);
   sundog_devices_free(devices);

@@ -35,39 +35,43 @@ class CSession {
   CSession(const Loaded& library, const std::string& scene, int width, int height) : library_(library) {
     sundog_devices* devices = nullptr;
     ok(FUNCTION_OF(library, sundog_devices_choose)(test_spec().empty() ? nullptr : test_spec().c_str(),
-                                                   &devices));
-    ok(FUNCTION_OF(library, sundog_session_open)(devices, &session_));
+                                                   &devices, error_));
+    ok(FUNCTION_OF(library, sundog_session_open)(devices, &session_, error_));
     sundog_scene* loaded = nullptr;
-    ok(FUNCTION_OF(library, sundog_scene_load)(scene.c_str(), &loaded));
+    ok(FUNCTION_OF(library, sundog_scene_load)(scene.c_str(), &loaded, error_));
     const auto set = FUNCTION_OF(library, sundog_scene_set);
-    ok(set(loaded, "/image/width", std::to_string(width).c_str()));
-    ok(set(loaded, "/image/height", std::to_string(height).c_str()));
-    ok(FUNCTION_OF(library, sundog_session_start)(session_, loaded));
+    ok(set(loaded, "/image/width", std::to_string(width).c_str(), error_));
+    ok(set(loaded, "/image/height", std::to_string(height).c_str(), error_));
+    ok(FUNCTION_OF(library, sundog_session_start)(session_, loaded, error_));
     FUNCTION_OF(library, sundog_scene_free)(loaded);
     FUNCTION_OF(library, sundog_devices_free)(devices);
   }
-  ~CSession() { FUNCTION_OF(library_, sundog_session_free)(session_); }
+  ~CSession() {
+    FUNCTION_OF(library_, sundog_session_free)(session_);
+    FUNCTION_OF(library_, sundog_error_free)(error_);
+  }
   CSession(const CSession&) = delete;
   CSession& operator=(const CSession&) = delete;
 
   sundog::Image finish() {
     sundog_state state = SUNDOG_IDLE;
-    ok(FUNCTION_OF(library_, sundog_session_wait)(session_, -1, &state));
+    ok(FUNCTION_OF(library_, sundog_session_wait)(session_, -1, &state, error_));
     CHECK(state == SUNDOG_SETTLED);
     std::vector<float> pixels(std::size_t{1} << 16);
     int width = 0, height = 0;
-    ok(FUNCTION_OF(library_, sundog_session_picture)(session_, pixels.data(), pixels.size(), &width,
-                                                     &height));
+    ok(FUNCTION_OF(library_, sundog_session_picture)(session_, pixels.data(), pixels.size(), &width, &height,
+                                                     error_));
     pixels.resize(std::size_t(width) * std::size_t(height) * 4);
     return {width, height, 4, pixels};
   }
 
  private:
   void ok(sundog_status status) const {
-    CAPTURE(FUNCTION_OF(library_, sundog_last_error)());
+    CAPTURE(FUNCTION_OF(library_, sundog_error_line)(error_));
     REQUIRE(status == SUNDOG_OK);
   }
   const Loaded& library_;
+  sundog_error* const error_ = FUNCTION_OF(library_, sundog_error_new)();
   sundog_session* session_ = nullptr;
 };
 
