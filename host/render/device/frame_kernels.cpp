@@ -69,26 +69,28 @@ bool keeps_programs(const Device& device) {
 }
 
 /// Has the kernels built beside the work and waits for them, so that the device's thread is free again as
-/// soon as something else is to be drawn.
-void wait_for_kernels(const Device& device, KernelBuilder& builder, const KernelOrder& order) {
-  if (!keeps_programs(device)) return;
-  if (!builder.wait_for(order) && !builder.is_waited_for())
+/// soon as something else is to be drawn. Returns how many were built.
+unsigned wait_for_kernels(const Device& device, KernelBuilder& builder, const KernelOrder& order) {
+  if (!keeps_programs(device)) return 0;
+  if (builder.wait_for(order)) return 1;
+  if (!builder.is_waited_for())
     throw NotWantedAnyMore("the scene was replaced before its kernels were built");
+  return 0;  // they do not build: whoever needs them builds them again, and reports why not
 }
 
 /// What to draw with: the wanted kernels where they are there or nothing stands in for them.
 KernelConfig choose_config(const Device& device, const Integrator& integrator, KernelConfig wanted,
-                           const FrameKernels& kernels) {
+                           const FrameKernels& kernels, KernelUpdate& update) {
   if (!kernels.builder || device.has(integrator.entry, wanted.defines, wanted.generated)) return wanted;
   std::vector<KernelConfig> candidates = kernels.builder->built();
   candidates.insert(candidates.end(), kernels.known.rbegin(), kernels.known.rend());
-  candidates.push_back(kernels.general);
+  candidates.insert(candidates.end(), kernels.general.begin(), kernels.general.end());
   for (const KernelConfig& general : candidates)
     if (stands_in(general, wanted) && device.has(integrator.entry, general.defines, general.generated)) {
       kernels.builder->want({integrator.entry, integrator.kernel, std::move(wanted)});
       return general;
     }
-  wait_for_kernels(device, *kernels.builder, {integrator.entry, integrator.kernel, wanted});
+  update.built += wait_for_kernels(device, *kernels.builder, {integrator.entry, integrator.kernel, wanted});
   return wanted;
 }
 
@@ -97,12 +99,12 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
                    bool aovs, FrameKernels& kernels, RenderTimes& times, KernelUpdate& update) {
   const Integrator& integrator = *find_integrator(scene.integrator);
   KernelConfig config = make_kernel_config(scene, device.info(), tuning);
-  if (kernels.builder) kernels.general = general_config(scene, device.info(), tuning);
+  if (kernels.builder) kernels.general = general_configs(scene, device.info(), tuning);
   const auto is_there = [&] {
     return kernels.integrator.kernel() && kernels.entry == integrator.entry &&
            same_kernels(kernels.config, config);
   };
-  if (!is_there()) config = choose_config(device, integrator, std::move(config), kernels);
+  if (!is_there()) config = choose_config(device, integrator, std::move(config), kernels, update);
   if (!is_there()) {
     kernels.config = std::move(config);
     kernels.most_group = greatest_work_group(kernels.config, device.info());
@@ -129,9 +131,11 @@ void renew_camera_media(Device& device, const CompiledScene& scene, FrameKernels
 
 void build_general_kernels(const Device& device, FrameKernels& kernels) {
   if (!kernels.builder || !kernels.integrator.kernel()) return;
-  const KernelConfig& general = kernels.general;
-  if (device.has(kernels.entry, general.defines, general.generated)) return;
-  kernels.builder->want_later({kernels.entry, kernels.integrator.name, general});
+  std::vector<KernelOrder> orders;
+  for (const KernelConfig& general : kernels.general)
+    if (!device.has(kernels.entry, general.defines, general.generated))
+      orders.push_back({kernels.entry, kernels.integrator.name, general});
+  if (!orders.empty()) kernels.builder->want_later(std::move(orders));
 }
 
 void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& times) {

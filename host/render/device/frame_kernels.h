@@ -28,11 +28,11 @@ struct FrameKernels {
   SceneKernel<Buffer<u32>> find_media;                // only where the camera has been inside a solid
   std::string entry;                                  // of the integrator
   bool camera_inside = false;                         // tables.camera_media are not those of the outside
-  std::size_t most_group = 0;        // work-items that a group of theirs may have; 0: not known
-  std::vector<std::string> notes;    // why a cache could not be used
-  KernelBuilder* builder = nullptr;  // builds beside the work while other kernels draw; null: nobody does
-  std::vector<KernelConfig> known;   // that this device has built
-  KernelConfig general;              // with a builder: those that stand in for the scene's
+  std::size_t most_group = 0;         // work-items that a group of theirs may have; 0: not known
+  std::vector<std::string> notes;     // why a cache could not be used
+  KernelBuilder* builder = nullptr;   // builds beside the work while other kernels draw; null: nobody does
+  std::vector<KernelConfig> known;    // that this device has built
+  std::vector<KernelConfig> general;  // with a builder: those that stand in for the scene's
 };
 
 /// Builds the integrator's kernel, with `aovs` that of the AOVs too, uploads the scene and finds out which
@@ -54,7 +54,7 @@ KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, co
                                   const WorkGroup& asked, bool aovs, FrameKernels& kernels,
                                   RenderTimes& times);
 
-/// Has kernels built that will stand in when an edit asks for others (general_config()). Nothing without a
+/// Has kernels built that will stand in when an edit asks for others (general_configs()). Nothing without a
 /// builder.
 void build_general_kernels(const Device& device, FrameKernels& kernels);
 

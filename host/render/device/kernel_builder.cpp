@@ -56,21 +56,30 @@ struct KernelBuilder::State {
   std::mutex mutex;  // for all below
   std::condition_variable changed;
   std::vector<KernelOrder> waiting;  // the last one is next
-  std::optional<KernelOrder> later;
+  std::vector<KernelOrder> later;
   Stopwatch since_wish;
   std::optional<KernelOrder> in_hand;
   std::vector<KernelOrder> done, failed;
   bool ends = false, is_waited_for = true;
+  // What somebody waits for has a thread of its own: it is not to stand behind what may come some day.
+  DriverThread urgent_thread;
+  std::optional<KernelOrder> urgent, urgent_in_hand;
 
+  bool is_in_hand(const KernelOrder& order) const {
+    return (in_hand && same(*in_hand, order)) || (urgent_in_hand && same(*urgent_in_hand, order));
+  }
   bool is_known(const KernelOrder& order) const {
-    return is_among(done, order) || is_among(failed, order) || (in_hand && same(*in_hand, order));
+    return is_among(done, order) || is_among(failed, order) || is_in_hand(order);
   }
   void note_wish() {
     since_wish = Stopwatch();
     changed.notify_all();
   }
   std::optional<KernelOrder> take(std::unique_lock<std::mutex>& lock);
+  void build_in_hand(std::unique_lock<std::mutex>& lock, DeviceInfo& device,
+                     std::optional<KernelOrder>& order);
   void run();
+  void run_urgent();
 };
 
 KernelBuilder::KernelBuilder(DeviceInfo info) : state_(std::make_shared<State>(std::move(info))) {}
@@ -84,18 +93,25 @@ void KernelBuilder::begin() {
 }
 
 KernelBuilder::~KernelBuilder() {
-  if (!thread_.thread.joinable()) return;
-  bool compiles = false;
+  bool compiles = false, compiles_urgent = false;
+  DriverThread urgent;
   {
     const std::lock_guard lock(state_->mutex);
     state_->ends = true;
     compiles = state_->in_hand.has_value();
+    compiles_urgent = state_->urgent_in_hand.has_value();
+    urgent = std::move(state_->urgent_thread);
     state_->changed.notify_all();
   }
-  if (compiles)
-    leave_thread(state_->info.threads, std::move(thread_));
-  else
-    thread_.thread.join();
+  const auto end = [&](DriverThread& thread, bool is_left) {
+    if (!thread.thread.joinable()) return;
+    if (is_left)
+      leave_thread(state_->info.threads, std::move(thread));
+    else
+      thread.thread.join();
+  };
+  end(thread_, compiles);
+  end(urgent, compiles_urgent);
 }
 
 void KernelBuilder::want(KernelOrder order) {
@@ -107,17 +123,26 @@ void KernelBuilder::want(KernelOrder order) {
   state_->note_wish();
 }
 
-void KernelBuilder::want_later(KernelOrder order) {
+void KernelBuilder::want_later(std::vector<KernelOrder> orders) {
   begin();
   const std::lock_guard lock(state_->mutex);
-  if (state_->is_known(order)) return;
-  state_->later = std::move(order);
+  std::erase_if(orders, [&](const KernelOrder& order) { return state_->is_known(order); });
+  if (orders.empty()) return;
+  state_->later = std::move(orders);
   state_->note_wish();
 }
 
 bool KernelBuilder::wait_for(KernelOrder order) {
-  want(order);
   std::unique_lock lock(state_->mutex);
+  if (!state_->is_known(order)) {
+    state_->urgent = order;
+    state_->note_wish();
+    if (!state_->urgent_thread.thread.joinable())
+      state_->urgent_thread = start_thread([state = state_]() mutable {
+        state->run_urgent();
+        state.reset();
+      });
+  }
   state_->changed.wait(lock, [&] {
     return !state_->is_waited_for || is_among(state_->done, order) || is_among(state_->failed, order);
   });
@@ -150,7 +175,8 @@ std::vector<KernelConfig> KernelBuilder::built() const {
 
 std::size_t KernelBuilder::waiting() const {
   const std::lock_guard lock(state_->mutex);
-  return state_->waiting.size() + (state_->later ? 1 : 0) + (state_->in_hand ? 1 : 0);
+  return state_->waiting.size() + state_->later.size() + (state_->in_hand ? 1 : 0) +
+         (state_->urgent ? 1 : 0) + (state_->urgent_in_hand ? 1 : 0);
 }
 
 /// Waits for the next one; nothing when it ends.
@@ -163,8 +189,12 @@ std::optional<KernelOrder> KernelBuilder::State::take(std::unique_lock<std::mute
       return order;
     }
     const double left = rest - since_wish.seconds();
-    if (later && left <= 0) return std::exchange(later, std::nullopt);
-    if (later)
+    if (!later.empty() && left <= 0) {
+      KernelOrder order = std::move(later.front());
+      later.erase(later.begin());
+      return order;
+    }
+    if (!later.empty())
       changed.wait_for(lock, std::chrono::duration<double>(left));
     else
       changed.wait(lock);
@@ -172,25 +202,39 @@ std::optional<KernelOrder> KernelBuilder::State::take(std::unique_lock<std::mute
   return std::nullopt;
 }
 
+void KernelBuilder::State::build_in_hand(std::unique_lock<std::mutex>& lock, DeviceInfo& device,
+                                         std::optional<KernelOrder>& order) {
+  lock.unlock();
+  bool works = true;
+  try {
+    device = share_context(std::move(device));
+    build(device, *order);
+  } catch (const std::exception&) {
+    works = false;  // whoever needs it builds it again, and reports why not
+  }
+  lock.lock();
+  (works ? done : failed).push_back(std::move(*order));
+  order.reset();
+  changed.notify_all();
+}
+
+void KernelBuilder::State::run_urgent() {
+  DeviceInfo device = info;
+  std::unique_lock lock(mutex);
+  while (true) {
+    changed.wait(lock, [&] { return ends || urgent; });
+    if (ends) return;
+    urgent_in_hand = std::exchange(urgent, std::nullopt);
+    build_in_hand(lock, device, urgent_in_hand);
+  }
+}
+
 void KernelBuilder::State::run() {
   // The compiler takes only time that nobody else wants.
   if (const auto& step_back = value_of(info.environment).step_back) step_back();
   DeviceInfo device = info;
   std::unique_lock lock(mutex);
-  while ((in_hand = take(lock))) {
-    lock.unlock();
-    bool works = true;
-    try {
-      device = share_context(std::move(device));
-      build(device, *in_hand);
-    } catch (const std::exception&) {
-      works = false;  // whoever needs it builds it again, and reports why not
-    }
-    lock.lock();
-    (works ? done : failed).push_back(std::move(*in_hand));
-    in_hand.reset();
-    changed.notify_all();
-  }
+  while ((in_hand = take(lock))) build_in_hand(lock, device, in_hand);
 }
 
 }  // namespace sundog

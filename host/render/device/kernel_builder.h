@@ -27,8 +27,9 @@ class KernelBuilder {
   // Called by one thread, the server's, but for what says otherwise.
   /// To be built next. What waits already is built after it; what was built, or failed to, is not again.
   void want(KernelOrder order);
-  /// To be built when nothing else was wanted for a second. Takes the place of what waits so already.
-  void want_later(KernelOrder order);
+  /// To be built in turn when nothing else was wanted for a second. They take the place of what waits so
+  /// already.
+  void want_later(std::vector<KernelOrder> orders);
   /// The same, and waits for it. False when it does not build, or wants_no_more() comes first: then it is
   /// built nevertheless.
   bool wait_for(KernelOrder order);

@@ -90,6 +90,19 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
   return config;
 }
 
+std::vector<KernelConfig> general_configs(const CompiledScene& scene, const DeviceInfo& device,
+                                          const Tuning& tuning) {
+  std::vector<KernelConfig> all{general_config(scene, device, tuning)};
+  if (traces_paths(scene.integrator)) return all;
+  for (const char* name : {"HAS_FOG", "HAS_LENS"}) {
+    KernelConfig other = all.front();
+    std::string& value = other.defines.at(name);
+    value = value == "0" ? "1" : "0";
+    all.push_back(std::move(other));
+  }
+  return all;
+}
+
 std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& device) {
   if (device.device_class != DeviceClass::cpu) return device.max_work_group;
   const std::size_t item =

@@ -30,6 +30,11 @@ bool stands_in(const KernelConfig& general, const KernelConfig& wanted);
 /// of the same formulas. A path tracer's are its own. Pure.
 KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning = {});
 
+/// Those, and the same with and without what else an edit switches on or off by a number: fog, a lens. The
+/// most general ones of the scene itself come first. Pure.
+std::vector<KernelConfig> general_configs(const CompiledScene& scene, const DeviceInfo& device,
+                                          const Tuning& tuning = {});
+
 /// Most work-items that a group of the render kernels may have; 0: the device does not say.
 std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& device);
 

@@ -52,8 +52,9 @@ void RenderSession::State::drop_frame() {
   if (!current) return;
   current->frame->stop = true;
   current->frame->queue.close();
-  for (const auto& worker : workers)
-    if (worker->of_scenes) worker->of_scenes->hurry();
+  for (const auto* list : {&workers, &leaving})
+    for (const auto& worker : *list)
+      if (worker->of_scenes) worker->of_scenes->hurry();
 }
 
 void RenderSession::State::drop_picks() {
