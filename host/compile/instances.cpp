@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "compile/bvh/wide_bvh.h"
@@ -13,6 +14,7 @@
 #include "compile/shapes.h"
 #include "compile/textures.h"
 #include "compile/touching/touching.h"
+#include "scene/pack.h"
 
 namespace sundog {
 namespace {
@@ -20,8 +22,9 @@ namespace {
 /// An instance and its bounds in the world; `cost` is that of a ray that crosses them.
 struct Placed {
   Instance instance{};
-  Bounds box = Bounds::none();
+  Bounds box = Bounds::none();  // wherever it is while the shutter is open
   double cost = 1;
+  float4 moves{};
   bool bounded() const { return instance.shape != SHAPE_PLANE; }
 };
 
@@ -35,7 +38,7 @@ struct Placed {
 /// Writes the rows of the inverse of `world_from_unit`; returns the transform that a kernel then really uses.
 dmat4 set_transform(const SceneDescription& scene, const Object& object, const dmat4& world_from_unit,
                     Instance& instance) {
-  if (world_from_unit == dmat4(1)) instance.flags |= INSTANCE_IDENTITY;
+  if (world_from_unit == dmat4(1) && object.moves_by == dvec3(0)) instance.flags |= INSTANCE_IDENTITY;
   const dmat4 inverse = glm::inverse(world_from_unit);
   dmat4 used(1);
   for (int row = 0; row < 3; ++row) {
@@ -126,10 +129,25 @@ class Placer {
     local_from_object[3] -= glm::dvec4(out_.origin, 0);
     if (!placed.bounded()) local_from_object = place_of_plane(scene_, object, out_.origin);
     const dmat4 world_from_unit = set_transform(scene_, object, local_from_object * scale, placed.instance);
+    if (object.moves_by != dvec3(0)) set_moves(object, placed);
     if (!placed.bounded()) return;
     const bool exact = placed.instance.flags & INSTANCE_IDENTITY;
     placed.box = world_bounds(unit, boxes, world_from_unit, exact);
+    if (object.moves_by != dvec3(0)) {
+      dmat4 at_end = world_from_unit;
+      at_end[3] += glm::dvec4(object.moves_by, 0);
+      placed.box.extend(world_bounds(unit, boxes, at_end, exact));
+    }
     placed.instance.world_center = sphere_around(placed.box);
+  }
+
+  void set_moves(const Object& object, Placed& placed) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::abs(object.moves_by[axis]) <= double(std::numeric_limits<float>::max())))
+        throw SceneError(scene_.file.string(), object.place + "/moves_by",
+                         "wanted a move that single precision holds");
+    placed.moves = pack(object.moves_by);
+    out_.features.object_motion = true;
   }
 
   void set_surface(const Object& object, const PlacedMesh* mesh, Instance& instance) {
@@ -270,10 +288,12 @@ std::vector<Bounds> add_instances(const SceneDescription& scene, const std::vect
   const std::vector<Placed> large = take_large_solids(bounded, out.figures.box);
   add_scene_bvh(bounded, out, mesh_stack);
   std::vector<Instance> instances;
+  std::vector<float4> moves;
   std::vector<Bounds> boxes;
   const auto append = [&](const std::vector<Placed>& list) {
     for (const Placed& placed : list) {
       instances.push_back(placed.instance);
+      moves.push_back(placed.moves);
       boxes.push_back(placed.box);
     }
   };
@@ -284,6 +304,7 @@ std::vector<Bounds> add_instances(const SceneDescription& scene, const std::vect
   append(fields);
   out.info.field_end = static_cast<u32>(instances.size());
   out.instances = std::move(instances);
+  if (out.features.object_motion) out.moves = std::move(moves);
   out.features.unbounded = !unbounded.empty();
   return boxes;
 }

@@ -266,6 +266,7 @@ struct Object {
   dmat4 world_from_object{1};
   std::string place;  // JSON pointer, for messages
   int light = -1;     // index of the light that it shows; -1: none
+  dvec3 moves_by{0};  // how far it moves, straight on, while the shutter is open
 };
 
 /// What lies between all things: light over a distance d keeps exp(-density d) of its own and gets the rest

@@ -45,6 +45,7 @@ NEVER_INLINE void follow_line_outside(const Scene* scene, __global u32* restrict
   line.t_min = (REAL)(0.0f);
   line.t_max = (REAL)(INFINITY);
   start_cones(scene->info, &line);
+  set_ray_times((REAL)(0.0f), &line);
   SceneRays rays = scene_rays(&line, 0);  // one ray, in lane 0
   const MASK lane = lanes_of(1u);
   u32 counts[COUNTERS];  // marching counts, which nobody asks for here

@@ -17,6 +17,7 @@
   TABLE(u32, Bvh8Node, nodes, "BVH nodes")                               \
   TABLE(TriangleBlock, TriangleBlock, blocks, "triangle blocks")         \
   TABLE(Instance, Instance, instances, "instances")                      \
+  TABLE(float4, float4, moves, "moves of instances")                     \
   TABLE(TriangleShading, TriangleShading, triangles, "triangles")        \
   TABLE(Vertex, Vertex, vertices, "vertices")                            \
   TABLE(Material, Material, materials, "materials")                      \

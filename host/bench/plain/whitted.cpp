@@ -258,6 +258,7 @@ std::string plain_refusal(const CompiledScene& scene) {
   if (scene.features.sampler != SAMPLER_AUTO || scene.features.filter)
     return "the plain C++ program knows the default sampler and filter alone";
   if (scene.features.rough) return "the plain C++ program knows no roughness";
+  if (scene.features.object_motion) return "the plain C++ program knows no motion";
   if (scene.features.sky) return "the plain C++ program knows no sky";
   if (!std::ranges::all_of(scene.lights, [](const Light& light) { return plain::knows_light(light.kind); }))
     return "the plain C++ program knows no such light";

@@ -59,7 +59,7 @@ ContentKey instances_key(const SceneDescription& scene, const MeshesPart& meshes
   KeyMaker key;
   key.add(meshes.key).add(surfaces.default_material).add(origin).add(scene.objects.size());
   for (const Object& object : scene.objects) {
-    key.add(object.shape).add(object.material).add(object.world_from_object);
+    key.add(object.shape).add(object.material).add(object.world_from_object).add(object.moves_by);
     if (std::holds_alternative<PlaneShape>(object.shape)) key.add(place_of_plane(scene, object, origin));
   }
   for (const SdfDescription& field : scene.fields) key.add(field.lower).add(field.upper);

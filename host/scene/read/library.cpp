@@ -88,6 +88,7 @@ void ModelLibrary::place(const Parts& parts, const Placement& placement) {
     else if (!placement.name.empty())
       part.name = fmt::format("{}: {}", placement.name, part.name);
     part.place = placement.place;
+    part.moves_by = placement.moves_by;
     scene_.objects.push_back(std::move(part));
   }
 }

@@ -18,6 +18,7 @@ struct Placement {
   dmat4 world_from_object{1};
   int material = -1;  // -1: the model's own
   std::string name, place;
+  dvec3 moves_by{0};
 };
 
 class ModelLibrary {

@@ -203,6 +203,8 @@ class SceneReader {
       placement.world_from_object = parent.world_from_object * read_transform(*transform);
       check_transform(placement.world_from_object, *transform);
     }
+    if (const auto moves = object.find("moves_by"))
+      placement.moves_by += glm::dmat3(parent.world_from_object) * moves->vec3();
     return placement;
   }
 
@@ -210,14 +212,15 @@ class SceneReader {
     if (placement.material < 0) object.at("material", "the name of a material, here or in a group around it");
     const PlacedShape solid = read_solid(object, type);
     scene_.objects.push_back({placement.name, solid.shape, placement.material,
-                              placement.world_from_object * solid.placed, placement.place});
+                              placement.world_from_object * solid.placed, placement.place, -1,
+                              placement.moves_by});
     check_transform(scene_.objects.back().world_from_object, object.value());
   }
 
   void place_field(JsonObject& object, int field, const Placement& placement) {
     if (placement.material < 0) object.at("material", "the name of a material, here or in a group around it");
     scene_.objects.push_back({placement.name, FieldShape{field}, placement.material,
-                              placement.world_from_object, placement.place});
+                              placement.world_from_object, placement.place, -1, placement.moves_by});
   }
 
   const JsonValue& root_;

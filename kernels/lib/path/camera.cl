@@ -11,7 +11,16 @@ typedef struct Rays {
 #if HAS_CONES
   REAL spread;  // how much wider their cones become on each unit of their way
 #endif
+#if HAS_OBJECT_MOTION
+  REAL time;  // from 0, when the shutter opens, to 1
+#endif
 } Rays;
+
+#if HAS_OBJECT_MOTION
+static inline void set_ray_times(REAL time, Rays* rays) { rays->time = time; }
+#else
+static inline void set_ray_times(REAL time, Rays* rays) {}
+#endif
 
 // How much wider a pixel's footprint becomes on each unit of a ray's way.
 static inline float pixel_spread(__global const SceneInfo* restrict info) {
@@ -39,6 +48,7 @@ static inline Rays camera_rays(__global const SceneInfo* restrict info, REAL x, 
   rays.t_min = info->camera_forward.w * depth_to_t;
   rays.t_max = info->background_bottom.w * depth_to_t;
   start_cones(info, &rays);
+  set_ray_times((REAL)(0.0f), &rays);
   return rays;
 }
 

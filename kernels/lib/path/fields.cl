@@ -2,6 +2,7 @@
 // them, as far as the nearest hit that is known. Instances [instance_count, field_end) place the fields.
 #ifndef SUNDOG_LIB_FIELDS_CL
 #define SUNDOG_LIB_FIELDS_CL
+#include "lib/core/motion.cl"
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
 #include "lib/path/scene_ray.cl"
@@ -39,7 +40,22 @@ typedef struct FieldSearch {
 #if HAS_GLOW
   REAL3 glow;
 #endif
+#if HAS_OBJECT_MOTION
+  REAL time;
+#endif
 } FieldSearch;
+
+#if HAS_OBJECT_MOTION
+static inline void set_search_times(const SceneRays* rays, FieldSearch* search) { search->time = rays->time; }
+static inline REAL3 search_origins(const Scene* scene, u32 index, const FieldSearch* search) {
+  return still_points(scene, index, search->o, search->time);
+}
+#else
+static inline void set_search_times(const SceneRays* rays, FieldSearch* search) {}
+static inline REAL3 search_origins(const Scene* scene, u32 index, const FieldSearch* search) {
+  return search->o;
+}
+#endif
 
 // The light of fields that glow, which rays gather as they pass.
 #if HAS_GLOW
@@ -74,6 +90,7 @@ static inline FieldSearch start_search(const SceneRays* rays, REAL t_best, MASK 
   search.cut = NO_LANES;
   search.threshold = (REAL)(0.0f);
   start_glow(&search);
+  set_search_times(rays, &search);
   return search;
 }
 
@@ -109,7 +126,7 @@ static inline MASK start_inside(const Scene* scene, u32 index, const FieldSearch
 static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided, const FieldSearch* search) {
   __global const Instance* instance = scene->instances + index;
   MarchRays rays;
-  rays.origin = field_points(instance, search->o);
+  rays.origin = field_points(instance, search_origins(scene, index, search));
   rays.direction = object_vectors(instance, search->d);
   rays.t_min = search->t_min;
   rays.t_max = search->t_best;
@@ -168,7 +185,7 @@ static inline void march_field(const Scene* scene, u32 index, FieldSearch* searc
 static inline void shade_lanes(const Scene* scene, u32 index, const FieldSearch* search, Hits* hits) {
   const MASK mine = MASK_OF(search->winner == (int)index);
   if (!any_lane(mine)) return;
-  const REAL3 o = field_points(scene->instances + index, search->o),
+  const REAL3 o = field_points(scene->instances + index, search_origins(scene, index, search)),
               d = object_vectors(scene->instances + index, search->d);
   const REAL3 normal = sdf_normal(scene, scene->instances[index].root, along3(o, search->t_best, d),
                                   search->threshold, mine, search->cut);

@@ -20,7 +20,7 @@ typedef struct CameraSamples {
 #if HAS_LENS
   REAL lens_x, lens_y;
 #endif
-#if HAS_CAMERA_MOTION
+#if HAS_CAMERA_MOTION || HAS_OBJECT_MOTION
   REAL time;
 #endif
   u32 sample;
@@ -31,10 +31,17 @@ typedef struct CameraPlaces {
   REAL3 position, along, dx, dy;
 } CameraPlaces;
 
-#if HAS_CAMERA_MOTION
+#if HAS_CAMERA_MOTION || HAS_OBJECT_MOTION
 static inline void set_time(CameraSamples* samples, u32 lane, uint2 pixel) {
   REAL_LANE(samples->time, lane) = sample_1d(pixel, samples->sample, DIMENSION_TIME);
 }
+static inline REAL sampled_time(const CameraSamples* samples) { return samples->time; }
+#else
+static inline void set_time(CameraSamples* samples, u32 lane, uint2 pixel) {}
+static inline REAL sampled_time(const CameraSamples* samples) { return (REAL)(0.0f); }
+#endif
+
+#if HAS_CAMERA_MOTION
 static inline void move_camera(__global const SceneInfo* restrict info, const CameraSamples* samples,
                                CameraPlaces* camera) {
   camera->position = along3(camera->position, samples->time, all3(info->moved_position.xyz));
@@ -43,7 +50,6 @@ static inline void move_camera(__global const SceneInfo* restrict info, const Ca
   camera->dy = along3(camera->dy, samples->time, all3(info->moved_dy.xyz));
 }
 #else
-static inline void set_time(CameraSamples* samples, u32 lane, uint2 pixel) {}
 static inline void move_camera(__global const SceneInfo* restrict info, const CameraSamples* samples,
                                CameraPlaces* camera) {}
 #endif
@@ -84,7 +90,11 @@ static inline void set_camera_sample(CameraSamples* samples, u32 lane, uint2 pix
 // The rays through the places (x, y) of the image.
 static inline Rays sampled_camera_rays(__global const SceneInfo* restrict info, REAL x, REAL y,
                                        const CameraSamples* samples) {
-  if (!(HAS_LENS | HAS_CAMERA_MOTION)) return camera_rays(info, x, y);
+  if (!(HAS_LENS | HAS_CAMERA_MOTION)) {
+    Rays still = camera_rays(info, x, y);
+    set_ray_times(sampled_time(samples), &still);
+    return still;
+  }
   CameraPlaces camera = {all3(info->camera_position.xyz), all3(info->camera_corner.xyz),
                          all3(info->camera_dx.xyz), all3(info->camera_dy.xyz)};
   move_camera(info, samples, &camera);
@@ -97,6 +107,7 @@ static inline Rays sampled_camera_rays(__global const SceneInfo* restrict info, 
   rays.t_min = info->camera_forward.w * depth_to_t;
   rays.t_max = info->background_bottom.w * depth_to_t;
   start_cones(info, &rays);
+  set_ray_times(sampled_time(samples), &rays);
   return rays;
 }
 

@@ -46,6 +46,11 @@ typedef struct PathStates {
 #else
 #define STACKED_CONES(REALS, MASKS)
 #endif
+#if HAS_OBJECT_MOTION
+#define STACKED_TIME(REALS, MASKS) REALS(rays->time)
+#else
+#define STACKED_TIME(REALS, MASKS)
+#endif
 // A list:
 // clang-format off
 #define STACKED(REALS, MASKS)                                                                               \
@@ -53,7 +58,8 @@ typedef struct PathStates {
   REALS(rays->t_min) REALS(rays->t_max)                                                                     \
   REALS(paths->throughput.x) REALS(paths->throughput.y) REALS(paths->throughput.z) MASKS(paths->depth)      \
   STACKED_PIXEL(REALS, MASKS) STACKED_CROSSINGS(REALS, MASKS) STACKED_MEDIA(REALS, MASKS)                   \
-  STACKED_FIELDS(REALS, MASKS) STACKED_BRANCH(REALS, MASKS) STACKED_CONES(REALS, MASKS)
+  STACKED_FIELDS(REALS, MASKS) STACKED_BRANCH(REALS, MASKS) STACKED_CONES(REALS, MASKS)   \
+  STACKED_TIME(REALS, MASKS)
 // clang-format on
 #define COUNT_MEMBER(member) +1u
 #define STACK_MEMBERS (0u STACKED(COUNT_MEMBER, COUNT_MEMBER))

@@ -30,6 +30,9 @@ typedef struct SceneRays {
 #if HAS_GLOW
   REAL3 glow;  // gathered from fields that it passed
 #endif
+#if HAS_OBJECT_MOTION
+  REAL time;  // one for a whole path
+#endif
 } SceneRays;
 
 // What rays carry in some scenes only, from their start and past surfaces, and as others in their lanes;
@@ -118,6 +121,18 @@ static inline void join_glow(SceneRays* rays, const SceneRays* others, MASK lane
 static inline void forget_glow(SceneRays* rays) {}
 #endif
 
+#if HAS_OBJECT_MOTION
+static inline void start_at_time(SceneRays* rays, const Rays* camera) { rays->time = camera->time; }
+static inline void join_ray_times(SceneRays* rays, const SceneRays* others, MASK lanes) {
+  rays->time = select(rays->time, others->time, lanes);
+}
+static inline REAL time_of_rays(const SceneRays* rays) { return rays->time; }
+#else
+static inline void start_at_time(SceneRays* rays, const Rays* camera) {}
+static inline void join_ray_times(SceneRays* rays, const SceneRays* others, MASK lanes) {}
+static inline REAL time_of_rays(const SceneRays* rays) { return (REAL)(0.0f); }
+#endif
+
 static inline SceneRays scene_rays(const Rays* camera, MediaStack media) {
   SceneRays rays;
   rays.o = camera->o;
@@ -131,6 +146,7 @@ static inline SceneRays scene_rays(const Rays* camera, MediaStack media) {
   start_off_fields(&rays);
   start_camera_cones(&rays, camera);
   forget_glow(&rays);
+  start_at_time(&rays, camera);
   return rays;
 }
 
@@ -147,6 +163,7 @@ static inline void join_rays(SceneRays* rays, const SceneRays* others, MASK lane
   join_footprints(rays, others, lanes);
   join_cones(rays, others, lanes);
   join_glow(rays, others, lanes);
+  join_ray_times(rays, others, lanes);
 }
 
 static inline MediaStack get_media(const SceneRays* rays, u32 i) {

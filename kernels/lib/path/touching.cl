@@ -259,6 +259,8 @@ NEVER_INLINE float meet_touching(const Scene* scene, const SceneRays* rays, u32 
                                  Faces* faces, Seen* seen, float* apart) {
   Touching touching;
   const Hit first = get_hit(hits, i);
+  const REAL time = time_of_rays(rays);
+  set_stretch_time(REAL_LANE(time, i), &touching.met);
   find_touching(scene, get3(&rays->o, i), get3(&rays->d, i), REAL_LANE(rays->t_min, i), &first, &touching);
   join_faces(scene, &touching, mask, get_media(rays, i), seen);
   *apart = touching.apart;

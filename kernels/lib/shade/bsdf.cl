@@ -63,7 +63,7 @@ static inline void add_checker(const Scene* scene, __global const Material* mate
   while (any_lane(lanes)) {
     const MASK mine = take_alike(s->instance, &lanes, &index);
     __global const Instance* instance = scene->instances + index;
-    const REAL3 q = multiply3(object_points(instance, s->p), all3(instance->pattern_scale.xyz));
+    const REAL3 q = multiply3(points_of(scene, index, s, s->p), all3(instance->pattern_scale.xyz));
     const MASK odd = mine & odd_cell(q, material->checker_diffuse.w);
     bsdf->ambient = select3(bsdf->ambient, all3(material->checker_ambient.xyz), odd);
     bsdf->diffuse = select3(bsdf->diffuse, all3(material->checker_diffuse.xyz), odd);

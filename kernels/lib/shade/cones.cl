@@ -41,7 +41,7 @@ static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, 
     const REAL own =
         HAS_MESH && instance->shape == SHAPE_MESH
             ? triangle_curvatures(scene, s, mine)
-            : solid_curvatures(instance->shape, instance->parameters, object_points(instance, s->p), s->prim);
+            : solid_curvatures(instance->shape, instance->parameters, points_of(scene, index, s, s->p), s->prim);
     curvature = select(curvature, own * (1.0f / size), mine);
   }
   return select(-curvature, curvature, s->entering);

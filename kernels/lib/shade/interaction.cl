@@ -17,6 +17,9 @@ typedef struct SurfaceInteractions {
   MASK instance;          // index
   MASK material, flags;   // index; of the material
   MASK medium, entering;  // inside the surface; the ray comes from outside
+#if HAS_OBJECT_MOTION
+  REAL time;  // of the ray
+#endif
 #if HAS_UV
   Coordinates at;  // u, v and how the point moves with them
 #endif
@@ -37,6 +40,19 @@ typedef struct SurfaceInteractions {
 #endif
 } SurfaceInteractions;
 
+// Points p of the world, on such surfaces of instance `index`, in its own space.
+#if HAS_OBJECT_MOTION
+static inline void set_surface_times(const Hits* hits, SurfaceInteractions* s) { s->time = hits->time; }
+static inline REAL3 points_of(const Scene* scene, u32 index, const SurfaceInteractions* s, REAL3 p) {
+  return object_points(scene->instances + index, still_points(scene, index, p, s->time));
+}
+#else
+static inline void set_surface_times(const Hits* hits, SurfaceInteractions* s) {}
+static inline REAL3 points_of(const Scene* scene, u32 index, const SurfaceInteractions* s, REAL3 p) {
+  return object_points(scene->instances + index, p);
+}
+#endif
+
 static inline REAL greatest_size(REAL3 a) { return greatest3(real3(fabs(a.x), fabs(a.y), fabs(a.z))); }
 
 // How far from the surface a new ray must start: a few of the float's spacings at the magnitudes that made
@@ -53,9 +69,9 @@ static inline REAL triangle_offset(REAL extent, REAL3 normal, REAL3 outward) {
   return extent * 0x1p-21f * greatest_size(normal) / nonzero(greatest_size(outward));
 }
 
-// Takes positions on a sphere onto its surface by one Newton step; rounding of t is largest for far origins.
-static inline REAL3 settle_on_sphere(__global const Instance* instance, REAL3 p) {
-  const REAL3 q = object_points(instance, p);
+// Takes positions on a sphere, q in its own space, onto its surface by one Newton step; rounding of t is
+// largest for far origins.
+static inline REAL3 settle_on_sphere(__global const Instance* instance, REAL3 p, REAL3 q) {
   const REAL3 gradient = world_normals(instance, q);
   return along3(p, -0.5f * (dot3(q, q) - 1.0f) / dot3(gradient, gradient), gradient);
 }
@@ -159,6 +175,7 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
   s->flags = faces->flags;
   s->medium = faces->medium;
   s->entering = faces->entering;
+  set_surface_times(hits, s);
   REAL extent = (REAL)(0.0f);
   REAL3 color = white;
   MASK on_field = NO_LANES;
@@ -167,13 +184,14 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
     const MASK mine = take_alike(hits->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
     if (HAS_SPHERE && instance->shape == SHAPE_SPHERE)
-      s->p = select3(s->p, settle_on_sphere(instance, s->p), mine);
+      s->p = select3(s->p, settle_on_sphere(instance, s->p, points_of(scene, index, s, s->p)), mine);
     if (HAS_MESH && instance->shape == SHAPE_MESH) {
       const REAL3 ns = shading_normals(scene, instance, hits, mine, &color, &extent);
       s->ns = select3(s->ns, facing_normals(ns, s->ng, faces->entering, d), mine);
     }
     if (HAS_SDF && instance->shape == SHAPE_SDF) {
-      color = select3(color, field_colors(scene, index, &o, &d, hits->t), mine);
+      const REAL3 still = still_origins(hits, index, o);
+      color = select3(color, field_colors(scene, index, &still, &d, hits->t), mine);
       on_field |= mine;
     }
   }

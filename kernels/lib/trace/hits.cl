@@ -3,6 +3,7 @@
 #define SUNDOG_LIB_HITS_CL
 #include "lib/core/config.h"
 #include "lib/core/lanes.h"
+#include "lib/core/tables.h"
 #include "lib/core/transform.cl"
 #include "lib/solids/solids.cl"
 
@@ -11,13 +12,50 @@ typedef struct Hits {
   REAL t, u, v;
   MASK prim, instance;
   REAL3 ng;
+#if HAS_OBJECT_MOTION
+  REAL time;                     // of the ray
+  __global const float4* moves;  // the scene's table
+#endif
 } Hits;
 
 static inline Hits no_hits(REAL t_max) {
   const REAL zero = (REAL)(0.0f);
-  const Hits hits = {t_max, zero, zero, (MASK)((int)NO_PRIM), (MASK)((int)NO_INSTANCE), {zero, zero, zero}};
+  const Hits hits = {.t = t_max,
+                     .u = zero,
+                     .v = zero,
+                     .prim = (MASK)((int)NO_PRIM),
+                     .instance = (MASK)((int)NO_INSTANCE),
+                     .ng = {zero, zero, zero}};
   return hits;
 }
+
+// The times of the rays, and their origins where instance `index` would have had them when the shutter opened
+// (core/motion.cl); solids_origins(): each lane of `bits` for the instance of its own.
+#if HAS_OBJECT_MOTION
+static inline void set_time_of_hits(const Scene* scene, REAL time, Hits* hits) {
+  hits->time = time;
+  hits->moves = scene->moves;
+}
+static inline REAL time_of_hits(const Hits* hits) { return hits->time; }
+static inline REAL3 still_origins(const Hits* hits, u32 index, REAL3 o) {
+  return along3(o, -hits->time, all3(hits->moves[index].xyz));
+}
+static inline REAL3 solids_origins(const Hits* hits, const u32* solids, u32 bits, REAL3 o) {
+  REAL3 moved = all3((float3)(0.0f));
+  for (; bits; bits &= bits - 1u) set3(&moved, lowest_bit(bits), hits->moves[solids[lowest_bit(bits)]].xyz);
+  return along3(o, -hits->time, moved);
+}
+static inline void join_times(const Hits* a, const Hits* b, MASK m, Hits* hits) {
+  hits->time = select(a->time, b->time, m);
+  hits->moves = b->moves;
+}
+#else
+static inline void set_time_of_hits(const Scene* scene, REAL time, Hits* hits) {}
+static inline REAL time_of_hits(const Hits* hits) { return (REAL)(0.0f); }
+static inline REAL3 still_origins(const Hits* hits, u32 index, REAL3 o) { return o; }
+static inline REAL3 solids_origins(const Hits* hits, const u32* solids, u32 bits, REAL3 o) { return o; }
+static inline void join_times(const Hits* a, const Hits* b, MASK m, Hits* hits) {}
+#endif
 
 static inline MASK hit_anything(const Hits* hits) { return MASK_OF(hits->instance != (int)NO_INSTANCE); }
 
@@ -43,12 +81,13 @@ static inline void set_hit(Hits* hits, u32 i, const Hit* hit) {
 }
 
 static inline Hits select_hits(const Hits* a, const Hits* b, MASK m) {
-  const Hits hits = {select(a->t, b->t, m),
-                     select(a->u, b->u, m),
-                     select(a->v, b->v, m),
-                     select(a->prim, b->prim, m),
-                     select(a->instance, b->instance, m),
-                     select3(a->ng, b->ng, m)};
+  Hits hits = {.t = select(a->t, b->t, m),
+               .u = select(a->u, b->u, m),
+               .v = select(a->v, b->v, m),
+               .prim = select(a->prim, b->prim, m),
+               .instance = select(a->instance, b->instance, m),
+               .ng = select3(a->ng, b->ng, m)};
+  join_times(a, b, m, &hits);
   return hits;
 }
 
@@ -84,9 +123,10 @@ NEVER_INLINE void hit_solids(__global const Instance* restrict instances, u32 fi
     if (!any_lane(active)) break;
     __global const Instance* instance = instances + i;
     const bool moves = !(instance->flags & INSTANCE_IDENTITY);
+    const REAL3 origins = still_origins(&found, i, o);
     offer_solids(instance->shape, instance->parameters, (MASK)((int)i),
-                 moves ? object_points(instance, o) : o, moves ? object_vectors(instance, d) : d, t_min,
-                 active, &found);
+                 moves ? object_points(instance, origins) : origins, moves ? object_vectors(instance, d) : d,
+                 t_min, active, &found);
   }
   *hits = found;
 }

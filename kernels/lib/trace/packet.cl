@@ -35,7 +35,7 @@ NEVER_INLINE void packet_in_instance(const Scene* scene, const PacketRays* rays,
       return;
     }
     PacketRays object;
-    packet_in_object(instance, rays, active, &object);
+    packet_in_object(scene, index, rays, hits->found, active, &object);
     if (aim_packet(&object)) {
       const int16 lanes = lanes_of(active);
       const float16 t = hits->found->t;  // of the others, for afterwards

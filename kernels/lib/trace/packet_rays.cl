@@ -165,13 +165,16 @@ NEVER_INLINE bool aim_packet(PacketRays* rays) {
 }
 
 // The rays as an instance sees them. A ray that is not in `active` becomes one that is.
-NEVER_INLINE void packet_in_object(__global const Instance* instance, const PacketRays* world, u32 active,
-                                   PacketRays* object) {
+NEVER_INLINE void packet_in_object(const Scene* scene, u32 index, const PacketRays* world, const Hits* hits,
+                                   u32 active, PacketRays* object) {
+  __global const Instance* instance = scene->instances + index;
   const u32 stand_in = lowest_bit(active);
   const int16 lanes = lanes_of(active);
   float16 o[3], d[3];
+  const REAL3 still = still_origins(hits, index, real3(world->o[0], world->o[1], world->o[2]));
+  const REAL origins[3] = {still.x, still.y, still.z};
   for (u32 axis = 0; axis < 3u; ++axis) {
-    o[axis] = select((float16)(get_lane(&world->o[axis], stand_in)), world->o[axis], lanes);
+    o[axis] = select((float16)(get_lane(&origins[axis], stand_in)), origins[axis], lanes);
     d[axis] = select((float16)(get_lane(&world->d[axis], stand_in)), world->d[axis], lanes);
   }
   for (u32 axis = 0; axis < 3u; ++axis) {

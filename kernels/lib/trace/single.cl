@@ -3,6 +3,7 @@
 #define SUNDOG_LIB_SINGLE_CL
 #include "lib/core/config.h"
 #if !WALKS_IN_TURN
+#include "lib/core/motion.cl"
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
 #include "lib/trace/hits.cl"
@@ -10,13 +11,14 @@
 #include "lib/trace/triangles.cl"
 
 // The solid `index` in (t_min, hit->t], world-space ray: one ray stands in for all lanes.
-static inline void trace_solid(__global const Instance* restrict instances, u32 index, float3 o, float3 d,
-                               float t_min, Hit* hit) {
+static inline void trace_solid(const Scene* scene, u32 index, float3 o, float3 d, float t_min, float time,
+                               Hit* hit) {
   const REAL3 origins = all3(o), directions = all3(d);
   const REAL starts = (REAL)(t_min);
   Hits hits = no_hits((REAL)(hit->t));
   hits.instance = (MASK)((int)hit->instance);
-  hit_solids(instances, index, index + 1u, &origins, &directions, &starts, ALL_LANES, false, &hits);
+  set_time_of_hits(scene, (REAL)(time), &hits);
+  hit_solids(scene->instances, index, index + 1u, &origins, &directions, &starts, ALL_LANES, false, &hits);
   if ((u32)MASK_LANE(hits.instance, 0) == index) *hit = get_hit(&hits, 0);
 }
 
@@ -59,13 +61,13 @@ static inline void trace_mesh(const Scene* scene, u32 root, const SlabRay* slab_
 }
 
 // One instance in (t_min, hit->t]; world-space ray.
-static inline void trace_instance(const Scene* scene, u32 index, float3 o, float3 d, float t_min, bool any,
-                                  u32* stack, float* stack_t, Hit* hit) {
+static inline void trace_instance(const Scene* scene, u32 index, float3 o, float3 d, float t_min, float time,
+                                  bool any, u32* stack, float* stack_t, Hit* hit) {
   __global const Instance* instance = scene->instances + index;
   if (HAS_MESH && instance->shape == SHAPE_MESH) {
     float3 oo = o, dd = d;
     if (!(instance->flags & INSTANCE_IDENTITY)) {
-      oo = object_point(instance, o);
+      oo = object_point(instance, still_point(scene, index, o, time));
       dd = object_vector(instance, d);
     }
     const SlabRay slabs = make_slab_ray(oo, dd);
@@ -73,12 +75,12 @@ static inline void trace_instance(const Scene* scene, u32 index, float3 o, float
     trace_mesh(scene, instance->root, &slabs, &shear, t_min, index, any, stack, stack_t, hit);
     return;
   }
-  trace_solid(scene->instances, index, o, d, t_min, hit);
+  trace_solid(scene, index, o, d, t_min, time, hit);
 }
 
 // The bounded instances below `word` of the scene BVH.
-static inline void trace_bounded(const Scene* scene, u32 word, float3 o, float3 d, float t_min, bool any,
-                                 Hit* hit) {
+static inline void trace_bounded(const Scene* scene, u32 word, float3 o, float3 d, float t_min, float time,
+                                 bool any, Hit* hit) {
   u32 stack[BVH_STACK];
   float stack_t[BVH_STACK];
   const SlabRay slabs = make_slab_ray(o, d);
@@ -88,7 +90,7 @@ static inline void trace_bounded(const Scene* scene, u32 word, float3 o, float3 
       const u32 first = word & BVH_FIRST_MASK,
                 last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
       for (u32 i = first; i <= last; ++i) {
-        trace_instance(scene, i, o, d, t_min, any, stack + top, stack_t + top, hit);
+        trace_instance(scene, i, o, d, t_min, time, any, stack + top, stack_t + top, hit);
         if (any && hit->instance != NO_INSTANCE) return;
       }
     } else {
@@ -109,10 +111,11 @@ static inline void trace_bounded(const Scene* scene, u32 word, float3 o, float3 
 
 // All bounded instances. One alone is a leaf without a tree: there is a single place that traces instances,
 // of which some compilers make copies.
-static inline void trace_instances(const Scene* scene, float3 o, float3 d, float t_min, bool any, Hit* hit) {
+static inline void trace_instances(const Scene* scene, float3 o, float3 d, float t_min, float time, bool any,
+                                   Hit* hit) {
   if (scene->info->bounded_count == 0u) return;
-  trace_bounded(scene, scene->info->bounded_count == 1u ? BVH_LEAF : scene->info->tlas_root, o, d, t_min, any,
-                hit);
+  trace_bounded(scene, scene->info->bounded_count == 1u ? BVH_LEAF : scene->info->tlas_root, o, d, t_min,
+                time, any, hit);
 }
 
 #endif

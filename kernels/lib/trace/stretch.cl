@@ -3,6 +3,7 @@
 #define SUNDOG_LIB_STRETCH_CL
 #include "lib/core/config.h"
 #if HAS_TOUCHING
+#include "lib/core/motion.cl"
 #include "lib/core/tables.h"
 #include "lib/trace/nodes.cl"
 #include "lib/trace/traverse.cl"
@@ -16,7 +17,18 @@ typedef struct Stretch {
   float from, to, box_from, box_to;
   u32 count;
   Hit hits[MOST_TOUCHING];
+#if HAS_OBJECT_MOTION
+  float time;
+#endif
 } Stretch;
+
+#if HAS_OBJECT_MOTION
+static inline void set_stretch_time(float time, Stretch* stretch) { stretch->time = time; }
+static inline float time_of_stretch(const Stretch* stretch) { return stretch->time; }
+#else
+static inline void set_stretch_time(float time, Stretch* stretch) {}
+static inline float time_of_stretch(const Stretch* stretch) { return 0.0f; }
+#endif
 
 static inline bool same_face(const Hit* a, const Hit* b) {
   return a->instance == b->instance && a->prim == b->prim;
@@ -38,23 +50,22 @@ static inline bool comes_near(__global const Instance* restrict instance, const 
 }
 
 // The first hit of the solid in (from, to]; of NO_INSTANCE where there is none.
-static inline Hit next_hit(__global const Instance* restrict instances, u32 index, const Stretch* stretch,
-                           float from, float to) {
+static inline Hit next_hit(const Scene* scene, u32 index, const Stretch* stretch, float from, float to) {
   const REAL3 o = all3(stretch->o), d = all3(stretch->d);
   const REAL t_min = (REAL)(from);
   Hits hits = no_hits((REAL)(to));
-  hit_solids(instances, index, index + 1u, &o, &d, &t_min, lanes_of(1u), false, &hits);
+  set_time_of_hits(scene, (REAL)(time_of_stretch(stretch)), &hits);
+  hit_solids(scene->instances, index, index + 1u, &o, &d, &t_min, lanes_of(1u), false, &hits);
   return get_hit(&hits, 0);
 }
 
 // A solid that is entered and has no further hit ends where it begins: it is thinner there than rounding, or
 // grazed. Its exit is the same hit, seen from behind. Planes have no end.
-static inline void note_exit(__global const Instance* restrict instances, u32 index, Stretch* stretch,
-                             Hit hit) {
-  if (instances[index].shape == SHAPE_PLANE || stretch->count >= MOST_TOUCHING) return;
-  const float3 outward = world_normal(instances + index, (float3)(hit.ng_x, hit.ng_y, hit.ng_z));
+static inline void note_exit(const Scene* scene, u32 index, Stretch* stretch, Hit hit) {
+  if (scene->instances[index].shape == SHAPE_PLANE || stretch->count >= MOST_TOUCHING) return;
+  const float3 outward = world_normal(scene->instances + index, (float3)(hit.ng_x, hit.ng_y, hit.ng_z));
   if (dot(outward, stretch->d) >= 0.0f) return;
-  if (next_hit(instances, index, stretch, hit.t, INFINITY).instance != NO_INSTANCE) return;
+  if (next_hit(scene, index, stretch, hit.t, INFINITY).instance != NO_INSTANCE) return;
   Hit behind = hit;
   behind.ng_x = -hit.ng_x;
   behind.ng_y = -hit.ng_y;
@@ -62,15 +73,15 @@ static inline void note_exit(__global const Instance* restrict instances, u32 in
   stretch->hits[stretch->count++] = behind;
 }
 
-static inline void note_solid(__global const Instance* restrict instances, u32 index, Stretch* stretch) {
-  Hit last, hit = next_hit(instances, index, stretch, stretch->from, stretch->to);
+static inline void note_solid(const Scene* scene, u32 index, Stretch* stretch) {
+  Hit last, hit = next_hit(scene, index, stretch, stretch->from, stretch->to);
   if (hit.instance == NO_INSTANCE) return;
   for (u32 i = 0; i < 4u && hit.instance != NO_INSTANCE; ++i) {
     note_hit(stretch, &hit);
     last = hit;
-    hit = next_hit(instances, index, stretch, last.t, stretch->to);
+    hit = next_hit(scene, index, stretch, last.t, stretch->to);
   }
-  note_exit(instances, index, stretch, last);
+  note_exit(scene, index, stretch, last);
 }
 
 // Pushes the children of a node that the stretch crosses. Returns the stack's new top.
@@ -125,7 +136,7 @@ static inline void note_mesh(const Scene* scene, u32 index, Stretch* stretch, u3
   __global const Instance* instance = scene->instances + index;
   float3 o = stretch->o, d = stretch->d;
   if (!(instance->flags & INSTANCE_IDENTITY)) {
-    o = object_point(instance, o);
+    o = object_point(instance, still_point(scene, index, o, time_of_stretch(stretch)));
     d = object_vector(instance, d);
   }
   const SlabRay slabs = make_slab_ray(o, d);
@@ -160,7 +171,7 @@ static inline void note_bounded(const Scene* scene, Stretch* stretch) {
       if (HAS_MESH && scene->instances[i].shape == SHAPE_MESH)
         note_mesh(scene, i, stretch, stack + top);
       else if (HAS_SOLID)
-        note_solid(scene->instances, i, stretch);
+        note_solid(scene, i, stretch);
     }
   }
 }
@@ -170,7 +181,7 @@ NEVER_INLINE void note_all(const Scene* scene, Stretch* stretch) {
   if (HAS_BVH) note_bounded(scene, stretch);
   const u32 first = HAS_BVH ? scene->info->bounded_count : 0u;
   for (u32 i = first; HAS_SOLID && i < scene->info->instance_count; ++i)
-    if (comes_near(scene->instances + i, stretch)) note_solid(scene->instances, i, stretch);
+    if (comes_near(scene->instances + i, stretch)) note_solid(scene, i, stretch);
 }
 #endif
 

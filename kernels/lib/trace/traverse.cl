@@ -93,7 +93,8 @@ static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* 
   for (u32 bits = lane_bits(active); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     Hit hit = get_hit(hits, i);
-    trace_instances(scene, get3(o, i), get3(d, i), REAL_LANE(*t_min, i), any, &hit);
+    const REAL time = time_of_hits(hits);
+    trace_instances(scene, get3(o, i), get3(d, i), REAL_LANE(*t_min, i), REAL_LANE(time, i), any, &hit);
     set_hit(hits, i, &hit);
   }
 }
@@ -107,7 +108,7 @@ static inline void trace_bounded_batch(const Scene* scene, const REAL3* world_o,
   const bool lone_mesh =
       HAS_MESH && scene->info->bounded_count == 1u && scene->instances->shape == SHAPE_MESH;
   if (WIDE_VECTORS && lone_mesh && !(scene->instances->flags & INSTANCE_IDENTITY)) {
-    o = object_points(scene->instances, o);
+    o = object_points(scene->instances, still_origins(hits, 0u, o));
     d = object_vectors(scene->instances, d);
   }
   const bool any = way & TRACE_ANY;
@@ -121,10 +122,12 @@ static inline bool goes_in_tree(const Scene* scene, bool coherent) {
   return HAS_BVH && ((PACKETS && coherent) || scene->info->bounded_count > FEW_SOLIDS);
 }
 
-// The hits of the lanes of `active` in (t_min, t_max]. `way`: TRACE_* bits.
+// The hits of the lanes of `active` in (t_min, t_max]. `time`: of the rays, where things move. `way`: TRACE_*
+// bits.
 static inline void find_hits(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                             REAL t_max, MASK active, u32 way, Hits* hits) {
+                             REAL t_max, REAL time, MASK active, u32 way, Hits* hits) {
   *hits = no_hits(t_max);
+  set_time_of_hits(scene, time, hits);
   if (!HAS_TRACED) return;
   active &= traceable(o, d, *t_min, t_max);
   const bool in_tree = goes_in_tree(scene, way & TRACE_COHERENT);
@@ -165,16 +168,16 @@ static inline void finish_triangles(const Scene* scene, bool coherent, Hits* hit
 
 // The nearest hits of the lanes of `active` in (t_min, t_max].
 static inline void trace_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                               REAL t_max, MASK active, bool coherent, Hits* hits) {
-  find_hits(scene, o, d, t_min, t_max, active, coherent ? TRACE_COHERENT : TRACE_NEAREST, hits);
+                               REAL t_max, REAL time, MASK active, bool coherent, Hits* hits) {
+  find_hits(scene, o, d, t_min, t_max, time, active, coherent ? TRACE_COHERENT : TRACE_NEAREST, hits);
   finish_triangles(scene, coherent, hits);
 }
 
 // The lanes of `active` that hit anything in (t_min, t_max].
 static inline MASK occluded_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                                  REAL t_max, MASK active, bool coherent) {
+                                  REAL t_max, REAL time, MASK active, bool coherent) {
   Hits hits;
-  find_hits(scene, o, d, t_min, t_max, active, TRACE_ANY | (coherent ? TRACE_COHERENT : 0u), &hits);
+  find_hits(scene, o, d, t_min, t_max, time, active, TRACE_ANY | (coherent ? TRACE_COHERENT : 0u), &hits);
   return active & hit_anything(&hits);
 }
 

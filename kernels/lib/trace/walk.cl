@@ -89,7 +89,7 @@ NEVER_INLINE void aim_in_meshes(__global const Instance* restrict instances, con
       walks[ray].rays = turned;
     }
     entering &= ~alike;
-    const REAL3 o = object_points(instances + index, *rays->o),
+    const REAL3 o = object_points(instances + index, still_origins(rays->hits, index, *rays->o)),
                 d = object_vectors(instances + index, *rays->d);
     aim_rays(turned, &o, &d, alike);
   }

@@ -61,7 +61,8 @@ NEVER_INLINE void hit_solids_by_lane(__global const Instance* restrict instances
       MASK_LANE(places, ray) = (int)solids[ray];
     }
     bits &= ~alike;
-    offer_solids(first->shape, first->parameters, places, points_by_lane(&transform, *o),
+    const REAL3 origins = solids_origins(hits, solids, alike, *o);
+    offer_solids(first->shape, first->parameters, places, points_by_lane(&transform, origins),
                  vectors_by_lane(&transform, *d), *t_min, lanes_of(alike), hits);
   } while (bits);
 }
