@@ -75,7 +75,8 @@ NEVER_INLINE void trace_rays_item(const Scene* scene, __global const Ray* restri
   Batch batch;
   load_batch(rays, ray_count, first, &batch);
   Hits found;
-  trace_batch(scene, &batch.o, &batch.d, &batch.t_min, batch.t_max, (REAL)(0.0f), batch.lanes, coherent != 0u, &found);
+  trace_batch(scene, &batch.o, &batch.d, &batch.t_min, batch.t_max, (REAL)(0.0f), batch.lanes, coherent != 0u,
+              &found);
 #if LANES == 16
   if (first + BATCH <= ray_count) {
     float16 v[8] = {found.t,    found.u,    found.v,   as_float16(found.prim), as_float16(found.instance),
@@ -94,8 +95,8 @@ NEVER_INLINE void occluded_rays_item(const Scene* scene, __global const Ray* res
   if (first >= ray_count) return;
   Batch batch;
   load_batch(rays, ray_count, first, &batch);
-  const MASK found =
-      occluded_batch(scene, &batch.o, &batch.d, &batch.t_min, batch.t_max, (REAL)(0.0f), batch.lanes, coherent != 0u);
+  const MASK found = occluded_batch(scene, &batch.o, &batch.d, &batch.t_min, batch.t_max, (REAL)(0.0f),
+                                    batch.lanes, coherent != 0u);
 #if LANES == 16
   if (first + BATCH <= ray_count) {
     vstore16(as_uint16(found) & 1u, 0, occluded + first);

@@ -11,21 +11,23 @@
 // The hits of the lanes of `active`; elsewhere nothing is hit. `coherent`: the rays run close together.
 static inline void nearest_hits(const Scene* scene, SceneRays* rays, MASK active, bool coherent, Hits* hits,
                                 u32* counts) {
-  trace_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active, coherent, hits);
+  trace_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active, coherent,
+              hits);
   march_fields(scene, rays, active, MARCH_TO_SEE, hits, counts);
 }
 
 // The same for shadow rays.
 static inline void nearest_to_light(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
                                     Hits* hits, u32* counts) {
-  trace_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active, coherent, hits);
+  trace_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active, coherent,
+              hits);
   march_fields(scene, rays, active, MARCH_TO_LIGHT, hits, counts);
 }
 
 // The lanes of `active` that hit anything.
 static inline MASK any_hits(const Scene* scene, SceneRays* rays, MASK active, bool coherent, u32* counts) {
-  MASK occluded = occluded_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active,
-                                 coherent);
+  MASK occluded = occluded_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays),
+                                 active, coherent);
   const MASK open = active & ~occluded;
   if (HAS_SDF && any_lane(open)) {
     Hits hits = no_hits(rays->t_max);
@@ -41,8 +43,8 @@ static inline MASK any_hits(const Scene* scene, SceneRays* rays, MASK active, bo
 static inline void next_hits(const Scene* scene, SceneRays* rays, MASK active, bool to_light, Hits* hits,
                              u32* counts) {
   const bool any = to_light && !HAS_SHADOW_FILTERS;
-  find_hits(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active, any ? TRACE_ANY : TRACE_NEAREST,
-            hits);
+  find_hits(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active,
+            any ? TRACE_ANY : TRACE_NEAREST, hits);
   finish_triangles(scene, false, hits);
   const u32 purpose = any ? MARCH_TO_BLOCK : to_light ? MARCH_TO_LIGHT : MARCH_TO_SEE;
   if (any) active &= ~hit_anything(hits);

@@ -38,10 +38,10 @@ static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, 
     const float4 scale = instance->pattern_scale;
     const float size =
         cbrt(scale.x * scale.y * scale.z) / scale.w;  // of a unit of object space, in the world
-    const REAL own =
-        HAS_MESH && instance->shape == SHAPE_MESH
-            ? triangle_curvatures(scene, s, mine)
-            : solid_curvatures(instance->shape, instance->parameters, points_of(scene, index, s, s->p), s->prim);
+    const REAL own = HAS_MESH && instance->shape == SHAPE_MESH
+                         ? triangle_curvatures(scene, s, mine)
+                         : solid_curvatures(instance->shape, instance->parameters,
+                                            points_of(scene, index, s, s->p), s->prim);
     curvature = select(curvature, own * (1.0f / size), mine);
   }
   return select(-curvature, curvature, s->entering);

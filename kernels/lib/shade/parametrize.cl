@@ -88,8 +88,8 @@ NEVER_INLINE void find_coordinates(const Scene* scene, const Hits* hits, const R
     const MASK mine = take_alike(hits->instance, &lanes, &index);
     __global const Instance* instance = scene->instances + index;
     SurfacePoints points = points_without_place(hits->ng);
-    points_on_solid(instance->shape, instance->parameters, object_points(instance, still_origins(hits, index, *p)),
-                    hits->prim, &points);
+    points_on_solid(instance->shape, instance->parameters,
+                    object_points(instance, still_origins(hits, index, *p)), hits->prim, &points);
     if (HAS_MESH && instance->shape == SHAPE_MESH) on_triangles(scene, hits, mine, &points);
     const REAL3 dpdu = world_vectors(instance, points.dpdu), dpdv = world_vectors(instance, points.dpdv);
     at->u = select(at->u, points.u, mine);

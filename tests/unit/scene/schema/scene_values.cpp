@@ -115,7 +115,7 @@ std::string line(const Object& o) {
       fmt::format("object {} {} {} {}", o.name, std::visit(ShapeText{}, o.shape), o.material, o.place);
   for (int column = 0; column < 4; ++column)
     out += fmt::format(" {}", text(dvec3(o.world_from_object[column])));
-  return out + '\n';
+  return out + " " + text(o.moves_by) + '\n';
 }
 
 }  // namespace
