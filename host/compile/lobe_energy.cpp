@@ -9,7 +9,7 @@
 #include <glm/glm.hpp>
 #include <numbers>
 
-#include "shared/scene.h"
+#include "shared/lobe_energy.h"
 
 namespace sundog {
 namespace {
@@ -125,6 +125,38 @@ double glass_energy(double cosine, double alpha, double eta) {
   return sum / (glass_draws * glass_draws);
 }
 
+/// The mean over directions, by their cosine, of 1 minus values at even cosines.
+double mean_lost(const float* values) {
+  double sum = 0;
+  for (u32 i = 0; i + 1 < GLASS_STEPS; ++i) {
+    const double a = double(i) / (GLASS_STEPS - 1), b = double(i + 1) / (GLASS_STEPS - 1);
+    sum += (b - a) * ((1 - double(values[i])) * (2 * a + b) + (1 - double(values[i + 1])) * (a + 2 * b)) / 6;
+  }
+  return std::max(2 * sum, 0.0);
+}
+
+/// The part of even light that enters the thicker medium.
+double mean_entering(double eta) {
+  double sum = 0, bent = 0;
+  for (int i = 0; i < 256; ++i) {
+    const double c = (i + 0.5) / 256;
+    sum += 2 * c * (1 - reflectance(c, eta, bent));
+  }
+  return sum / 256;
+}
+
+/// What is lost at the first meeting with a facet, in the mean, and where it goes.
+void add_further(std::vector<float>& table) {
+  table.resize(GLASS_LOST + GLASS_INDICES * 2 * GLASS_STEPS);
+  for (u32 i = 0; i < GLASS_INDICES * 2 * GLASS_STEPS; ++i)
+    table[GLASS_LOST + i] = static_cast<float>(mean_lost(table.data() + LOBE_GLASS + i * GLASS_STEPS));
+  for (u32 i = 0; i < GLASS_INDICES * GLASS_STEPS; ++i) {
+    const u32 index = i / GLASS_STEPS;
+    const double less = std::max(double(GLASS_REACH) * index / (GLASS_INDICES - 1), 1e-3);
+    table[GLASS_THROUGH + i] = static_cast<float>(mean_entering(1 / (1 - less)));
+  }
+}
+
 void add_glass(std::vector<float>& table) {
   table.resize(LOBE_GLASS + GLASS_INDICES * 2 * GLASS_STEPS * GLASS_STEPS);
   tbb::parallel_for(0u, GLASS_INDICES * 2 * GLASS_STEPS, [&](u32 i) {
@@ -149,7 +181,10 @@ std::vector<float> make_lobe_energy(bool gains, bool glass) {
     for (u32 column = 0; column < LOBE_STEPS; ++column)
       table.push_back(static_cast<float>(energy(cosine_of(column), alpha_of(row))));
   if (gains) add_gains(table);
-  if (glass) add_glass(table);
+  if (glass) {
+    add_glass(table);
+    add_further(table);
+  }
   return table;
 }
 

@@ -12,7 +12,9 @@ namespace sundog {
 /// symmetric matrix. With `glass` the table from LOBE_GLASS on for white dielectrics: by
 /// 1 - 1 / eta, side (the thinner medium's first), alpha and cosine the energy that facets reflect and
 /// transmit. Factors for both directions would be of no use there: they share light between the sides as
-/// they please, and reflections of rough glass get a twentieth of what is theirs.
+/// they please, and reflections of rough glass get a twentieth of what is theirs. So light that meets further
+/// facets is a lobe of its own (kernels/lib/shade/microfacets.cl): from GLASS_THROUGH on the part of it that
+/// enters the thicker medium, from GLASS_LOST on the means over directions of what the first meeting loses.
 std::vector<float> make_lobe_energy(bool gains, bool glass);
 
 }  // namespace sundog

@@ -92,7 +92,8 @@ u32 material_flags(const MaterialDescription& material) {
   if (material.checker) flags |= MATERIAL_CHECKER;
   if (!is_zero(material.transmission) || material.opacity < 1 || material.textures.opacity >= 0)
     flags |= MATERIAL_TRANSMITS;
-  if (!is_zero(material.reflection) || material.coat > 0) flags |= MATERIAL_REFLECTS;
+  if (!is_zero(material.reflection) || material.coat > 0 || material.layers) flags |= MATERIAL_REFLECTS;
+  if (material.layers) flags |= MATERIAL_LAYERED;
   if (material.medium < 0) flags |= MATERIAL_THIN;
   if (material.vertex_color) flags |= MATERIAL_VERTEX_COLOR;
   if (material.one_sided) flags |= MATERIAL_ONE_SIDED | MATERIAL_TRANSMITS;
@@ -101,7 +102,7 @@ u32 material_flags(const MaterialDescription& material) {
     if (material.metal_rough->metalness > 0) flags |= MATERIAL_REFLECTS;
   }
   const bool local = !is_zero(material.ambient) || !is_zero(material.diffuse) ||
-                     !is_zero(material.specular) || has_maps(material);
+                     !is_zero(material.specular) || has_maps(material) || material.layers;
   if (material.type == MaterialType::dielectric && !local && material.transmission == dvec3(1))
     flags |= MATERIAL_CLEAR;
   return flags;

@@ -226,8 +226,9 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   out.features.camera_inside = is_camera_inside(scene.camera.position - out.origin,
                                                 p.instances.made.instances.rows(), p.instances.boxes);
   finish_lights(scene, p.meshes.placed, out);
-  if (out.features.rough)
-    out.lobe_energy = lobe_energies(traces_paths(out.integrator), out.features.rough_glass);
+  if (out.features.rough || out.features.layers)
+    out.lobe_energy =
+        lobe_energies(traces_paths(out.integrator) || out.features.layers, out.features.rough_glass);
   set_counts(out);
   set_figures(out);
   out.figures.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -15,6 +15,7 @@
 #include "base/tone_map.h"
 #include "scene/formula/sdf.h"
 #include "scene/halo.h"
+#include "scene/materials/openpbr.h"
 #include "scene/mesh_array.h"
 #include "scene/spectra/refraction.h"
 #include "scene/texture_description.h"
@@ -174,13 +175,14 @@ struct MaterialDescription {
   double normal_scale = 1;                  // factor on the slopes of a normal map
   double bump = 1;                          // height of a 1 of the height texture, object space
   double bump_uv = 0;                       // the same in units of u and v, added
-  double parallax = 0;             // above 0: how deep a 0 of the height texture is below a 1, object space
-  int displaced_by = -1;           // index into textures: heights that move the vertices of meshes
-  double displacement = 1;         // how far a 1 of them moves, object space
-  double displacement_middle = 0;  // the height that moves nothing
-  double displacement_edge = 0;    // of the triangles, object space; 0: about a texel's
-  double occlusion = 1;            // how much of the occlusion texture counts, [0, 1]
-  double coat = 0;                 // a clear layer's mirror above all else, [0, 1], times its texture
+  double parallax = 0;              // above 0: how deep a 0 of the height texture is below a 1, object space
+  int displaced_by = -1;            // index into textures: heights that move the vertices of meshes
+  double displacement = 1;          // how far a 1 of them moves, object space
+  double displacement_middle = 0;   // the height that moves nothing
+  double displacement_edge = 0;     // of the triangles, object space; 0: about a texel's
+  double occlusion = 1;             // how much of the occlusion texture counts, [0, 1]
+  double coat = 0;                  // a clear layer's mirror above all else, [0, 1], times its texture
+  std::optional<OpenPbr> layers{};  // what stands over these terms, and its base: set_openpbr()
 };
 
 /// Triangles with shared vertices. `normals` (empty: flat shading), `uvs`, `tangents` and `colors` are empty

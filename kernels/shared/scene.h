@@ -18,6 +18,7 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_CLEAR 128u        // no local terms or tint: cannot be seen between equal indices
 #define MATERIAL_METAL_ROUGH 256u  // its terms follow from metalness and roughness (shared/metal_rough.h)
 #define MATERIAL_ONE_SIDED 512u    // from behind it is not there
+#define MATERIAL_LAYERED 1024u     // layers stand over it (shared/layers.h)
 
 // Highlights up to this exponent, where it is whole, are products alone.
 #define GREATEST_WHOLE_EXPONENT 65535.0f

@@ -8,6 +8,7 @@
 #define SUNDOG_SHARED_SCENE_TABLES_H
 #include "shared/bvh.h"
 #include "shared/environment.h"
+#include "shared/layers.h"
 #include "shared/scene.h"
 #include "shared/sdf.h"
 #include "shared/spectra.h"
@@ -27,6 +28,8 @@
   TABLE(LightNode, LightNode, light_nodes, "nodes over lights")          \
   TABLE(u32, u32, light_leaves, "leaves of lights")                      \
   TABLE(float, float, lobe_energy, "energy of lobes")                    \
+  TABLE(Layers, Layers, layers, "layered materials")                     \
+  TABLE(float, float, layer_rows, "light left by layers")                \
   TABLE(float, float, spectra, "spectra")                                \
   TABLE(float4, float4, guides, "guides of paths")                       \
   TABLE(Environment, Environment, environments, "environments")          \

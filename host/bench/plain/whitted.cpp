@@ -259,6 +259,7 @@ std::string plain_refusal(const CompiledScene& scene) {
     return "the plain C++ program knows the default sampler and filter alone";
   if (scene.features.rough) return "the plain C++ program knows no roughness";
   if (scene.features.object_motion) return "the plain C++ program knows no motion";
+  if (scene.features.layers) return "the plain C++ program knows no layered materials";
   if (scene.features.sky) return "the plain C++ program knows no sky";
   if (!std::ranges::all_of(scene.lights, [](const Light& light) { return plain::knows_light(light.kind); }))
     return "the plain C++ program knows no such light";

@@ -4,6 +4,7 @@
 
 #include "compile/environment.h"
 #include "compile/halo/halo_map.h"
+#include "compile/layers/layers.h"
 #include "compile/materials.h"
 #include "compile/parts/parts.h"
 #include "compile/textures.h"
@@ -72,6 +73,7 @@ SurfacesPart make_surfaces(const SceneDescription& scene) {
   CompiledScene& made = part.made;
   part.default_material = add_materials(scene, made);
   add_textures(scene, made);
+  add_layers(scene, made);
   made.features.media = absorbs(made.media[0]);
   made.features.absorption = std::ranges::any_of(made.media, absorbs);
   made.features.scattering =

@@ -6,20 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/names.h"
-#include "scene/read/parts.h"
+#include "scene/read/surface_terms.h"
 #include "scene/read/textures.h"
 
 namespace sundog {
 
 namespace {
-
-/// What colours a surface: one colour, two in a checkerboard, or a texture (a factor on both).
-struct Pattern {
-  dvec3 even{1}, odd{1};
-  int texture = -1;
-};
-
-constexpr Range ior_range{.low = 0.01, .high = 100};
 
 Pattern scale(const Pattern& pattern, double coefficient) {
   return {pattern.even * coefficient, pattern.odd * coefficient, pattern.texture};
@@ -102,19 +94,21 @@ void read_index(JsonObject& object, MediumDescription& medium) {
     }
 }
 
-/// A colour, or the name of a texture.
-Pattern read_plain_color(const JsonValue& value, TextureLibrary& textures, const Range& range = color_range) {
+}  // namespace
+
+Pattern read_plain_color(const JsonValue& value, TextureLibrary& textures, const Range& range) {
   if (value.json().is_string()) return {dvec3(1), dvec3(1), textures.use(value, TextureUse::color)};
   const dvec3 color = value.color(range);
   return {color, color, -1};
 }
 
-/// A number, or the name of a texture that is a factor on 1.
 double read_number(const JsonValue& value, TextureLibrary& textures, const Range& range, int* texture) {
   if (!value.json().is_string()) return value.number(range);
   *texture = textures.use(value, TextureUse::number);
   return 1;
 }
+
+namespace {
 
 /// What a term has when its object leaves it out, and where it puts an exponent.
 struct TermRules {
@@ -231,8 +225,10 @@ int read_displacement(const JsonValue& value, TextureLibrary& textures, Material
   });
 }
 
+}  // namespace
+
 void read_surface(JsonObject& object, MaterialDescription& material, TextureLibrary& textures) {
-  static constexpr std::string_view sides[] = {"both", "front"};
+  static constexpr std::string_view sides[] = {"both", "front"}, shadows[] = {"filter", "opaque"};
   if (const auto map = object.find("normal_map"))
     material.textures.normal =
         read_relief(*map, textures, TextureUse::data, "normal_map", "scale", &material.normal_scale);
@@ -253,7 +249,12 @@ void read_surface(JsonObject& object, MaterialDescription& material, TextureLibr
   material.one_sided = object.choice("sides", "both", sides) == "front";
   if (material.one_sided && material.medium >= 0)
     object.find("sides")->fail("a material with a \"medium\" or an \"ior\" has both sides");
+  material.shadow_opaque = object.choice("shadow", "filter", shadows) == "opaque";
+  material.shadow_filter = object.has("shadow") && !material.shadow_opaque;
+  material.vertex_color = object.boolean("vertex_color", false);
 }
+
+namespace {
 
 void read_opacity(JsonObject& object, MaterialDescription& material, TextureLibrary& textures) {
   const auto opacity = object.find("opacity");
@@ -294,8 +295,10 @@ MediumDescription read_medium(const JsonValue& value, std::string name) {
 
 MaterialDescription read_material(const JsonValue& value, std::string name, const NameTable& medium_names,
                                   std::vector<MediumDescription>& media, TextureLibrary& textures) {
-  static constexpr std::string_view types[] = {"phong", "dielectric"}, shadings[] = {"phong", "blinn"},
-                                    shadows[] = {"filter", "opaque"};
+  static constexpr std::string_view types[] = {"phong", "dielectric", "openpbr"},
+                                    shadings[] = {"phong", "blinn"};
+  if (value.json().is_object() && value.json().contains("type") && value.json()["type"] == "openpbr")
+    return read_openpbr(value, std::move(name), media, textures);
   return value.object("material", [&](JsonObject& object) {
     MaterialDescription material;
     material.name = std::move(name);
@@ -315,9 +318,6 @@ MaterialDescription read_material(const JsonValue& value, std::string name, cons
     read_interior(object, material, medium_names, media);
     read_opacity(object, material, textures);
     read_surface(object, material, textures);
-    material.shadow_opaque = object.choice("shadow", "filter", shadows) == "opaque";
-    material.shadow_filter = object.has("shadow") && !material.shadow_opaque;
-    material.vertex_color = object.boolean("vertex_color", false);
     return material;
   });
 }

@@ -8,6 +8,7 @@
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
+#include "lib/shade/layers.cl"
 #include "lib/shade/relief.cl"
 #include "lib/shade/relief_hits.cl"
 
@@ -88,7 +89,9 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
   const LightSamples light = choose_way(scene, index, tile, paths, s->p, lanes);
   const MASK facing = lanes & MASK_OF(dot3(s->ns, light.wi) > 0.0f);
   if (!any_lane(facing)) return;
-  REAL3 possible = multiply3(light.radiance, bsdf_eval(scene, &at->bsdf, negate3(rays->d), light.wi, facing));
+  const REAL3 wo = negate3(rays->d);
+  REAL3 possible = bsdf_eval(scene, &at->bsdf, wo, light.wi, facing);
+  possible = multiply3(light.radiance, layered_light(scene, &at->bsdf, wo, light.wi, facing, possible));
   if (HAS_RELIEF) possible = scale3(possible, terminator(s, light.wi));
   if (HAS_PARALLAX) possible = scale3(possible, relief_visibility(scene, s, light.wi, facing));
   // A high power of (r.v) may leave less than the least normal float, which some devices take for zero: not

@@ -12,7 +12,8 @@
 
 // The surfaces of `lanes` that send paths to balls.
 static inline MASK guided_surfaces(const Lobes* lobes, MASK lanes) {
-  return lanes & MASK_OF(lobes->matte > 0.0f) & MASK_OF(lobes->mirror + lobes->through <= 0.0f);
+  return lanes & (MASK_OF(lobes->matte > 0.0f) | matte_layers(lobes)) &
+         MASK_OF(lobes->mirror + lobes->through <= 0.0f);
 }
 
 // The unit direction from p to the ball and 1 - the cosine of half the cone's angle; 0 from within.

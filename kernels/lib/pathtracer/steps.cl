@@ -180,7 +180,7 @@ NEVER_INLINE MASK step_walks(const Scene* scene, Walks* walks, SceneRays* rays, 
     light = carry_select(light, carry_add(light, carried_color(walks, shining)), hit);
     const MASK scattering = hit & MASK_OF(walks->depth <= (int)scene->info->max_depth);
     const Lobes lobes = make_lobes(scene, &at.bsdf, negate3(rays->d), scattering);
-    const MASK open = scattering & MASK_OF(lobes.matte + lobes.glossy + lobes.facets > 0.0f);
+    const MASK open = scattering & scatters(&lobes);
     if (scene->info->light_count && any_lane(open)) {
       const FourNumbers u = sample_lanes(&walks->at, (walks->depth - 1) * (int)DIMENSIONS_A_BOUNCE +
                                                          (int)(DIMENSION_BOUNCE + BOUNCE_LIGHT_POINT));

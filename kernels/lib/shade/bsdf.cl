@@ -3,11 +3,13 @@
 // where light comes from.
 #ifndef SUNDOG_LIB_BSDF_CL
 #define SUNDOG_LIB_BSDF_CL
+#include "lib/core/directions.cl"
 #include "lib/core/optics.cl"
 #include "lib/path/media.cl"
 #include "lib/shade/dispersion.cl"
 #include "lib/shade/interaction.cl"
 #include "lib/shade/maps.cl"
+#include "shared/layers.h"
 
 typedef struct Bsdfs {
   REAL3 ng, ns;            // unit, both on the side of the viewer
@@ -21,6 +23,13 @@ typedef struct Bsdfs {
   REAL3 specular, reflection, transmission;  // with textures
   REAL3 emission;                            // a factor on the material's
   REAL exponent;
+#endif
+#if HAS_LAYERS
+  REAL3 base;                // colour of layered materials, whose diffuse term is 0
+  REAL3 tangent, bitangent;  // unit, at right angles to ns
+  REAL there;                // the opacity
+  MASK coated;               // fuzz and coat are on the viewer's side
+  MASK coated_behind;        // on the other side
 #endif
 } Bsdfs;
 
@@ -72,9 +81,13 @@ static inline void add_checker(const Scene* scene, __global const Material* mate
 
 // The terms that textures change, for the lanes of `lanes`.
 #if HAS_MAPS
+#if HAS_LAYERS
+static inline void keep_opacity(const Terms* terms, Bsdfs* bsdf) { bsdf->there = terms->there; }
+#else
+static inline void keep_opacity(const Terms* terms, Bsdfs* bsdf) {}
+#endif
 static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
-  const REAL3 none = all3((float3)(0.0f));
-  Terms terms = {bsdf->ambient, bsdf->diffuse, none, none, none, all3((float3)(1.0f)), (REAL)(0.0f)};
+  Terms terms = start_terms(bsdf->ambient, bsdf->diffuse);
   MASK mapped = NO_LANES;
   u32 index;
   for (MASK left = lanes; any_lane(left);) {
@@ -95,9 +108,55 @@ static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MA
   bsdf->transmission = terms.transmission;
   bsdf->emission = terms.emission;
   bsdf->exponent = terms.exponent;
+  keep_opacity(&terms, bsdf);
 }
 #else
 static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {}
+#endif
+
+// What layered materials (shared/layers.h) have in the place of the diffuse term.
+#if HAS_LAYERS
+// The frame of `lanes` of one material about ns, with the tangent along `along`.
+static inline void turn_frame(__global const Layers* m, REAL3 along, MASK lanes, Bsdfs* bsdf) {
+  const REAL3 flat = along3(along, -dot3(along, bsdf->ns), bsdf->ns);
+  const MASK good = MASK_OF(dot3(flat, flat) > 1e-20f * dot3(along, along));
+  REAL3 s, t;
+  tangent_frame(bsdf->ns, &s, &t);
+  const REAL3 first = select3(s, safe_unit3(flat), good);
+  const REAL3 second =
+      real3(bsdf->ns.y * first.z - bsdf->ns.z * first.y, bsdf->ns.z * first.x - bsdf->ns.x * first.z,
+            bsdf->ns.x * first.y - bsdf->ns.y * first.x);
+  const REAL x = (REAL)(m->turn_x), y = (REAL)(m->turn_y);
+  bsdf->tangent = select3(bsdf->tangent, along3(scale3(first, x), y, second), lanes);
+  bsdf->bitangent = select3(bsdf->bitangent, along3(scale3(second, x), -y, first), lanes);
+}
+
+#if HAS_UV
+static inline REAL3 first_coordinate(const SurfaceInteractions* s) { return s->at.dpdu; }
+#else
+static inline REAL3 first_coordinate(const SurfaceInteractions* s) { return all3((float3)(0.0f)); }
+#endif
+static inline void add_layers(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
+  const MASK layered = lanes & MASK_OF((bsdf->flags & (int)MATERIAL_LAYERED) != 0);
+  const MASK outside = s->entering | MASK_OF((bsdf->flags & (int)MATERIAL_THIN) != 0);
+  const REAL3 none = all3((float3)(0.0f));
+  bsdf->base = scale3(bsdf->diffuse, 1.0f / real_max(bsdf->there, (REAL)(1e-6f)));
+  bsdf->base = real3(real_min(bsdf->base.x, (REAL)(1.0f)), real_min(bsdf->base.y, (REAL)(1.0f)),
+                     real_min(bsdf->base.z, (REAL)(1.0f)));
+  bsdf->diffuse = select3(bsdf->diffuse, none, layered);
+  bsdf->tangent = bsdf->bitangent = none;
+  bsdf->coated = layered & outside;
+  bsdf->coated_behind = layered & ~outside;
+  u32 index;
+  for (MASK left = layered; any_lane(left);) {
+    const MASK mine = take_alike(s->material, &left, &index);
+    turn_frame(scene->layers + index, first_coordinate(s), mine, bsdf);
+  }
+}
+static inline void start_opaque(Bsdfs* bsdf) { bsdf->there = (REAL)(1.0f); }
+#else
+static inline void add_layers(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {}
+static inline void start_opaque(Bsdfs* bsdf) {}
 #endif
 
 // The Bsdfs of the surfaces of `lanes`, between the media `before` and `after`.
@@ -124,7 +183,9 @@ static inline Bsdfs make_bsdfs(const Scene* scene, const SurfaceInteractions* s,
   }
   bsdf.ambient = multiply3(bsdf.ambient, s->color);
   bsdf.diffuse = multiply3(bsdf.diffuse, s->color);
+  start_opaque(&bsdf);
   add_maps(scene, s, lanes, &bsdf);
+  add_layers(scene, s, lanes, &bsdf);
   return bsdf;
 }
 

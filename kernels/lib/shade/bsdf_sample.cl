@@ -4,6 +4,7 @@
 #define SUNDOG_LIB_BSDF_SAMPLE_CL
 #include "lib/core/directions.cl"
 #include "lib/shade/bsdf.cl"
+#include "lib/shade/layer_sample.cl"
 #include "lib/shade/microfacets.cl"
 
 typedef struct BsdfSamples {
@@ -21,6 +22,10 @@ typedef struct Lobes {
   MASK blinn;
 #if HAS_ROUGH
   Microfacets rough;
+#endif
+#if HAS_LAYERS
+  LayerShares layers;
+  REAL layered;  // their sum
 #endif
 } Lobes;
 
@@ -101,6 +106,37 @@ static inline MASK send_by_facets(const Scene* scene, const Bsdfs* bsdf, const L
 }
 #endif
 
+// The same of layered materials, whose layers also take from all that lies below. Their place among the terms
+// is behind the facets: past_layers_of() is where they end that begin at `at`.
+#if HAS_LAYERS
+static inline void start_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes, Lobes* lobes) {
+  lobes->layers = make_shares(scene, bsdf, wo, lanes, &lobes->split);
+  lobes->layered = sum_of_shares(&lobes->layers);
+}
+static inline REAL past_layers_of(const Lobes* lobes, REAL at) { return at + lobes->layered; }
+static inline MASK scatters_by_layers(const Lobes* lobes) { return MASK_OF(lobes->layered > 0.0f); }
+static inline MASK matte_layers(const Lobes* lobes) { return MASK_OF(lobes->layers.matte > 0.0f); }
+static inline void add_layer_scatter(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
+                                     REAL3 wi, MASK lanes, REAL3* value, REAL* chosen) {
+  layer_scatter(scene, bsdf, &lobes->layers, wo, wi, lanes, value, chosen);
+}
+static inline void send_by_layers(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
+                                  REAL at, REAL u_x, REAL u_y, MASK lanes, REAL3* wi) {
+  const MASK mine = lanes & MASK_OF(at >= 0.0f) & MASK_OF(at < lobes->layered);
+  if (!any_lane(mine)) return;
+  *wi = select3(*wi, layer_direction(scene, bsdf, &lobes->layers, wo, at, u_x, u_y, mine), mine);
+}
+#else
+static inline void start_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes, Lobes* lobes) {}
+static inline REAL past_layers_of(const Lobes* lobes, REAL at) { return at; }
+static inline MASK scatters_by_layers(const Lobes* lobes) { return NO_LANES; }
+static inline MASK matte_layers(const Lobes* lobes) { return NO_LANES; }
+static inline void add_layer_scatter(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
+                                     REAL3 wi, MASK lanes, REAL3* value, REAL* chosen) {}
+static inline void send_by_layers(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
+                                  REAL at, REAL u_x, REAL u_y, MASK lanes, REAL3* wi) {}
+#endif
+
 // The lobes of the surfaces of `lanes`, seen from wo.
 static inline Lobes make_lobes(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes) {
   const REAL zero = (REAL)(0.0f);
@@ -109,11 +145,12 @@ static inline Lobes make_lobes(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, 
   lobes.blinn = MASK_OF((bsdf->flags & (int)MATERIAL_BLINN) != 0);
   lobes.glossy = lobes.exponent = zero;
   find_highlights(scene, bsdf, lanes, &lobes.glossy, &lobes.exponent);
+  start_layers(scene, bsdf, wo, lanes, &lobes);
   lobes.mirror = greatest3(lobes.split.kr);
   lobes.through = greatest3(lobes.split.kt);
   lobes.facets = zero;
   lobes.matte = greatest3(bsdf->diffuse);
-  lobes.all = lobes.mirror + lobes.through + lobes.matte + lobes.glossy;
+  lobes.all = past_layers_of(&lobes, lobes.mirror + lobes.through + lobes.matte + lobes.glossy);
   add_facets(scene, bsdf, wo, lanes, &lobes);
   return lobes;
 }
@@ -130,6 +167,7 @@ static inline REAL3 bsdf_scatter(const Scene* scene, const Bsdfs* bsdf, const Lo
   chosen = select(zero, chosen, above);
   REAL3 value = select3(all3((float3)(0.0f)), bsdf_eval(scene, bsdf, wo, wi, above), above);
   add_facet_scatter(scene, bsdf, lobes, wo, wi, lanes, &value, &chosen);
+  add_layer_scatter(scene, bsdf, lobes, wo, wi, lanes, &value, &chosen);
   *density = chosen / select((REAL)(1.0f), lobes->all, MASK_OF(lobes->all > 0.0f));
   return value;
 }
@@ -155,13 +193,15 @@ static inline BsdfSamples sample_lobes(const Scene* scene, const Bsdfs* bsdf, co
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
   const REAL perfect = lobes->mirror + lobes->through, at = u_term * lobes->all;
   const MASK mirror = MASK_OF(at < lobes->mirror), specular = MASK_OF(at < perfect);
-  const MASK matte = MASK_OF(at < perfect + lobes->facets + lobes->matte);
+  const REAL scattered = perfect + lobes->facets;
+  const MASK matte = MASK_OF(at < past_layers_of(lobes, scattered) + lobes->matte);
   BsdfSamples sample;
   sample.specular = specular;
   sample.wi = local_direction(bsdf, lobes, wo, u_x, u_y, matte | ~lanes);
   // Lanes whose term sends light through the surface; what leaves on the other side is none of the term's.
-  const MASK facets = lanes & ~specular & MASK_OF(at < perfect + lobes->facets);
+  const MASK facets = lanes & ~specular & MASK_OF(at < scattered);
   const MASK below = send_by_facets(scene, bsdf, lobes, wo, at - perfect, u_x, u_y, facets, &sample.wi);
+  send_by_layers(scene, bsdf, lobes, wo, at - scattered, u_x, u_y, lanes & ~specular, &sample.wi);
   const REAL3 value = bsdf_scatter(scene, bsdf, lobes, wo, sample.wi, lanes & ~specular, &sample.density);
   const MASK strays = below ^ MASK_OF(dot3(bsdf->ns, sample.wi) <= 0.0f);
   sample.density = select(sample.density, zero, strays);
@@ -180,6 +220,11 @@ static inline BsdfSamples sample_lobes(const Scene* scene, const Bsdfs* bsdf, co
   sample.weight = select3(sample.weight, all3((float3)(0.0f)), black);
   sample.density = select(sample.density, zero, black);
   return sample;
+}
+
+// The surfaces whose lobes send light in more directions than single ones.
+static inline MASK scatters(const Lobes* lobes) {
+  return MASK_OF(lobes->matte + lobes->glossy + lobes->facets > 0.0f) | scatters_by_layers(lobes);
 }
 
 static inline BsdfSamples bsdf_sample(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL u_term, REAL u_x,

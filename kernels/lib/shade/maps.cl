@@ -12,7 +12,33 @@ typedef struct Terms {
   REAL3 ambient, diffuse, specular, reflection, transmission;
   REAL3 emission;  // a factor on the material's
   REAL exponent;
+#if HAS_LAYERS
+  REAL there;  // the opacity
+#endif
 } Terms;
+
+#if HAS_LAYERS
+static inline void make_opaque(Terms* terms) { terms->there = (REAL)(1.0f); }
+static inline void set_opacity(REAL opacity, MASK lanes, Terms* terms) {
+  terms->there = select(terms->there, opacity, lanes);
+}
+#else
+static inline void make_opaque(Terms* terms) {}
+static inline void set_opacity(REAL opacity, MASK lanes, Terms* terms) {}
+#endif
+
+// The terms of surfaces before their materials' own are added.
+static inline Terms start_terms(REAL3 ambient, REAL3 diffuse) {
+  const REAL3 none = all3((float3)(0.0f));
+  Terms terms;
+  terms.ambient = ambient;
+  terms.diffuse = diffuse;
+  terms.specular = terms.reflection = terms.transmission = none;
+  terms.emission = all3((float3)(1.0f));
+  terms.exponent = (REAL)(0.0f);
+  make_opaque(&terms);
+  return terms;
+}
 
 // Textures ask for the place on an object, not for u and v alone; heights for its size.
 #define TEXTURES_PLACED (HAS_RELIEF || (TEXTURE_MAPPINGS & ~1u))
@@ -158,6 +184,7 @@ static inline void map_opacity(REAL opacity, MASK lanes, Terms* terms) {
   scale_term(&terms->reflection, part, lanes);
   scale_term(&terms->emission, part, lanes);
   scale_term(&terms->transmission, part, lanes);
+  set_opacity(opacity, lanes, terms);
   const REAL behind = 1.0f - opacity;
   terms->transmission =
       select3(terms->transmission, add3(terms->transmission, real3(behind, behind, behind)), lanes);

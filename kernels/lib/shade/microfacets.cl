@@ -9,11 +9,47 @@
 // Narrower lobes are perfect mirrors and interfaces.
 #define LEAST_ALPHA 1e-4f
 
+// Light that glass sends on after further meetings with its facets: as much as is lost at the first, spread
+// evenly, m(wo) m(wi) over the mean of m where m is what a direction loses (Kulla and Conty 2017, "Revisiting
+// Physically Based Shading at Imageworks", whose sides share light so that the lobe is reciprocal too: the
+// part that goes through from the thinner side, times its mean of m, is the other's times its own and eta^2).
+#if HAS_ROUGH_GLASS
+typedef struct FurtherLight {
+  REAL lost;               // m(wo): also the share of the samples
+  REAL through;            // the part that goes behind the surface
+  REAL mean, mean_behind;  // of m on the viewer's side and behind
+} FurtherLight;
+
+static inline FurtherLight find_further(const Scene* scene, REAL eta, REAL cosine, REAL alpha, MASK glass) {
+  FurtherLight further;
+  const REAL thick = select(1.0f / eta, eta, MASK_OF(eta > 1.0f)), least = (REAL)(1e-9f);
+  further.lost = real_max(1.0f - glass_value(scene, eta, cosine, alpha, glass), (REAL)(0.0f));
+  const REAL thin_mean = real_max(glass_row(scene, GLASS_LOST, 2u, thick, alpha, glass), least);
+  const REAL thick_mean =
+      real_max(glass_row(scene, GLASS_LOST + GLASS_STEPS, 2u, thick, alpha, glass), least);
+  const REAL back = thin_mean / (thick_mean * thick * thick);
+  const REAL through = real_min(glass_row(scene, GLASS_THROUGH, 1u, thick, alpha, glass), 1.0f / back);
+  const MASK from_thin = MASK_OF(eta > 1.0f);
+  further.through = select(through * back, through, from_thin);
+  further.mean = select(thick_mean, thin_mean, from_thin);
+  further.mean_behind = select(thin_mean, thick_mean, from_thin);
+  return further;
+}
+static inline void set_further(const Scene* scene, const SpecularSplits* split, REAL cosine, REAL alpha,
+                               MASK glass, FurtherLight* further) {
+  *further = find_further(scene, split->eta, cosine, alpha, glass);
+  further->lost = select((REAL)(0.0f), further->lost, glass);
+}
+#endif
+
 typedef struct Microfacets {
   MASK rough, bends;  // has facets; they also transmit
   MASK glass;         // of those that transmit the dielectrics
   REAL alpha, lambda_o;
   REAL gain;  // of the viewer's side: see microfacet_gain()
+#if HAS_ROUGH_GLASS
+  FurtherLight further;
+#endif
 } Microfacets;
 
 // What makes up for the light that is lost between facets: lobes are multiplied by the gains of both
@@ -22,6 +58,16 @@ typedef struct Microfacets {
 static inline REAL microfacet_gain(const Scene* scene, REAL c, REAL alpha, MASK lanes) {
   return lobe_energy_at(scene, LOBE_GAINS, c, alpha, lanes);
 }
+
+#if HAS_ROUGH_GLASS
+static inline void start_further(const Scene* scene, const SpecularSplits* split, REAL cosine,
+                                 Microfacets* facets) {
+  set_further(scene, split, cosine, facets->alpha, facets->glass, &facets->further);
+}
+#else
+static inline void start_further(const Scene* scene, const SpecularSplits* split, REAL cosine,
+                                 Microfacets* facets) {}
+#endif
 
 static inline Microfacets make_microfacets(const Scene* scene, const Bsdfs* bsdf, const SpecularSplits* split,
                                            REAL3 wo, MASK lanes) {
@@ -39,8 +85,7 @@ static inline Microfacets make_microfacets(const Scene* scene, const Bsdfs* bsdf
   const REAL cosine = dot3(bsdf->ns, wo);
   facets.lambda_o = smith_lambda(cosine, facets.alpha);
   facets.gain = microfacet_gain(scene, cosine, facets.alpha, facets.rough & ~facets.bends);
-  const REAL of_glass = glass_value(scene, split->eta, cosine, facets.alpha, facets.glass);
-  facets.gain = select(facets.gain, 1.0f / of_glass, facets.glass);
+  start_further(scene, split, cosine, &facets);
   return facets;
 }
 
@@ -65,37 +110,62 @@ static inline REAL facet_reflects(const Microfacets* facets, const SpecularSplit
   return select((REAL)(1.0f), part, facets->bends);
 }
 
-// The gain of rough glass on the colour of what its facets send on, `below` from behind (Turquin 2019: by the
-// viewer's direction alone, so it is not reciprocal; host/compile/lobe_energy.h says why).
+// Adds further light to pi times the BSDF times the cosine, and its samples to the density, of glass for
+// directions at the cosine c; and directions drawn of it by the number u_side, of which `rest` is left for
+// the others.
 #if HAS_ROUGH_GLASS
-static inline void mend_glass_color(const Microfacets* facets, const SpecularSplits* split, MASK below,
-                                    REAL3* color) {
-  const REAL share = select(split->f, 1.0f - split->f, below);
-  const REAL more = (facets->gain - 1.0f) / real_max(share, (REAL)(1e-6f));
-  const REAL3 mended =
-      real3(color->x * fma(color->x, more, (REAL)(1.0f)), color->y * fma(color->y, more, (REAL)(1.0f)),
-            color->z * fma(color->z, more, (REAL)(1.0f)));
-  *color = select3(*color, mended, facets->glass);
+static inline void add_further(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
+                               REAL c, MASK lanes, REAL3* value, REAL* density) {
+  const MASK glass = lanes & facets->glass;
+  if (!any_lane(glass)) return;
+  const FurtherLight* further = &facets->further;
+  const REAL one = (REAL)(1.0f);
+  const MASK below = MASK_OF(c < 0.0f);
+  const REAL there = select(eta, 1.0f / eta, below);  // the index behind over the one before, seen from wi
+  const REAL lost_i = real_max(1.0f - glass_value(scene, there, fabs(c), facets->alpha, glass), (REAL)(0.0f));
+  const REAL part = select(one - further->through, further->through, below);
+  const REAL mean = select(further->mean, further->mean_behind, below);
+  const REAL size = part * further->lost * lost_i * fabs(c) / mean;
+  REAL3 tint = all3((float3)(0.0f));
+  u32 index;
+  for (MASK left = glass; any_lane(left);) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
+    __global const Material* material = scene->materials + index;
+    tint =
+        select3(tint, select3(reflection_of(bsdf, material), transmission_of(bsdf, material), below), mine);
+  }
+  *value = select3(*value, along3(*value, size, tint), glass);
+  const REAL drawn = fma(1.0f - further->lost, *density, further->lost * part * fabs(c) * (1.0f / M_PI_F));
+  *density = select(*density, drawn, glass);
+}
+static inline MASK draw_further(const Bsdfs* bsdf, const Microfacets* facets, REAL u_side, REAL u_x, REAL u_y,
+                                MASK lanes, REAL* rest, MASK* through, REAL3* wi) {
+  const FurtherLight* further = &facets->further;
+  const MASK drawn = lanes & facets->glass & MASK_OF(u_side < further->lost);
+  const REAL left = real_max(1.0f - further->lost, (REAL)(1e-6f));
+  *rest = select(u_side, (u_side - further->lost) / left, lanes & facets->glass);
+  if (!any_lane(drawn)) return drawn;
+  *through = select(*through, MASK_OF(u_side < further->lost * further->through), drawn);
+  const REAL3 above = direction_about(bsdf->ns, real_sqrt(u_x), u_y);
+  *wi = select3(*wi, select3(above, negate3(above), *through), drawn);
+  return drawn;
 }
 #else
-static inline void mend_glass_color(const Microfacets* facets, const SpecularSplits* split, MASK below,
-                                    REAL3* color) {}
+static inline void add_further(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
+                               REAL c, MASK lanes, REAL3* value, REAL* density) {}
+static inline MASK draw_further(const Bsdfs* bsdf, const Microfacets* facets, REAL u_side, REAL u_x, REAL u_y,
+                                MASK lanes, REAL* rest, MASK* through, REAL3* wi) {
+  *rest = u_side;
+  return NO_LANES;
+}
 #endif
 
-// pi times the BSDF times the cosine of the facets of `lanes`, and the density of wi among the directions
-// that they send light from wo to. Behind an interface the density is that of directions there; the BSDF has
-// no factor for radiance in media of other indices.
-static inline REAL3 facet_scatter(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
-                                  REAL3 wo, REAL3 wi, MASK lanes, REAL* density) {
-  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
-  const REAL cos_i = dot3(bsdf->ns, wi), side = dot3(bsdf->ng, wi);
-  const MASK above = lanes & facets->rough & MASK_OF(cos_i > 0.0f) & MASK_OF(side > 0.0f);
-  const MASK below = lanes & facets->bends & MASK_OF(cos_i < 0.0f) & MASK_OF(side < 0.0f);
-  const REAL3 h = facet_between(bsdf->ns, wo, wi, eta, below);
+// pi times the BSDF times the cosine of single reflections and refractions by facets of the normals h, and
+// the density of wi among them.
+static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
+                                REAL3 wo, REAL3 wi, REAL3 h, MASK below, MASK good, REAL* density) {
+  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), cos_i = dot3(bsdf->ns, wi);
   const REAL wo_h = dot3(wo, h), wi_h = dot3(wi, h);
-  const MASK good = (above & MASK_OF(wo_h > 0.0f)) | (below & MASK_OF(wo_h > 0.0f) & MASK_OF(wi_h < 0.0f));
-  *density = zero;
-  if (!any_lane(good)) return all3((float3)(0.0f));
   Bsdfs facet = *bsdf;
   facet.ns = h;
   const SpecularSplits split = bsdf_specular(scene, &facet, wo, good);
@@ -117,8 +187,26 @@ static inline REAL3 facet_scatter(const Scene* scene, const Bsdfs* bsdf, const M
                                color.z * fma(color.z, more, one));
     color = select3(color, mended, mends);
   }
-  mend_glass_color(facets, &split, below, &color);
   return select3(all3((float3)(0.0f)), scale3(color, size), good);
+}
+
+// pi times the BSDF times the cosine of the facets of `lanes`, and the density of wi among the directions
+// that they send light from wo to. Behind an interface the density is that of directions there; the BSDF has
+// no factor for radiance in media of other indices.
+static inline REAL3 facet_scatter(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
+                                  REAL3 wo, REAL3 wi, MASK lanes, REAL* density) {
+  const REAL zero = (REAL)(0.0f);
+  const REAL cos_i = dot3(bsdf->ns, wi), side = dot3(bsdf->ng, wi);
+  const MASK above = lanes & facets->rough & MASK_OF(cos_i > 0.0f) & MASK_OF(side > 0.0f);
+  const MASK below = lanes & facets->bends & MASK_OF(cos_i < 0.0f) & MASK_OF(side < 0.0f);
+  const REAL3 h = facet_between(bsdf->ns, wo, wi, eta, below);
+  const REAL wo_h = dot3(wo, h), wi_h = dot3(wi, h);
+  const MASK good = (above & MASK_OF(wo_h > 0.0f)) | (below & MASK_OF(wo_h > 0.0f) & MASK_OF(wi_h < 0.0f));
+  REAL3 value = all3((float3)(0.0f));
+  *density = zero;
+  if (any_lane(good)) value = facet_light(scene, bsdf, facets, eta, wo, wi, h, below, good, density);
+  add_further(scene, bsdf, facets, eta, cos_i, above | below, &value, density);
+  return value;
 }
 
 // Directions that facets send light from wo to; the numbers u in [0, 1) choose the facet, and `u_side`
@@ -126,12 +214,18 @@ static inline REAL3 facet_scatter(const Scene* scene, const Bsdfs* bsdf, const M
 static inline REAL3 facet_direction(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets,
                                     REAL3 wo, REAL u_side, REAL u_x, REAL u_y, MASK lanes, MASK* through) {
   Bsdfs facet = *bsdf;
+  REAL rest;
+  REAL3 wi = all3((float3)(0.0f));
+  *through = NO_LANES;
+  const MASK further = draw_further(bsdf, facets, u_side, u_x, u_y, lanes, &rest, through, &wi);
   facet.ns = visible_normal(bsdf->ns, wo, facets->alpha, u_x, u_y);
   const SpecularSplits split = bsdf_specular(scene, &facet, wo, lanes);
   const REAL3 d = negate3(wo);
   const REAL3 bent = refract_direction(d, facet.ns, split.cos_i, split.cos_t, split.eta);
-  *through = MASK_OF(u_side >= facet_reflects(facets, &split));
-  return select3(reflect_direction(d, facet.ns), bent, *through);
+  const MASK behind = MASK_OF(rest >= facet_reflects(facets, &split));
+  wi = select3(select3(reflect_direction(d, facet.ns), bent, behind), wi, further);
+  *through = select(behind, *through, further);
+  return wi;
 }
 #endif
 

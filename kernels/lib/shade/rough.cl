@@ -4,6 +4,26 @@
 #define SUNDOG_LIB_ROUGH_CL
 #include "lib/core/directions.cl"
 #include "lib/shade/bsdf.cl"
+#include "shared/lobe_energy.h"
+
+#if HAS_ROUGH || HAS_LAYERS
+// One of the tables that host/compile/lobe_energy.h makes, by alpha and then by the cosine c to the normal;
+// `first` is its first value's index. 1 elsewhere than in `lanes`.
+static inline REAL lobe_energy_at(const Scene* scene, u32 first, REAL c, REAL alpha, MASK lanes) {
+  REAL energy = (REAL)(1.0f);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    const float x = clamp(REAL_LANE(c, i), 0.0f, 1.0f) * (LOBE_STEPS - 1u),
+                y = clamp(REAL_LANE(alpha, i), 0.0f, 1.0f) * (LOBE_STEPS - 1u);
+    const u32 x0 = min((u32)x, LOBE_STEPS - 2u), y0 = min((u32)y, LOBE_STEPS - 2u);
+    __global const float* at = scene->lobe_energy + first + y0 * LOBE_STEPS + x0;
+    const float low = mix(at[0], at[1], x - (float)x0),
+                high = mix(at[LOBE_STEPS], at[LOBE_STEPS + 1u], x - (float)x0);
+    REAL_LANE(energy, i) = mix(low, high, y - (float)y0);
+  }
+  return energy;
+}
+#endif
 
 #if HAS_ROUGH
 // The normal of a facet that wo sees, by its visible area (Dupuy and Benyoub 2023, "Sampling Visible GGX
@@ -24,23 +44,6 @@ static inline REAL3 visible_normal(REAL3 n, REAL3 wo, REAL alpha, REAL u_x, REAL
 static inline REAL smith_lambda(REAL c, REAL alpha) {
   const REAL square = real_max(c * c, (REAL)(1e-12f));
   return 0.5f * (real_sqrt(1.0f + alpha * alpha * (1.0f - square) / square) - 1.0f);
-}
-
-// One of the tables that host/compile/lobe_energy.h makes, by alpha and then by the cosine c to the normal;
-// `first` is its first value's index. 1 elsewhere than in `lanes`.
-static inline REAL lobe_energy_at(const Scene* scene, u32 first, REAL c, REAL alpha, MASK lanes) {
-  REAL energy = (REAL)(1.0f);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
-    const float x = clamp(REAL_LANE(c, i), 0.0f, 1.0f) * (LOBE_STEPS - 1u),
-                y = clamp(REAL_LANE(alpha, i), 0.0f, 1.0f) * (LOBE_STEPS - 1u);
-    const u32 x0 = min((u32)x, LOBE_STEPS - 2u), y0 = min((u32)y, LOBE_STEPS - 2u);
-    __global const float* at = scene->lobe_energy + first + y0 * LOBE_STEPS + x0;
-    const float low = mix(at[0], at[1], x - (float)x0),
-                high = mix(at[LOBE_STEPS], at[LOBE_STEPS + 1u], x - (float)x0);
-    REAL_LANE(energy, i) = mix(low, high, y - (float)y0);
-  }
-  return energy;
 }
 
 // The part of light that facets send on without a second reflection, for white ones that are seen at the
@@ -80,6 +83,22 @@ static inline REAL glass_value(const Scene* scene, REAL eta, REAL c, REAL alpha,
     const float near = glass_cell(at, x - (float)x0, y - (float)y0),
                 far = glass_cell(at + 2u * GLASS_STEPS * GLASS_STEPS, x - (float)x0, y - (float)y0);
     REAL_LANE(value, i) = mix(near, far, z - (float)z0);
+  }
+  return value;
+}
+// One of the tables behind it, which are by index and alpha alone; `rows` of each index.
+static inline REAL glass_row(const Scene* scene, u32 first, u32 rows, REAL thick, REAL alpha, MASK lanes) {
+  REAL value = (REAL)(1.0f);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    const float less = 1.0f - 1.0f / REAL_LANE(thick, i);
+    const float z = clamp(less / GLASS_REACH, 0.0f, 1.0f) * (GLASS_INDICES - 1u);
+    const float y = clamp(REAL_LANE(alpha, i), 0.0f, 1.0f) * (GLASS_STEPS - 1u);
+    const u32 y0 = min((u32)y, GLASS_STEPS - 2u), z0 = min((u32)z, GLASS_INDICES - 2u);
+    __global const float* at = scene->lobe_energy + first + z0 * rows * GLASS_STEPS + y0;
+    __global const float* far = at + rows * GLASS_STEPS;
+    REAL_LANE(value, i) =
+        mix(mix(at[0], at[1], y - (float)y0), mix(far[0], far[1], y - (float)y0), z - (float)z0);
   }
   return value;
 }

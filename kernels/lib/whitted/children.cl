@@ -6,6 +6,7 @@
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
 #include "lib/shade/cones.cl"
+#include "lib/shade/layers.cl"
 #include "lib/shade/relief_hits.cl"
 #include "lib/shade/rough.cl"
 
@@ -79,7 +80,8 @@ static inline void spawn_children(const Scene* scene, const TileSamples* tile, c
                                   const PathStates* paths, MASK lanes, RayStack* stack, u32* counts) {
   const REAL3 wo = negate3(rays->d);
   const Facets facets = met_facets(scene, tile, paths, surface, wo, lanes);
-  const SpecularSplits split = bsdf_specular(scene, &facets.bsdf, wo, lanes);
+  SpecularSplits split = bsdf_specular(scene, &facets.bsdf, wo, lanes);
+  mirror_layers(scene, surface, wo, split.branches, &split);
   if (!any_lane(split.branches)) return;
   SceneRays child = *rays;
   child.t_min = (REAL)(0.0f);

@@ -40,6 +40,34 @@ TEST_CASE("metallic-roughness factors become phong coefficients", "[models]") {
   CHECK(rough.reflection == dvec3(0));
 }
 
+TEST_CASE("sheen, iridescence, anisotropy and clearcoat become layers by OpenPBR's values", "[models]") {
+  const MaterialDescription cloth = material_of(R"({"pbrMetallicRoughness":{"metallicFactor":0,
+    "baseColorFactor":[0.2,0.1,0.1,1]},"extensions":{"KHR_materials_sheen":{"sheenColorFactor":[0.5,0.25,0],
+    "sheenRoughnessFactor":0.4},"KHR_materials_iridescence":{"iridescenceFactor":0.5,"iridescenceThicknessMaximum":300}}})");
+  const OpenPbr& fuzzy = cloth.layers.value();
+  CHECK(fuzzy.fuzz_weight == 0.5);
+  CHECK(near(fuzzy.fuzz_color, {1, 0.5, 0}));
+  CHECK(fuzzy.fuzz_roughness == 0.4);
+  CHECK(fuzzy.thin_film_weight == 0.5);
+  CHECK(fuzzy.thin_film_thickness == Approx(0.3));
+  CHECK(fuzzy.thin_film_ior == 1.3);
+  CHECK(near(cloth.diffuse, {0.2, 0.1, 0.1}));
+  CHECK(cloth.reflection == dvec3(0));
+  const MaterialDescription steel =
+      material_of(R"({"pbrMetallicRoughness":{"roughnessFactor":0.4},"extensions":{
+    "KHR_materials_anisotropy":{"anisotropyStrength":0.6,"anisotropyRotation":1.57079632679},
+    "KHR_materials_clearcoat":{"clearcoatFactor":0.7,"clearcoatRoughnessFactor":0.2}}})");
+  const OpenPbr& brushed = steel.layers.value();
+  const FacetWidths widths = facet_widths(brushed.specular_roughness, brushed.specular_roughness_anisotropy);
+  CHECK(widths.y == Approx(0.16));
+  CHECK(widths.x == Approx(0.16 + 0.84 * 0.36));
+  CHECK(brushed.geometry_tangent == Approx(90));
+  CHECK(brushed.coat_weight == 0.7);
+  CHECK(brushed.coat_roughness == 0.2);
+  CHECK(brushed.coat_ior == 1.5);
+  CHECK_FALSE(material_of(R"({"extensions":{"KHR_materials_unlit":{},"KHR_materials_sheen":{}}})").layers);
+}
+
 TEST_CASE("transmission with a volume is a dielectric with an absorbing medium, without one a thin pane",
           "[models]") {
   Model model;

@@ -250,7 +250,8 @@ constexpr std::string_view read_extensions[] = {
     "KHR_materials_transmission", "KHR_materials_volume",
     "KHR_materials_unlit",        "KHR_materials_emissive_strength",
     "KHR_materials_specular",     "KHR_materials_clearcoat",
-    "KHR_materials_dispersion"};
+    "KHR_materials_dispersion",   "KHR_materials_sheen",
+    "KHR_materials_iridescence",  "KHR_materials_anisotropy"};
 
 // A required extension that is not read is an error, but for those that change colours alone; images of
 // KHR_texture_basisu are errors where they are used.

@@ -1,5 +1,5 @@
 // Metallic-roughness materials and their extensions (glTF 2.0, section 3.9; KHR_materials_ior, _transmission,
-// _volume, _dispersion).
+// _volume, _dispersion; those of layers in gltf_layers.h).
 #include "scene/models/gltf/gltf_materials.h"
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "scene/models/gltf/gltf_layers.h"
 #include "shared/metal_rough.h"
 
 namespace sundog::models {
@@ -110,6 +111,7 @@ GltfMaterials::Entry GltfMaterials::read(const JsonAt& at) const {
   read_textures(at, entry);
   add_specular_textures(at, entry);
   add_clearcoat(at, entry);
+  add_layers(at, entry, ior, roughness);
   read_unlit(at, entry, base);
   blend(at, entry, alpha);
   return entry;
@@ -179,6 +181,7 @@ void GltfMaterials::read_unlit(const JsonAt& at, Entry& entry, dvec3 base) {
   MaterialDescription& m = entry.material;
   m.ambient = m.diffuse = m.specular = m.reflection = m.transmission = dvec3(0);
   m.type = MaterialType::phong;
+  m.layers = std::nullopt;
   m.emission = base;
   entry.has_medium = entry.by_values = false;
   entry.emission = entry.base;
@@ -202,7 +205,7 @@ void GltfMaterials::add_specular_textures(const JsonAt& at, Entry& entry) const 
 void GltfMaterials::add_clearcoat(const JsonAt& at, Entry& entry) const {
   MaterialDescription& material = entry.material;
   const auto extension = at.extension("KHR_materials_clearcoat");
-  if (!extension || material.type == MaterialType::dielectric) return;
+  if (!extension || material.type == MaterialType::dielectric || has_layers(at)) return;
   const double factor = extension->number("clearcoatFactor", 0, unit_range);
   const double coat =
       0.04 * factor * square(1 - extension->number("clearcoatRoughnessFactor", 0, unit_range));
@@ -217,6 +220,35 @@ void GltfMaterials::add_clearcoat(const JsonAt& at, Entry& entry) const {
   for (dvec3* part : {&material.ambient, &material.diffuse, &material.specular, &material.reflection})
     *part *= 1 - coat;
   material.reflection += coat;
+}
+
+/// The same values as OpenPBR's, of materials that have layers. What they let through stays as it is.
+void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior, double roughness) {
+  if (!has_layers(at)) return;
+  MaterialDescription& m = entry.material;
+  OpenPbr values{.base_color = entry.values.base, .base_metalness = entry.values.metalness};
+  values.specular_roughness = roughness;
+  values.specular_ior = ior < 1 ? 1.5 : ior;
+  if (const auto specular = at.extension("KHR_materials_specular")) {
+    values.specular_weight = specular->number("specularFactor", 1, unit_range);
+    values.specular_color =
+        glm::min(specular->vector("specularColorFactor", dvec3(1), not_negative), dvec3(1));
+  }
+  if (const auto through = at.extension("KHR_materials_transmission"))
+    values.transmission_weight = through->number("transmissionFactor", 0, unit_range);
+  add_gltf_layers(at, values);
+  const MaterialDescription before = m;
+  MediumDescription inside;
+  set_openpbr(values, m, inside);
+  m.type = before.type;
+  m.coat = 0;
+  m.emission = before.emission;
+  const double through = values.transmission_weight * (1 - values.base_metalness);
+  m.reflection = through == 0                         ? dvec3(0)
+                 : m.type == MaterialType::dielectric ? dvec3(through)
+                                                      : dvec3(through * reflectance(ior));
+  m.transmission = before.transmission;
+  entry.specular = entry.specular_color = std::nullopt;
 }
 
 void GltfMaterials::blend(const JsonAt& at, Entry& entry, double alpha) {
@@ -235,6 +267,10 @@ void GltfMaterials::blend(const JsonAt& at, Entry& entry, double alpha) {
   }
   // The same everywhere: a thin pane.
   const double opacity = mode == "BLEND" ? alpha : alpha >= cutoff ? 1 : 0;
+  if (m.layers) {
+    m.opacity = opacity;
+    return;
+  }
   for (dvec3* part : {&m.ambient, &m.diffuse, &m.specular, &m.reflection, &m.transmission}) *part *= opacity;
   m.emission *= opacity;
   m.transmission += 1 - opacity;

@@ -45,6 +45,7 @@ class GltfMaterials {
   void settle_sides();
   static void read_unlit(const JsonAt& at, Entry& entry, glm::dvec3 base);
   void add_clearcoat(const JsonAt& at, Entry& entry) const;
+  static void add_layers(const JsonAt& at, Entry& entry, double ior, double roughness);
   void add_specular_textures(const JsonAt& at, Entry& entry) const;
   void use_textures(const Entry& entry, MaterialDescription& material, Model& model);
   void use_transmission(const Entry& entry, MaterialDescription& material, Model& model);

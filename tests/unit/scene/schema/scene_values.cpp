@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <boost/pfr.hpp>
+
 #include "scene_text.h"
 
 using namespace sundog;
@@ -87,6 +89,17 @@ std::string line(const MediumDescription& m) {
                      text(m.scattering), m.anisotropy);
 }
 
+std::string line(const OpenPbr& values) {
+  std::string out = "layers";
+  boost::pfr::for_each_field(values, [&](const auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, dvec3>)
+      out += " " + text(value);
+    else
+      out += fmt::format(" {}", value);
+  });
+  return out + "\n";
+}
+
 std::string line(const MaterialDescription& m) {
   return fmt::format("material {} {} {} {} {} {} {} {} ", m.name, static_cast<int>(m.type), text(m.ambient),
                      text(m.diffuse), text(m.specular), text(m.emission), m.exponent, m.blinn) +
@@ -95,7 +108,8 @@ std::string line(const MaterialDescription& m) {
                      m.shadow_opaque, m.checker, text(m.checker_ambient), text(m.checker_diffuse),
                      m.checker_size, m.vertex_color) +
          fmt::format("{} {} {} {} {} {}\n", text(m.emission), m.opacity, m.cutoff, m.textures.diffuse,
-                     m.textures.exponent, m.textures.opacity);
+                     m.textures.exponent, m.textures.opacity) +
+         (m.layers ? line(*m.layers) : std::string());
 }
 
 std::string line(const TextureDescription& t) {

@@ -46,7 +46,8 @@ const std::string everything = R"({
     "deep": {"parallax": {"texture": "e"}, "displacement": {"texture": "t"}},
     "m": {"color": {"checker": [[0, 0, 0], [1, 1, 1]]}, "ambient": {}, "specular": {}, "reflection": {}},
     "plain": {"color": [0, 1, 0], "ambient": 0, "specular": 0.5, "transmission": 1, "ior": 1.5},
-    "glass": {"type": "dielectric", "medium": "a"}},
+    "glass": {"type": "dielectric", "medium": "a"},
+    "layered": {"type": "openpbr", "base_color": "t", "transmission_weight": 0.5, "coat_weight": 1, "fuzz_weight": 0.5}},
   "meshes": {
     "t": {"file": "tetra.ply", "crease_angle": 30},
     "i": {"generate": {"type": "ice_block", "subdivision": 4, "cavity": {}}},

@@ -1,0 +1,43 @@
+// See openpbr.h.
+#include "scene/materials/openpbr.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/description.h"
+
+namespace sundog {
+
+FacetWidths facet_widths(double roughness, double anisotropy) {
+  const double alpha = roughness * roughness, across = 1 - anisotropy;
+  const double along = std::min(alpha * std::sqrt(2 / (1 + across * across)), 1.0);
+  return {along, across * along};
+}
+
+bool set_openpbr(const OpenPbr& values, MaterialDescription& material, MediumDescription& inside) {
+  const double dielectric = 1 - values.base_metalness, through = values.transmission_weight * dielectric;
+  const bool in_depth = values.transmission_depth > 0;
+  material.diffuse = values.base_weight * values.base_color;
+  material.ambient = 0.1 * dielectric * (1 - values.transmission_weight) * material.diffuse;
+  material.specular = dvec3(0);
+  material.reflection = through * values.specular_color;
+  material.transmission = through * (in_depth ? dvec3(1) : values.transmission_color);
+  material.roughness = values.specular_roughness;
+  material.emission = values.emission_luminance * values.emission_color;
+  material.opacity = values.geometry_opacity;
+  material.layers = values;
+  if (through == 0) return false;
+  material.type = MaterialType::dielectric;
+  inside.name = material.name;
+  inside.ior = values.specular_ior;
+  if (values.transmission_dispersion_scale > 0) {
+    const double abbe = values.transmission_dispersion_abbe_number / values.transmission_dispersion_scale;
+    inside.dispersion = cauchy_of_abbe(values.specular_ior, std::max(abbe, 1.0));
+  }
+  if (in_depth)
+    inside.absorption =
+        -glm::log(glm::max(values.transmission_color, dvec3(1e-6))) / values.transmission_depth + 0.0;
+  return true;
+}
+
+}  // namespace sundog

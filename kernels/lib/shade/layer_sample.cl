@@ -1,0 +1,106 @@
+// Layered materials as part of a BSDF with a density, for integrators that follow one ray on, and what their
+// layers take from the terms below them: perfect reflection and transmission, facets of glass. A surface a
+// lane.
+#ifndef SUNDOG_LIB_LAYER_SAMPLE_CL
+#define SUNDOG_LIB_LAYER_SAMPLE_CL
+#include "lib/shade/layers.cl"
+
+#if HAS_LAYERS
+// What fuzz and coat leave of light between the cosines c_o and c_i to the normal, where the first is on the
+// viewer's side, and the second behind the surface where it is below 0.
+static inline REAL3 left_by_layers(const Scene* scene, __global const Layers* m, const Bsdfs* bsdf, REAL c_o,
+                                   REAL c_i, MASK lanes) {
+  const REAL3 white = all3((float3)(1.0f));
+  if (m->fuzz.w == 0.0f && m->coat.w == 0.0f) return white;
+  const MASK through = MASK_OF(c_i < 0.0f);
+  const REAL of_o = past_layers(scene, m, c_o, lanes), of_i = past_layers(scene, m, fabs(c_i), lanes);
+  const REAL3 tint_o = coat_tints(m, c_o), tint_i = coat_tints(m, fabs(c_i));
+  const MASK front = lanes & bsdf->coated, back = lanes & bsdf->coated_behind & through;
+  REAL3 left = scale3(multiply3(tint_o, tint_i), real_min(of_o, of_i));
+  left = select3(left, scale3(tint_o, of_o), through);
+  left = select3(white, left, front);
+  return select3(left, scale3(tint_i, of_i), back);
+}
+
+// The shares of samples for the viewer in wo, as large as what the lobes may return; and what the layers
+// leave of perfect reflection and transmission.
+static inline LayerShares make_shares(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes,
+                                      SpecularSplits* split) {
+  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), c = dot3(bsdf->ns, wo);
+  LayerShares shares = {zero, zero, zero, zero};
+  u32 index;
+  for (MASK left = layered_lanes(bsdf, lanes); any_lane(left);) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
+    __global const Layers* m = scene->layers + index;
+    const MASK coated = mine & bsdf->coated;
+    const REAL by_fuzz = select(one, past_fuzz(scene, m, c, mine), coated);
+    const REAL by_both = select(one, past_layers(scene, m, c, mine), coated);
+    const REAL by_shine = layer_row(scene, m, LAYER_SHINE, c, mine);
+    const float metal = m->specular.w, opaque = (1.0f - metal) * (1.0f - m->glass);
+    const REAL of_metal = metal * real_max(greatest3(bsdf->base), (REAL)(0.05f));
+    shares.fuzz = select(shares.fuzz, 1.0f - by_fuzz, mine);
+    shares.coat = select(shares.coat, by_fuzz - by_both, mine);
+    shares.shine = select(shares.shine, by_both * fma(opaque, 1.0f - by_shine, of_metal), mine);
+    const REAL matte = by_both * by_shine * opaque * greatest3(bsdf->base);
+    shares.matte = select(shares.matte, matte, mine);
+    const REAL3 kr = multiply3(split->kr, left_by_layers(scene, m, bsdf, c, c, mine));
+    const REAL3 kt = multiply3(split->kt, left_by_layers(scene, m, bsdf, c, -split->cos_t, mine));
+    split->kr = select3(split->kr, kr, mine);
+    split->kt = select3(split->kt, kt, mine);
+  }
+  return shares;
+}
+
+static inline REAL sum_of_shares(const LayerShares* shares) {
+  return shares->fuzz + shares->coat + (shares->shine + shares->matte);
+}
+
+// Adds pi times the BSDF times the cosine of the layers of `lanes` to what they leave of `value`, and the
+// density of their samples, times the sum of the shares, to `chosen`.
+static inline void layer_scatter(const Scene* scene, const Bsdfs* bsdf, const LayerShares* shares, REAL3 wo,
+                                 REAL3 wi, MASK lanes, REAL3* value, REAL* chosen) {
+  const MASK layered = layered_lanes(bsdf, lanes);
+  if (!any_lane(layered)) return;
+  const REAL3 o = into_frame(bsdf, wo), i = into_frame(bsdf, wi);
+  const MASK above = layered & MASK_OF(i.z > 0.0f) & MASK_OF(dot3(bsdf->ng, wi) > 0.0f);
+  const MASK under = layered & MASK_OF(greatest3(*value) > 0.0f);
+  u32 index;
+  for (MASK left = layered; any_lane(left);) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
+    __global const Layers* m = scene->layers + index;
+    if (any_lane(mine & under))
+      *value = select3(*value, multiply3(*value, left_by_layers(scene, m, bsdf, o.z, i.z, mine & under)),
+                       mine & under);
+    const MASK lit = mine & above;
+    if (!any_lane(lit)) continue;
+    REAL density;
+    const REAL3 own = layered_value(scene, m, bsdf, shares, o, i, 1.0f, lit, &density);
+    *value = select3(*value, along3(*value, bsdf->there, own), lit);
+    *chosen = select(*chosen, *chosen + density, lit);
+  }
+}
+
+// Directions that layers send light from wo to; `at` in [0, the sum of the shares) chooses the kind of lobe.
+static inline REAL3 layer_direction(const Scene* scene, const Bsdfs* bsdf, const LayerShares* shares,
+                                    REAL3 wo, REAL at, REAL u_x, REAL u_y, MASK lanes) {
+  const REAL one = (REAL)(1.0f);
+  REAL alpha_x = one, alpha_y = one;
+  const MASK fuzz = MASK_OF(at < shares->fuzz), coat = MASK_OF(at < shares->fuzz + shares->coat);
+  const MASK shine = MASK_OF(at < shares->fuzz + shares->coat + shares->shine);
+  u32 index;
+  for (MASK left = layered_lanes(bsdf, lanes); any_lane(left);) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
+    __global const Layers* m = scene->layers + index;
+    alpha_x = select(alpha_x, select((REAL)(m->alpha_x), (REAL)(m->coat_alpha), coat), mine);
+    alpha_y = select(alpha_y, select((REAL)(m->alpha_y), (REAL)(m->coat_alpha), coat), mine);
+  }
+  const REAL3 o = into_frame(bsdf, wo), h = seen_facet(o, alpha_x, alpha_y, u_x, u_y);
+  const REAL3 mirrored = subtract3(scale3(h, 2.0f * dot3(h, o)), o);
+  const REAL z = select(real_sqrt(u_x), u_x, fuzz), angle = 2.0f * M_PI_F * u_y;
+  const REAL side = real_sqrt(real_max(1.0f - z * z, (REAL)(0.0f)));
+  const REAL3 wide = real3(side * cos(angle), side * sin(angle), z);
+  return renormalized3(out_of_frame(bsdf, select3(wide, mirrored, shine & ~fuzz)));
+}
+#endif
+
+#endif

@@ -1,0 +1,165 @@
+// Layered materials (shared/layers.h): what fuzz and coat let through is shared by the lesser of both
+// directions' parts, which is reciprocal and never more than there is: with T(w) what a layer leaves for the
+// direction w, a layer's own light is 1 - T(wo) and that from below at most T(wo). The matte ground has
+// T(wo) T(wi) over a constant in its place (Kelemen and Szirmay-Kalos 2001), which for it is exact. A surface
+// a lane; the lanes of a call have one material.
+#ifndef SUNDOG_LIB_LAYERS_CL
+#define SUNDOG_LIB_LAYERS_CL
+#include "lib/core/directions.cl"
+#include "lib/shade/bsdf.cl"
+#include "lib/shade/layer_lobes.cl"
+
+#if HAS_LAYERS
+// How much of the samples each kind of lobe gets.
+typedef struct LayerShares {
+  REAL fuzz, coat, shine, matte;
+} LayerShares;
+
+static inline REAL3 into_frame(const Bsdfs* bsdf, REAL3 w) {
+  return real3(dot3(w, bsdf->tangent), dot3(w, bsdf->bitangent), dot3(w, bsdf->ns));
+}
+static inline REAL3 out_of_frame(const Bsdfs* bsdf, REAL3 w) {
+  return along3(along3(scale3(bsdf->tangent, w.x), w.y, bsdf->bitangent), w.z, bsdf->ns);
+}
+
+// What fuzz, and fuzz with the coat, leave for a direction at the cosine c; 1 without them.
+static inline REAL past_fuzz(const Scene* scene, __global const Layers* m, REAL c, MASK lanes) {
+  if (m->fuzz.w == 0.0f) return (REAL)(1.0f);
+  return layer_row(scene, m, LAYER_FUZZ, c, lanes);
+}
+static inline REAL past_layers(const Scene* scene, __global const Layers* m, REAL c, MASK lanes) {
+  const REAL left = past_fuzz(scene, m, c, lanes);
+  return m->coat.w == 0.0f ? left : left * layer_row(scene, m, LAYER_COAT, c, lanes);
+}
+
+// What the coat's colour takes on a way through it at the cosine c.
+static inline REAL coat_tint(float color, float weight, REAL way) {
+  const float straight = fmax(1.0f - weight * (1.0f - color), 1e-6f);
+  return straight == 1.0f ? (REAL)(1.0f) : real_exp(log(straight) * way);
+}
+static inline REAL3 coat_tints(__global const Layers* m, REAL c) {
+  const REAL way = 0.5f / real_max(refracted_cosine(c, (REAL)(m->coat_eta)), (REAL)(0.05f));
+  return real3(coat_tint(m->coat.x, m->coat.w, way), coat_tint(m->coat.y, m->coat.w, way),
+               coat_tint(m->coat.z, m->coat.w, way));
+}
+
+// What the base's interface reflects at the cosine c: of the dielectric's opaque share and of the metal.
+static inline REAL3 shine_color(const Scene* scene, __global const Layers* m, REAL3 base, REAL c,
+                                MASK lanes) {
+  const float metal = m->specular.w, opaque = (1.0f - metal) * (1.0f - m->glass);
+  const REAL f = interface_reflectance(c, (REAL)(m->eta));
+  REAL3 of_glass = real3(f, f, f), of_metal = metal_shares(c, base, m->specular);
+  if (m->film > 0.0f) {
+    const REAL left = (REAL)(1.0f - m->film);
+    of_glass = along3(scale3(of_glass, left), (REAL)(m->film), layer_row3(scene, m, LAYER_FILM, c, lanes));
+    of_metal =
+        along3(scale3(of_metal, left), (REAL)(m->film), layer_row3(scene, m, LAYER_FILM_METAL, c, lanes));
+  }
+  of_glass = multiply3(of_glass, all3(m->specular.xyz));
+  return along3(scale3(of_glass, (REAL)(opaque)), (REAL)(metal * m->metal), of_metal);
+}
+
+// pi times the BSDF times the cosine of the layers of `lanes`, between directions of the frame, and what it
+// leaves of `below`, the light of the terms under them. `sharp`: the factor on the base's shine.
+static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, const Bsdfs* bsdf,
+                                  const LayerShares* shares, REAL3 wo, REAL3 wi, float sharp, MASK lanes,
+                                  REAL* density) {
+  const REAL one = (REAL)(1.0f);
+  const MASK coated = lanes & bsdf->coated;
+  const REAL3 h = safe_unit3(add3(wo, wi));
+  const REAL wo_h = real_clamp(dot3(wo, h), (REAL)(0.0f), one);
+  REAL3 value = all3((float3)(0.0f)), tint = all3((float3)(1.0f));
+  REAL chance = shares->matte * wi.z * (1.0f / M_PI_F), kept = one;
+  if (m->fuzz.w > 0.0f && any_lane(coated)) {
+    const REAL fuzz = select((REAL)(0.0f), m->fuzz.w * fuzz_lobe(wo, wi, h, m->fuzz_alpha), coated);
+    value = along3(value, fuzz, all3(m->fuzz.xyz));
+    kept = real_min(past_fuzz(scene, m, wo.z, coated), past_fuzz(scene, m, wi.z, coated));
+    chance += shares->fuzz * (0.5f / M_PI_F);
+  }
+  if (m->coat.w > 0.0f && any_lane(coated)) {
+    const REAL alpha = (REAL)(m->coat_alpha);
+    const REAL gains = lobe_energy_at(scene, LOBE_GAINS, wo.z, alpha, coated) *
+                       lobe_energy_at(scene, LOBE_GAINS, wi.z, alpha, coated);
+    const FacetLobe lobe = facet_lobe(wo, wi, h, alpha, alpha, gains);
+    const REAL part = mend_share(interface_reflectance(wo_h, (REAL)(m->coat_eta)), lobe.more);
+    const REAL coat = select((REAL)(0.0f), m->coat.w * part * lobe.value * kept, coated);
+    value = add3(value, real3(coat, coat, coat));
+    kept = real_min(past_layers(scene, m, wo.z, coated), past_layers(scene, m, wi.z, coated));
+    tint = multiply3(coat_tints(m, wo.z), coat_tints(m, wi.z));
+    chance += shares->coat * lobe.density;
+  }
+  const REAL gains = shine_gain(scene, m, wo, lanes) * shine_gain(scene, m, wi, lanes);
+  const FacetLobe shine = facet_lobe(wo, wi, h, (REAL)(m->alpha_x), (REAL)(m->alpha_y), gains);
+  chance += shares->shine * shine.density;
+  const REAL3 color = mend_shares(shine_color(scene, m, bsdf->base, wo_h, lanes), shine.more);
+  REAL3 base = scale3(color, shine.value * (sharp * m->shine_scale) * select(one, kept, coated));
+  if (m->specular.w < 1.0f && m->glass < 1.0f) {
+    const REAL3 matte = matte_lobe(wo, wi, bsdf->base, m->matte_roughness);
+    const REAL through =
+        layer_row(scene, m, LAYER_SHINE, wo.z, lanes) * layer_row(scene, m, LAYER_SHINE, wi.z, lanes);
+    REAL above = (REAL)(m->matte_scale_bare);
+    if (any_lane(coated))
+      above = select(
+          above, m->matte_scale * past_layers(scene, m, wo.z, coated) * past_layers(scene, m, wi.z, coated),
+          coated);
+    base = along3(base, through * above * ((1.0f - m->specular.w) * (1.0f - m->glass)), matte);
+  }
+  *density = chance;
+  return add3(value, multiply3(base, select3(all3((float3)(1.0f)), tint, coated)));
+}
+
+// The surfaces of `lanes` that are layered, seen from the side that shows their layers or from their inside.
+static inline MASK layered_lanes(const Bsdfs* bsdf, MASK lanes) {
+  return lanes & MASK_OF((bsdf->flags & (int)MATERIAL_LAYERED) != 0);
+}
+
+// pi times the BSDF times the cosine of the layers of `lanes`, for lights that reflected rays do not meet:
+// surfaces so smooth that these show what they mirror have less of it.
+static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes,
+                                  REAL3 light) {
+  MASK layered = layered_lanes(bsdf, lanes & MASK_OF(dot3(bsdf->ng, wi) > 0.0f));
+  const LayerShares none = {(REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f)};
+  const REAL3 o = into_frame(bsdf, wo), i = into_frame(bsdf, wi);
+  REAL3 sum = light;
+  u32 index;
+  while (any_lane(layered)) {
+    const MASK mine = take_alike(bsdf->material, &layered, &index);
+    __global const Layers* m = scene->layers + index;
+    REAL density;
+    const float sharp = 1.0f - mirror_share(m->alpha_x, m->alpha_y);
+    const REAL3 own = layered_value(scene, m, bsdf, &none, o, i, sharp, mine, &density);
+    sum = select3(sum, along3(sum, bsdf->there, own), mine);
+  }
+  return sum;
+}
+
+// What surfaces of `lanes` mirror for integrators that send a reflected ray of its own: the smoother, the
+// more.
+static inline void mirror_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes,
+                                 SpecularSplits* split) {
+  const REAL c = dot3(bsdf->ns, wo), one = (REAL)(1.0f);
+  u32 index;
+  for (MASK left = layered_lanes(bsdf, lanes); any_lane(left);) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
+    __global const Layers* m = scene->layers + index;
+    const MASK coated = mine & bsdf->coated;
+    const REAL past = select(one, past_layers(scene, m, c, mine), coated);
+    const REAL3 tint = select3(all3((float3)(1.0f)), coat_tints(m, c), coated);
+    const REAL3 below = multiply3(multiply3(tint, tint), shine_color(scene, m, bsdf->base, c, mine));
+    REAL coat = past_fuzz(scene, m, c, mine) * interface_reflectance(c, (REAL)(m->coat_eta));
+    coat *= m->coat.w * mirror_share(m->coat_alpha, m->coat_alpha);
+    coat = select((REAL)(0.0f), coat, coated);
+    const REAL3 own = along3(real3(coat, coat, coat), past * mirror_share(m->alpha_x, m->alpha_y), below);
+    split->kr = select3(split->kr, along3(split->kr, bsdf->there, own), mine);
+  }
+}
+#else
+static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes,
+                                  REAL3 light) {
+  return light;
+}
+static inline void mirror_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes,
+                                 SpecularSplits* split) {}
+#endif
+
+#endif

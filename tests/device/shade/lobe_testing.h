@@ -1,0 +1,213 @@
+// A material's lobes at a surface z = 0 as integrators see them that follow one ray on: values, densities and
+// samples of a batch of directions at a time.
+#pragma once
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "catch.h"
+#include "compile/layers/layers.h"
+#include "compile/lobe_energy.h"
+#include "devices.h"
+#include "shared/scene.h"
+
+namespace sundog::lobes {
+
+using glm::dvec3;
+
+inline constexpr double pi = std::numbers::pi;
+inline constexpr u32 count = 1u << 12;
+
+inline const char* const lobe_kernel = R"(
+#include "lib/shade/bsdf_sample.cl"
+#include "lib/core/sampler.cl"
+// The surface z = 0 of one material, seen from above, or from below where `below`, behind it the other of the media 0 and 1.
+Bsdfs surface(__global const Material* materials, u32 below) {
+  const REAL3 n = real3(0.0f, 0.0f, below ? -1.0f : 1.0f), none = real3(0.0f, 0.0f, 0.0f);
+  Bsdfs bsdf = {n, n, none, all3(materials[0].diffuse.xyz), 0, (int)materials[0].flags, (int)below, 1 - (int)below};
+#if HAS_MAPS
+  bsdf.specular = all3(materials[0].specular.xyz);
+  bsdf.reflection = all3(materials[0].reflection.xyz);
+  bsdf.transmission = all3(materials[0].transmission.xyz);
+  bsdf.emission = none;
+  bsdf.exponent = (REAL)(materials[0].specular.w);
+#endif
+#if HAS_LAYERS
+  bsdf.base = bsdf.diffuse;
+  bsdf.tangent = real3(1.0f, 0.0f, 0.0f);
+  bsdf.bitangent = real3(0.0f, 1.0f, 0.0f);
+  bsdf.there = (REAL)(1.0f);
+  const MASK layered = MASK_OF((bsdf.flags & (int)MATERIAL_LAYERED) != 0), inside = MASK_OF(below != 0u);
+  if (layered) bsdf.diffuse = none;
+  bsdf.coated = layered & ~inside;
+  bsdf.coated_behind = layered & inside;
+#endif
+  return bsdf;
+}
+// Draws where `wi` has no length, else takes wi. Out: wi, density, weight or pi BSDF cos, whether it is specular.
+__kernel void run(__global const Material* materials, __global const Medium* media, __global const float* energy,
+                  __global const Layers* layers, __global const float* layer_rows, __global const float4* wis, __global float* out, float4 wo4, u32 count) {
+  const u32 i = get_global_id(0);
+  if (i >= count) return;
+  const Scene scene = {.materials = materials, .media = media, .lobe_energy = energy, .layers = layers, .layer_rows = layer_rows};
+  const REAL3 wo = real3(wo4.x, wo4.y, wo4.z), given = real3(wis[i].x, wis[i].y, wis[i].z);
+  const Bsdfs bsdf = surface(materials, wo4.z < 0.0f);
+  const Lobes lobes = make_lobes(&scene, &bsdf, wo, ALL_LANES);
+  // Roberts's sequence in three dimensions: even, and without a pattern of its own.
+  const float3 steps = 0.5f + (float)(i + 1u) * (float3)(0.81917251f, 0.67104361f, 0.54970048f), u = steps - floor(steps);
+  const BsdfSamples s = sample_lobes(&scene, &bsdf, &lobes, wo, u.x, u.y, u.z, ALL_LANES);
+  const bool draws = dot3(given, given) == 0.0f;
+  REAL density = s.density;
+  const REAL3 value = draws ? s.weight : bsdf_scatter(&scene, &bsdf, &lobes, wo, given, ALL_LANES, &density);
+  const REAL3 wi = draws ? s.wi : given;
+  __global float* to = out + 8u * i;
+  to[0] = wi.x; to[1] = wi.y; to[2] = wi.z; to[3] = density;
+  to[4] = value.x; to[5] = value.y; to[6] = value.z; to[7] = draws && s.specular ? 1.0f : 0.0f;
+}
+)";
+
+struct Lobe {
+  dvec3 wi, value;
+  double density;
+  bool specular;
+};
+
+class Tester {
+ public:
+  /// `layered`: materials have layers.
+  explicit Tester(const DeviceInfo& info, bool layered = false)
+      : device_(info),
+        kernel_(build_text(device_, lobe_kernel,
+                           {{"TILE_W", "1"},
+                            {"TILE_H", "1"},
+                            {"LANES", "1"},
+                            {"WIDE_VECTORS", "0"},
+                            {"HAS_ROUGH_GLASS", "1"},
+                            {"HAS_LAYERS", layered ? "1" : "0"}})
+                    .kernel<Buffer<Material>, Buffer<Medium>, Buffer<float>, Buffer<Layers>, Buffer<float>,
+                            Buffer<float4>, Buffer<float>, float4, u32>("run")),
+        energy_(device_.upload<float>(make_lobe_energy(true, true))),
+        layers_(device_.upload<Layers>(std::vector{Layers{}})),
+        layer_rows_(device_.upload<float>(std::vector{0.f})) {}
+
+  /// From now on materials have these layers.
+  Layers set_layers(const OpenPbr& values) {
+    std::vector<float> table;
+    const Layers layers = make_layers(values, table);
+    layers_ = device_.upload<Layers>(std::vector{layers});
+    layer_rows_ = device_.upload<float>(table);
+    return layers;
+  }
+
+  /// For each direction the lobe there; for directions of no length a sample.
+  std::vector<Lobe> look(const Material& material, double index, const dvec3& wo,
+                         const std::vector<dvec3>& wis) {
+    std::vector<Medium> media(2);
+    media[0].absorption.w = 1;
+    media[1].absorption.w = static_cast<float>(index);
+    std::vector<float4> given;
+    for (const dvec3& wi : wis) given.push_back({float(wi.x), float(wi.y), float(wi.z), 0});
+    const auto size = static_cast<u32>(wis.size());
+    const auto out = device_.make<float>(8 * wis.size());
+    device_.run(kernel_, {.x = wis.size()}, device_.upload<Material>(std::vector{material}),
+                device_.upload<Medium>(media), energy_, layers_, layer_rows_, device_.upload<float4>(given),
+                out, float4{float(wo.x), float(wo.y), float(wo.z), 0}, size);
+    std::vector<float> values(8 * wis.size());
+    device_.read(out, std::span<float>(values));
+    std::vector<Lobe> lobes;
+    for (std::size_t i = 0; i < wis.size(); ++i) {
+      const float* v = values.data() + 8 * i;
+      lobes.push_back({{v[0], v[1], v[2]}, {v[4], v[5], v[6]}, v[3], v[7] != 0});
+    }
+    return lobes;
+  }
+
+  std::vector<Lobe> draw(const Material& material, double index, const dvec3& wo) {
+    return look(material, index, wo, std::vector<dvec3>(count, dvec3(0)));
+  }
+
+ private:
+  Device device_;
+  Kernel<Buffer<Material>, Buffer<Medium>, Buffer<float>, Buffer<Layers>, Buffer<float>, Buffer<float4>,
+         Buffer<float>, float4, u32>
+      kernel_;
+  Buffer<float> energy_;
+  Buffer<Layers> layers_;
+  Buffer<float> layer_rows_;
+};
+
+inline Material rough_metal(double roughness, float color = 1) {
+  Material metal{};
+  metal.flags = MATERIAL_REFLECTS;
+  metal.reflection = {color, color, color, float(roughness * roughness)};
+  return metal;
+}
+
+inline Material rough_glass(double roughness) {
+  Material glass{};
+  glass.kind = MATERIAL_DIELECTRIC;
+  glass.flags = MATERIAL_REFLECTS | MATERIAL_TRANSMITS;
+  glass.reflection = {1, 1, 1, float(roughness * roughness)};
+  glass.transmission = {1, 1, 1, 0};
+  return glass;
+}
+
+inline dvec3 at_cosine(double cosine) { return {-std::sqrt(1 - cosine * cosine), 0, cosine}; }
+
+inline double mean_weight(const std::vector<Lobe>& drawn) {
+  double sum = 0;
+  for (const Lobe& one : drawn) sum += one.value.x;
+  return sum / double(drawn.size());
+}
+
+inline dvec3 on_sphere(double z, double turn) {
+  const double side = std::sqrt(std::max(1 - z * z, 0.0));
+  return {side * std::cos(2 * pi * turn), side * std::sin(2 * pi * turn), z};
+}
+
+inline constexpr int rows = 12, columns = 8, fine = 8;  // cells of directions; places in each along an axis
+
+/// Directions in the middles of equal cells of the sphere, cell by cell.
+inline std::vector<dvec3> all_directions() {
+  std::vector<dvec3> directions;
+  for (int cell = 0; cell < rows * columns; ++cell)
+    for (int k = 0; k < fine * fine; ++k) {
+      const int row = cell / columns, column = cell % columns;
+      directions.push_back(on_sphere(-1 + 2 * (row + (k / fine + 0.5) / fine) / rows,
+                                     (column + (k % fine + 0.5) / fine) / columns));
+    }
+  return directions;
+}
+
+inline std::size_t cell_of(const dvec3& d) {
+  const int row = std::clamp(int((d.z + 1) / 2 * rows), 0, rows - 1);
+  const double turn = std::atan2(d.y, d.x) / (2 * pi);
+  const int column = std::clamp(int((turn - std::floor(turn)) * columns), 0, columns - 1);
+  return static_cast<std::size_t>(row * columns + column);
+}
+
+/// Chi-squared over its degrees of freedom, of samples against their density: about 1 where they agree.
+inline double chi_squared(Tester& tester, const Material& material, double index, const dvec3& wo) {
+  const std::vector<Lobe> field = tester.look(material, index, wo, all_directions());
+  std::vector<double> expected(rows * columns), found(rows * columns);
+  for (std::size_t i = 0; i < field.size(); ++i)
+    expected[i / (fine * fine)] += field[i].density * 4 * pi * count / double(field.size());
+  for (const Lobe& one : tester.draw(material, index, wo))
+    if (one.density > 0) found[cell_of(one.wi)] += 1;
+  double sum = 0, few_expected = 0, few_found = 0;
+  int cells = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    if (expected[i] < 10) {
+      few_expected += expected[i];
+      few_found += found[i];
+      continue;
+    }
+    sum += (found[i] - expected[i]) * (found[i] - expected[i]) / expected[i];
+    ++cells;
+  }
+  CHECK(std::abs(few_found - few_expected) < 5 * std::sqrt(few_expected + 4) + 0.02 * few_expected);
+  REQUIRE(cells > 5);
+  return sum / cells;
+}
+
+}  // namespace sundog::lobes

@@ -1,0 +1,111 @@
+// Layered materials on the host: a film's colours against a sum of its reflections, and the terms that
+// OpenPBR's values become.
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "catch.h"
+#include "compile/layers/film.h"
+#include "compile/layers/layers.h"
+#include "scene_text.h"
+
+using namespace sundog;
+
+namespace {
+
+using Complex = std::complex<double>;
+
+/// An interface's amplitudes (Born and Wolf, section 1.5.2), of which the field across the plane is one.
+struct Fresnel {
+  Complex reflected, passed;
+};
+
+Fresnel across(double n, Complex cos_n, double m, Complex cos_m) {
+  return {(n * cos_n - m * cos_m) / (n * cos_n + m * cos_m), 2.0 * n * cos_n / (n * cos_n + m * cos_m)};
+}
+Fresnel along(double n, Complex cos_n, double m, Complex cos_m) {
+  return {(m * cos_n - n * cos_m) / (m * cos_n + n * cos_m), 2.0 * n * cos_n / (m * cos_n + n * cos_m)};
+}
+
+/// The first reflection, and those that have gone through the film once, twice, ... two hundred times.
+template <class Interface>
+double summed(const ThinFilm& film, double cosine, double wavelength, const Interface& interface) {
+  const auto behind = [&](double m) {
+    return std::sqrt(Complex(1 - (1 - cosine * cosine) * film.before * film.before / (m * m)));
+  };
+  const Complex cos_film = behind(film.index), cos_base = behind(film.behind);
+  const Fresnel in = interface(film.before, Complex(cosine), film.index, cos_film),
+                out = interface(film.index, cos_film, film.before, Complex(cosine)),
+                base = interface(film.index, cos_film, film.behind, cos_base);
+  const Complex turn =
+      std::exp(Complex(0, 4 * std::numbers::pi * film.index * film.thickness / wavelength) * cos_film);
+  Complex field = in.reflected, way = in.passed * base.reflected * turn * out.passed;
+  for (int i = 0; i < 200; ++i) {
+    field += way;
+    way *= out.reflected * base.reflected * turn;
+  }
+  return std::norm(field);
+}
+
+}  // namespace
+
+TEST_CASE("a film reflects what the sum of its reflections is") {
+  for (const ThinFilm& film :
+       {ThinFilm{1, 1.4, 1.5, 300}, ThinFilm{1, 1.33, 2.4, 550}, ThinFilm{1.6, 1.9, 3, 120}})
+    for (const double cosine : {1.0, 0.7, 0.35, 0.1})
+      for (const double wavelength : {420.0, 550.0, 680.0}) {
+        INFO(film.thickness << " nm at " << cosine << ", " << wavelength << " nm");
+        const double sum =
+            (summed(film, cosine, wavelength, across) + summed(film, cosine, wavelength, along)) / 2;
+        CHECK(film_reflectance(film, cosine, wavelength) == Approx(sum).epsilon(1e-9));
+      }
+}
+
+TEST_CASE("a film of no thickness is not there, and a quarter wave of the root's index reflects nothing") {
+  const double plain = std::pow((1.5 - 1) / (1.5 + 1), 2);
+  CHECK(film_reflectance({1, 1.4, 1.5, 0}, 1, 550) == Approx(plain).epsilon(1e-9));
+  const double index = std::sqrt(1.5);
+  CHECK(film_reflectance({1, index, 1.5, 550 / (4 * index)}, 1, 550) == Approx(0).margin(1e-12));
+  CHECK(film_reflectance({1.5, 1.4, 1.5, 0}, 0.01, 550) == 1);  // beyond the angle of total reflection
+  const dvec3 color = film_color({1, 1.4, 1.5, 0}, 1, dvec3(0));
+  for (int i = 0; i < 3; ++i) CHECK(color[i] == Approx(plain).epsilon(1e-3));
+}
+
+TEST_CASE("widths of facets keep their mean square and have the given ratio") {
+  const FacetWidths round = facet_widths(0.5, 0), brushed = facet_widths(0.5, 0.8);
+  CHECK(round.x == Approx(0.25));
+  CHECK(round.y == Approx(0.25));
+  CHECK(brushed.y / brushed.x == Approx(0.2));
+  CHECK(brushed.x * brushed.x + brushed.y * brushed.y == Approx(2 * 0.25 * 0.25));
+}
+
+TEST_CASE("OpenPBR's values become a material's terms") {
+  const SceneDescription scene = load_scene_text(R"({"materials": {
+    "paint": {"type": "openpbr", "base_color": [0.5, 0.2, 0.1], "base_weight": 0.5, "coat_weight": 1},
+    "ink": {"type": "openpbr", "transmission_weight": 1, "transmission_color": [0.5, 1, 1], "transmission_depth": 2,
+      "specular_ior": 1.4, "specular_roughness": 0.1, "emission_luminance": 2}},
+    "objects": [{"type": "sphere", "material": "ink"}, {"type": "sphere", "material": "paint"}]})");
+  const MaterialDescription& ink =
+      scene.materials[0].layers->transmission_weight > 0 ? scene.materials[0] : scene.materials[1];
+  const MaterialDescription& paint = &ink == &scene.materials[0] ? scene.materials[1] : scene.materials[0];
+  CHECK(paint.diffuse == dvec3(0.25, 0.1, 0.05));
+  CHECK(paint.medium == -1);
+  CHECK(paint.layers->coat_weight == 1);
+  CHECK(ink.type == MaterialType::dielectric);
+  CHECK(ink.emission == dvec3(2));
+  const MediumDescription& inside = scene.media.at(static_cast<std::size_t>(ink.medium));
+  CHECK(inside.ior == 1.4);
+  CHECK(inside.absorption.x == Approx(std::log(2) / 2));
+  CHECK(inside.absorption.y == 0);
+  const CompiledScene compiled = compile(scene);
+  CHECK(compiled.features.layers);
+  CHECK(compiled.layers.size() == scene.materials.size() + 1);
+}
+
+TEST_CASE("scenes without layered materials have no tables of theirs") {
+  const CompiledScene plain = compile(
+      load_scene_text(R"({"objects": [{"type": "sphere", "material": "m"}], "materials": {"m": {}}})"));
+  CHECK_FALSE(plain.features.layers);
+  CHECK(plain.layers.empty());
+  CHECK(plain.layer_rows.empty());
+}
