@@ -48,7 +48,7 @@ struct TypedRender {
   RenderCommand command;
   std::string size, samples, max_depth, integrator, filter, filter_radius, adaptive, time_limit, noise,
       write_every, work_group = "auto", split = "dynamic", part, tile, frames;
-  bool subsample = false;
+  bool subsample = false, caustics = false;
 };
 
 /// The options that only shorten a --set come first, so that a --set of the same value wins.
@@ -59,6 +59,9 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
     all.push_back(fmt::format("/render/samples={}", parse_number("--samples", typed.samples, 1, 65536)));
   if (!typed.max_depth.empty())
     all.push_back(fmt::format("/render/max_depth={}", parse_number("--max-depth", typed.max_depth, 1, 64)));
+  if (typed.caustics && !typed.integrator.empty() && !traces_paths(typed.integrator))
+    throw UsageError(fmt::format("--caustics: photons are for --integrator path, not {}", typed.integrator));
+  if (typed.caustics) all.insert(all.end(), {"/render/integrator=\"path\"", "/render/caustics=true"});
   if (!typed.integrator.empty()) all.push_back(fmt::format("/render/integrator=\"{}\"", typed.integrator));
   if (!typed.filter.empty()) all.push_back(fmt::format("/render/filter=\"{}\"", typed.filter));
   if (!typed.filter_radius.empty()) all.push_back("/render/filter_radius=" + typed.filter_radius);
@@ -142,6 +145,8 @@ void add_render(Arguments& root, Command& chosen) {
         "greatest depth of the ray tree; 1: the camera's rays alone");
   value(app, "--integrator", "NAME", typed->integrator,
         fmt::format("how light is followed: {}", fmt::join(integrator_names, ", ")));
+  app->add_flag("--caustics", typed->caustics,
+                "path tracing with photons, which bring the light behind glass and off mirrors");
   value(app, "--filter", "NAME", typed->filter,
         fmt::format("how a pixel's samples add up: {}", fmt::join(filter_names, ", ")));
   value(app, "--filter-radius", "R", typed->filter_radius, "the filter's reach in pixels");

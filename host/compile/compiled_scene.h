@@ -52,6 +52,13 @@ void for_each_table(const SceneTables& tables, const Visit& visit) {
 /// Bytes of all tables.
 std::size_t table_bytes(const SceneTables& tables);
 
+/// What maps of photons are made by.
+struct PhotonPlan {
+  u32 count = 0;               // sent out for each
+  double radius = 0;           // of the first
+  bool lights_inside = false;  // some light may be inside a solid with a medium
+};
+
 struct CompiledScene : SceneTables {
   SceneInfo info{};
   dvec3 origin{0};             // where the tables' coordinates begin in the world; SceneInfo has it in floats
@@ -60,6 +67,7 @@ struct CompiledScene : SceneTables {
   std::string integrator = "whitted";  // a name of scene/integrators.h
   Tracer tracer = Tracer::automatic;   // of which kind the device shall trace
   Sampling sampling;
+  PhotonPlan photons_by;
   SceneFeatures features;
   BvhFigures figures;
 };

@@ -80,10 +80,11 @@ bool bends_light(const std::vector<Medium>& media) {
 }
 
 /// Whether shadow rays stop at a material. Paths find by themselves what lights send through bending
-/// interfaces, and shadow rays that went straight through these would find it a second time.
+/// interfaces, and shadow rays that went straight through these would find it a second time. So would
+/// photons.
 bool stops_shadows(const SceneDescription& scene, const MaterialDescription& material, bool bends) {
   const bool by_path = traces_paths(scene.render.integrator) && bends && material.medium >= 0;
-  return material.shadow_opaque || (by_path && !material.shadow_filter);
+  return material.shadow_opaque || (by_path && (!material.shadow_filter || scene.render.caustics));
 }
 
 u32 material_flags(const MaterialDescription& material) {

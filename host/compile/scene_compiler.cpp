@@ -16,6 +16,7 @@
 #include "compile/local_origin.h"
 #include "compile/mesh_lights.h"
 #include "compile/parts/parts.h"
+#include "compile/parts/photons.h"
 #include "scene/integrators.h"
 #include "scene/pack.h"
 
@@ -68,7 +69,7 @@ void set_view(const SceneDescription& scene, CompiledScene& out) {
   out.info.roulette_depth = static_cast<u32>(scene.render.roulette);
   out.info.light_strategy = scene.render.light_strategy;
   if (traces_paths(scene.render.integrator))
-    for (const Guide& guide : scene.render.guides)
+    for (const Guide& guide : scene.render.caustics ? std::vector<Guide>{} : scene.render.guides)
       out.guides.push_back(pack(guide.center - out.origin, guide.radius));
   out.features.guides = !out.guides.empty();
 }
@@ -229,6 +230,7 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   if (out.features.rough || out.features.layers)
     out.lobe_energy =
         lobe_energies(traces_paths(out.integrator) || out.features.layers, out.features.rough_glass);
+  add_photon_targets(scene, p.instances.boxes, out);
   set_counts(out);
   set_figures(out);
   out.figures.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -90,6 +90,9 @@ struct RenderSettings {
   int roulette = 5;                   // path: ray from which on paths end by chance, 1..65; 65: none
   u32 light_strategy = STRATEGY_MIS;  // path: a STRATEGY_* constant
   std::vector<Guide> guides;          // path
+  bool caustics = false;              // path: photons bring the light behind glass and mirrors
+  int photons = 65536;                // sent out for each map of them, 64..4194304
+  double photon_radius = 0;           // of the first map; 0: chosen by the scene
   u32 sampler = SAMPLER_AUTO;         // a SAMPLER_* constant
   Filter filter = Filter::box;
   double filter_radius = 0;  // in pixels; 0: the filter's own

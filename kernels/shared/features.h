@@ -17,6 +17,7 @@
   FEATURE(bool, HAS_DISPERSION, dispersion)         /* paths carry wavelengths: some medium disperses */ \
   FEATURE(bool, HAS_SCATTERING, scattering)         /* paths: some medium scatters */                   \
   FEATURE(bool, HAS_GUIDES, guides)                 /* paths are sent to balls where light comes from */ \
+  FEATURE(bool, HAS_CAUSTICS, caustics)             /* paths: photons bring the light behind glass */   \
   FEATURE(bool, HAS_FOG, fog)                       /* the world has fog */                             \
   FEATURE(bool, HAS_GLOW, glow)                     /* some field glows */                              \
   FEATURE(bool, HAS_OCCLUSION, occlusion)           /* some field darkens ambient light in its crevices */ \

@@ -1,6 +1,7 @@
 // The tables of a compiled scene, each once: from this list come the compiled scene's members, their upload,
 // bytes and hash, the kernels' parameters and the struct Scene that kernels hand on. A new table is one line
 // here.
+// The three tables of maps of photons are empty in a compiled scene: each device fills its own.
 //   TABLE(element on the device, element on the host, name, name in messages)
 // Only `nodes` differ: Bvh8Nodes are uploaded as they are, or as CompactNodes for devices that run a lane a
 // ray.
@@ -9,6 +10,7 @@
 #include "shared/bvh.h"
 #include "shared/environment.h"
 #include "shared/layers.h"
+#include "shared/photons.h"
 #include "shared/scene.h"
 #include "shared/sdf.h"
 #include "shared/spectra.h"
@@ -32,6 +34,11 @@
   TABLE(float, float, layer_rows, "light left by layers")                \
   TABLE(float, float, spectra, "spectra")                                \
   TABLE(float4, float4, guides, "guides of paths")                       \
+  TABLE(PhotonTarget, PhotonTarget, photon_targets, "photon targets")    \
+  TABLE(float, float, photon_lights, "shares of photons")                \
+  TABLE(PhotonMap, PhotonMap, photon_maps, "maps of photons")            \
+  TABLE(u32, u32, photon_cells, "cells of photons")                      \
+  TABLE(float4, float4, photons, "photons")                              \
   TABLE(Environment, Environment, environments, "environments")          \
   TABLE(float4, float4, environment, "environment's pixels")             \
   TABLE(float, float, environment_shares, "environment's shares")        \

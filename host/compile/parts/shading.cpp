@@ -65,6 +65,7 @@ ContentKey surfaces_key(const SceneDescription& scene) {
   KeyMaker key;
   key.add_all(scene.media).add_all(scene.images).add_all(scene.textures).add_all(scene.materials);
   if (fog_scatters(scene)) key.add(scene.fog.color).add(scene.fog.density).add(*scene.fog.anisotropy);
+  key.add(scene.render.caustics);
   return key.add(lacks_materials(scene)).add(traces_paths(scene.render.integrator)).key();
 }
 

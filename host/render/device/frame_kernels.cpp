@@ -54,6 +54,7 @@ void build_integrator(Device& device, const Integrator& integrator, FrameKernels
           build(device, integrator.entry, kernels.config, kernels, times, &update.built), integrator.kernel);
   kernels.entry = integrator.entry;
   kernels.first_surfaces = {};
+  kernels.trace_photons = {};
   kernels.find_media = {};
   limit_group(device.limits(kernels.integrator).work_group, kernels.most_group);
   update.changed = true;
@@ -113,6 +114,7 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
     if (kernels.builder) kernels.known.push_back(kernels.config);
   }
   if (aovs) add_first_surfaces(device, kernels, times);
+  if (scene.features.caustics) add_photon_tracer(device, kernels, times);
   check_work_group(device.info(), kernels.most_group, asked);
 }
 
@@ -147,6 +149,13 @@ void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& time
       scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>(
           build(device, "entry/aov.cl", config, kernels, times), "first_surfaces");
   limit_group(device.limits(kernels.first_surfaces).work_group, kernels.most_group);
+}
+
+void add_photon_tracer(Device& device, FrameKernels& kernels, RenderTimes& times) {
+  if (kernels.trace_photons.kernel()) return;
+  kernels.trace_photons = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch>(
+      build(device, "entry/trace_photons.cl", kernels.config, kernels, times), "trace_photons");
+  limit_group(device.limits(kernels.trace_photons).work_group, kernels.most_group);
 }
 
 KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,

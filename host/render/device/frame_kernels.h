@@ -23,7 +23,8 @@ struct FrameKernels {
   DeviceScene tables;
   SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch> integrator;
   SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>
-      first_surfaces;                                 // only with AOVs
+      first_surfaces;                                                                 // only with AOVs
+  SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch> trace_photons;  // only with caustics
   bool wants_all_aovs = false, has_all_aovs = false;  // of first_surfaces: all vectors of AOVs
   SceneKernel<Buffer<u32>> find_media;                // only where the camera has been inside a solid
   std::string entry;                                  // of the integrator
@@ -57,6 +58,9 @@ KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, co
 /// Has kernels built that will stand in when an edit asks for others (general_configs()). Nothing without a
 /// builder.
 void build_general_kernels(const Device& device, FrameKernels& kernels);
+
+/// Builds the kernel of photons where it is missing.
+void add_photon_tracer(Device& device, FrameKernels& kernels, RenderTimes& times);
 
 /// Builds the kernel of the AOVs where it is missing.
 void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& times);

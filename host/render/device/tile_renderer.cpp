@@ -61,6 +61,7 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
       kernels_(kernels_with(options, builder)),
       update_(
           update_frame_kernels(device, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times)),
+      photons_(scene),
       sizer_(limits_of(device.info(), kernels_), asked_, tuning_, !scene.sdf_fields.empty()),
       watch_(watch) {}
 
@@ -72,6 +73,7 @@ void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions&
   tuning_ = tuning;
   asked_ = options.work_group;
   samples_ = scene.info.samples;
+  photons_ = PhotonMaps(scene);
   kernels_.builder = options.general_kernels ? builder_ : nullptr;
   kernels_.wants_all_aovs = aov_vectors(options.aovs) == all_aov_vectors;
   kernels_.notes.clear();
@@ -99,21 +101,34 @@ void TileRenderer::prepare_surfaces() {
 }
 
 void TileRenderer::launch_samples(const TileRequest& request, const StopFlags& flags) {
+  const u32 first = request.first_sample;
+  if (!photons_.prepare({device_, kernels_, watch_}, flags, first, first + samples_of(request))) return;
   while (!flags.set()) {
     const std::optional<SizedLaunch> next = sizer_.next();
     if (!next) return;
-    const Stopwatch clock;
-    const WatchedLaunch watched(watch_, next->expected_seconds, next->expected_seconds <= 0,
-                                value_of(device_.info().environment).launch_limit);
     Launch launch = next->launch;
-    launch.first_sample += request.first_sample;
+    launch.first_sample += first;
     launch.listed = !request.pixels.empty();
+    sizer_.note_time(launch_integrator(launch, *next));
+  }
+}
+
+// With photons a launch is cut where the maps that the device has room for end. Returns its seconds.
+double TileRenderer::launch_integrator(const Launch& whole, const SizedLaunch& sized) {
+  const u32 end = whole.first_sample + whole.sample_count;
+  double seconds = 0;
+  for (Launch launch = whole; launch.first_sample < end; launch.first_sample += launch.sample_count) {
+    launch.sample_count = photons_.provide({device_, kernels_, watch_}, launch.first_sample, end);
+    const Stopwatch clock;
+    const WatchedLaunch watched(watch_, sized.expected_seconds, sized.expected_seconds <= 0,
+                                value_of(device_.info().environment).launch_limit);
     run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
-        device_, kernels_.integrator, next->size, kernels_.tables, kernels_.tables.camera_media, pixels_,
+        device_, kernels_.integrator, sized.size, kernels_.tables, kernels_.tables.camera_media, pixels_,
         film_, weights_, counters_, launch);
     device_.finish();
-    sizer_.note_time(clock.seconds());
+    seconds += clock.seconds();
   }
+  return seconds;
 }
 
 void TileRenderer::launch_aovs(const TileRequest& request, const Tile& tile, std::vector<float4>& aovs) {

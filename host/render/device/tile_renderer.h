@@ -5,6 +5,7 @@
 #include "render/device/frame_kernels.h"
 #include "render/device/launch_sizer.h"
 #include "render/device/launch_watch.h"
+#include "render/device/photon_maps.h"
 #include "render/film/film.h"
 #include "render/frame/tile_server.h"
 #include "render/values/options.h"
@@ -57,6 +58,7 @@ class TileRenderer {
   TileResult try_render(const TileRequest& request, const StopFlags& flags);
   void write_start(const TileRequest& request, TileResult& result);
   void launch_samples(const TileRequest& request, const StopFlags& flags);
+  double launch_integrator(const Launch& launch, const SizedLaunch& sized);
   void launch_aovs(const TileRequest& request, const Tile& tile, std::vector<float4>& aovs);
   void check_finished(const TileRequest& asked, const TileResult& made);
   unsigned samples_of(const TileRequest& request) const {
@@ -74,6 +76,7 @@ class TileRenderer {
   WorkGroup asked_;
   FrameKernels kernels_;
   KernelUpdate update_;
+  PhotonMaps photons_;
   LaunchSizer sizer_;
   LaunchWatch& watch_;
   bool aovs_launched_ = false;

@@ -39,6 +39,8 @@ std::uint64_t hash_scene(const CompiledScene& scene) {
                                sampling.subsample_contrast,
                                sampling.progressive ? 1.0 : 0.0};
   state = hash_bytes(shared_out, sizeof shared_out, state);
+  const double photons[] = {static_cast<double>(scene.photons_by.count), scene.photons_by.radius};
+  state = hash_bytes(photons, sizeof photons, state);
   mix(scene.integrator);
   mix(scene.field_source);
   mix(scene.pattern_source);

@@ -85,6 +85,8 @@ Guide read_guide(const JsonValue& value) {
 void read_path(JsonObject& object, RenderSettings& render) {
   render.roulette = object.integer("roulette", render.roulette, 1, 65);
   render.light_strategy = object.choose("lights", render.light_strategy, light_strategies);
+  render.photons = object.integer("photons", render.photons, 64, 4'194'304);
+  render.photon_radius = object.number("photon_radius", render.photon_radius, {.low = 0, .high = 1e15});
   const auto guides = object.find("guides");
   if (!guides) return;
   const auto balls = guides->items("balls");
@@ -209,6 +211,7 @@ RenderSettings read_render(const JsonValue& value) {
         read_path(inner, render);
         return true;
       });
+    render.caustics = object.boolean("caustics", render.caustics);
     render.sampler = object.choose("sampler", render.sampler, samplers);
     read_filter(object, render);
     read_sampling(object, render);

@@ -157,6 +157,7 @@ static inline MASK turn_on_stretch(const Scene* scene, Walks* walks, const Begun
   const Scattered scattered = {
       lanes, s->o, s->d, s->length, at, s->mean, next_density(s->decay, s->drawn, s->length, at)};
   join_stretch(walks, &scattered, lanes);
+  forget_gathered(walks, lanes);
   walks->density = select(walks->density, density * phase_density(s->g, cosine), lanes);
   walks->from = select3(walks->from, along3(s->o, at, s->d), lanes);
   MASK going = lanes & MASK_OF(carry_greatest(walks->throughput) > 0.0f);

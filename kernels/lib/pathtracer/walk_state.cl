@@ -21,6 +21,9 @@ typedef struct Walks {
   MASK met;    // the camera's ray has hit something
   LaneSamples at;
   Wavelengths wavelengths;
+#if HAS_CAUSTICS
+  MASK gathered;  // GATHERED_*
+#endif
 #if HAS_SCATTERING
   Scattered scattered;  // the density is then that of the place on the stretch and of the direction
 #endif
@@ -71,6 +74,34 @@ static inline REAL3 chosen_from(const Walks* walks) { return walks->from; }
 static inline void join_scattered(Walks* walks, const Walks* other, MASK lanes) {}
 static inline void leave_stretch(Walks* walks, MASK lanes) {}
 static inline void forget_stretches(Walks* walks) {}
+#endif
+
+// Light that photons have brought to a path's last surface, which it must not meet again through what has
+// mirrored or bent it since: the lights that photons leave.
+#if HAS_CAUSTICS
+#define GATHERED_NOTHING 0
+#define GATHERED_HERE 1    // at the surface that the ray leaves, or before interfaces that let it pass
+#define GATHERED_BEFORE 2  // at one before it; the ray was mirrored or bent since
+static inline void forget_gathered(Walks* walks, MASK lanes) {
+  walks->gathered = select(walks->gathered, (MASK)(GATHERED_NOTHING), lanes);
+}
+static inline void join_gathered(Walks* walks, const Walks* other, MASK lanes) {
+  walks->gathered = select(walks->gathered, other->gathered, lanes);
+}
+// The paths of `turns` leave surfaces that have gathered photons, unless they are mirrored or bent there.
+static inline void note_gathered(Walks* walks, MASK specular, MASK turns) {
+  const MASK before =
+      select((MASK)(GATHERED_NOTHING), (MASK)(GATHERED_BEFORE), MASK_OF(walks->gathered != GATHERED_NOTHING));
+  walks->gathered = select(walks->gathered, select((MASK)(GATHERED_HERE), before, specular), turns);
+}
+static inline MASK found_by_photons(const Walks* walks) {
+  return MASK_OF(walks->gathered == GATHERED_BEFORE);
+}
+#else
+static inline void forget_gathered(Walks* walks, MASK lanes) {}
+static inline void join_gathered(Walks* walks, const Walks* other, MASK lanes) {}
+static inline void note_gathered(Walks* walks, MASK specular, MASK turns) {}
+static inline MASK found_by_photons(const Walks* walks) { return NO_LANES; }
 #endif
 
 // Light of a colour that a path has met, as it gets to the camera.

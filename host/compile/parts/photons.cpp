@@ -1,0 +1,179 @@
+// See photons.h.
+#include "compile/parts/photons.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "compile/instance_bounds.h"
+#include "compile/instances.h"
+#include "scene/integrators.h"
+
+namespace sundog {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr std::size_t most_targets = 64;  // each is looked at for every photon
+constexpr double photons_within = 12;     // the first radius, where light is spread as it arrives
+constexpr double least_share = 0.02;      // of the photons, shared evenly by the lights that shine
+
+bool is_smooth(const Material& material) {
+  return material.flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS) && material.reflection.w == 0;
+}
+
+bool sends_on(const SceneDescription& scene, const Instance& instance, const CompiledScene& out) {
+  if (instance.material != NO_MATERIAL) return is_smooth(out.materials[instance.material]);
+  const auto* shape = std::get_if<MeshShape>(&scene.objects[instance.object].shape);
+  if (!shape) return false;
+  return std::ranges::any_of(scene.meshes[static_cast<std::size_t>(shape->mesh)].materials, [&](int index) {
+    return index >= 0 && is_smooth(out.materials[static_cast<std::size_t>(index)]);
+  });
+}
+
+glm::dvec3 middle_of(const float4& ball) { return {ball.x, ball.y, ball.z}; }
+
+/// A ball about the instance: a sphere's own, where its scale is the same along all axes.
+float4 ball_about(const Instance& instance, const Bounds& box) {
+  float4 ball = sphere_around(box);
+  if (instance.shape != SHAPE_SPHERE) return ball;
+  const auto row = [&](int i) { return middle_of(instance.object_from_world[i]); };
+  const double square = glm::dot(row(0), row(0)), least = 1e-5 * square;
+  for (const int i : {0, 1, 2})
+    for (const int k : {0, 1, 2})
+      if (std::abs(glm::dot(row(i), row(k)) - (i == k ? square : 0)) > least) return ball;
+  ball.w = std::min(ball.w, static_cast<float>(1.0001 / std::sqrt(square)));
+  return ball;
+}
+
+/// The smooth things' balls behind that about everything. A plane has no end: what of it matters is taken to
+/// be not much farther away than the camera and all other things.
+std::vector<float4> find_balls(const SceneDescription& scene, std::span<const Bounds> boxes,
+                               const CompiledScene& out) {
+  Bounds all = Bounds::none(), smooth = Bounds::none();
+  std::vector<float4> balls{{}};
+  bool plane = false;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Instance& instance = out.instances[i];
+    const bool sends = sends_on(scene, instance, out), endless = instance.shape == SHAPE_PLANE;
+    plane |= sends && endless;
+    if (endless) continue;
+    all.extend(boxes[i]);
+    if (!sends) continue;
+    smooth.extend(boxes[i]);
+    balls.push_back(ball_about(instance, boxes[i]));
+  }
+  if (balls.size() > most_targets + 1) balls = {{}, sphere_around(smooth)};
+  balls[0] = all.lower[0] <= all.upper[0] ? sphere_around(all) : float4{};
+  const glm::dvec3 camera(out.info.camera_position.x, out.info.camera_position.y, out.info.camera_position.z);
+  const double away = glm::distance(camera, middle_of(balls[0]));
+  if (plane) {
+    balls[0].w = static_cast<float>(2 * (double(balls[0].w) + away));
+    balls.push_back(balls[0]);
+  }
+  return balls;
+}
+
+double luminance(const float4& color) {
+  return 0.2126 * double(color.x) + 0.7152 * double(color.y) + 0.0722 * double(color.z);
+}
+
+/// The environment's radiance, the mean of all directions.
+double mean_luminance(const CompiledScene& out) {
+  const Environment& e = out.environments[0];
+  double sum = 0, weights = 0;
+  for (std::size_t y = 0; y < e.height; ++y) {
+    const double weight = std::sin(pi * (double(y) + 0.5) / e.height);
+    for (std::size_t x = 0; x < e.width; ++x) sum += weight * luminance(out.environment[y * e.width + x]);
+    weights += weight * e.width;
+  }
+  return sum / weights;
+}
+
+/// About the light that goes from a light to a ball.
+double light_to_ball(const Light& light, const float4& ball, double environment) {
+  const double radius = double(ball.w), across = pi * radius * radius;
+  const double bright = luminance(light.color);
+  if (light.kind == LIGHT_DIRECTIONAL) return pi * bright * across;
+  if (light.kind == LIGHT_SUN) return 2 * pi * std::abs(double(light.direction.w)) * bright * across;
+  if (light.kind == LIGHT_ENVIRONMENT) return 4 * pi * environment * across;
+  const double d = std::max(glm::distance(middle_of(light.position), middle_of(ball)), radius);
+  if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT)
+    return pi * bright * across /
+           (double(light.falloff_constant) + double(light.falloff_linear) * d +
+            double(light.falloff_quadratic) * d * d);
+  const double area = light.kind == LIGHT_SPHERE ? 4 * pi * double(light.edge_u.w) * double(light.edge_u.w)
+                                                 : double(light.direction.w);
+  return bright * area * across / (d * d);
+}
+
+/// For each light the running sum of the lights' shares; empty where none shines.
+std::vector<float> share_photons(const std::vector<float4>& balls, const CompiledScene& out) {
+  const double environment = out.environments.empty() ? 0 : mean_luminance(out);
+  std::vector<double> parts;
+  for (const Light& light : out.lights)
+    parts.push_back(std::accumulate(balls.begin() + 1, balls.end(), 0.0, [&](double sum, const float4& ball) {
+      return sum + light_to_ball(light, ball, environment);
+    }));
+  const double all = std::reduce(parts.begin(), parts.end());
+  if (!(all > 0) || !std::isfinite(all)) return {};
+  const double shining = static_cast<double>(std::ranges::count_if(parts, [](double p) { return p > 0; }));
+  double sum = 0;
+  std::vector<float> sums;
+  for (const double part : parts) {
+    if (part > 0) sum += (1 - least_share) * part / all + least_share / shining;
+    sums.push_back(static_cast<float>(std::min(sum, 1.0)));
+  }
+  // The last that shines takes what rounding has left.
+  const float last = sums.back();
+  for (float& value : sums)
+    if (value == last) value = 1;
+  return sums;
+}
+
+/// Photons go to balls in proportion to their radii: small things throw the sharpest light.
+std::vector<PhotonTarget> share_balls(const std::vector<float4>& balls) {
+  double sum = 0, all = 0;
+  for (std::size_t i = 1; i < balls.size(); ++i) all += double(balls[i].w);
+  std::vector<PhotonTarget> targets{{balls[0], 0, 0, 0, 0}};
+  for (std::size_t i = 1; i < balls.size(); ++i) {
+    const double weight = double(balls[i].w) / all;
+    targets.push_back({balls[i], static_cast<float>(weight), static_cast<float>(sum), 0, 0});
+    sum += weight;
+  }
+  return targets;
+}
+
+/// So that about the same number of photons counts at a place whatever their number and the things' sizes.
+double usual_radius(const std::vector<float4>& balls, double count) {
+  double squares = 0;
+  for (std::size_t i = 1; i < balls.size(); ++i) squares += double(balls[i].w) * double(balls[i].w);
+  return std::sqrt(photons_within * squares / count);
+}
+
+bool may_be_inside(const Light& light, std::span<const Bounds> boxes, const CompiledScene& out) {
+  if (light.kind == LIGHT_DIRECTIONAL || light.kind == LIGHT_SUN || light.kind == LIGHT_ENVIRONMENT)
+    return false;
+  return is_camera_inside(middle_of(light.position), out.instances.rows(), boxes);
+}
+
+}  // namespace
+
+void add_photon_targets(const SceneDescription& scene, std::span<const Bounds> boxes, CompiledScene& out) {
+  if (!scene.render.caustics || !traces_paths(scene.render.integrator) || out.lights.empty()) return;
+  const std::vector<float4> balls = find_balls(scene, boxes, out);
+  if (balls.size() < 2 || std::ranges::all_of(balls, [](const float4& ball) { return !(ball.w > 0); }))
+    return;
+  std::vector<float> shares = share_photons(balls, out);
+  if (shares.empty()) return;
+  out.photon_lights = std::move(shares);
+  out.photon_targets = share_balls(balls);
+  out.photons_by.count = static_cast<u32>(scene.render.photons);
+  out.photons_by.radius =
+      scene.render.photon_radius > 0 ? scene.render.photon_radius : usual_radius(balls, scene.render.photons);
+  out.photons_by.lights_inside =
+      std::ranges::any_of(out.lights, [&](const Light& light) { return may_be_inside(light, boxes, out); });
+  out.features.caustics = true;
+}
+
+}  // namespace sundog

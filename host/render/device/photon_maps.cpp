@@ -1,0 +1,152 @@
+// See photon_maps.h.
+#include "render/device/photon_maps.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "base/environment.h"
+
+namespace sundog {
+namespace {
+
+constexpr double kept_part = 2.0 / 3;       // alpha: 1 keeps the radius, less lets it shrink faster
+constexpr u32 photons_a_launch = 1u << 16;  // a launch stays well below a second on any device
+constexpr std::size_t few_items = 4, many_items = 64;  // a group: of devices with vectors, of others
+constexpr u32 least_cells = 1024;
+
+/// Photons in the order of their cells, in each cell in that of their numbers; `begins` receives where each
+/// cell begins and the last one ends.
+std::vector<float4> sort_photons(const std::vector<float4>& landed, const std::vector<u32>& cells, u32 mask,
+                                 std::vector<u32>& begins) {
+  begins.assign(std::size_t{mask} + 2, 0);
+  for (const u32 cell : cells)
+    if (cell != NO_PHOTON) ++begins[(cell & mask) + 1];
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  std::vector<u32> next(begins.begin(), begins.end() - 1);
+  std::vector<float4> sorted(std::size_t{begins.back()} * 2);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i] == NO_PHOTON) continue;
+    const std::size_t to = next[cells[i] & mask]++;
+    sorted[2 * to] = landed[2 * i];
+    sorted[2 * to + 1] = landed[2 * i + 1];
+  }
+  return sorted;
+}
+
+template <class T>
+void append(std::vector<T>& list, const std::vector<T>& more) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+double shrunk_radius(u32 number) {
+  double square = 1;
+  for (u32 i = 1; i <= number; ++i) square *= (i + kept_part) / (i + 1.0);
+  return std::sqrt(square);
+}
+
+bool PhotonMaps::prepare(const PhotonTracer& tracer, const StopFlags& flags, u32 first, u32 last) {
+  if (targets_ == 0 || last <= first) return true;
+  wanted_end_ = photon_map_of(last - 1) + 1;
+  const u32 number = photon_map_of(first);
+  const bool all = holds(number) && (wanted_end_ <= end_map_ || full_);
+  return all || fill(tracer, flags, number);
+}
+
+void PhotonMaps::make_room(const PhotonTracer& tracer) {
+  if (landed_.count > 0) return;
+  Device& device = tracer.device;
+  landed_ = device.make<float4>(2 * std::size_t{photons_a_launch});
+  cells_ = device.make<u32>(photons_a_launch);
+  const std::vector<u32> outside(2 * lights_);
+  light_media_ = device.upload(std::span<const u32>(outside));
+  if (!plan_.lights_inside) return;
+  const KernelConfig& config = tracer.kernels.config;
+  auto find = scene_kernel<Buffer<u32>>(
+      device.build("entry/light_media.cl", config.defines, nullptr, config.generated), "find_light_media");
+  run_scene_kernel<Buffer<u32>>(device, find, {lights_, 1, 1, 1}, tracer.kernels.tables, light_media_);
+  device.finish();
+}
+
+void PhotonMaps::trace(const PhotonTracer& tracer, const PhotonLaunch& launch) {
+  constexpr double expected = 3;  // not known: only what stands for minutes is stuck
+  FrameKernels& kernels = tracer.kernels;
+  const std::size_t batch = std::size_t{kernels.config.tile_w} * kernels.config.tile_h;
+  const std::size_t items = (launch.last - launch.first + batch - 1) / batch;
+  const std::size_t usual = batch > 1 ? few_items : many_items;
+  const std::size_t local = kernels.most_group > 0 ? std::min(usual, kernels.most_group) : usual;
+  const WatchedLaunch watched(tracer.watch, expected, !traced_,
+                              value_of(tracer.device.info().environment).launch_limit);
+  run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch>(
+      tracer.device, kernels.trace_photons, {.x = items, .local_x = local}, kernels.tables, light_media_,
+      landed_, cells_, launch);
+  tracer.device.finish();
+  traced_ = true;
+}
+
+PhotonMaps::Made PhotonMaps::make(const PhotonTracer& tracer, u32 number) {
+  make_room(tracer);
+  const std::size_t count = plan_.count;
+  std::vector<float4> landed(2 * count);
+  std::vector<u32> cells(count);
+  Made made;
+  made.map.number = number;
+  made.map.radius = static_cast<float>(plan_.radius * shrunk_radius(number));
+  made.map.inverse_edge = 0.5f / made.map.radius;
+  for (u32 first = 0; first < plan_.count; first += photons_a_launch) {
+    const u32 last = std::min(plan_.count, first + photons_a_launch);
+    trace(tracer, {number, first, last, plan_.count, targets_, made.map.inverse_edge, 0, 0});
+    const std::size_t begin = first, some = last - first;
+    tracer.device.read(landed_, std::span(landed).subspan(2 * begin, 2 * some));
+    tracer.device.read(cells_, std::span(cells).subspan(begin, some));
+  }
+  const auto lost = static_cast<u32>(std::ranges::count(cells, NO_PHOTON));
+  made.map.cell_mask = std::bit_ceil(std::max(plan_.count - lost, least_cells)) - 1;
+  made.photons = sort_photons(landed, cells, made.map.cell_mask, made.cells);
+  return made;
+}
+
+/// Makes the maps from `number` on, until those of the samples to be made are there or there is no room.
+bool PhotonMaps::fill(const PhotonTracer& tracer, const StopFlags& flags, u32 number) {
+  std::vector<PhotonMap> maps;
+  std::vector<u32> cells;
+  std::vector<float4> photons;
+  first_map_ = end_map_ = 0;
+  full_ = false;
+  const u32 wanted = std::max(wanted_end_, number + 1);
+  u32 next = number;
+  for (; next < wanted; ++next) {
+    if (flags.set()) return false;
+    Made made = make(tracer, next);
+    const std::size_t bytes = photons.size() * sizeof(float4) + cells.size() * sizeof(u32) + made.bytes();
+    full_ = next > number && bytes > most_bytes_;
+    if (full_) break;
+    made.map.first_cell = static_cast<u32>(cells.size());
+    const auto before = static_cast<u32>(photons.size() / 2);
+    for (u32& begin : made.cells) begin += before;
+    maps.push_back(made.map);
+    append(cells, made.cells);
+    append(photons, made.photons);
+  }
+  DeviceScene& tables = tracer.kernels.tables;
+  tables.photon_maps = tracer.device.upload(std::span<const PhotonMap>(maps));
+  tables.photon_cells = tracer.device.upload(std::span<const u32>(cells));
+  tables.photons = tracer.device.upload(std::span<const float4>(photons));
+  first_map_ = number;
+  end_map_ = next;
+  return true;
+}
+
+u32 PhotonMaps::provide(const PhotonTracer& tracer, u32 first, u32 last) {
+  if (targets_ == 0) return last - first;
+  const u32 number = photon_map_of(first);
+  if (!holds(number)) fill(tracer, {}, number);
+  u32 end = first + 1;
+  while (end < last && holds(photon_map_of(end))) ++end;
+  return end - first;
+}
+
+}  // namespace sundog

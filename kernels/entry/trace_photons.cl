@@ -1,0 +1,62 @@
+// One stage: photons from the lights to where they land, before the samples that look for them.
+#include "lib/core/counters.cl"
+#include "lib/pathtracer/photon_steps.cl"
+
+// Photon `first` and those after it, one a lane.
+NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict light_media,
+                             const PhotonLaunch* launch, u32 first, __global float4* restrict landed,
+                             __global u32* restrict cells) {
+  u32 counts[COUNTERS];
+  for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
+  LaneSamples at;
+  MASK lanes = NO_LANES;
+  for (u32 i = 0; i < BATCH; ++i) {
+    const u32 number = first + i;
+    MASK_LANE(at.x, i) = (int)(launch->map + 1u);
+    MASK_LANE(at.y, i) = (int)(~(number / SOBOL_SAMPLES));
+    MASK_LANE(at.sample, i) = (int)(number % SOBOL_SAMPLES);
+    if (number < launch->last) MASK_LANE(lanes, i) = -1;
+  }
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u)
+    cells[first - launch->first + lowest_bit(bits)] = NO_PHOTON;
+  const PhotonStarts starts = start_photons(scene, launch, &at, lanes);
+  Photons photons = begun_photons(scene, &starts, &at);
+  Rays begun = camera_rays(scene->info, (REAL)(0.0f), (REAL)(0.0f));
+  begun.o = starts.o;
+  begun.d = starts.d;
+  begun.t_min = (REAL)(0.0f);
+  begun.t_max = (REAL)(INFINITY);
+  set_ray_times(starts.time, &begun);
+  SceneRays rays = scene_rays(&begun, 0);
+  for (u32 bits = lane_bits(starts.lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits), light = (u32)MASK_LANE(starts.light, i);
+    set_media(&rays, i, (MediaStack)light_media[2u * light + 1u] << 32 | light_media[2u * light]);
+  }
+  Landings landings;
+  for (lanes = starts.lanes; any_lane(lanes);) {
+    start_marching(counts);
+    lanes = step_photons(scene, &photons, &rays, lanes, &landings, counts);
+    for (u32 bits = lane_bits(landings.lanes); bits; bits &= bits - 1u) {
+      const u32 i = lowest_bit(bits), to = first - launch->first + i;
+      const float3 p = get3(&landings.p, i), flux = get3(&landings.flux, i);
+      const float2 wi = pack_direction(get3(&landings.wi, i));
+      landed[2u * to] = (float4)(p, wi.x);
+      // The second number is in [-1, 1].
+      landed[2u * to + 1u] = (float4)(flux, wi.y + 4.0f * (float)MASK_LANE(landings.sent_on, i));
+      const float3 zero = (p + flux) * 0.0f;  // NaN where one is not finite
+      if (zero.x + zero.y + zero.z == 0.0f)
+        cells[to] = photon_cell(photon_cube(p, launch->inverse_edge)) & (NO_PHOTON >> 1);
+    }
+  }
+}
+
+// Reads the scene and the media at the lights; writes what has become of the photons [launch.first,
+// launch.last): to landed, two rows a photon, where it has landed, the direction that it came from, and its
+// flux; to cells, its cell's number, or NO_PHOTON.
+__kernel void trace_photons(SCENE_PARAMETERS, __global const u32* restrict light_media,
+                            __global float4* restrict landed, __global u32* restrict cells,
+                            const PhotonLaunch launch) {
+  const Scene scene = SCENE_OF_PARAMETERS;
+  const u32 first = launch.first + (u32)get_global_id(0) * BATCH;
+  if (first < launch.last) trace_item(&scene, light_media, &launch, first, landed, cells);
+}

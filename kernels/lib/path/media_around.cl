@@ -1,0 +1,77 @@
+// Which media a place is inside of, found by following a line from it to the outside.
+#ifndef SUNDOG_LIB_MEDIA_AROUND_CL
+#define SUNDOG_LIB_MEDIA_AROUND_CL
+#include "lib/path/segment.cl"
+
+// The line leaves `medium`: one that it entered, or one that holds the camera. A medium that is left
+// later was entered earlier: it goes to the far end.
+static inline void leave_medium(u32 medium, MediaStack* entered, MediaStack* holding) {
+  if (cross_boundary(entered, medium, false)) return;
+  u32 shift = 0;
+  while (shift < 64u && *holding >> shift) shift += 8u;
+  if (shift < 64u) *holding |= (MediaStack)(medium + 1u) << shift;
+}
+
+#if HAS_TOUCHING
+// The line at faces that lie in one place. Returns the distance of the last one.
+static inline float cross_faces(const Scene* scene, const SceneRays* rays, const Hits* hits,
+                                MediaStack* entered, MediaStack* holding) {
+  const Hit first = get_hit(hits, 0);
+  Touching touching;
+  find_touching(scene, get3(&rays->o, 0), get3(&rays->d, 0), REAL_LANE(rays->t_min, 0), &first, &touching);
+  const Stretch* met = &touching.met;
+  Changes changes = faces_of(scene, met);
+  take_out_pairs(scene, met, &changes);
+  for (u32 left = changes.left; left;) {
+    const u32 inner = pick_face(scene, met, &changes, left, false);
+    left &= ~(1u << inner);
+    leave_medium(scene->materials[changes.material[inner]].medium, entered, holding);
+  }
+  enter_all(scene, met, &changes, entered);
+  return touching.end;
+}
+#else
+static inline float cross_faces(const Scene* scene, const SceneRays* rays, const Hits* hits,
+                                MediaStack* entered, MediaStack* holding) {
+  return REAL_LANE(hits->t, 0);
+}
+#endif
+
+// The media around the place p: a solid that the line leaves without having entered it holds the place, and
+// the nearest such exit was entered last.
+NEVER_INLINE MediaStack media_around(const Scene* scene, float3 p) {
+  const float3 d =
+      (float3)(0.3141f, 0.8660f, 0.3890f);  // off every axis that a scene is likely to be built along
+  Rays line;
+  line.o = all3(p);
+  line.d = renormalized3(all3(d));
+  line.t_min = (REAL)(0.0f);
+  line.t_max = (REAL)(INFINITY);
+  start_cones(scene->info, &line);
+  set_ray_times((REAL)(0.0f), &line);
+  SceneRays rays = scene_rays(&line, 0);  // one ray, in lane 0
+  const MASK lane = lanes_of(1u);
+  u32 counts[COUNTERS];  // marching counts, which nobody asks for here
+  for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
+  start_marching(counts);
+  MediaStack entered = 0, holding = 0;
+  for (u32 i = 0; i < 4096u; ++i) {
+    Hits hits;
+    nearest_hits(scene, &rays, lane, false, &hits, counts);
+    if (MASK_LANE(hits.instance, 0) == (int)NO_INSTANCE) break;
+    const Faces faces = hit_faces(scene, rays.d, &hits, lane);
+    const MASK touching = may_touch(scene->instances, &hits, lane);
+    if (any_lane(touching)) REAL_LANE(hits.t, 0) = cross_faces(scene, &rays, &hits, &entered, &holding);
+    continue_behind(scene->info, &rays, &hits, faces.entering, lane);
+    if (any_lane(touching)) continue;
+    __global const Material* material = scene->materials + MASK_LANE(faces.material, 0);
+    if (!(material->flags & MATERIAL_TRANSMITS) || (material->flags & MATERIAL_THIN)) continue;
+    if (MASK_LANE(faces.entering, 0))
+      cross_boundary(&entered, material->medium, true);
+    else
+      leave_medium(material->medium, &entered, &holding);
+  }
+  return holding;
+}
+
+#endif

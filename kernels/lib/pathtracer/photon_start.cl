@@ -1,0 +1,223 @@
+// How photons leave the lights: towards the balls about what mirrors and bends light. A photon's density is
+// that of all balls together, so that one that might have been sent to several counts for each (the balance
+// heuristic of Veach and Guibas 1995 with one sample).
+#ifndef SUNDOG_LIB_PHOTON_START_CL
+#define SUNDOG_LIB_PHOTON_START_CL
+#include "lib/core/directions.cl"
+#include "lib/core/sampler_lanes.cl"
+#include "lib/light/environment.cl"
+#include "lib/pathtracer/photon_cells.cl"
+
+#define NOT_DIMMED (-1)
+#define OFF_LIGHT 0x1p-17f  // how far photons start off a light's surface, of its place's greatest coordinate
+
+// Photons as they start.
+typedef struct PhotonStarts {
+  REAL3 o, d;
+  REAL time;    // of moving objects, from 0 to 1
+  REAL3 flux;   // for one photon; of lights without extent, of a factor that dim_with_distance() knows
+  MASK lanes;   // those that carry light
+  MASK light;   // index of the one that each comes from
+  MASK dimmed;  // the light whose distance counts where the photon is first bent, or NOT_DIMMED
+  MASK sky;     // the flux is still to be multiplied by what the environment sends
+} PhotonStarts;
+
+// One photon, and the numbers in [0, 1) that it is made of: a and b choose the place in a ball, c and e that
+// on a light.
+typedef struct PhotonStart {
+  float3 o, d, flux;
+  u32 light;
+  int dimmed;
+  bool sky;
+} PhotonStart;
+typedef struct PhotonNumbers {
+  float light, ball, a, b, c, e;
+} PhotonNumbers;
+
+static inline void axes_about(float3 n, float3* s, float3* t) {
+  const float sign = copysign(1.0f, n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a;
+  *s = (float3)(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
+  *t = (float3)(b, sign + n.y * n.y * a, -n.y);
+}
+
+// The light by the number u, and its share.
+static inline u32 choose_photon_light(const Scene* scene, float u, float* share) {
+  __global const float* sums = scene->photon_lights;
+  u32 low = 0, high = scene->info->table_lights - 1u;
+  while (low < high) {
+    const u32 middle = (low + high) / 2u;
+    if (sums[middle] <= u)
+      low = middle + 1u;
+    else
+      high = middle;
+  }
+  *share = sums[low] - (low ? sums[low - 1u] : 0.0f);
+  return low;
+}
+
+static inline u32 choose_ball(const Scene* scene, u32 targets, float u) {
+  u32 ball = 1u;
+  while (ball + 1u < targets && scene->photon_targets[ball + 1u].before <= u) ++ball;
+  return ball;
+}
+
+// 1 minus the cosine of half the angle of the cone to a ball; 2, all directions, from within.
+static inline float cone_span(float4 ball, float3 p) {
+  const float3 way = ball.xyz - p;
+  const float sine2 = ball.w * ball.w / fmax(dot(way, way), 1e-30f);
+  return sine2 < 1.0f ? sine2 / (1.0f + sqrt(1.0f - sine2)) : 2.0f;
+}
+
+// The density, per steradian, with which photons leave p in the direction d.
+static inline float density_to_balls(const Scene* scene, u32 targets, float3 p, float3 d) {
+  float density = 0.0f;
+  for (u32 i = 1; i < targets; ++i) {
+    const float4 ball = scene->photon_targets[i].ball;
+    const float span = cone_span(ball, p);
+    const float3 way = ball.xyz - p, chord = d - way * rsqrt(fmax(dot(way, way), 1e-30f));
+    // The square of the chord is 2 - 2 cos.
+    if (span >= 2.0f || 0.5f * dot(chord, chord) <= span)
+      density += scene->photon_targets[i].weight / (2.0f * M_PI_F * span);
+  }
+  return density;
+}
+
+static inline float3 direction_to_ball(float4 ball, float3 p, float a, float b) {
+  const float3 way = ball.xyz - p, axis = way * rsqrt(fmax(dot(way, way), 1e-30f));
+  const float down = a * cone_span(ball, p), side = sqrt(fmax(down * (2.0f - down), 0.0f));
+  float3 s, t;
+  axes_about(axis, &s, &t);
+  const float3 d = (1.0f - down) * axis + side * (cospi(2.0f * b) * s + sinpi(2.0f * b) * t);
+  return d * rsqrt(dot(d, d));
+}
+
+// The same for parallel light along d: the density per area across it, and a place before everything.
+static inline float density_across(const Scene* scene, u32 targets, float3 p, float3 d) {
+  float density = 0.0f;
+  for (u32 i = 1; i < targets; ++i) {
+    const float4 ball = scene->photon_targets[i].ball;
+    const float3 way = p - ball.xyz, across = way - dot(way, d) * d;
+    if (dot(across, across) <= ball.w * ball.w)
+      density += scene->photon_targets[i].weight / (M_PI_F * ball.w * ball.w);
+  }
+  return density;
+}
+
+static inline float3 place_across(const Scene* scene, float4 ball, float3 d, float a, float b) {
+  const float4 all = scene->photon_targets[0].ball;
+  const float r = ball.w * sqrt(a);
+  float3 s, t;
+  axes_about(d, &s, &t);
+  const float3 p = ball.xyz + r * (cospi(2.0f * b) * s + sinpi(2.0f * b) * t);
+  return p - (dot(p - all.xyz, d) + 1.01f * all.w + ball.w) * d;
+}
+
+// A direction to a sun.
+static inline float3 direction_in_sun(__global const Light* light, float c, float e) {
+  const float drop = c * fabs(light->direction.w), side = sqrt(drop * (2.0f - drop));
+  float3 s, t;
+  axes_about(light->direction.xyz, &s, &t);
+  const float3 d = (1.0f - drop) * light->direction.xyz + side * (cospi(2.0f * e) * s + sinpi(2.0f * e) * t);
+  return d * rsqrt(dot(d, d));
+}
+
+// Light that comes along the direction d with the radiance over density `sent`.
+static inline void start_from_afar(const Scene* scene, u32 targets, float4 ball, float3 sent,
+                                   const PhotonNumbers* u, PhotonStart* start) {
+  start->o = place_across(scene, ball, start->d, u->a, u->b);
+  start->flux = sent / density_across(scene, targets, start->o, start->d);
+}
+
+// A place on a light with an extent, the normal there, and the light's area.
+static inline float3 place_on_light(__global const Light* light, float c, float e, float3* n, float* area) {
+  *n = light->direction.xyz;
+  *area = light->direction.w;
+  const float3 corner = light->position.xyz, x = light->edge_u.xyz, y = light->edge_v.xyz;
+  if (light->kind == LIGHT_RECTANGLE) return corner + c * x + e * y;
+  if (light->kind == LIGHT_DISK) return corner + sqrt(c) * (cospi(2.0f * e) * x + sinpi(2.0f * e) * y);
+  if (light->kind == LIGHT_TRIANGLE) return corner + (1.0f - sqrt(c)) * x + e * sqrt(c) * y;
+  const float up = 1.0f - 2.0f * c, side = sqrt(fmax(1.0f - up * up, 0.0f));
+  *n = (float3)(side * cospi(2.0f * e), side * sinpi(2.0f * e), up);
+  *area = 4.0f * M_PI_F * light->edge_u.w * light->edge_u.w;
+  return corner + light->edge_u.w * *n;
+}
+
+static inline void start_on_light(const Scene* scene, u32 targets, float4 ball, __global const Light* light,
+                                  const PhotonNumbers* u, PhotonStart* start) {
+  float3 n;
+  float area;
+  const float3 p = place_on_light(light, u->c, u->e, &n, &area);
+  start->d = direction_to_ball(ball, p, u->a, u->b);
+  start->flux = light->color.xyz *
+                (fmax(dot(n, start->d), 0.0f) * area / density_to_balls(scene, targets, p, start->d));
+  const float3 size = fabs(p);
+  start->o = p + n * (OFF_LIGHT * fmax(fmax(size.x, size.y), fmax(size.z, light->edge_u.w)));
+}
+
+static inline PhotonStart start_photon(const Scene* scene, u32 targets, const PhotonNumbers* u) {
+  float share;
+  const u32 index = choose_photon_light(scene, u->light, &share);
+  const float4 ball = scene->photon_targets[choose_ball(scene, targets, u->ball)].ball;
+  __global const Light* light = scene->lights + index;
+  PhotonStart start;
+  start.light = index;
+  start.dimmed = NOT_DIMMED;
+  start.sky = false;
+  if (light->kind == LIGHT_DIRECTIONAL) {
+    start.d = light->direction.xyz;
+    start_from_afar(scene, targets, ball, M_PI_F * light->color.xyz, u, &start);
+  } else if (HAS_AREA_LIGHTS && light->kind == LIGHT_SUN) {
+    start.d = direction_in_sun(light, u->c, u->e);
+    start_from_afar(scene, targets, ball, light->color.xyz / sun_density(light, 1.0f), u, &start);
+  } else if (HAS_ENVIRONMENT && light->kind == LIGHT_ENVIRONMENT) {
+    const float density = environment_direction(scene, u->c, u->e, &start.d);
+    start.d = -start.d;
+    start.sky = true;
+    start_from_afar(scene, targets, ball, (float3)(1.0f / fmax(density, 1e-30f)), u, &start);
+  } else if (HAS_AREA_LIGHTS && light->kind >= LIGHT_RECTANGLE) {
+    start_on_light(scene, targets, ball, light, u, &start);
+  } else {
+    start.o = light->position.xyz;
+    start.d = direction_to_ball(ball, start.o, u->a, u->b);
+    start.flux = (float3)(1.0f / density_to_balls(scene, targets, start.o, start.d));
+    start.dimmed = (int)index;
+  }
+  start.flux /= share;
+  return start;
+}
+
+// The photons of `lanes`.
+NEVER_INLINE PhotonStarts start_photons(const Scene* scene, const PhotonLaunch* launch, const LaneSamples* at,
+                                        MASK lanes) {
+  const FourNumbers u = sample_lanes(at, (MASK)((int)DIMENSION_PIXEL)),
+                    v = sample_lanes(at, (MASK)((int)DIMENSION_TIME));
+  PhotonStarts starts;
+  starts.o = all3((float3)(0.0f));
+  starts.time = v.x;
+  starts.d = all3((float3)(0.0f, 0.0f, 1.0f));
+  starts.flux = all3((float3)(0.0f));
+  starts.dimmed = (MASK)(NOT_DIMMED);
+  starts.sky = NO_LANES;
+  starts.light = NO_LANES;
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    const PhotonNumbers mine = {REAL_LANE(u.w, i), REAL_LANE(u.z, i), REAL_LANE(u.x, i),
+                                REAL_LANE(u.y, i), REAL_LANE(v.z, i), REAL_LANE(v.w, i)};
+    const PhotonStart start = start_photon(scene, launch->targets, &mine);
+    set3(&starts.o, i, start.o);
+    set3(&starts.d, i, start.d);
+    set3(&starts.flux, i, start.flux);
+    MASK_LANE(starts.light, i) = (int)start.light;
+    MASK_LANE(starts.dimmed, i) = start.dimmed;
+    MASK_LANE(starts.sky, i) = start.sky ? -1 : 0;
+  }
+  if (HAS_ENVIRONMENT && any_lane(starts.sky))
+    starts.flux =
+        select3(starts.flux, multiply3(starts.flux, environment_along(scene, negate3(starts.d), starts.sky)),
+                starts.sky);
+  starts.flux = scale3(starts.flux, 1.0f / (float)launch->count);
+  starts.lanes = lanes & MASK_OF(greatest3(starts.flux) > 0.0f) & MASK_OF(greatest3(starts.flux) < INFINITY);
+  return starts;
+}
+
+#endif

@@ -1,0 +1,115 @@
+// One step of a batch of photons: each to the next interface, where it lands or is sent on. One that has been
+// mirrored or bent lands where light is scattered; a shadow ray would find the light of the others. A photon
+// a lane.
+#ifndef SUNDOG_LIB_PHOTON_STEPS_CL
+#define SUNDOG_LIB_PHOTON_STEPS_CL
+#include "lib/pathtracer/leave_surfaces.cl"
+#include "lib/pathtracer/photon_start.cl"
+
+typedef struct Photons {
+  Walks walks;  // throughput is the flux; depth 1 + what has sent the photon on
+  MASK bent;    // it has been mirrored or bent
+  MASK dimmed;  // PhotonStarts.dimmed, while that is not done
+} Photons;
+
+// Photons that have landed, with the light that they bring.
+typedef struct Landings {
+  REAL3 p, wi, flux;  // wi points to where they come from
+  MASK sent_on;       // how often they were
+  MASK lanes;
+} Landings;
+
+static inline Photons begun_photons(const Scene* scene, const PhotonStarts* starts, const LaneSamples* at) {
+  Photons photons;
+  photons.walks = start_walks(scene, at, starts->lanes);
+  photons.walks.throughput = carry_color(&photons.walks.wavelengths, starts->flux);
+  photons.bent = NO_LANES;
+  photons.dimmed = starts->dimmed;
+  return photons;
+}
+
+// Light without extent falls off as its light says, up to where it is first bent at the points p; from there
+// on as the rays spread. So glass gets from a lamp what any surface there does.
+static inline void dim_with_distance(const Scene* scene, REAL3 p, MASK lanes, Photons* photons) {
+  MASK left = lanes & MASK_OF(photons->dimmed != NOT_DIMMED);
+  u32 index;
+  while (any_lane(left)) {
+    const MASK mine = take_alike(photons->dimmed, &left, &index);
+    const LightSamples light = sample_light(scene, index, p, (REAL)(0.5f), (REAL)(0.5f));
+    const REAL3 sent = scale3(light.radiance, M_PI_F * light.distance * light.distance);
+    photons->walks.throughput = carry_select(
+        photons->walks.throughput,
+        carry_multiply(photons->walks.throughput, carry_color(&photons->walks.wavelengths, sent)), mine);
+  }
+  photons->dimmed = select(photons->dimmed, (MASK)(NOT_DIMMED), lanes);
+}
+
+// What shading normals change of a flux that is sent from wo to wi (Veach 1997, section 5.3.2). 1 where they
+// are those of the geometry.
+static inline REAL flux_by_normals(const Bsdfs* bsdf, REAL3 wo, REAL3 wi) {
+  const REAL least = (REAL)(0.01f);
+  const REAL shading = fabs(dot3(bsdf->ns, wo)) * fabs(dot3(bsdf->ng, wi));
+  const REAL faces = fabs(dot3(bsdf->ng, wo)) * fabs(dot3(bsdf->ns, wi));
+  return real_min(real_max(shading, least) / real_max(faces, least), (REAL)(8.0f));
+}
+
+// The photons of `lanes` are sent on in the directions of `sample`. Returns those that continue.
+static inline MASK send_on(const Scene* scene, const Encounters* met, const Shading* at, const Lobes* lobes,
+                           const BsdfSamples* sample, Photons* photons, SceneRays* rays, MASK lanes) {
+  Walks* walks = &photons->walks;
+  const REAL3 wo = negate3(rays->d);
+  const MASK below = lanes & MASK_OF(dot3(at->s.ng, sample->wi) < 0.0f);
+  const MASK passes = below & MASK_OF((at->bsdf.flags & (int)MATERIAL_SHADOW_OPAQUE) == 0);
+  const MASK turns = lanes & ~passes;
+  dim_with_distance(scene, at->s.p, turns, photons);
+  const REAL change = select((REAL)(1.0f), flux_by_normals(&at->bsdf, wo, sample->wi), turns);
+  const Carried weight = carry_color(&walks->wavelengths, scale3(sample->weight, change));
+  walks->throughput = carry_select(walks->throughput, carry_multiply(walks->throughput, weight), lanes);
+  part_wavelengths(scene, at, &lobes->split, walks, lanes, lanes & ~below);
+  photons->bent |= turns;
+  walks->depth -= lanes;
+  const MASK going = lanes & MASK_OF(walks->depth <= (int)scene->info->max_depth);
+  leave_surfaces(scene, met, at, sample, below, going, rays);
+  return going;
+}
+
+// Takes the photons of `lanes` a step further. Returns those that continue; `landed` are those that have come
+// to their ends where light counts.
+NEVER_INLINE MASK step_photons(const Scene* scene, Photons* photons, SceneRays* rays, MASK lanes,
+                               Landings* landed, u32* counts) {
+  Encounters met;
+  Walks* walks = &photons->walks;
+  landed->lanes = NO_LANES;
+  const MASK unseen = lanes & meet_interfaces(scene, rays, lanes, false, &met, counts);
+  forget_glow(rays);
+  walks->throughput =
+      carry_select(walks->throughput,
+                   carry_multiply(walks->throughput, carry_kept(&walks->wavelengths, met.absorbed)), lanes);
+  const MASK hit = lanes & ~unseen & hit_anything(&met.hit);
+  if (!any_lane(hit)) return unseen;
+  if (HAS_FOG) walks->throughput = carry_scale(walks->throughput, clear_of_fog(scene, &met, hit));
+  Shading at;
+  shade_hits(scene, rays, &met, hit, &at);
+  follow_hero(&walks->wavelengths, &at.bsdf);
+  const REAL3 wo = negate3(rays->d);
+  const Lobes lobes = make_lobes(scene, &at.bsdf, wo, hit);
+  const FourNumbers u = sample_lanes(
+      &walks->at, (walks->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + BOUNCE_DIRECTION));
+  const BsdfSamples sample = sample_lobes(scene, &at.bsdf, &lobes, wo, u.z, u.x, u.y, hit);
+  const MASK perfect = hit & sample.specular, some = MASK_OF(greatest3(sample.weight) > 0.0f);
+  // Where a surface does both, chance decides what the photon is for.
+  const REAL one = (REAL)(1.0f), rest = lobes.matte + lobes.glossy + lobes.facets;
+  const MASK lands = hit & ~perfect & photons->bent & MASK_OF(rest > 0.0f) &
+                     MASK_OF(carry_greatest(walks->throughput) > 0.0f);
+  landed->p = at.s.p;
+  landed->wi = wo;
+  landed->sent_on = walks->depth - 1;
+  landed->lanes = lands;
+  if (any_lane(lands)) {
+    const Carried flux = carry_scale(walks->throughput, lobes.all / select(one, rest, lands));
+    landed->flux = carry_seen(scene, &walks->wavelengths, &flux, lands);
+  }
+  return unseen | send_on(scene, &met, &at, &lobes, &sample, photons, rays, perfect & some);
+}
+
+#endif
