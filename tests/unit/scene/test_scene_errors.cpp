@@ -222,7 +222,7 @@ TEST_CASE("bad materials and media are refused with their place") {
   check({
       {scene_with(R"("materials": [])"), "/materials", {"wanted an object of materials"}},
       material(R"({"colour": [1, 1, 1]})", "/colour", {"unknown key", "did you mean \"color\"?"}),
-      material(R"({"type": "metal"})", "/type", {"\"phong\" or \"dielectric\"", "\"metal\""}),
+      material(R"({"type": "metal"})", "/type", {"\"phong\", \"dielectric\" or \"openpbr\"", "\"metal\""}),
       material(R"({"color": 1})", "/color", {"a colour [r, g, b]", "\"checker\"", "found 1"}),
       material(R"({"color": {"checker": [[1, 1, 1]]}})", "/color/checker",
                {"2 colours", "found an array of 1 item"}),
