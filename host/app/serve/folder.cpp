@@ -84,9 +84,12 @@ fs::path private_folder() {
 
 }  // namespace
 
-Uploads::~Uploads() {
+Uploads::~Uploads() { forget_all(); }
+
+void Uploads::forget_all() {
   std::error_code ignored;
   if (!folder_.empty()) fs::remove_all(folder_, ignored);
+  folder_.clear();
 }
 
 fs::path Uploads::keep(const std::string& name, const std::string& bytes) {

@@ -30,6 +30,8 @@ class Uploads {
   std::filesystem::path keep(const std::string& name, const std::string& bytes);
   /// Removes all but the newest: nobody has the others open.
   void forget_others();
+  /// Removes all, and the folder.
+  void forget_all();
   /// Removes the newest.
   void forget_newest();
 

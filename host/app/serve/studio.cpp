@@ -53,6 +53,7 @@ Studio::Studio(WebServer& server, StudioSetup setup, SceneDocument document)
 /// No new work, then what the threads use.
 Studio::~Studio() {
   edits_.stop();
+  uploads_.forget_all();  // before anything waits for a driver
   session_.cancel();
   asks_.stop();
 }
