@@ -64,7 +64,8 @@ void read_geometry(JsonObject& object, OpenPbr& to, MaterialDescription& materia
   const auto opacity = object.find("geometry_opacity");
   if (!opacity) return;
   to.geometry_opacity = read_number(*opacity, textures, zero_to_one, &material.textures.opacity);
-  if (to.transmission_weight > 0 && to.base_metalness < 1)
+  const bool partly = to.geometry_opacity < 1 || material.textures.opacity >= 0;
+  if (partly && to.transmission_weight > 0 && to.base_metalness < 1)
     opacity->fail("a material with a \"transmission_weight\" is not partly there");
 }
 

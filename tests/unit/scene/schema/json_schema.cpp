@@ -138,6 +138,8 @@ class Defaults {
 
   void fill(const json& schema, json& value) const {
     if (schema.contains("$ref")) fill(refer(schema), value);
+    if (schema.contains("if"))
+      fill(schema.value(holds(schema["if"], value) ? "then" : "else", json::object()), value);
     for (const char* keyword : {"allOf", "anyOf"})
       for (const json& option : schema.value(keyword, json::array())) fill_option(option, value);
     if (value.is_array() && schema.contains("items"))

@@ -102,6 +102,7 @@ std::string SchemaWords::type(const ordered_json& rule) const {
   if (rule.contains("$ref"))
     return reference(rule.at("$ref").get<std::string>().substr(std::string("#/$defs/").size()));
   if (rule.contains("anyOf")) return options(rule["anyOf"]);
+  if (rule.contains("if")) return options({rule["else"], rule["then"]});
   if (rule.contains("enum")) {
     std::vector<std::string> names;
     for (const ordered_json& name : rule["enum"])
