@@ -36,7 +36,7 @@ class Callbacks : public std::enable_shared_from_this<Callbacks> {
   void close() {
     const std::lock_guard lock(mutex_);
     closed_ = true;
-    if (thrown_) std::rethrow_exception(thrown_);
+    if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
   }
 
  private:

@@ -46,8 +46,8 @@ float4 ball_about(const Instance& instance, const Bounds& box) {
   return ball;
 }
 
-/// The smooth things' balls behind that about everything. A plane has no end: what of it matters is taken to
-/// be not much farther away than the camera and all other things.
+/// The smooth things' balls behind that about everything. A plane has no end: the part that matters is taken
+/// to be not much farther away than the camera and all other things.
 std::vector<float4> find_balls(const SceneDescription& scene, std::span<const Bounds> boxes,
                                const CompiledScene& out) {
   Bounds all = Bounds::none(), smooth = Bounds::none();

@@ -27,8 +27,8 @@ SceneDescription scene_named(const std::string& name) {
 }
 
 /// Compared elsewhere: of images and textures, by small kernels on every driver (test_textures, test_relief,
-/// test_parallax); and the two that some drivers compile for half a minute each, of the first device
-/// (test_touching, test_fields_in_scene).
+/// test_parallax); and those that some drivers compile for half a minute each, of the first device
+/// (test_touching, test_fields_in_scene, test_caustics).
 const std::set<std::string> tried_elsewhere = {"maps",
                                                "surface_coordinates",
                                                "relief",
@@ -41,7 +41,8 @@ const std::set<std::string> tried_elsewhere = {"maps",
                                                "texel_pages",
                                                "extra_uvs",
                                                "touching",
-                                               "two_sided_fields"};
+                                               "two_sided_fields",
+                                               "caustics"};
 
 }  // namespace
 
