@@ -5,9 +5,9 @@
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
-// Rows of a material in the table layer_rows, each by the cosine to the normal from 0 to 1: what is left of
-// light for the layers below by fuzz, coat and the base's interface; and of a film over the interface what it
-// reflects of red, green and blue above a dielectric and above a metal; and gains of the base's facets.
+// Rows of a material in the table layer_rows, each by the cosine to the normal from 0 to 1: the share
+// of light that fuzz, coat and the base's interface pass to the layers below; the red, green and blue that a
+// film over the interface reflects above a dielectric and above a metal; and gains of the base's facets.
 #define LAYER_STEPS 32u
 #define LAYER_FUZZ 0u
 #define LAYER_COAT 1u

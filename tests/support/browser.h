@@ -32,7 +32,7 @@ class Browser {
   void double_click(int x, int y);
   /// Fingers on the page at once, each along its points (all as many): down at the first, up at the last.
   void touch(const std::vector<std::vector<std::pair<int, int>>>& fingers);
-  /// What the page is told that its user likes.
+  /// The colour scheme that the browser reports as its user's preference.
   void prefer_dark(bool dark);
   /// Types keys at what has the focus; "\uE00C" and the like are WebDriver's special keys.
   void keys(const std::vector<std::string>& keys);
