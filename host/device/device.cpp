@@ -49,11 +49,23 @@ cl::Device sub_device(cl::Device parent, const DeviceInfo& info) {
   return parts[index];
 }
 
-/// PoCL's threads may still be at the last event of a queue whose work is done, and crash when its sub-device
-/// goes under them. A sub-device's queue takes little: it stays until the process ends.
-void keep_for_good(const cl::Device& device, const cl::CommandQueue& queue) {
-  clRetainDevice(device());
-  clRetainCommandQueue(queue());
+/// Waits until the driver's threads have let go of a queue whose work is done: PoCL's may still be at its
+/// last event, which holds the queue, and crash when its sub-device goes under them. A queue that is held for
+/// a second stays until the process ends.
+void await_release(const cl::Device& device, const cl::CommandQueue& queue) {
+  const auto held = [&] {
+    cl_uint references = 1;
+    clGetCommandQueueInfo(queue(), CL_QUEUE_REFERENCE_COUNT, sizeof references, &references, nullptr);
+    return references > 1;
+  };
+  for (int polls = 0; held(); ++polls) {
+    if (polls == 10'000) {
+      clRetainDevice(device());
+      clRetainCommandQueue(queue());
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
 }
 
 /// An event's time on the device; 0 where the driver does not measure. Rusticl on llvmpipe stamps begin and
@@ -112,7 +124,10 @@ Device::Device(Device&&) noexcept = default;
 
 Device::~Device() {
   save_programs();
-  if (info_.sub_units > 0 && queue_()) keep_for_good(device_, queue_);
+  // Their last events hold the queue.
+  pending_.clear();
+  fence_ = {};
+  if (info_.sub_units > 0 && queue_()) await_release(device_, queue_);
 }
 
 std::string Device::expanded(const std::string& entry, const KernelDefines& defines,

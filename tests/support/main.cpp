@@ -9,9 +9,19 @@
 #include "assets.h"
 #include "devices.h"
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
+
 int main(int argc, char** argv) {
   prepare_opencl_environment();
   if (const auto assets = assets_directory(); assets.empty())
     std::printf("no test assets (SUNDOG_ASSETS or ../shared/assets): the tests of real models did without\n");
-  return Catch::Session().run(argc, argv);
+  const int status = Catch::Session().run(argc, argv);
+#ifdef __SANITIZE_ADDRESS__
+  // Before the end of the process: drivers keep some memory as long as it lives (PoCL a compiler for each
+  // device) and only free the table that leads to it.
+  __lsan_do_leak_check();
+#endif
+  return status;
 }

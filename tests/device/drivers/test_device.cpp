@@ -216,6 +216,23 @@ TEST_CASE("the same /1 twice is two sub-devices, which run on threads of their o
   }
 }
 
+TEST_CASE("sub-devices are opened and closed while the driver's threads end their work") {
+  for (const DeviceInfo& whole : test_devices()) {
+    if (whole.max_sub_devices < 2) continue;
+    const std::string spec = whole.name + "/1";
+    const auto parts = select_devices(test_devices(), {spec, spec});
+    std::vector<u32> values(1000);
+    std::iota(values.begin(), values.end(), 0u);
+    for (int i = 0; i < 300; ++i) {
+      Device device(parts[static_cast<std::size_t>(i) % 2]);
+      const auto buffer = device.upload<u32>(values);
+      std::vector<u32> back(values.size());
+      device.read(buffer, std::span<u32>(back));
+      CHECK((back == values));
+    }
+  }
+}
+
 // Hidden: run under Oclgrind alone, to see that it notices (tests/CMakeLists.txt).
 TEST_CASE("a kernel writes past the end of its buffer", "[.][out-of-bounds]") {
   Device device(test_devices().front());
