@@ -359,3 +359,39 @@ TEST_CASE("a camera inside touching solids of one medium sees as inside one") {
                glass);
   check_alike(whole, parts, 2);
 }
+
+TEST_CASE("extra images show the faces that are shaded, a disk that lies on glass among them") {
+  SceneDescription scene = over_a_floor();
+  const int glass = add_glass(scene), liquid = scenes::add_dielectric(scene, 1.33, {0.02, 0.3, 0.3}),
+            paint = scenes::add_white(scene);
+  place_pieces(scene, {whole_box}, glass);
+  place_pieces(scene, {{{-0.7, -0.7, -0.7}, {0.7, 1, 0.7}}}, liquid);
+  const std::size_t disk = scene.objects.size();
+  scenes::place(scene, DiskShape{0.6, 0}, paint, at({0.4, 1, 0}));
+  SceneDescription backwards = scene, above = scene;
+  std::reverse(backwards.objects.begin(), backwards.objects.end());
+  above.objects[disk].world_from_object = at({0.4, 1.001, 0});
+  RenderOptions options;
+  options.aovs = {"material", "depth", "normal"};
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label()) {
+      const RenderResult one = scenes::render_on(device, scene, options),
+                         other = scenes::render_on(device, backwards, options),
+                         lifted = scenes::render_on(device, above, options);
+      for (const std::string& name : options.aovs)
+        CHECK(pixels_that_differ(one.aovs.at(name).data, other.aovs.at(name).data) == 0);
+      int painted = 0, wet = 0, unlike = 0;
+      for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+          const auto material = [&](const RenderResult& of) {
+            return static_cast<int>(of.aovs.at("material").pixel(x, y)[0]);
+          };
+          wet += material(one) == liquid;
+          if (material(one) != paint || material(lifted) != paint) continue;
+          ++painted;
+          unlike += std::abs(one.image.pixel(x, y)[0] - lifted.image.pixel(x, y)[0]) > 1e-3f;
+        }
+      CHECK(wet > 20);
+      CHECK(painted > 20);
+      CHECK(unlike == 0);
+    }
+}
