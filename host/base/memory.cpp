@@ -1,5 +1,6 @@
 #include "base/memory.h"
 
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -95,6 +96,18 @@ std::optional<std::uint64_t> available_memory(const fs::path& root) {
   MaybeBytes least = number_of(root / "proc/meminfo", "MemAvailable");
   if (least) *least *= 1024;
   return less(less(least, left_in_groups(root)), left_of_address_space(root));
+}
+
+void prefer_large_pages(void* at, std::size_t bytes) {
+#ifdef MADV_HUGEPAGE
+  constexpr std::size_t least = std::size_t{1} << 22;
+  if (bytes < least) return;
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t skip = (page - reinterpret_cast<std::uintptr_t>(at) % page) % page;
+  ::madvise(static_cast<char*>(at) + skip, (bytes - skip) / page * page, MADV_HUGEPAGE);
+#else
+  (void)at, (void)bytes;
+#endif
 }
 
 }  // namespace sundog

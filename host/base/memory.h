@@ -1,8 +1,10 @@
-// How much memory there is to take.
+// How much memory there is to take, and large pieces of it.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 namespace sundog {
 
@@ -10,5 +12,17 @@ namespace sundog {
 /// container, a batch job) or the limit of the address space leaves less. None where nobody says. `root`:
 /// where proc and sys lie.
 std::optional<std::uint64_t> available_memory(const std::filesystem::path& root = "/");
+
+/// Asks for large pages where the system gives them to those who ask: memory that is about to be touched for
+/// the first time then costs much less. Small pieces stay as they are.
+void prefer_large_pages(void* at, std::size_t bytes);
+
+/// Makes an empty vector `size` zeros.
+template <class T>
+void fill_large(std::vector<T>& memory, std::size_t size) {
+  memory.reserve(size);
+  prefer_large_pages(memory.data(), size * sizeof(T));
+  memory.resize(size);
+}
 
 }  // namespace sundog

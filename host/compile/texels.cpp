@@ -1,8 +1,5 @@
 #include "compile/texels.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstring>
 
@@ -20,24 +17,47 @@ std::size_t units_of(const TexelLevel& level, u32 format) {
   return (units + TEXEL_ALIGNMENT - 1) / TEXEL_ALIGNMENT * TEXEL_ALIGNMENT;
 }
 
-/// Tile by tile; what a tile has beyond the image's edge stays 0 and is never read.
-void write_level(const StoredImage& image, const TexelLevel& level, std::vector<u32>& texels) {
-  auto* to = reinterpret_cast<std::uint8_t*>(texels.data()) + std::size_t{level.first} * TEXEL_UNIT;
-  const std::size_t bytes = image.pixel_bytes(), row = static_cast<std::size_t>(image.width) * bytes;
-  tbb::parallel_for(tbb::blocked_range<u32>(0, tiles_along(image.height), 8), [&](const auto& range) {
-    for (u32 tile_y = range.begin(); tile_y != range.end(); ++tile_y)
-      for (u32 tile_x = 0; tile_x < level.row_tiles; ++tile_x) {
-        const std::size_t tile = std::size_t{tile_y} * level.row_tiles + tile_x;
-        const u32 columns = std::min(TEXEL_TILE, level.width - tile_x * TEXEL_TILE);
-        const u32 rows = std::min(TEXEL_TILE, level.height - tile_y * TEXEL_TILE);
-        for (u32 y = 0; y < rows; ++y)
-          std::memcpy(to + (tile * TEXEL_TILE + y) * TEXEL_TILE * bytes,
-                      image.data.data() + (std::size_t{tile_y} * TEXEL_TILE + y) * row +
-                          std::size_t{tile_x} * TEXEL_TILE * bytes,
-                      columns * bytes);
+/// Puts a level's row into its tiles; what a tile has beyond the image's edge stays 0 and is never read.
+class RowWriter {
+ public:
+  RowWriter(const StoredImage& image, const TexelPages& pages) : pages_(pages), format_(texel_format(image)) {}
+
+  void operator()(const TexelLevel& level, u32 y, const std::uint8_t* samples) const {
+    switch (format_ & TEXEL_SIZE_MASK) {
+      case 0:
+        return write<4>(level, y, samples);
+      case 1:
+        return write<8>(level, y, samples);
+      case 2:
+        return write<16>(level, y, samples);
+      default:
+        return write<32>(level, y, samples);
+    }
+  }
+
+ private:
+  /// `part` bytes of the row go into each tile. No page's end cuts a tile.
+  template <std::size_t part>
+  void write(const TexelLevel& level, u32 y, const std::uint8_t* samples) const {
+    const u32 shift = format_ & TEXEL_SIZE_MASK, whole = level.width / TEXEL_TILE;
+    const std::size_t first = level.first + (std::size_t{y / TEXEL_TILE} * level.row_tiles << shift);
+    for (u32 tile = 0; tile < level.row_tiles;) {
+      const std::size_t unit = first + (std::size_t{tile} << shift), page = unit / pages_.units;
+      const std::size_t fit = ((page + 1) * pages_.units - unit) >> shift;
+      const auto end = static_cast<u32>(std::min<std::size_t>(level.row_tiles, tile + fit));
+      std::uint8_t* to = pages_.bytes[page] + (unit - page * pages_.units) * TEXEL_UNIT + y % TEXEL_TILE * part;
+      for (; tile < std::min(end, whole); ++tile, samples += part, to += part * TEXEL_TILE)
+        std::memcpy(to, samples, part);
+      if (tile < end) {
+        std::memcpy(to, samples, level.width % TEXEL_TILE * (part / TEXEL_TILE));
+        ++tile;
       }
-  });
-}
+    }
+  }
+
+  const TexelPages& pages_;
+  u32 format_;
+};
 
 }  // namespace
 
@@ -70,10 +90,11 @@ std::size_t texel_bytes(const StoredImage& image) {
   return lay_out_levels(image, 0, levels) * TEXEL_UNIT;
 }
 
-void write_levels(const ImageDescription& image, const TexelLevel* levels, std::vector<u32>& texels) {
-  write_level(image.pixels, levels[0], texels);
-  const std::vector<StoredImage> smaller = smaller_levels(image.pixels, image.srgb);
-  for (std::size_t i = 0; i < smaller.size(); ++i) write_level(smaller[i], levels[i + 1], texels);
+void write_levels(const ImageDescription& image, const TexelLevel* levels, const TexelPages& pages) {
+  const RowWriter write(image.pixels, pages);
+  each_level_row(image.pixels, image.srgb, [&](std::size_t level, int y, const std::uint8_t* samples) {
+    write(levels[level], static_cast<u32>(y), samples);
+  });
 }
 
 }  // namespace sundog

@@ -16,7 +16,13 @@ std::size_t texel_bytes(const StoredImage& image);
 /// Where levels of these sizes lie, the first one at `first` units; returns the first free unit behind them.
 std::size_t lay_out_levels(const StoredImage& image, std::size_t first, std::vector<TexelLevel>& levels);
 
+/// The memory of all levels, in pages of `units` each.
+struct TexelPages {
+  std::uint8_t* bytes[TEXEL_PAGES];
+  std::size_t units;
+};
+
 /// Writes the image and its smaller levels to their places.
-void write_levels(const ImageDescription& image, const TexelLevel* levels, std::vector<u32>& texels);
+void write_levels(const ImageDescription& image, const TexelLevel* levels, const TexelPages& pages);
 
 }  // namespace sundog

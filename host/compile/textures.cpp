@@ -10,12 +10,24 @@
 
 #include "base/error.h"
 #include "base/image_io.h"
+#include "base/memory.h"
 #include "compile/fields/pattern_code.h"
-#include "compile/texels.h"
 #include "scene/pack.h"
 
 namespace sundog {
 namespace {
+
+/// Large memory is touched by all threads before one fills it.
+std::vector<u32> zeroed_words(std::size_t count) {
+  constexpr std::size_t step = 1024, least = std::size_t{1} << 20;
+  std::vector<u32> words;
+  words.reserve(count);
+  prefer_large_pages(words.data(), count * sizeof(u32));
+  if (count > least)
+    tbb::parallel_for(std::size_t{0}, count / step, [at = words.data()](std::size_t i) { at[i * step] = 0; });
+  words.resize(count);
+  return words;
+}
 
 float4 pack4(const glm::dvec4& v) { return pack(dvec3(v), v.w); }
 
@@ -191,13 +203,12 @@ class TextureCompiler {
   void write_images() {
     if (units_ > std::numeric_limits<u32>::max())
       throw SceneError(scene_.file.string(), "", "the images take more than 64 GiB; use smaller ones");
-    std::vector<u32> texels(units_ * (TEXEL_UNIT / sizeof(u32)));
+    const TexelPages pages = add_texel_pages(units_, TEXEL_PAGE_BYTES / TEXEL_UNIT, out_);
     const std::vector<std::pair<int, std::pair<u32, u32>>> images(levels_.begin(), levels_.end());
     tbb::parallel_for(std::size_t{0}, images.size(), [&](std::size_t i) {
       write_levels(scene_.images[static_cast<std::size_t>(images[i].first)],
-                   &out_.texel_levels[images[i].second.first], texels);
+                   &out_.texel_levels[images[i].second.first], pages);
     });
-    cut_into_pages(std::move(texels), TEXEL_PAGE_BYTES / TEXEL_UNIT, out_);
   }
 
   const SceneDescription& scene_;
@@ -219,24 +230,20 @@ bool has_maps(const MaterialDescription& material) {
   return textured || material.opacity < 1 || material.one_sided || material.metal_rough || material.coat > 0;
 }
 
-void cut_into_pages(std::vector<u32> texels, u32 least_page, CompiledScene& out) {
-  const std::size_t unit_words = TEXEL_UNIT / sizeof(u32), units = texels.size() / unit_words;
+TexelPages add_texel_pages(std::size_t units, u32 least_page, CompiledScene& out) {
+  const std::size_t unit_words = TEXEL_UNIT / sizeof(u32);
   const std::size_t quarter = (units + TEXEL_PAGES - 1) / TEXEL_PAGES;
   const std::size_t page =
       std::max<std::size_t>(least_page, (quarter + TEXEL_ALIGNMENT - 1) / TEXEL_ALIGNMENT * TEXEL_ALIGNMENT);
   out.info.texel_page = static_cast<u32>(page);
   out.features.texel_pages = units > page;
-  if (units <= page) {
-    out.texels0 = std::move(texels);
-    return;
-  }
-  SharedTable<u32>* pages[] = {&out.texels0, &out.texels1, &out.texels2, &out.texels3};
-  for (std::size_t i = 0; i < TEXEL_PAGES; ++i) {
-    const auto at = [&](std::size_t unit) {
-      return texels.begin() + static_cast<std::ptrdiff_t>(std::min(unit, units) * unit_words);
-    };
-    *pages[i] = std::vector<u32>(at(i * page), at((i + 1) * page));
-  }
+  TexelPages pages{{}, page};
+  SharedTable<u32>* tables[] = {&out.texels0, &out.texels1, &out.texels2, &out.texels3};
+  tbb::parallel_for(std::size_t{0}, std::size_t{TEXEL_PAGES}, [&](std::size_t i) {
+    *tables[i] = zeroed_words((std::min(units, (i + 1) * page) - std::min(units, i * page)) * unit_words);
+    pages.bytes[i] = reinterpret_cast<std::uint8_t*>(tables[i]->edit().data());
+  });
+  return pages;
 }
 
 void add_textures(const SceneDescription& scene, CompiledScene& out) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "base/memory.h"
 #include "base/pixels/stored_image.h"
 
 namespace sundog {
@@ -49,7 +50,7 @@ StoredImage decode_jpeg(std::string_view bytes) {
   check_image_size(stored.width, stored.height, 4, bytes.size(), jpeg_pixels_a_byte);
   const bool inks = space == TJCS_CMYK || space == TJCS_YCCK, grey = space == TJCS_GRAY;
   stored.channels = grey ? 1 : 4;
-  stored.data.resize(stored.pixel_count() * stored.pixel_bytes());
+  fill_large(stored.data, stored.pixel_count() * stored.pixel_bytes());
   check_jpeg(handle.get(),
              tjDecompress2(handle.get(), data, size, stored.data.data(), stored.width, 0, stored.height,
                            grey   ? TJPF_GRAY

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "base/image_io.h"
 
@@ -66,7 +68,7 @@ Pixel<channels> mean_of_pixels(const Pixel<channels>& a, const Pixel<channels>& 
 template <std::size_t channels>
 class LevelReader {
  public:
-  explicit LevelReader(const LinearLevel& level) : data_(level.data.data()) {}
+  explicit LevelReader(const float* data) : data_(data) {}
   Pixel<channels> operator()(std::size_t at) const {
     Pixel<channels> pixel;
     std::copy_n(data_ + at * channels, channels, pixel.begin());
@@ -77,6 +79,8 @@ class LevelReader {
     const LevelReader& read = *this;
     return mean_of_pixels<channels>(read(at), read(at + 1), read(at + width), read(at + width + 1));
   }
+  /// Rows that are passed on already.
+  void pass_rows(int, int, const TakeRow&) const {}
 
  private:
   const float* data_;
@@ -115,6 +119,10 @@ class SampleReader {
       if ((up[3] & up[7] & down[3] & down[7]) == 255) return mean_of_opaque(up, down);
     }
     return mean_of_pixels<channels>(read(at), read(at + 1), read(at + width), read(at + width + 1));
+  }
+  void pass_rows(int first, int end, const TakeRow& take) const {
+    const std::size_t row = static_cast<std::size_t>(image_.width) * image_.pixel_bytes();
+    for (int y = first; y < end; ++y) take(0, y, image_.data.data() + static_cast<std::size_t>(y) * row);
   }
 
  private:
@@ -190,53 +198,135 @@ void store_pixels(const float* from, std::size_t count, Sample kind, bool srgb, 
   }
 }
 
-/// A level and its samples.
-struct Halved {
-  LinearLevel linear;
-  StoredImage stored;
+/// Levels that one pass makes at most: each task then needs few rows of each, which stay in the cache.
+constexpr int most_steps = 6;
+
+/// Makes the levels after one, without storing more of them in floats than two rows each.
+template <std::size_t channels, class Read>
+class LevelMaker {
+ public:
+  /// `read` reads level number `level`.
+  LevelMaker(const Read& read, int width, int height, std::size_t level, Sample kind, bool srgb,
+             const TakeRow& take)
+      : read_(read), width_(width), height_(height), level_(level), kind_(kind), srgb_(srgb), take_(take) {}
+
+  /// As many levels as halve evenly, up to `most`, and one if none does. Returns the last one, and adds their
+  /// number to `made`.
+  LinearLevel make(int most, std::size_t& made) {
+    const auto evenly = [](int edge) { return std::countr_zero(static_cast<unsigned>(edge)); };
+    even_ = width_ % 2 == 0 && height_ % 2 == 0;
+    const int steps = even_ ? std::min({most, evenly(width_), evenly(height_)}) : 1;
+    LinearLevel last{std::max(1, width_ >> steps), std::max(1, height_ >> steps), channels, {}};
+    const std::size_t row = static_cast<std::size_t>(last.width) * channels;
+    last.data.resize(static_cast<std::size_t>(last.height) * row);
+    tbb::parallel_for(tbb::blocked_range<int>(0, last.height, std::max(1, 16 >> steps)),
+                      [&](const auto& rows) {
+                        Scratch scratch = make_scratch(steps);
+                        for (int y = rows.begin(); y != rows.end(); ++y)
+                          make_row(steps, y, last.data.data() + static_cast<std::size_t>(y) * row, scratch);
+                      });
+    made += static_cast<std::size_t>(steps);
+    return last;
+  }
+
+ private:
+  /// Two rows of floats of each level but the last, and a row of samples.
+  struct Scratch {
+    std::array<std::vector<float>, most_steps> pairs;
+    std::vector<std::uint8_t> samples;
+  };
+
+  int width_of(int step) const { return std::max(1, width_ >> step); }
+
+  Scratch make_scratch(int steps) const {
+    Scratch scratch;
+    for (int step = 1; step < steps; ++step)
+      scratch.pairs[static_cast<std::size_t>(step)].resize(2 * static_cast<std::size_t>(width_of(step)) *
+                                                           channels);
+    scratch.samples.resize(static_cast<std::size_t>(width_of(1)) * channels * 2);
+    return scratch;
+  }
+
+  /// Row `y` of the level `step` after the source, and before it all rows that it is made of.
+  void make_row(int step, int y, float* to, Scratch& scratch) const {
+    const auto columns = static_cast<std::size_t>(width_of(step));
+    if (step == 1) {
+      read_.pass_rows(2 * y, y + 1 == std::max(1, height_ / 2) ? height_ : 2 * y + 2, take_);
+      make_first(y, to);
+    } else {
+      const std::size_t from_columns = 2 * columns;
+      float* pair = scratch.pairs[static_cast<std::size_t>(step - 1)].data();
+      make_row(step - 1, 2 * y, pair, scratch);
+      make_row(step - 1, 2 * y + 1, pair + from_columns * channels, scratch);
+      const LevelReader<channels> read(pair);
+      for (std::size_t x = 0; x < columns; ++x) {
+        const Pixel<channels> mean = read.mean_of_four(2 * x, from_columns);
+        std::copy(mean.begin(), mean.end(), to + x * channels);
+      }
+    }
+    store_pixels<channels>(to, columns, kind_, srgb_, scratch.samples.data());
+    take_(level_ + static_cast<std::size_t>(step), y, scratch.samples.data());
+  }
+
+  void make_first(int y, float* to) const {
+    const auto from_columns = static_cast<std::size_t>(width_);
+    std::size_t at = 2 * static_cast<std::size_t>(y) * from_columns;
+    for (int x = 0; x < width_of(1); ++x, to += channels, at += 2) {
+      const Pixel<channels> mean =
+          even_
+              ? read_.mean_of_four(at, from_columns)
+              : weighted_mean<channels>(read_, at, from_columns, weights_of(width_, x), weights_of(height_, y));
+      std::copy(mean.begin(), mean.end(), to);
+    }
+  }
+
+  const Read& read_;
+  int width_, height_;
+  std::size_t level_;
+  Sample kind_;
+  bool srgb_, even_ = false;
+  const TakeRow& take_;
 };
 
-/// Row by row, the samples while the row is at hand.
-template <std::size_t channels, class Read>
-Halved halve(int width, int height, const Read& read, Sample kind, bool srgb) {
-  Halved out{{std::max(1, width / 2), std::max(1, height / 2), channels, {}}, {}};
-  LinearLevel& level = out.linear;
-  out.stored.width = level.width;
-  out.stored.height = level.height;
-  out.stored.channels = static_cast<int>(channels);
-  out.stored.sample = kind;
-  const auto columns = static_cast<std::size_t>(level.width), from_row = static_cast<std::size_t>(width);
-  const std::size_t row = columns * channels, stored_row = columns * out.stored.pixel_bytes();
-  level.data.resize(static_cast<std::size_t>(level.height) * row);
-  out.stored.data.resize(static_cast<std::size_t>(level.height) * stored_row);
-  const bool even = width % 2 == 0 && height % 2 == 0;
-  tbb::parallel_for(tbb::blocked_range<int>(0, level.height, 16), [&](const auto& rows) {
-    for (int y = rows.begin(); y != rows.end(); ++y) {
-      float* const begin = level.data.data() + static_cast<std::size_t>(y) * row;
-      float* to = begin;
-      std::size_t at = 2 * static_cast<std::size_t>(y) * from_row;
-      for (int x = 0; x < level.width; ++x, to += channels, at += 2) {
-        const Pixel<channels> mean =
-            even ? read.mean_of_four(at, from_row)
-                 : weighted_mean<channels>(read, at, from_row, weights_of(width, x), weights_of(height, y));
-        std::copy(mean.begin(), mean.end(), to);
-      }
-      store_pixels<channels>(begin, columns, kind, srgb,
-                             out.stored.data.data() + static_cast<std::size_t>(y) * stored_row);
-    }
+template <std::size_t channels>
+void make_levels(const StoredImage& image, bool srgb, std::size_t most, const TakeRow& take) {
+  std::size_t made = 0;
+  const auto next = [&](const auto& read, int width, int height) {
+    using Read = std::decay_t<decltype(read)>;
+    LevelMaker<channels, Read> maker(read, width, height, made, image.sample, srgb, take);
+    return maker.make(static_cast<int>(std::min<std::size_t>(most_steps, most - made)), made);
+  };
+  const SampleReader<channels> read(image, srgb);
+  if (most == 0 || image.pixel_count() == 1) return read.pass_rows(0, image.height, take);
+  LinearLevel level = next(read, image.width, image.height);
+  while (made < most && (level.width > 1 || level.height > 1))
+    level = next(LevelReader<channels>(level.data.data()), level.width, level.height);
+}
+
+void make_levels(const StoredImage& image, bool srgb, std::size_t most, const TakeRow& take) {
+  if (image.channels == 1)
+    make_levels<1>(image, srgb, most, take);
+  else
+    make_levels<4>(image, srgb, most, take);
+}
+
+std::vector<StoredImage> levels_of(const StoredImage& image, bool srgb, std::size_t most) {
+  std::vector<StoredImage> levels;
+  for (int width = image.width, height = image.height; (width > 1 || height > 1) && levels.size() < most;) {
+    StoredImage& level = levels.emplace_back();
+    level.width = width = std::max(1, width / 2);
+    level.height = height = std::max(1, height / 2);
+    level.channels = image.channels;
+    level.sample = image.sample;
+    level.data.resize(level.pixel_count() * level.pixel_bytes());
+  }
+  make_levels(image, srgb, levels.size(), [&](std::size_t number, int y, const std::uint8_t* samples) {
+    if (number == 0) return;
+    StoredImage& level = levels[number - 1];
+    const std::size_t row = static_cast<std::size_t>(level.width) * level.pixel_bytes();
+    std::memcpy(level.data.data() + static_cast<std::size_t>(y) * row, samples, row);
   });
-  return out;
-}
-
-Halved halve(const LinearLevel& from, Sample kind, bool srgb) {
-  if (from.channels == 1) return halve<1>(from.width, from.height, LevelReader<1>(from), kind, srgb);
-  return halve<4>(from.width, from.height, LevelReader<4>(from), kind, srgb);
-}
-
-Halved halve(const StoredImage& from, bool srgb) {
-  if (from.channels == 1)
-    return halve<1>(from.width, from.height, SampleReader<1>(from, srgb), from.sample, srgb);
-  return halve<4>(from.width, from.height, SampleReader<4>(from, srgb), from.sample, srgb);
+  return levels;
 }
 
 }  // namespace
@@ -269,18 +359,16 @@ void settle_samples(StoredImage& image, bool srgb) {
   image.exponent.reset();
 }
 
-std::vector<StoredImage> smaller_levels(const StoredImage& image, bool srgb) {
-  std::vector<StoredImage> levels;
-  if (image.width == 1 && image.height == 1) return levels;
-  Halved level = halve(image, srgb);
-  levels.push_back(std::move(level.stored));
-  while (level.linear.width > 1 || level.linear.height > 1) {
-    level = halve(level.linear, image.sample, srgb);
-    levels.push_back(std::move(level.stored));
-  }
-  return levels;
+void each_level_row(const StoredImage& image, bool srgb, const TakeRow& take) {
+  make_levels(image, srgb, std::numeric_limits<std::size_t>::max(), take);
 }
 
-StoredImage half_size(const StoredImage& image, bool srgb) { return halve(image, srgb).stored; }
+std::vector<StoredImage> smaller_levels(const StoredImage& image, bool srgb) {
+  return levels_of(image, srgb, std::numeric_limits<std::size_t>::max());
+}
+
+StoredImage half_size(const StoredImage& image, bool srgb) {
+  return std::move(levels_of(image, srgb, 1).front());
+}
 
 }  // namespace sundog

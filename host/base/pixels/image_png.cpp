@@ -9,6 +9,7 @@
 
 #include "base/image_codecs.h"
 #include "base/limits.h"
+#include "base/memory.h"
 #include "base/pixels/png_pixels.h"
 #include "base/pixels/stored_image.h"
 
@@ -99,7 +100,8 @@ StoredImage decode_png(std::string_view bytes) {
   if (plain && decode_png_pixels(bytes, plain, stored)) return stored;
   std::size_t size = 0;
   check_png(spng_decoded_image_size(context.get(), format, &size));
-  stored.data.resize(size);
+  stored.data.clear();
+  fill_large(stored.data, size);
   check_png(spng_decode_image(context.get(), stored.data.data(), size, format, SPNG_DECODE_TRNS));
   return stored;
 }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/memory.h"
 #include "base/pixels/stored_image.h"
 
 namespace sundog {
@@ -20,7 +21,7 @@ StoredImage decode_webp(std::string_view bytes) {
   StoredImage stored;
   stored.width = features.width;
   stored.height = features.height;
-  stored.data.resize(stored.pixel_count() * 4);
+  fill_large(stored.data, stored.pixel_count() * 4);
   if (!WebPDecodeRGBAInto(data, bytes.size(), stored.data.data(), stored.data.size(), 4 * stored.width))
     throw std::runtime_error("the WebP data is bad or cut short");
   return stored;

@@ -1,4 +1,5 @@
 // See png_pixels.h. Portable Network Graphics (PNG) Specification, third edition, sections 5, 9 and 10.
+#include "base/memory.h"
 #include "base/pixels/png_pixels.h"
 
 #include <libdeflate.h>
@@ -181,7 +182,7 @@ bool decode_png_pixels(std::string_view bytes, std::size_t file_channels, Stored
   // The filtered rows lie at the end of the memory that the pixels take from its beginning: a pixel is never
   // written before it is read, as a row takes at least as many bytes as it did but for its filter's.
   const std::size_t size = image.pixel_count() * image.pixel_bytes();
-  image.data.resize(size + height + slack);
+  fill_large(image.data, size + height + slack);
   std::uint8_t* rows = image.data.data() + size + height - filtered;
   // No size to return means that the stream must have exactly this one.
   bool whole = libdeflate_zlib_decompress(decompressor.get(), packed.data(), packed.size(), rows, filtered,

@@ -2,6 +2,9 @@
 // that is added does not build until it is put into the key here, or left out on purpose.
 #include "compile/parts/content_key.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <bit>
 #include <boost/pfr.hpp>
 #include <cstring>
@@ -16,6 +19,18 @@ template <class Rows>
 void add_rows(KeyMaker& key, const Rows& rows) {
   static_assert(std::is_trivially_copyable_v<typename Rows::value_type>);
   key.add(rows.size()).bytes(rows.data(), rows.size() * sizeof(typename Rows::value_type));
+}
+
+/// Pieces of many bytes have keys of their own, made by several threads.
+void add_many_bytes(KeyMaker& key, const std::vector<std::uint8_t>& bytes) {
+  constexpr std::size_t piece = std::size_t{1} << 19;
+  std::vector<ContentKey> keys((bytes.size() + piece - 1) / piece);
+  tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) {
+    const std::size_t first = i * piece;
+    keys[i] = KeyMaker().bytes(bytes.data() + first, std::min(piece, bytes.size() - first)).key();
+  });
+  key.add(bytes.size());
+  for (const ContentKey& of_piece : keys) key.add(of_piece);
 }
 
 template <class T>
@@ -60,7 +75,7 @@ void add(KeyMaker& key, const StoredImage& image) {
   const auto& [width, height, channels, sample, exponent, data] = image;
   key.add_each(width, height, channels, sample);
   add_optional(key, exponent);
-  add_rows(key, data);
+  add_many_bytes(key, data);
 }
 
 }  // namespace

@@ -1,13 +1,16 @@
 // Relief below surfaces: where rays meet it and where its own shadows lie, by closed forms.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "base/error.h"
 #include "catch.h"
 #include "devices.h"
 #include "same_bits.h"
 #include "scenes.h"
 #include "surface_testing.h"
+#include "temporary_folder.h"
 
 using namespace sundog;
 
@@ -193,4 +196,30 @@ TEST_CASE("a frame with an image and a relief has the same bits for every work-g
       CHECK(same_bits(scenes::render_on(info, scene, options).image, whole));
     }
   });
+}
+
+TEST_CASE("an interrupted frame with an image and a relief is resumed to the same bits") {
+  const SceneDescription scene = floor_with_things(true, 0.6 * depth);
+  const DeviceInfo device = test_devices().front();
+  const TemporaryFolder folder;
+  const Image whole = scenes::render_on(device, scene).image;
+  std::atomic<bool> stop{false};
+  RenderOptions options;
+  options.tile = 8;
+  options.resume = folder.path() / "frame.checkpoint";
+  options.stop = &stop;
+  options.on_progress = [&](const RenderProgress& progress) {
+    stop = progress.pixels_done > progress.pixels_total / 3;
+  };
+  REQUIRE_FALSE(scenes::render_on(device, scene, options).complete);
+  SECTION("with what was done kept") {
+    options.stop = nullptr;
+    options.on_progress = {};
+    CHECK(same_bits(scenes::render_on(device, scene, options).image, whole));
+  }
+  SECTION("but not with another image") {
+    SceneDescription other = scene;
+    other.images[0].pixels.data[0] ^= 1;
+    CHECK_THROWS_AS(scenes::render_on(device, other, options), UsageError);
+  }
 }

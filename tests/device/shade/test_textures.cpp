@@ -143,10 +143,22 @@ double greatest_difference(const float4& a, const dvec4& b) {
                    std::abs(double(a.w) - b.w)});
 }
 
+/// The same texels in pages of at least `least` units each.
+void cut_into_pages(u32 least, CompiledScene& flat) {
+  const SharedTable<u32> texels = flat.texels0;
+  const std::size_t bytes = texels.size() * sizeof(u32);
+  const TexelPages pages = add_texel_pages(bytes / TEXEL_UNIT, least, flat);
+  REQUIRE_FALSE(flat.texels1.empty());
+  const std::size_t page = pages.units * TEXEL_UNIT;
+  for (std::size_t i = 0; i * page < bytes; ++i)
+    std::memcpy(pages.bytes[i], reinterpret_cast<const std::uint8_t*>(texels.data()) + i * page,
+                std::min(page, bytes - i * page));
+}
+
 void check_samples(const DeviceInfo& device, const ImageDescription& image, const TextureDescription& texture,
                    u32 page = 0) {
   CompiledScene flat = compile(textured_plane(image, texture));
-  if (page) cut_into_pages(std::move(flat.texels0), page, flat);
+  if (page) cut_into_pages(page, flat);
   Levels levels{{image.pixels}, image.srgb};
   for (StoredImage& level : smaller_levels(image.pixels, image.srgb)) levels.all.push_back(std::move(level));
   const std::vector<float4> points = sample_points(image.pixels);

@@ -143,6 +143,36 @@ TEST_CASE("smaller levels keep the mean of the light, whatever the edges") {
   }
 }
 
+TEST_CASE("a texel of each level is the mean light of all pixels below it") {
+  for (const auto& [width, height] : {std::pair(128, 64), std::pair(96, 160), std::pair(2, 256)}) {
+    StoredImage image;
+    image.width = width, image.height = height;
+    for (int i = 0; i < width * height; ++i)
+      for (const int factor : {7, 31, 97}) image.data.push_back(static_cast<std::uint8_t>(factor * i * i + i));
+    for (std::size_t i = 3; i <= image.data.size(); i += 4) image.data.insert(image.data.begin() + static_cast<std::ptrdiff_t>(i), 255);
+    const auto light = [](const StoredImage& from, int x, int y, std::size_t channel) {
+      const auto at = static_cast<std::size_t>(y * from.width + x) * 4 + channel;
+      return double(linear_from_srgb(float(from.data[at]) / 255));
+    };
+    int edge = 1;
+    for (const StoredImage& level : smaller_levels(image, true)) {
+      edge *= 2;
+      if (level.width * edge != width || level.height * edge != height) break;
+      for (int y = 0; y < level.height; ++y)
+        for (int x = 0; x < level.width; ++x)
+          for (const std::size_t channel : {0u, 1u, 2u}) {
+            double sum = 0;
+            for (int j = 0; j < edge; ++j)
+              for (int i = 0; i < edge; ++i) sum += light(image, x * edge + i, y * edge + j, channel);
+            const double wanted = 255 * double(srgb_from_linear(float(sum / (edge * edge))));
+            const auto at = static_cast<std::size_t>(y * level.width + x) * 4 + channel;
+            REQUIRE(level.data[at] == Approx(wanted).margin(0.76));
+          }
+    }
+    CHECK(edge >= 32 / (width == 2 ? 16 : 1));
+  }
+}
+
 TEST_CASE("what cannot be seen of an image does not colour its smaller levels") {
   StoredImage image;
   image.width = 2, image.height = 1;
