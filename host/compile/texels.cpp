@@ -20,7 +20,8 @@ std::size_t units_of(const TexelLevel& level, u32 format) {
 /// Puts a level's row into its tiles; what a tile has beyond the image's edge stays 0 and is never read.
 class RowWriter {
  public:
-  RowWriter(const StoredImage& image, const TexelPages& pages) : pages_(pages), format_(texel_format(image)) {}
+  RowWriter(const StoredImage& image, const TexelPages& pages)
+      : pages_(pages), format_(texel_format(image)) {}
 
   void operator()(const TexelLevel& level, u32 y, const std::uint8_t* samples) const {
     switch (format_ & TEXEL_SIZE_MASK) {
@@ -45,7 +46,8 @@ class RowWriter {
       const std::size_t unit = first + (std::size_t{tile} << shift), page = unit / pages_.units;
       const std::size_t fit = ((page + 1) * pages_.units - unit) >> shift;
       const auto end = static_cast<u32>(std::min<std::size_t>(level.row_tiles, tile + fit));
-      std::uint8_t* to = pages_.bytes[page] + (unit - page * pages_.units) * TEXEL_UNIT + y % TEXEL_TILE * part;
+      std::uint8_t* to =
+          pages_.bytes[page] + (unit - page * pages_.units) * TEXEL_UNIT + y % TEXEL_TILE * part;
       for (; tile < std::min(end, whole); ++tile, samples += part, to += part * TEXEL_TILE)
         std::memcpy(to, samples, part);
       if (tile < end) {

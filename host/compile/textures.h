@@ -30,8 +30,8 @@ void add_tangents(const SceneDescription& scene, const std::vector<PlacedMesh>& 
 /// Whether a material is more than its Material: it has textures, or is not opaque.
 bool has_maps(const MaterialDescription& material);
 
-/// Gives `out` the tables texels0 to texels3, full of zeros, of at least `least_page` units each but the last.
-/// A page is no more than a quarter of all, which is what every device has in one piece.
+/// Gives `out` the tables texels0 to texels3, full of zeros, of at least `least_page` units each but the
+/// last. A page is no more than a quarter of all, which is what every device has in one piece.
 TexelPages add_texel_pages(std::size_t units, u32 least_page, CompiledScene& out);
 
 }  // namespace sundog

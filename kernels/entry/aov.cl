@@ -5,6 +5,7 @@
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
 #include "lib/shade/relief.cl"
+#include "lib/shade/relief_hits.cl"
 #include "shared/launch.h"
 
 #ifndef ALL_AOVS
@@ -54,7 +55,7 @@ static inline REAL steps_alone(const Scene* scene, const SceneRays* camera, MASK
     SceneRays rays = *camera;
     Encounters met;
     SurfaceInteractions s;
-    next_surfaces(scene, &rays, lanes_of(1u << i), true, &met, counts);
+    see_surfaces(scene, &rays, lanes_of(1u << i), true, &met, counts);
     REAL_LANE(steps, i) = (float)counts[COUNT_MARCH_STEPS];
   }
   return steps;
@@ -76,7 +77,7 @@ NEVER_INLINE void write_more(const Scene* scene, MediaStack stack, REAL x, REAL 
     SceneRays rays = scene_rays(&camera, stack);
     Encounters met;
     start_marching(counts);
-    next_surfaces(scene, &rays, lanes, true, &met, counts);
+    see_surfaces(scene, &rays, lanes, true, &met, counts);
     const MASK found = lanes & hit_anything(&met.hit);
     for (u32 i = 0; i < BATCH; ++i) {
       const bool seen = MASK_LANE(found, i) != 0;
@@ -130,14 +131,18 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
   SceneRays rays = scene_rays(&camera, stack);
   Encounters met;
   SurfaceInteractions s;
-  next_surfaces(scene, &rays, lanes, true, &met, counts);
+  see_surfaces(scene, &rays, lanes, true, &met, counts);
   const MASK hit = lanes & hit_anything(&met.hit);
   interact(scene, rays.o, rays.d, &met.hit, &met.face, hit, &s);
   set_footprints(&rays, met.hit.t, &s);
+  note_depth(&met, &s);
+  add_parallax(scene, rays.d, hit, &s);
   add_relief(scene, rays.d, hit, &s);
   const Bsdfs bsdf = make_bsdfs(scene, &s, met.before, met.after, hit);
-  const REAL3 world = add3(add3(s.p, all3(scene->info->origin_rest.xyz)), all3(scene->info->origin.xyz));
-  const REAL depth = met.hit.t * dot3(rays.d, all3(scene->info->camera_forward.xyz));
+  const REAL sunk = ways_to_heights(scene, &s, rays.d, hit);
+  const REAL3 world = add3(add3(along3(s.p, sunk, rays.d), all3(scene->info->origin_rest.xyz)),
+                           all3(scene->info->origin.xyz));
+  const REAL depth = (met.hit.t + sunk) * dot3(rays.d, all3(scene->info->camera_forward.xyz));
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     __global float4* out = aovs + AOV_VECTORS * (first + i);

@@ -273,9 +273,9 @@ class LevelMaker {
     std::size_t at = 2 * static_cast<std::size_t>(y) * from_columns;
     for (int x = 0; x < width_of(1); ++x, to += channels, at += 2) {
       const Pixel<channels> mean =
-          even_
-              ? read_.mean_of_four(at, from_columns)
-              : weighted_mean<channels>(read_, at, from_columns, weights_of(width_, x), weights_of(height_, y));
+          even_ ? read_.mean_of_four(at, from_columns)
+                : weighted_mean<channels>(read_, at, from_columns, weights_of(width_, x),
+                                          weights_of(height_, y));
       std::copy(mean.begin(), mean.end(), to);
     }
   }

@@ -15,9 +15,9 @@ void settle_samples(StoredImage& image, bool srgb);
 /// A row of a level's samples; level 0 is the image.
 using TakeRow = std::function<void(std::size_t level, int y, const std::uint8_t* samples)>;
 
-/// Makes the levels after `image`, down to one pixel, and passes on each row of all once, from several threads.
-/// Colours (`srgb`) count by their alpha, so that what cannot be seen does not bleed. Odd edges are divided
-/// with three weights a pixel, so that the mean stays (Guthe and Heckbert 2005, "Non-Power-of-Two
+/// Makes the levels after `image`, down to one pixel, and passes on each row of all once, from several
+/// threads. Colours (`srgb`) count by their alpha, so that what cannot be seen does not bleed. Odd edges are
+/// divided with three weights a pixel, so that the mean stays (Guthe and Heckbert 2005, "Non-Power-of-Two
 /// Mipmapping").
 void each_level_row(const StoredImage& image, bool srgb, const TakeRow& take);
 

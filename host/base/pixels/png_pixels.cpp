@@ -1,6 +1,6 @@
 // See png_pixels.h. Portable Network Graphics (PNG) Specification, third edition, sections 5, 9 and 10.
-#include "base/memory.h"
 #include "base/pixels/png_pixels.h"
+#include "base/memory.h"
 
 #include <libdeflate.h>
 

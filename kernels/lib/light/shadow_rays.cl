@@ -4,13 +4,13 @@
 #include "lib/light/choose_light.cl"
 #include "lib/light/field_light.cl"
 #include "lib/light/light.cl"
+#include "lib/light/relief_shadow.cl"
 #include "lib/path/path_samples.cl"
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
 #include "lib/shade/layers.cl"
 #include "lib/shade/relief.cl"
-#include "lib/shade/relief_hits.cl"
 
 // What surfaces and the rays that met them are, for all that is done there.
 typedef struct Shading {
@@ -93,7 +93,10 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
   REAL3 possible = bsdf_eval(scene, &at->bsdf, wo, light.wi, facing);
   possible = multiply3(light.radiance, layered_light(scene, &at->bsdf, wo, light.wi, facing, possible));
   if (HAS_RELIEF) possible = scale3(possible, terminator(s, light.wi));
-  if (HAS_PARALLAX) possible = scale3(possible, relief_visibility(scene, s, light.wi, facing));
+  if (HAS_PARALLAX) {
+    possible = scale3(possible, relief_visibility(scene, s, light.wi, facing));
+    possible = scale3(possible, walls_visibility(scene, rays, s, light.wi, facing, counts));
+  }
   // A high power of (r.v) may leave less than the least normal float, which some devices take for zero: not
   // worth a ray.
   const MASK lit = facing & MASK_OF(greatest3(possible) >= FLT_MIN);

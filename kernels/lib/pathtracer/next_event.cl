@@ -87,7 +87,7 @@ static inline SceneRays rays_to_light(const Scene* scene, const SceneRays* rays,
   start_on_surfaces(scene->info, &to_light, &met->hit, ~s->entering, lanes);
   REAL way;
   const REAL3 outside = along3(leave_relief(s, light->wi, &way), s->offset, leaving_normal(s));
-  to_light.o = select3(outside, along3(s->p, -s->offset, s->ng), below);
+  to_light.o = select3(outside, points_behind(scene, s, rays->d, below), below);
   if (any_lane(below)) {
     start_on_hits(scene->info, &to_light, &met->hit, s->entering, below);
     enter_behind(met, rays, below, &to_light);
@@ -133,7 +133,10 @@ NEVER_INLINE Carried next_event(const Scene* scene, const Walks* walks, const Sc
   possible = carry_scale(possible, weight * over);
   const MASK below = lanes & MASK_OF(dot3(s->ng, light.wi) < 0.0f);
   if (HAS_RELIEF) possible = carry_scale(possible, select(terminator(s, light.wi), one, below));
-  if (HAS_PARALLAX) possible = carry_scale(possible, relief_visibility(scene, s, light.wi, lanes));
+  if (HAS_PARALLAX) {
+    possible = carry_scale(possible, relief_visibility(scene, s, light.wi, lanes));
+    possible = carry_scale(possible, walls_visibility(scene, rays, s, light.wi, lanes, counts));
+  }
   if (HAS_MEDIA && any_lane(below)) {
     const REAL eta = lobes->split.eta;
     possible = carry_scale(possible, select(one, 1.0f / (eta * eta), below));

@@ -146,38 +146,8 @@ NEVER_INLINE void add_parallax(const Scene* scene, REAL3 d, MASK lanes, SurfaceI
     s->sunk = select(s->sunk, t, mine);
   }
 }
-
-// The part of light from wi that reaches the surfaces of `lanes` past their own heights: 1 or 0.
-NEVER_INLINE REAL relief_visibility(const Scene* scene, const SurfaceInteractions* s, REAL3 wi, MASK lanes) {
-  const REAL zero = (REAL)(0.0f);
-  const MASK deep = lanes & MASK_OF(s->sunk > 0.0f) & MASK_OF(dot3(s->ng, wi) > 0.0f);
-  MASK dark = NO_LANES;
-  if (!any_lane(deep)) return (REAL)(1.0f);
-  TexturePoints at;
-  texture_points(scene, s, deep, &at);
-  u32 index;
-  for (MASK left = deep; any_lane(left);) {
-    const MASK mine = take_alike(s->material, &left, &index);
-    __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
-    REAL3 along;
-    const ReliefWays ways = relief_ways(scene, maps, s, &at, wi, s->sunk, zero, mine, &along);
-    const REAL inverse = 1.0f / TO_REAL(ways.steps);
-    MASK open = mine;
-    for (int k = 1; k < PARALLAX_STEPS && any_lane(open); ++k) {
-      open &= MASK_OF(ways.steps > k);
-      const REAL above = height_above(scene, maps, &at, &ways, inverse * (float)k, open);
-      const MASK held = open & MASK_OF(above > PARALLAX_BIAS);
-      dark |= held;
-      open &= ~held;
-    }
-  }
-  return select((REAL)(1.0f), zero, dark);
-}
 #else
 static inline void add_parallax(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {}
-static inline REAL relief_visibility(const Scene* scene, const SurfaceInteractions* s, REAL3 wi, MASK lanes) {
-  return (REAL)(1.0f);
-}
 #endif
 
 #endif

@@ -44,28 +44,63 @@ static inline MASK meet_in_reliefs(const Scene* scene, const SceneRays* rays, co
   return found;
 }
 
-// Takes the hits of `lanes` on opaque surfaces with reliefs to what rays meet before their heights. `met`
-// receives how far below those surfaces that is.
+// The lanes of `lanes` whose rays see the surfaces that they have met. Those that are part of an interface
+// where solids touch count as unseen: what stands there belongs to neither.
+#if HAS_MEDIA
+static inline MASK see_interfaces(const Scene* scene, const SceneRays* rays, const Hits* hits,
+                                  const Faces* faces, MASK lanes) {
+  const MASK transmit = MASK_OF((faces->flags & (int)INTERFACE) == (int)MATERIAL_TRANSMITS);
+  MASK seen = lanes & ~(transmit & may_touch(scene->instances, hits, lanes & transmit));
+  for (u32 bits = lane_bits(seen & transmit); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    MediaStack crossed = get_media(rays, i);
+    const u32 before = current_medium(scene->media, crossed);
+    cross_boundary(&crossed, (u32)MASK_LANE(faces->medium, i), true);
+    const u32 after = current_medium(scene->media, crossed);
+    const bool clear = (u32)MASK_LANE(faces->flags, i) & MATERIAL_CLEAR;
+    if (after == before || (clear && same_index(scene->media + after, scene->media + before)))
+      MASK_LANE(seen, i) = 0;
+  }
+  return seen;
+}
+#else
+static inline MASK see_interfaces(const Scene* scene, const SceneRays* rays, const Hits* hits,
+                                  const Faces* faces, MASK lanes) {
+  return lanes;
+}
+#endif
+
+// How far rays of the directions d run below surfaces with reliefs as deep as `depth` until they leave them.
+static inline REAL ways_through(const SurfaceInteractions* s, REAL3 d, REAL depth) {
+  return depth / real_max(fabs(dot3(s->ng, d)), (REAL)(PARALLAX_SLANT));
+}
+
+// Takes the hits of `lanes` on surfaces with reliefs to what rays meet before their heights. `met` receives
+// how far below those surfaces that is. In the relief of a transparent surface opaque things alone are met: a
+// ray would not know that it is outside of the surface's solid in one and inside behind it.
 NEVER_INLINE void enter_reliefs(const Scene* scene, const SceneRays* rays, MASK lanes, Encounters* met,
                                 u32* counts) {
   met->below = (REAL)(0.0f);
   met->top = all3((float3)(0.0f));
   lanes &= hit_anything(&met->hit);
   const Faces faces = hit_faces(scene, rays->d, &met->hit, lanes);
-  lanes &= faces.entering & MASK_OF((faces.flags & (int)MATERIAL_TRANSMITS) == 0);
+  lanes &= faces.entering;
   if (!any_lane(lanes)) return;
   SurfaceInteractions s;
   s.material = faces.material;
   lanes = has_parallax(scene, &s, lanes);
+  lanes = see_interfaces(scene, rays, &met->hit, &faces, lanes);
   if (!any_lane(lanes)) return;
   interact(scene, rays->o, rays->d, &met->hit, &faces, lanes, &s);
   set_footprints(rays, met->hit.t, &s);
-  const REAL rise = fabs(dot3(s.ng, rays->d)), slant = real_max(rise, (REAL)(PARALLAX_SLANT));
-  const REAL length = relief_depths(scene, &s, lanes) / slant;
+  const REAL rise = fabs(dot3(s.ng, rays->d));
+  const REAL length = ways_through(&s, rays->d, relief_depths(scene, &s, lanes));
   Hits others = met->hit;
   MASK found =
       meet_in_reliefs(scene, rays, &met->hit, faces.entering, met->hit.t + length, lanes, &others, counts);
   if (!any_lane(found)) return;
+  const Faces things = hit_faces(scene, rays->d, &others, found);
+  found &= MASK_OF(((faces.flags & things.flags) & (int)MATERIAL_TRANSMITS) == 0);
   add_parallax(scene, rays->d, found, &s);
   const REAL passed = others.t - met->hit.t;
   found &= MASK_OF(passed < s.sunk * length);
@@ -79,6 +114,11 @@ static inline void note_depth(const Encounters* met, SurfaceInteractions* s) {
   s->top = met->top;
 }
 
+static inline void take_depth(const Encounters* from, MASK lanes, Encounters* to) {
+  to->below = select(to->below, from->below, lanes);
+  to->top = select3(to->top, from->top, lanes);
+}
+
 // Where a ray in direction wi leaves the relief in which the surface lies, which holds none: `way` receives
 // how far that is.
 static inline REAL3 leave_relief(const SurfaceInteractions* s, REAL3 wi, REAL* way) {
@@ -90,15 +130,35 @@ static inline REAL3 leave_relief(const SurfaceInteractions* s, REAL3 wi, REAL* w
 static inline REAL3 leaving_normal(const SurfaceInteractions* s) {
   return select3(s->ng, s->top, MASK_OF(s->below > 0.0f));
 }
+
+// How far behind the surfaces of `lanes` rays of the directions d have met their heights.
+static inline REAL ways_to_heights(const Scene* scene, const SurfaceInteractions* s, REAL3 d, MASK lanes) {
+  const MASK deep = lanes & MASK_OF(s->sunk > 0.0f);
+  if (!any_lane(deep)) return (REAL)(0.0f);
+  return select((REAL)(0.0f), s->sunk * ways_through(s, d, relief_depths(scene, s, deep)), deep);
+}
+
+// Where rays that have come in the directions d continue behind the surfaces of `lanes`.
+static inline REAL3 points_behind(const Scene* scene, const SurfaceInteractions* s, REAL3 d, MASK lanes) {
+  const REAL3 behind = along3(s->p, -s->offset, s->ng);
+  return along3(behind, ways_to_heights(scene, s, d, lanes), d);
+}
 #else
 static inline void enter_reliefs(const Scene* scene, const SceneRays* rays, MASK lanes, Encounters* met,
                                  u32* counts) {}
 static inline void note_depth(const Encounters* met, SurfaceInteractions* s) {}
+static inline void take_depth(const Encounters* from, MASK lanes, Encounters* to) {}
 static inline REAL3 leave_relief(const SurfaceInteractions* s, REAL3 wi, REAL* way) {
   *way = (REAL)(0.0f);
   return s->p;
 }
 static inline REAL3 leaving_normal(const SurfaceInteractions* s) { return s->ng; }
+static inline REAL ways_to_heights(const Scene* scene, const SurfaceInteractions* s, REAL3 d, MASK lanes) {
+  return (REAL)(0.0f);
+}
+static inline REAL3 points_behind(const Scene* scene, const SurfaceInteractions* s, REAL3 d, MASK lanes) {
+  return along3(s->p, -s->offset, s->ng);
+}
 #endif
 
 // Takes the lanes of `active` to what they meet next, in reliefs too, as next_interfaces().
@@ -107,6 +167,20 @@ static inline MASK meet_interfaces(const Scene* scene, SceneRays* rays, MASK act
   nearest_hits(scene, rays, active, coherent, &met->hit, counts);
   enter_reliefs(scene, rays, active, met, counts);
   return reach_interfaces(scene, rays, active, met, counts);
+}
+
+// The same to their next visible surfaces, as next_surfaces().
+static inline void see_surfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
+                                Encounters* met, u32* counts) {
+  MASK waiting = meet_interfaces(scene, rays, active, coherent, met, counts);
+  while (HAS_MEDIA && any_lane(waiting)) {
+    Encounters next;
+    nearest_hits(scene, rays, waiting, false, &next.hit, counts);
+    enter_reliefs(scene, rays, waiting, &next, counts);
+    take_depth(&next, waiting, met);
+    met->hit = select_hits(&met->hit, &next.hit, waiting);
+    waiting = cross_unseen(scene, rays, met, waiting, counts);
+  }
 }
 
 #endif

@@ -103,7 +103,7 @@ static inline void spawn_children(const Scene* scene, const TileSamples* tile, c
   if (!any_lane(split.transmits)) return;
   spread_transmitted(curvature, &split, rays, &child);
   child.d = transmitted_by(&facets, &split, wo);
-  child.o = along3(s->p, -s->offset, s->ng);
+  child.o = points_behind(scene, s, rays->d, split.transmits);
   state.throughput = multiply3(paths->throughput, split.kt);
   weigh_by_facets(&facets, surface, child.d, -1.0f, split.kt, 1.0f - split.f, NO_LANES, &state.throughput);
   start_branch(paths, 1u, &state);

@@ -38,6 +38,8 @@ struct Shaded {
 inline const char* const kernel_text = R"(
 #if PART == 1
 #include "lib/shade/relief.cl"
+#elif PART == 3
+#include "lib/light/relief_shadow.cl"
 #else
 #include "lib/shade/parallax.cl"
 #endif

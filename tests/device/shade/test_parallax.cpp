@@ -223,3 +223,158 @@ TEST_CASE("an interrupted frame with an image and a relief is resumed to the sam
     CHECK_THROWS_AS(scenes::render_on(device, other, options), UsageError);
   }
 }
+
+namespace {
+
+/// Pixels that differ by more than 0.01 in some channel.
+int differing(const Image& a, const Image& b) {
+  int count = 0;
+  for (std::size_t i = 0; i < a.data.size(); i += 4) {
+    double most = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      most = std::max(most, std::abs(double(a.data[i + c]) - double(b.data[i + c])));
+    count += most > 0.01;
+  }
+  return count;
+}
+
+/// The plane with heights that rise along u, from 0 at u = 1/104 to 1 at u = 103/104, seen from above at a
+/// slant.
+SceneDescription seen_slope() {
+  std::vector<std::uint8_t> texels;
+  for (int height = 0; height < 256; height += 5) texels.push_back(static_cast<std::uint8_t>(height));
+  SceneDescription scene = deep_plane(texels, TextureFilter::bilinear);
+  scene.materials[0].bump = depth;
+  scene.camera.position = {0.5, 1, 0.6};
+  scene.camera.target = {0.5, -0.1, -0.5};
+  scene.camera.up = {0, 1, 0};
+  scene.camera.fov = 12;
+  scene.image.width = scene.image.height = 16;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("AOVs of a relief are those of the point that is seen in it") {
+  const SceneDescription scene = seen_slope();
+  RenderOptions options;
+  options.aovs = {"depth", "normal", "position", "uv"};
+  on_picture_devices([&](const DeviceInfo& info) {
+    const RenderResult result = scenes::render_on(info, scene, options);
+    const dvec3 eye = scene.camera.position, forward = glm::normalize(scene.camera.target - eye);
+    const dvec3 slope = glm::normalize(dvec3(-depth * 52 / 51, 1, 0));
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 16; ++x) {
+        const float* p = result.aovs.at("position").pixel(x, y);
+        const float *n = result.aovs.at("normal").pixel(x, y), *uv = result.aovs.at("uv").pixel(x, y);
+        const dvec3 at{double(p[0]), double(p[1]), double(p[2])};
+        INFO(x << " " << y << " " << at.x << " " << at.y << " " << at.z);
+        CHECK(at.y == Approx(depth * ((52 * at.x - 0.5) / 51 - 1)).margin(1e-3));
+        CHECK(double(uv[0]) == Approx(at.x).margin(1e-4));
+        CHECK(double(uv[1]) == Approx(-at.z).margin(1e-4));
+        CHECK(double(result.aovs.at("depth").pixel(x, y)[0]) ==
+              Approx(glm::dot(at - eye, forward)).margin(1e-5));
+        CHECK(glm::dot(slope, dvec3(double(n[0]), double(n[1]), double(n[2]))) > 0.9999);
+      }
+  });
+}
+
+TEST_CASE("AOVs show what stands in a relief") {
+  constexpr double sunk = 0.6 * depth;
+  RenderOptions options;
+  options.aovs = {"depth", "object", "position"};
+  on_picture_devices([&](const DeviceInfo& info) {
+    const RenderResult relief = scenes::render_on(info, floor_with_things(true, sunk), options);
+    const RenderResult sunken = scenes::render_on(info, floor_with_things(false, sunk), options);
+    int differ = 0;
+    for (int y = 0; y < 48; ++y)
+      for (int x = 0; x < 48; ++x)
+        differ +=
+            relief.aovs.at("object").pixel(x, y)[0] != sunken.aovs.at("object").pixel(x, y)[0] ||
+            std::abs(relief.aovs.at("depth").pixel(x, y)[0] - sunken.aovs.at("depth").pixel(x, y)[0]) > 2e-3f;
+    CHECK(differ <= 4);
+  });
+}
+
+TEST_CASE("a relief's walls throw their shadows on what stands among them") {
+  // A flat thing half as deep as the wall's foot, lit from behind the wall at 45 degrees.
+  SceneDescription scene = wall_plane();
+  scene.camera.position = {0.75, 4, -0.5};
+  scene.camera.target = {0.75, 0, -0.5};
+  scene.camera.up = {0, 0, -1};
+  scene.camera.fov = 1.5;
+  scene.image.width = 32, scene.image.height = 4;
+  scene.materials[0].diffuse = dvec3(0);
+  scenes::place(scene, BoxShape{dvec3(0.5, 0.01, 0.5)}, scenes::add_white(scene),
+                glm::translate(dmat4(1), dvec3(1.05, -0.11, -0.5)));
+  LightDescription sun;
+  sun.type = LightType::directional;
+  sun.direction = {1, -1, 0};
+  scene.lights = {sun};
+  RenderOptions options;
+  options.aovs = {"position"};
+  on_picture_devices([&](const DeviceInfo& info) {
+    for (const char* integrator : {"whitted", "path"}) {
+      INFO(integrator);
+      scene.render.integrator = integrator;
+      scene.render.max_depth = 1;
+      const RenderResult result = scenes::render_on(info, scene, options);
+      int dark = 0, light = 0;
+      for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 32; ++x) {
+          const float* p = result.aovs.at("position").pixel(x, y);
+          if (std::abs(p[1] + 0.1f) > 1e-3f) continue;  // on top of the thing
+          if (std::abs(p[0] - 0.6f) < 0.012f) continue;
+          const bool lit = result.image.pixel(x, y)[0] > 0.01f;
+          INFO(p[0]);
+          CHECK(lit == (p[0] > 0.6f));  // 0.1 below the wall's top, which ends at 0.5
+          (lit ? light : dark) += 1;
+        }
+      CHECK(dark >= 4);
+      CHECK(light >= 40);
+    }
+  });
+}
+
+namespace {
+
+/// Glass over a pattern of light: its upper face lies `sunk` deep, as a relief or itself.
+SceneDescription glass_with_things(bool relief, double sunk) {
+  SceneDescription scene = floor_with_things(relief, sunk);
+  scene.media.push_back({"glass", 1.5, dvec3(0.5, 0.1, 0)});
+  MaterialDescription& glass = scene.materials[0];
+  glass.emission = glass.diffuse = dvec3(0);
+  glass.type = MaterialType::dielectric;
+  glass.transmission = dvec3(1);  // light that is mirrored leaves where the plain surface is
+  glass.medium = static_cast<int>(scene.media.size()) - 1;
+  // The block's upper face is y = 0, or lower; its lower one is y = -1.
+  const double top = relief ? 0 : -sunk;
+  scene.objects[0].shape = BoxShape{dvec3(3, (top + 1) / 2, 3)};
+  scene.objects[0].world_from_object = glm::translate(dmat4(1), dvec3(0, (top - 1) / 2, 0));
+  scenes::place(scene, BoxShape{dvec3(0.5, 0.1, 0.5)}, scenes::add_white(scene),
+                glm::translate(dmat4(1), dvec3(0.2, -1.3, -0.6)));
+  scene.materials.back().emission = {0.2, 0.2, 0.9};
+  for (MaterialDescription& material : scene.materials) material.diffuse = dvec3(0);
+  scene.lights = {};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a transparent relief bends light at its heights, and things stand in it") {
+  constexpr double sunk = 0.6 * depth;
+  on_picture_devices([&](const DeviceInfo& info) {
+    for (const char* integrator : {"whitted", "path"}) {
+      INFO(integrator);
+      Image images[3];
+      for (int i = 0; i < 3; ++i) {
+        SceneDescription scene = glass_with_things(i == 0, i == 2 ? 0 : sunk);
+        scene.render.integrator = integrator;
+        scene.render.max_depth = 4;
+        images[i] = scenes::render_on(info, scene).image;
+      }
+      CHECK(differing(images[1], images[2]) > 60);
+      CHECK(differing(images[0], images[1]) <= 8);
+    }
+  });
+}

@@ -148,8 +148,10 @@ TEST_CASE("a texel of each level is the mean light of all pixels below it") {
     StoredImage image;
     image.width = width, image.height = height;
     for (int i = 0; i < width * height; ++i)
-      for (const int factor : {7, 31, 97}) image.data.push_back(static_cast<std::uint8_t>(factor * i * i + i));
-    for (std::size_t i = 3; i <= image.data.size(); i += 4) image.data.insert(image.data.begin() + static_cast<std::ptrdiff_t>(i), 255);
+      for (const int factor : {7, 31, 97})
+        image.data.push_back(static_cast<std::uint8_t>(factor * i * i + i));
+    for (std::size_t i = 3; i <= image.data.size(); i += 4)
+      image.data.insert(image.data.begin() + static_cast<std::ptrdiff_t>(i), 255);
     const auto light = [](const StoredImage& from, int x, int y, std::size_t channel) {
       const auto at = static_cast<std::size_t>(y * from.width + x) * 4 + channel;
       return double(linear_from_srgb(float(from.data[at]) / 255));
