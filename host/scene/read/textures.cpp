@@ -308,6 +308,7 @@ int TextureLibrary::use_image(const Entry& entry, bool srgb) {
     ImageDescription image;
     image.name = fs::path(entry.file).filename().string();
     image.file = entry.file;
+    image.place = fmt::format("named in {}, {}", scene_.file.filename().string(), entry.place);
     image.encoded = read_input(entry.file, most_image_bytes);
     image.srgb = srgb;
     scene_.images.push_back(std::move(image));

@@ -1,5 +1,6 @@
 // Files that a scene or a model names stay in its folder, unless that is allowed.
 #include <base/error.h>
+#include <scene/inside.h>
 #include <scene/load.h>
 
 #include <nlohmann/json.hpp>
@@ -123,4 +124,11 @@ TEST_CASE("a file that the user names may be a link, and one in the current fold
   folder.write("in/a.json", scene_with("../out/s.obj"));
   CHECK_THAT(error_of("a.json", false), ContainsSubstring("leads out of the scene's folder"));
   fs::current_path(before);
+}
+
+TEST_CASE("a file that is not there leads out of no folder, by a relative path too") {
+  CHECK_FALSE(leads_outside("scene.json", "no such picture.png"));
+  CHECK_FALSE(leads_outside("./scene.json", "./no such folder/picture.png"));
+  CHECK(leads_outside("scene.json", "../no such picture.png"));
+  CHECK(leads_outside("scene.json", "folder/../../no such picture.png"));
 }
