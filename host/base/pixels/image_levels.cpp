@@ -219,12 +219,13 @@ class LevelMaker {
     LinearLevel last{std::max(1, width_ >> steps), std::max(1, height_ >> steps), channels, {}};
     const std::size_t row = static_cast<std::size_t>(last.width) * channels;
     last.data.resize(static_cast<std::size_t>(last.height) * row);
-    tbb::parallel_for(tbb::blocked_range<int>(0, last.height, std::max(1, 16 >> steps)),
-                      [&](const auto& rows) {
-                        Scratch scratch = make_scratch(steps);
-                        for (int y = rows.begin(); y != rows.end(); ++y)
-                          make_row(steps, y, last.data.data() + static_cast<std::size_t>(y) * row, scratch);
-                      });
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, last.height, static_cast<std::size_t>(std::max(1, 16 >> steps))),
+        [&](const auto& rows) {
+          Scratch scratch = make_scratch(steps);
+          for (int y = rows.begin(); y != rows.end(); ++y)
+            make_row(steps, y, last.data.data() + static_cast<std::size_t>(y) * row, scratch);
+        });
     made += static_cast<std::size_t>(steps);
     return last;
   }
