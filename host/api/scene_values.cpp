@@ -40,7 +40,7 @@ json light_json(const Light& light) {
   if (facts == sundog::light_types.end()) return value;  // the reader of scenes lists the types
   if (facts->placed) value["position"] = light.position;
   if (facts->aimed) value["direction"] = light.direction;
-  if (facts->extent) value["samples"] = light.samples;
+  if (facts->has_extent()) value["samples"] = light.samples;
   if (light.type == "spot") value["outer_angle"] = light.angle;
   if (light.type == "rectangle") value["size"] = light.size;
   if (light.type == "disk" || light.type == "sphere") value["radius"] = light.radius;

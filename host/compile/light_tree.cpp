@@ -21,7 +21,7 @@ struct Lamp {
 
 bool has_extent(const Light& light) {
   if (light.kind == LIGHT_TRIANGLE) return light.direction.w > 0 && light.color != float4{};
-  return light.kind < LIGHT_KINDS && facts_of_kind(light.kind).extent;
+  return light.kind < LIGHT_KINDS && facts_of_kind(light.kind).has_extent();
 }
 
 Lamp lamp_of(const Light& light, u32 index) {

@@ -156,7 +156,7 @@ u32 add_materials(const SceneDescription& scene, CompiledScene& out) {
 void add_light(const SceneDescription& scene, const LightDescription& light, const std::string& place,
                CompiledScene& out) {
   const Light packed = pack_light({scene, light, place}, out.origin);
-  const bool extent = facts_of(light.type).extent || packed.kind == LIGHT_SUN;
+  const bool extent = facts_of(light.type).has_extent() || packed.kind == LIGHT_SUN;
   const auto index = static_cast<u32>(out.lights.size()), rays = extent ? static_cast<u32>(light.samples) : 1;
   for (u32 ray = 0; ray < rays; ++ray) out.light_rays.push_back({index, ray, rays, 0});
   out.lights.push_back(packed);

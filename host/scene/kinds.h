@@ -36,18 +36,28 @@ inline constexpr std::array filters = {FilterFacts{"box", Filter::box, 0.5},
                                        FilterFacts{"mitchell", Filter::mitchell, 2}};
 inline constexpr auto filter_names = names_of(filters);
 
+/// How far a light reaches in space.
+enum class LightExtent {
+  none,     // one point or direction
+  sampled,  // places on it are chosen; rays do not meet it
+  met       // sampled, and rays meet it unless the scene says `"visible": false`
+};
+
 struct LightTypeFacts {
   std::string_view name;  // in scene files and figures
   LightType value;
   bool placed = false;  // it has a position
   bool aimed = false;   // it has a direction
-  bool extent = false;  // it has an extent, and no falloff
+  LightExtent extent = LightExtent::none;
+
+  constexpr bool has_extent() const { return extent != LightExtent::none; }
+  constexpr bool can_be_met() const { return extent == LightExtent::met; }
 };
 
 /// By LightType.
 inline constexpr std::array light_types = {LightTypeFacts{.name = "ambient", .value = LightType::ambient},
 #define SUNDOG_LIGHT_FACTS(constant, name, placed, aimed, extent) \
-  LightTypeFacts{#name, LightType::name, placed, aimed, extent},
+  LightTypeFacts{#name, LightType::name, placed, aimed, LightExtent::extent},
                                            LIGHTS(SUNDOG_LIGHT_FACTS)
 #undef SUNDOG_LIGHT_FACTS
 };

@@ -58,6 +58,8 @@ void read_spot(JsonObject& object, LightDescription& light) {
 
 // The things that rays meet.
 
+bool is_met(const LightDescription& light) { return facts_of(light.type).can_be_met() && light.visible; }
+
 /// The rotation and place of something whose axis is +y and whose middle is its origin.
 dmat4 placed_along(const LampAxes& axes, const dvec3& middle) {
   return {glm::dvec4(glm::normalize(axes.u), 0), glm::dvec4(axes.normal, 0),
@@ -74,12 +76,22 @@ Mesh rectangle_mesh(const dvec2& size) {
 }
 
 Shape lamp_shape(const LightDescription& light, SceneDescription& scene) {
-  if (light.type == LightType::sphere) return SphereShape{light.radius};
-  if (light.type == LightType::disk) return DiskShape{light.radius, 0};
-  if (light.type != LightType::rectangle) throw std::logic_error("a light without a shape that rays meet");
-  scene.meshes.push_back(rectangle_mesh(light.size));
-  scene.meshes.back().name = "lamp";
-  return MeshShape{static_cast<int>(scene.meshes.size()) - 1};
+  switch (light.type) {
+    case LightType::sphere:
+      return SphereShape{light.radius};
+    case LightType::disk:
+      return DiskShape{light.radius, 0};
+    case LightType::rectangle:
+      scene.meshes.push_back(rectangle_mesh(light.size));
+      scene.meshes.back().name = "lamp";
+      return MeshShape{static_cast<int>(scene.meshes.size()) - 1};
+    case LightType::ambient:
+    case LightType::directional:
+    case LightType::point:
+    case LightType::spot:
+      break;
+  }
+  throw std::logic_error("a light without a shape that rays meet");
 }
 
 // Their rows.
@@ -128,7 +140,7 @@ void pack_sun(const LightDescription& light, Light& packed) {
 /// that.
 constexpr bool extents_come_last() {
   for (u32 kind = 0; kind < LIGHT_KINDS; ++kind)
-    if (facts_of_kind(kind).extent != (kind >= LIGHT_RECTANGLE)) return false;
+    if (facts_of_kind(kind).has_extent() != (kind >= LIGHT_RECTANGLE)) return false;
   return true;
 }
 static_assert(extents_come_last());
@@ -151,13 +163,15 @@ LampAxes lamp_axes(const LightDescription& light) {
   return axes;
 }
 
-void read_light_sampling(JsonObject& object, int& samples, bool& visible) {
+void read_light_sampling(JsonObject& object, int& samples) {
   samples = object.integer("samples", samples, 1, 1024);
-  visible = object.boolean("visible", visible);
 }
 
+void read_light_visible(JsonObject& object, bool& visible) { visible = object.boolean("visible", visible); }
+
 void read_light_kind(JsonObject& object, LightDescription& light) {
-  if (facts_of(light.type).extent) read_light_sampling(object, light.samples, light.visible);
+  if (facts_of(light.type).has_extent()) read_light_sampling(object, light.samples);
+  if (facts_of(light.type).can_be_met()) read_light_visible(object, light.visible);
   switch (light.type) {
     case LightType::ambient:
     case LightType::point:
@@ -165,7 +179,8 @@ void read_light_kind(JsonObject& object, LightDescription& light) {
     case LightType::directional:
       light.direction = object.at("direction", "the way the light travels [x, y, z]").direction();
       light.angle = object.number("angle", light.angle, {.low = 0, .high = 90});
-      read_light_sampling(object, light.samples, light.visible);
+      read_light_sampling(object, light.samples);
+      read_light_visible(object, light.visible);
       break;
     case LightType::spot:
       read_aim(object, light);
@@ -222,23 +237,25 @@ Light pack_light(const NamedLight& named, const dvec3& origin) {
       packed.edge_u.w = static_cast<float>(light.radius);
       break;
   }
-  packed.position.w = facts_of(light.type).extent && !light.visible ? 1.0f : 0.0f;
+  packed.position.w = facts_of(light.type).has_extent() && !is_met(light) ? 1.0f : 0.0f;
   return packed;
 }
 
 LampBounds lamp_bounds(const Light& light) {
   const glm::vec3 p = xyz(light.position), u = xyz(light.edge_u), v = xyz(light.edge_v), none(0);
   const float luminance = 0.2126f * light.color.x + 0.7152f * light.color.y + 0.0722f * light.color.z;
-  const float radius = light.edge_u.w, flat = luminance * light.direction.w;
+  const float radius = light.edge_u.w, area = light.direction.w, power = luminance * area;
   switch (static_cast<LightKind>(light.kind)) {
     case LIGHT_SPHERE:
-      return {p - radius, p + radius, luminance * 4 * std::numbers::pi_v<float> * radius * radius};
+      return {p - radius, p + radius, 4 * std::numbers::pi * double(radius) * double(radius),
+              luminance * 4 * std::numbers::pi_v<float> * radius * radius};
     case LIGHT_TRIANGLE:
-      return {p + glm::min(none, glm::min(u, v)), p + glm::max(none, glm::max(u, v)), flat};
+      return {p + glm::min(none, glm::min(u, v)), p + glm::max(none, glm::max(u, v)), area, power};
     case LIGHT_DISK:
-      return {p - glm::abs(u) - glm::abs(v), p + glm::abs(u) + glm::abs(v), flat};
+      return {p - glm::abs(u) - glm::abs(v), p + glm::abs(u) + glm::abs(v), area, power};
     case LIGHT_RECTANGLE:
-      return {p + glm::min(u, none) + glm::min(v, none), p + glm::max(u, none) + glm::max(v, none), flat};
+      return {p + glm::min(u, none) + glm::min(v, none), p + glm::max(u, none) + glm::max(v, none), area,
+              power};
     case LIGHT_DIRECTIONAL:
     case LIGHT_POINT:
     case LIGHT_SPOT:
@@ -252,7 +269,7 @@ LampBounds lamp_bounds(const Light& light) {
 void add_lamps(SceneDescription& scene) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const LightDescription& light = scene.lights[i];
-    if (!facts_of(light.type).extent || !light.visible) continue;
+    if (!is_met(light)) continue;
     MaterialDescription material;
     material.name = "lamp";
     material.ambient = material.diffuse = dvec3(0);

@@ -13,8 +13,11 @@ class JsonObject;
 /// The keys of a light beside its type, color, intensity and position.
 void read_light_kind(JsonObject& object, LightDescription& light);
 
-/// Those of light that comes from many directions: shadow rays to it, and whether rays meet it.
-void read_light_sampling(JsonObject& object, int& samples, bool& visible);
+/// The shadow rays to light that comes from many directions.
+void read_light_sampling(JsonObject& object, int& samples);
+
+/// Whether rays meet it.
+void read_light_visible(JsonObject& object, bool& visible);
 
 /// A light and its place in the scene file, for messages.
 struct NamedLight {
@@ -33,9 +36,10 @@ LampAxes lamp_axes(const LightDescription& light);
 /// The light's row, whose position counts from `origin`. Throws SceneError for a direction of length zero.
 Light pack_light(const NamedLight& named, const dvec3& origin);
 
-/// The box around a light with an extent, and its luminance times the area that shines.
+/// The box around a light with an extent, the area that shines, and its luminance times that area.
 struct LampBounds {
   glm::vec3 lower, upper;
+  double area;
   float power;
 };
 LampBounds lamp_bounds(const Light& light);

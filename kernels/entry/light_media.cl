@@ -1,4 +1,5 @@
 // One stage: which media the lights are inside of, before photons leave them.
+#include "lib/light/area_light.cl"
 #include "lib/path/media_around.cl"
 
 // A work-item a light. Writes the MediaStack at the middle of each light to light_media, low word first, that
@@ -9,10 +10,7 @@ __kernel void find_light_media(SCENE_PARAMETERS, __global u32* restrict light_me
   if (index >= scene.info->table_lights) return;
   __global const Light* light = scene.lights + index;
   MediaStack around = 0;
-  if (light->kind != LIGHT_DIRECTIONAL && light->kind != LIGHT_SUN && light->kind != LIGHT_ENVIRONMENT) {
-    const float part = light->kind == LIGHT_RECTANGLE ? 0.5f : light->kind == LIGHT_TRIANGLE ? 0.3f : 0.0f;
-    around = media_around(&scene, light->position.xyz + part * (light->edge_u.xyz + light->edge_v.xyz));
-  }
+  if (has_place(light)) around = media_around(&scene, middle_of_light(light).xyz);
   light_media[2u * index] = (u32)around;
   light_media[2u * index + 1u] = (u32)(around >> 32);
 }

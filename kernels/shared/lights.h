@@ -1,20 +1,21 @@
 // The lights that have a place or a direction, in one list: from it come LIGHT_*, the description's
 // LightType, and the names in scene files and figures. Ambient lights are no part of it: they are summed into
 // SceneInfo.ambient.
-//   LIGHT(constant after LIGHT_, name, 1 = it has a position, 1 = it has a direction, 1 = it has an extent;
-//         those without one have a falloff where they have a position)
+//   LIGHT(constant after LIGHT_, name, 1 = it has a position, 1 = it has a direction, LightExtent)
+// LightExtent (host/scene/kinds.h): `none`: light from one point or direction, with a falloff where it has a
+// position; `sampled`: places on it are chosen, rays do not meet it; `met`: sampled, and rays meet it too.
 #ifndef SUNDOG_SHARED_LIGHTS_H
 #define SUNDOG_SHARED_LIGHTS_H
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
-#define LIGHTS(LIGHT)                      \
-  LIGHT(DIRECTIONAL, directional, 0, 1, 0) \
-  LIGHT(POINT, point, 1, 0, 0)             \
-  LIGHT(SPOT, spot, 1, 1, 0)               \
-  LIGHT(RECTANGLE, rectangle, 1, 1, 1)     \
-  LIGHT(DISK, disk, 1, 1, 1)               \
-  LIGHT(SPHERE, sphere, 1, 0, 1)
+#define LIGHTS(LIGHT)                         \
+  LIGHT(DIRECTIONAL, directional, 0, 1, none) \
+  LIGHT(POINT, point, 1, 0, none)             \
+  LIGHT(SPOT, spot, 1, 1, none)               \
+  LIGHT(RECTANGLE, rectangle, 1, 1, met)      \
+  LIGHT(DISK, disk, 1, 1, met)                \
+  LIGHT(SPHERE, sphere, 1, 0, met)
 
 // What scene files say about them: the members of the host's LightDescription, with their defaults.
 //   KEY(type, name, default)
@@ -32,7 +33,7 @@ SUNDOG_SHARED_BEGIN
   KEY(double, angle, {0})    /* directional: degrees across that it takes up          \
                                 in the sky, [0, 90]; above 0 an extent */             \
   KEY(int, samples, {1})     /* an extent: shadow rays that a surface sends to it */  \
-  KEY(bool, visible, {true}) /* an extent: rays meet it (scene/lamps.h places what they meet) */
+  KEY(bool, visible, {true}) /* `met`: rays meet it (scene/lamps.h places what they meet) */
 
 #define LIGHT_CONSTANT(constant, name, placed, aimed, extent) LIGHT_##constant,
 typedef enum LightKind SUNDOG_ENUM_OF_U32 {

@@ -14,8 +14,14 @@ std::vector<sundog::Shape> every_bounded_solid();
 /// `shapes`, and of each bounded solid that is not among them one.
 std::vector<sundog::Shape> with_every_solid(std::vector<sundog::Shape> shapes);
 
+/// Each bounded solid, most in several sizes about 1.
+std::vector<sundog::Shape> solids_of_many_sizes();
+
 /// The name in scene files.
 std::string name_of(const sundog::Shape& shape);
 
 /// Each type of light, at (1, 3, 2) and aimed down where it has a place or an aim.
 std::vector<sundog::LightDescription> every_light();
+
+/// Those of them that have an extent.
+std::vector<sundog::LightDescription> every_area_light();

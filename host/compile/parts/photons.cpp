@@ -9,6 +9,7 @@
 #include "compile/instance_bounds.h"
 #include "compile/instances.h"
 #include "scene/integrators.h"
+#include "scene/lamps.h"
 
 namespace sundog {
 namespace {
@@ -102,9 +103,7 @@ double light_to_ball(const Light& light, const float4& ball, double environment)
     return pi * bright * across /
            (double(light.falloff_constant) + double(light.falloff_linear) * d +
             double(light.falloff_quadratic) * d * d);
-  const double area = light.kind == LIGHT_SPHERE ? 4 * pi * double(light.edge_u.w) * double(light.edge_u.w)
-                                                 : double(light.direction.w);
-  return bright * area * across / (d * d);
+  return bright * lamp_bounds(light).area * across / (d * d);
 }
 
 /// For each light the running sum of the lights' shares; empty where none shines.

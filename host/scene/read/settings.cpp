@@ -52,7 +52,7 @@ dvec3 read_falloff(JsonObject& object) {
 
 void read_placed_light(JsonObject& object, LightDescription& light) {
   light.position = object.at("position", "a point [x, y, z]").vec3();
-  if (facts_of(light.type).extent) return;
+  if (facts_of(light.type).has_extent()) return;
   if (const auto falloff = object.find("falloff")) light.falloff = falloff->object("falloff", read_falloff);
 }
 
@@ -271,7 +271,8 @@ EnvironmentDescription read_environment(const JsonValue& value,
     e.intensity = object.number("intensity", e.intensity, at_least_0);
     if (const auto up = object.find("up")) e.up = up->direction();
     e.rotate = object.number("rotate", e.rotate, {.low = -1e6, .high = 1e6});
-    read_light_sampling(object, e.samples, e.visible);
+    read_light_sampling(object, e.samples);
+    read_light_visible(object, e.visible);
     if (type == EnvironmentType::image) {
       e.picture = read_picture(object.at("file", "the path of an image"));
     } else if (type == EnvironmentType::gradient) {

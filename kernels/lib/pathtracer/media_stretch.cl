@@ -5,6 +5,7 @@
 #define SUNDOG_LIB_MEDIA_STRETCH_CL
 #include "lib/core/directions.cl"
 #include "lib/core/tables.h"
+#include "lib/light/area_light.cl"
 #include "lib/pathtracer/carried.cl"
 
 #if HAS_SCATTERING
@@ -109,20 +110,6 @@ typedef struct SeenStretch {
   REAL nearest, height, begin, angle;
   REAL part;  // of the distances that are chosen evenly in the angle
 } SeenStretch;
-
-static inline bool is_near_light(__global const Light* light) {
-  return light->kind != LIGHT_DIRECTIONAL && light->kind != LIGHT_SUN && light->kind != LIGHT_ENVIRONMENT;
-}
-
-// The middle of a light; w: the square of its size, below which distances to it say nothing.
-static inline float4 middle_of_light(__global const Light* light) {
-  const float3 corner = light->position.xyz, edges = light->edge_u.xyz + light->edge_v.xyz;
-  if (light->kind == LIGHT_RECTANGLE) return (float4)(corner + 0.5f * edges, 0.1f * light->direction.w);
-  if (light->kind == LIGHT_TRIANGLE)
-    return (float4)(corner + edges * (1.0f / 3.0f), 0.1f * light->direction.w);
-  if (light->kind == LIGHT_DISK) return (float4)(corner, 0.1f * light->direction.w);
-  return (float4)(corner, light->kind == LIGHT_SPHERE ? light->edge_u.w * light->edge_u.w : 0.0f);
-}
 
 static inline SeenStretch see_stretch(REAL3 o, REAL3 d, REAL length, REAL decay, float4 light) {
   SeenStretch s;

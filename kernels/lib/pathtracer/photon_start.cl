@@ -5,6 +5,7 @@
 #define SUNDOG_LIB_PHOTON_START_CL
 #include "lib/core/directions.cl"
 #include "lib/core/sampler_lanes.cl"
+#include "lib/light/area_light.cl"
 #include "lib/light/environment.cl"
 #include "lib/pathtracer/photon_cells.cl"
 
@@ -126,20 +127,6 @@ static inline void start_from_afar(const Scene* scene, u32 targets, float4 ball,
                                    const PhotonNumbers* u, PhotonStart* start) {
   start->o = place_across(scene, ball, start->d, u->a, u->b);
   start->flux = sent / density_across(scene, targets, start->o, start->d);
-}
-
-// A place on a light with an extent, the normal there, and the light's area.
-static inline float3 place_on_light(__global const Light* light, float c, float e, float3* n, float* area) {
-  *n = light->direction.xyz;
-  *area = light->direction.w;
-  const float3 corner = light->position.xyz, x = light->edge_u.xyz, y = light->edge_v.xyz;
-  if (light->kind == LIGHT_RECTANGLE) return corner + c * x + e * y;
-  if (light->kind == LIGHT_DISK) return corner + sqrt(c) * (cospi(2.0f * e) * x + sinpi(2.0f * e) * y);
-  if (light->kind == LIGHT_TRIANGLE) return corner + (1.0f - sqrt(c)) * x + e * sqrt(c) * y;
-  const float up = 1.0f - 2.0f * c, side = sqrt(fmax(1.0f - up * up, 0.0f));
-  *n = (float3)(side * cospi(2.0f * e), side * sinpi(2.0f * e), up);
-  *area = 4.0f * M_PI_F * light->edge_u.w * light->edge_u.w;
-  return corner + light->edge_u.w * *n;
 }
 
 static inline void start_on_light(const Scene* scene, u32 targets, float4 ball, __global const Light* light,

@@ -110,7 +110,7 @@ static inline REAL distance_for_light(const Scene* scene, const Stretches* s, MA
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(chosen, &left, &index);
     __global const Light* lamp = scene->lights + index;
-    if (!is_near_light(lamp)) continue;
+    if (!has_place(lamp)) continue;
     const SeenStretch seen = see_stretch(s->o, s->d, s->length, s->mean, middle_of_light(lamp));
     at = select(at, distance_by_angle(&seen, s->length, u), mine & MASK_OF(u_way < seen.part));
     const REAL chance = next_density(s->decay, s->drawn, s->length, at);
