@@ -1,6 +1,9 @@
 #include "scenes.h"
 
+#include <algorithm>
+
 #include "catch.h"
+#include "scene/load.h"
 
 namespace scenes {
 
@@ -18,6 +21,15 @@ SceneDescription line_of_sight(glm::dvec3 position, glm::dvec3 target, glm::dvec
   LightDescription ambient;
   ambient.type = LightType::ambient;
   scene.lights.push_back(ambient);
+  return scene;
+}
+
+SceneDescription shipped_small(const std::string& name) {
+  SceneDescription scene = load_scene(SUNDOG_SOURCE_DIR "/scenes/" + name + ".json");
+  scene.image.width = 37;
+  scene.image.height = 26;
+  scene.render.samples = std::min(scene.render.samples, 3);
+  scene.render.max_depth = std::min(scene.render.max_depth, 5);
   return scene;
 }
 

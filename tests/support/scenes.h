@@ -13,6 +13,9 @@ namespace scenes {
 /// that the pixel's ray is the line from position to target.
 sundog::SceneDescription line_of_sight(glm::dvec3 position, glm::dvec3 target, glm::dvec3 up = {0, 1, 0});
 
+/// The scene of that name among scenes/, small: 37x26 pixels, at most 3 samples and a depth of 5.
+sundog::SceneDescription shipped_small(const std::string& name);
+
 /// Shines with `color` by itself (the scene has one ambient light of 1), reflects and transmits nothing.
 int add_glow(sundog::SceneDescription& scene, glm::dvec3 color);
 

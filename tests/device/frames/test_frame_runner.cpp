@@ -8,27 +8,13 @@
 #include "catch.h"
 #include "devices.h"
 #include "same_bits.h"
-#include "scene/load.h"
 #include "scenes.h"
 
 using namespace sundog;
 
-namespace {
-
-SceneDescription small_spheres() {
-  SceneDescription scene = load_scene(std::string(SUNDOG_SOURCE_DIR) + "/scenes/spheres.json");
-  scene.image.width = 37;
-  scene.image.height = 26;
-  scene.render.samples = 3;
-  scene.render.max_depth = 5;
-  return scene;
-}
-
-}  // namespace
-
 TEST_CASE("a bench's frames have the bits and the counts of a render, in the groups that it asks for") {
   const DeviceInfo& device = test_devices().front();
-  const CompiledScene scene = compile(small_spheres());
+  const CompiledScene scene = compile(scenes::shipped_small("spheres"));
   const RenderResult rendered = render(scene, {device});
   FrameRunner frames(device, scene);
   CHECK(frames.greatest_group() > 0);
@@ -49,7 +35,7 @@ TEST_CASE("a bench's frames have the bits and the counts of a render, in the gro
 
 TEST_CASE("a frame in which a launch failed has no time, and the next one has the same bits again") {
   DeviceInfo device = test_devices().front();
-  const CompiledScene scene = compile(small_spheres());
+  const CompiledScene scene = compile(scenes::shipped_small("spheres"));
   const RenderResult rendered = render(scene, {device});
   HostEnvironment environment = value_of(device.environment);
   environment.faults = std::make_shared<Faults>("launch=-36@" + std::to_string(device.platform) + ":" +

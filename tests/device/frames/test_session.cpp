@@ -23,15 +23,6 @@ namespace {
 
 using Scene = std::shared_ptr<const SceneDescription>;
 
-SceneDescription shipped(const std::string& name) {
-  SceneDescription scene = load_scene(std::string(SUNDOG_SOURCE_DIR) + "/scenes/" + name + ".json");
-  scene.image.width = 37;
-  scene.image.height = 26;
-  scene.render.samples = std::min(scene.render.samples, 3);
-  scene.render.max_depth = std::min(scene.render.max_depth, 5);
-  return scene;
-}
-
 void check_settled(RenderSession& session, const SceneDescription& scene, const DeviceInfo& device) {
   session.start(std::make_shared<const SceneDescription>(scene));
   session.wait();
@@ -55,7 +46,7 @@ SceneDescription mesh_scene() {
 TEST_CASE("after edits the settled picture has the bits of a cold render") {
   on_every_device([](const DeviceInfo& device) {
     RenderSession session(std::vector<DeviceInfo>{device});
-    SceneDescription scene = shipped("spheres");
+    SceneDescription scene = scenes::shipped_small("spheres");
     check_settled(session, scene, device);
     scene.camera.position += dvec3(0.2, 0.1, 0);
     check_settled(session, scene, device);
@@ -78,10 +69,10 @@ TEST_CASE("after edits the settled picture has the bits of a cold render") {
 TEST_CASE("a session goes from one scene to another, of other kernels, and back") {
   const DeviceInfo& device = test_devices().front();
   RenderSession session(std::vector<DeviceInfo>{device});
-  SceneDescription fractal = shipped("mandelbulb");
+  SceneDescription fractal = scenes::shipped_small("mandelbulb");
   check_settled(session, mesh_scene(), device);
   check_settled(session, fractal, device);
-  check_settled(session, shipped("hollow_ice_exact"), device);
+  check_settled(session, scenes::shipped_small("hollow_ice_exact"), device);
   fractal.fields[0].root.formula.steps[0].values[0] += 1;
   check_settled(session, fractal, device);
   fractal.camera.position *= 0.9;
@@ -132,7 +123,7 @@ TEST_CASE("a camera's edit builds no tree and uploads no geometry") {
 TEST_CASE("a pick shows what the first surface is") {
   const DeviceInfo& device = test_devices().front();
   RenderSession session(std::vector<DeviceInfo>{device});
-  const SceneDescription scene = shipped("spheres");
+  const SceneDescription scene = scenes::shipped_small("spheres");
   session.start(std::make_shared<const SceneDescription>(scene));
   session.wait();
   RenderOptions options;
@@ -159,7 +150,7 @@ TEST_CASE(
       std::this_thread::sleep_for(std::chrono::milliseconds(25));
     REQUIRE(session.snapshot(false).prepared);
   };
-  SceneDescription scene = shipped("mandelbulb");
+  SceneDescription scene = scenes::shipped_small("mandelbulb");
   scene.render.max_depth = 3;
   check_settled(session, scene, device);
   wait_for_kernels();
@@ -195,7 +186,7 @@ TEST_CASE(
 
 TEST_CASE("kernels stand in for others that leave harmless features out") {
   const DeviceInfo& device = test_devices().front();
-  const CompiledScene scene = compile(shipped("spheres"));
+  const CompiledScene scene = compile(scenes::shipped_small("spheres"));
   const KernelConfig own = make_kernel_config(scene, device), general = general_config(scene, device);
   CHECK(stands_in(general, own));
   CHECK(stands_in(own, own));
@@ -206,7 +197,7 @@ TEST_CASE("kernels stand in for others that leave harmless features out") {
   CHECK_FALSE(stands_in(general, fog));
   CHECK(std::ranges::count_if(general_configs(scene, device),
                               [&](const KernelConfig& one) { return stands_in(one, fog); }) == 1);
-  CHECK_FALSE(stands_in(general_config(compile(shipped("mandelbulb")), device), own));
+  CHECK_FALSE(stands_in(general_config(compile(scenes::shipped_small("mandelbulb")), device), own));
 }
 
 TEST_CASE("a session renders frames to their end, and draws between them") {
@@ -238,7 +229,7 @@ TEST_CASE("a session renders frames to their end, and draws between them") {
 TEST_CASE("while the kernel of a new formula is built, other edits are drawn; then it needs no compiler") {
   const DeviceInfo& device = test_devices().front();
   RenderSession session(std::vector<DeviceInfo>{device});
-  const SceneDescription usual = shipped("spheres");
+  const SceneDescription usual = scenes::shipped_small("spheres");
   check_settled(session, usual, device);
   // A number that no run before had, so that its kernel is in no cache.
   const auto now = std::chrono::system_clock::now().time_since_epoch().count() % 1000000007;

@@ -5,6 +5,7 @@
 
 #include "catch.h"
 #include "devices.h"
+#include "moving_edge.h"
 #include "scenes.h"
 
 using namespace sundog;
@@ -12,7 +13,7 @@ using glm::dvec3;
 
 namespace {
 
-constexpr int size = 64;
+using moving_edge::size;
 
 /// A glowing ball of radius 0.02 at the depth 8, straight ahead.
 SceneDescription ball_ahead() {
@@ -23,10 +24,6 @@ SceneDescription ball_ahead() {
   scenes::place(scene, SphereShape{0.02}, scenes::add_glow(scene, {1, 1, 1}),
                 glm::translate(glm::dmat4(1), {0, 0, -8}));
   return scene;
-}
-
-double pixels_a_unit(const SceneDescription& scene) {  // at the depth 1
-  return size / (2 * std::tan(glm::radians(scene.camera.fov) / 2));
 }
 
 /// How far light reaches from the middle along a direction in the image, in pixels, and its sum.
@@ -49,7 +46,7 @@ Spread spread_along(const Image& image, double x, double y) {
 
 TEST_CASE("the circle of confusion is as large as geometry has it, and what is at the focus is sharp") {
   SceneDescription scene = ball_ahead();
-  const double scale = pixels_a_unit(scene), ball = 0.02 / 8 * scale;
+  const double scale = moving_edge::pixels_a_unit(scene), ball = 0.02 / 8 * scale;
   on_picture_devices([&](const DeviceInfo& device) {
     const Spread sharp = spread_along(scenes::render_on(device, scene).image, 1, 0);
     SceneDescription blurred = scene;
@@ -75,23 +72,7 @@ TEST_CASE("the circle of confusion is as large as geometry has it, and what is a
 }
 
 TEST_CASE("a moving camera makes of an edge a ramp as wide as it moves") {
-  SceneDescription scene = scenes::line_of_sight({0, 0, 0}, {0, 0, -5});
-  scene.camera.fov = 20;
-  scene.image.width = scene.image.height = size;
-  scene.render.samples = 16;
-  scenes::place(scene, BoxShape{{50, 50, 1}}, scenes::add_glow(scene, {1, 1, 1}),
-                glm::translate(glm::dmat4(1), {50, 0, -6}));  // from x = 0 to the right, at the depth 5
+  SceneDescription scene = moving_edge::scene();
   scene.camera.moves_to = View{{0.5, 0, 0}, {0.5, 0, -5}};
-  const double ramp = 0.5 / 5 * pixels_a_unit(scene);
-  on_picture_devices([&](const DeviceInfo& device) {
-    const Image image = scenes::render_on(device, scene).image;
-    for (int column = 0; column < size; ++column) {
-      double mean = 0;
-      for (int row = 0; row < size; ++row) mean += double(image.pixel(column, row)[0]) / size;
-      // The edge goes from the middle to the left.
-      const double expected = std::clamp((column + 0.5 - (size / 2.0 - ramp)) / ramp, 0.0, 1.0);
-      INFO(column);
-      CHECK(std::abs(mean - expected) < 0.03);
-    }
-  });
+  on_picture_devices([&](const DeviceInfo& device) { moving_edge::check_ramp(device, scene, 0.5); });
 }

@@ -8,6 +8,7 @@
 #include "catch.h"
 #include "compile/compiled_scene.h"
 #include "devices.h"
+#include "moving_edge.h"
 #include "same_bits.h"
 #include "scene/load.h"
 #include "scenes.h"
@@ -65,25 +66,9 @@ Image mean_of_stills(const DeviceInfo& device, const SceneDescription& scene, in
 }  // namespace
 
 TEST_CASE("an edge that moves becomes a ramp as wide as it moves") {
-  constexpr int size = 64;
-  SceneDescription scene = scenes::line_of_sight({0, 0, 0}, {0, 0, -5});
-  scene.camera.fov = 20;
-  scene.image.width = scene.image.height = size;
-  scene.render.samples = 16;
-  scenes::place(scene, BoxShape{{50, 50, 1}}, scenes::add_glow(scene, {1, 1, 1}),
-                glm::translate(glm::dmat4(1), {50, 0, -6}));  // from x = 0 to the right, at the depth 5
+  SceneDescription scene = moving_edge::scene();
   scene.objects.back().moves_by = {-0.5, 0, 0};
-  const double ramp = 0.5 / 5 * size / (2 * std::tan(glm::radians(scene.camera.fov) / 2));
-  on_picture_devices([&](const DeviceInfo& device) {
-    const Image image = scenes::render_on(device, scene).image;
-    for (int column = 0; column < size; ++column) {
-      double mean = 0;
-      for (int row = 0; row < size; ++row) mean += double(image.pixel(column, row)[0]) / size;
-      const double expected = std::clamp((column + 0.5 - (size / 2.0 - ramp)) / ramp, 0.0, 1.0);
-      INFO(column);
-      CHECK(std::abs(mean - expected) < 0.03);
-    }
-  });
+  on_picture_devices([&](const DeviceInfo& device) { moving_edge::check_ramp(device, scene, 0.5); });
 }
 
 TEST_CASE("a picture of moving things is the mean of still ones, and the same for every tile and group") {

@@ -10,6 +10,7 @@
 #include "compile/lobe_energy.h"
 #include "devices.h"
 #include "shared/scene.h"
+#include "surface_text.h"
 
 namespace sundog::lobes {
 
@@ -18,20 +19,12 @@ using glm::dvec3;
 inline constexpr double pi = std::numbers::pi;
 inline constexpr u32 count = 1u << 12;
 
-inline const char* const lobe_kernel = R"(
-#include "lib/shade/bsdf_sample.cl"
+inline const std::string lobe_kernel = surface_text + R"(
 #include "lib/core/sampler.cl"
 // The surface z = 0 of one material, seen from above, or from below where `below`, behind it the other of the media 0 and 1.
 Bsdfs surface(__global const Material* materials, u32 below) {
   const REAL3 n = real3(0.0f, 0.0f, below ? -1.0f : 1.0f), none = real3(0.0f, 0.0f, 0.0f);
-  Bsdfs bsdf = {n, n, none, all3(materials[0].diffuse.xyz), 0, (int)materials[0].flags, (int)below, 1 - (int)below};
-#if HAS_MAPS
-  bsdf.specular = all3(materials[0].specular.xyz);
-  bsdf.reflection = all3(materials[0].reflection.xyz);
-  bsdf.transmission = all3(materials[0].transmission.xyz);
-  bsdf.emission = none;
-  bsdf.exponent = (REAL)(materials[0].specular.w);
-#endif
+  Bsdfs bsdf = make_surface(materials, n, (int)below, 1 - (int)below);
 #if HAS_LAYERS
   bsdf.base = bsdf.diffuse;
   bsdf.tangent = real3(1.0f, 0.0f, 0.0f);

@@ -7,6 +7,7 @@
 #include "catch.h"
 #include "devices.h"
 #include "shared/scene.h"
+#include "surface_text.h"
 
 using namespace sundog;
 using glm::dvec3;
@@ -16,8 +17,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr u32 count = 1u << 15;
 
-const char* const draw_kernel = R"(
-#include "lib/shade/bsdf_sample.cl"
+const std::string draw_kernel = surface_text + R"(
 #include "lib/core/sampler.cl"
 // One material, ns = ng = +z, the viewer at the cosine `cosine` to it in the plane y = 0; behind it the medium 1. Eight floats
 // a sample: wi, density, weight, whether it is specular.
@@ -26,15 +26,8 @@ __kernel void draw(__global const Material* materials, __global const Medium* me
   const u32 i = get_global_id(0);
   if (i >= count) return;
   const Scene scene = {.materials = materials, .media = media};
-  const REAL3 n = real3(0.0f, 0.0f, 1.0f), none = real3(0.0f, 0.0f, 0.0f), wo = real3(-sqrt(1.0f - cosine * cosine), 0.0f, cosine);
-  Bsdfs bsdf = {n, n, none, all3(materials[0].diffuse.xyz), 0, (int)materials[0].flags, 0, 1};
-#if HAS_MAPS
-  bsdf.specular = all3(materials[0].specular.xyz);
-  bsdf.reflection = all3(materials[0].reflection.xyz);
-  bsdf.transmission = all3(materials[0].transmission.xyz);
-  bsdf.emission = none;
-  bsdf.exponent = (REAL)(materials[0].specular.w);
-#endif
+  const REAL3 n = real3(0.0f, 0.0f, 1.0f), wo = real3(-sqrt(1.0f - cosine * cosine), 0.0f, cosine);
+  const Bsdfs bsdf = make_surface(materials, n, 0, 1);
   const uint2 pixel = (uint2)(7u, 9u);
   const float2 u = sample_2d(pixel, i, 1u);
   const BsdfSamples s = bsdf_sample(&scene, &bsdf, wo, sample_1d(pixel, i, 0u), u.x, u.y, ALL_LANES);

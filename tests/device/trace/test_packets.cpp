@@ -59,9 +59,7 @@ SceneDescription mixed_scene() {
 SceneDescription solids(int count) {
   SceneDescription scene = scenes::line_of_sight({0, 0, 5}, {0, 0, 0});
   const int white = scenes::add_white(scene);
-  const std::vector<Shape> shapes =
-      with_every_solid({SphereShape{}, BoxShape{}, ConeShape{1, 0.3}, CylinderShape{}, DiskShape{},
-                        TorusShape{1, 0.3}, RoundBoxShape{{1, 0.6, 0.8}, 0.2}});
+  const std::vector<Shape> shapes = solids_of_many_sizes();
   std::mt19937 random(7);
   const double size = 0.6 / std::cbrt(count);
   glm::dmat4 place(1);

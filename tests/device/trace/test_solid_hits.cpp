@@ -10,6 +10,7 @@
 #include "bench/rays/check_hits.h"
 #include "catch.h"
 #include "each_tracer.h"
+#include "every_kind.h"
 #include "scenes.h"
 
 using namespace sundog;
@@ -25,23 +26,11 @@ vec3 in_cube(std::mt19937& random) {
 
 /// Each solid with several parameters, turned and squeezed; more than are tried one after another, beside a
 /// small mesh.
-SceneDescription every_solid() {
+SceneDescription crowd_of_solids() {
   SceneDescription scene = scenes::line_of_sight({0, 0, 9}, {0, 0, 0});
   const int white = scenes::add_white(scene);
-  const std::vector<Shape> shapes = {SphereShape{},
-                                     BoxShape{},
-                                     CylinderShape{1, 1, true},
-                                     CylinderShape{1, 1, false},
-                                     ConeShape{1, 0, 1},
-                                     ConeShape{0.4, 1, 1},
-                                     ConeShape{1, 0.3, 1, false},
-                                     DiskShape{},
-                                     DiskShape{1, 0.5},
-                                     TorusShape{1, 0.3},
-                                     TorusShape{1, 0.6},
-                                     RoundBoxShape{{1, 0.6, 0.8}, 0.2},
-                                     RoundBoxShape{{1, 1, 0.5}, 0.5}};
-  for (int i = 0; i < 26; ++i) {
+  const std::vector<Shape> shapes = solids_of_many_sizes();
+  for (int i = 0; i < 2 * static_cast<int>(shapes.size()); ++i) {
     glm::dmat4 at = glm::translate(glm::dmat4(1), glm::dvec3(i % 3, i / 3 % 3, i / 9) - 1.0);
     if (i % 5) at = glm::rotate(at, 0.7 * i, glm::dvec3(1, 2, i));
     at = glm::scale(at, 0.4 * glm::dvec3(1, i % 4 ? 1 : 0.6, 1));
@@ -71,7 +60,7 @@ std::vector<Ray> rays_from_all_over(std::size_t count) {
 
 TEST_CASE("rays meet every solid where the plain tracer does, and with its normal") {
   const std::vector<Ray> rays = rays_from_all_over(4000);
-  for_each_tracer(every_solid(), [&](const CompiledScene& flat, RayTracer& tracer, bool coherent) {
+  for_each_tracer(crowd_of_solids(), [&](const CompiledScene& flat, RayTracer& tracer, bool coherent) {
     const std::vector<Hit> hits = tracer.trace(rays, coherent);
     int wrong = 0, turned = 0, met = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {

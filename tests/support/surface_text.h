@@ -1,0 +1,20 @@
+// For kernels of tests: the surface of one material, as textures leave it.
+#pragma once
+#include <string>
+
+/// Bsdfs make_surface(materials, n, before, after): its normal is n, between two media.
+inline const std::string surface_text = R"(
+#include "lib/shade/bsdf_sample.cl"
+Bsdfs make_surface(__global const Material* materials, REAL3 n, int before, int after) {
+  const REAL3 none = real3(0.0f, 0.0f, 0.0f);
+  Bsdfs bsdf = {n, n, none, all3(materials[0].diffuse.xyz), 0, (int)materials[0].flags, before, after};
+#if HAS_MAPS
+  bsdf.specular = all3(materials[0].specular.xyz);
+  bsdf.reflection = all3(materials[0].reflection.xyz);
+  bsdf.transmission = all3(materials[0].transmission.xyz);
+  bsdf.emission = none;
+  bsdf.exponent = (REAL)(materials[0].specular.w);
+#endif
+  return bsdf;
+}
+)";
