@@ -35,6 +35,11 @@ const std::vector<sundog::DeviceInfo>& test_devices() {
   return devices;
 }
 
+int& calls_on_devices() {
+  static int calls = 0;
+  return calls;
+}
+
 std::span<const sundog::DeviceInfo> picture_devices() {
   const std::span<const sundog::DeviceInfo> all = test_devices();
   return std::getenv("SUNDOG_TEST_DEVICES") ? all : all.first(1);

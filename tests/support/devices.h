@@ -21,9 +21,15 @@ const std::vector<sundog::DeviceInfo>& test_devices();
 /// (frames/test_drivers_agree.cpp).
 std::span<const sundog::DeviceInfo> picture_devices();
 
-/// Calls body(device's DeviceInfo) for each of the devices, in a section of its own.
+/// How many calls of on_devices() this run of the test case had before. A test case runs once for each of its
+/// sections; main.cpp counts from 0 again with each run.
+int& calls_on_devices();
+
+/// Calls body(device's DeviceInfo) for each of the devices, in a section of its own. Catch2 enters a section
+/// of a name once, so each call of a loop has names of its own.
 void on_devices(std::span<const sundog::DeviceInfo> devices, const auto& body) {
-  for (const sundog::DeviceInfo& device : devices) DYNAMIC_SECTION(device.label()) {
+  const int call = calls_on_devices()++;
+  for (const sundog::DeviceInfo& device : devices) DYNAMIC_SECTION(device.label() << ", call " << call) {
       body(device);
     }
 }

@@ -13,6 +13,37 @@
 #include <sanitizer/lsan_interface.h>
 #endif
 
+namespace {
+
+#ifdef SUNDOG_CATCH2_V3
+using ListenerBase = Catch::EventListenerBase;
+#else
+using ListenerBase = Catch::TestEventListenerBase;
+#endif
+
+/// Each run of a test case is a section around those within.
+struct CountCallsAnew : ListenerBase {
+  using ListenerBase::ListenerBase;
+  void testCaseStarting(const Catch::TestCaseInfo& info) override {
+    ListenerBase::testCaseStarting(info);
+    open_ = 0;
+  }
+  void sectionStarting(const Catch::SectionInfo& info) override {
+    ListenerBase::sectionStarting(info);
+    if (open_++ == 0) calls_on_devices() = 0;
+  }
+  void sectionEnded(const Catch::SectionStats& stats) override {
+    ListenerBase::sectionEnded(stats);
+    --open_;
+  }
+
+ private:
+  int open_ = 0;
+};
+CATCH_REGISTER_LISTENER(CountCallsAnew)
+
+}  // namespace
+
 int main(int argc, char** argv) {
   prepare_opencl_environment();
   if (const auto assets = assets_directory(); assets.empty())

@@ -51,7 +51,7 @@ TEST_CASE("an edge is drawn as the filter's integral, each filter's own, and a p
       INFO(static_cast<int>(filter));
       for (int x = 0; x < image.width; ++x)
         for (int y = 0; y < image.height; ++y)
-          CHECK(image.pixel(x, y)[0] == Approx(share_beyond(filter, radius, 4.0 - x)).margin(0.02));
+          CHECK(image.pixel(x, y)[0] == Approx(share_beyond(filter, radius, 4.0 - x)).margin(0.015));
       CHECK(image.pixel(8, 1)[0] == Approx(1).margin(1e-6));
     });
 }

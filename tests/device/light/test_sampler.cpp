@@ -35,6 +35,24 @@ __kernel void run(__global const Pixel* in, __global Place* out, u32 count) {
 }
 )";
 
+/// Four numbers of each of four lanes.
+const char* const lanes_text = R"(
+#include "lib/core/sampler_lanes.cl"
+typedef struct Pixel { u32 x, y, sample, samples; } Pixel;
+__kernel void run(__global const Pixel* in, __global float4* out, u32 count) {
+  const u32 first = get_global_id(0) / LANES * LANES, mine = get_global_id(0) - first;
+  if (first + LANES > count) return;
+  LaneSamples at;
+  for (u32 lane = 0; lane < LANES; ++lane) {
+    MASK_LANE(at.x, lane) = (int)in[first + lane].x;
+    MASK_LANE(at.y, lane) = (int)in[first + lane].y;
+    MASK_LANE(at.sample, lane) = (int)in[first + lane].sample;
+  }
+  const FourNumbers u = sample_lanes(&at, (MASK)(4));
+  out[first + mine] = (float4)(REAL_LANE(u.x, mine), REAL_LANE(u.y, mine), REAL_LANE(u.z, mine), REAL_LANE(u.w, mine));
+}
+)";
+
 }  // namespace
 
 TEST_CASE("camera samples: one is the pixel's centre, 64 fill each 64th of both axes once") {
@@ -78,6 +96,14 @@ TEST_CASE("a device's samples are the host's to the bit") {
       REQUIRE(out[i].first == of(in[i], dimension));
       REQUIRE(out[i].second == of(in[i], dimension + 1));
     }
+    const auto four = run_text<float4>(
+        device, lanes_text, in,
+        {{"SAMPLER", std::to_string(SAMPLER_SOBOL)}, {"TILE_W", "2"}, {"TILE_H", "2"}, {"LANES", "4"}});
+    for (std::size_t i = 0; i < in.size(); ++i)
+      for (u32 k = 0; k < 4; ++k) {
+        const float found[] = {four[i].x, four[i].y, four[i].z, four[i].w};
+        REQUIRE(found[k] == of(in[i], dimension + k));
+      }
   });
 }
 

@@ -180,6 +180,22 @@ TEST_CASE("lights without extent light what is behind glass") {
   });
 }
 
+TEST_CASE("photons that miss what they were sent to bring nothing: shadow rays find their light") {
+  on_picture_devices([&](const DeviceInfo& device) {
+    // Beside the shadow of the box, and in that of the ball around it.
+    SceneDescription scene = path_scene({1.05, 0.6, 2}, {1.05, 0, 0}, 16);
+    scene.render.caustics = true;
+    scene.render.photons = 4096;
+    scene.render.max_depth = 1;
+    add_lights(scene, of_point);
+    scenes::place(scene, PlaneShape{}, add_matte(scene, 0.6));
+    scenes::place(scene, BoxShape{dvec3(0.5)}, scenes::add_mirror(scene, 0.9),
+                  glm::translate(glm::dmat4(1), dvec3(0, ball_height, 0)));
+    const double d2 = 1.05 * 1.05 + lamp_height * lamp_height;
+    check_mean(mean_on(device, scene), 0.6 * 4 * lamp_height / std::sqrt(d2) / d2);
+  });
+}
+
 TEST_CASE("a picture with photons has the same bits however its work is cut, and after an interruption") {
   SceneDescription scene = ball_scene(of_point, 0, 9);
   scene.lights[of_sphere].intensity = 2;

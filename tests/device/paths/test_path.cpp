@@ -175,3 +175,17 @@ TEST_CASE("a mesh that shines lights a plane as the rectangle of its shape does,
       }
   });
 }
+
+TEST_CASE("a large lamp that is chosen or met is weighed by how often each finds it") {
+  on_picture_devices([&](const DeviceInfo& device) {
+    SceneDescription scene = path_scene({3, 0.3, 0}, {0, 0, 0}, 64);
+    scenes::place(scene, PlaneShape{}, add_matte(scene, 0.8));
+    scene.lights.push_back(lamp(LightType::sphere, {0, 1.5, 0}, 2));
+    scene.lights.back().radius = 1.2;
+    scene.lights.back().visible = true;
+    scene.lights.push_back(lamp(LightType::point, {5, 0.5, 0}, 1));
+    add_lamps(scene);
+    const double of_lamp = 2 * (1.2 * 1.2) / (1.5 * 1.5), of_point = 0.5 / std::hypot(5, 0.5);
+    check_mean(mean_on(device, scene), 0.8 * (of_lamp + of_point));
+  });
+}

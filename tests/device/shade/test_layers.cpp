@@ -84,9 +84,13 @@ TEST_CASE("white layered materials return at most all light at every roughness, 
       tester.set_layers(one.values);
       for (const double cosine : {1.0, 0.7, 0.3, 0.1}) {
         INFO(one.name << " of the roughness " << roughness << " at " << cosine);
-        const double mean = mean_weight(tester.draw(layered(one.values).material, 1, at_cosine(cosine)));
+        const Material material = layered(one.values).material;
+        const double mean = mean_weight(tester.draw(material, 1, at_cosine(cosine)));
         CHECK(mean < 1.01);
         CHECK(mean > one.least);
+        const double inside = mean_weight(tester.draw(material, 1, -at_cosine(cosine)));  // no layers there
+        CHECK(inside < 1.01);
+        CHECK(inside > one.least);
       }
     }
 }
@@ -114,6 +118,9 @@ TEST_CASE("samples of layers lie as their density has it") {
   const OpenPbr values = colored();
   tester.set_layers(values);
   CHECK(chi_squared(tester, layered(values).material, 1, at_cosine(0.6)) < 1.5);
+  const OpenPbr velvet{.base_weight = 0.2, .fuzz_weight = 1, .fuzz_roughness = 0.6};
+  tester.set_layers(velvet);
+  CHECK(chi_squared(tester, layered(velvet).material, 1, at_cosine(0.3)) < 1.5);
   OpenPbr glass = colored();
   glass.transmission_weight = 0.7, glass.specular_roughness = 0.8, glass.base_metalness = 0;
   tester.set_layers(glass);

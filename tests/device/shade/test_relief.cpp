@@ -205,12 +205,18 @@ TEST_CASE("patterns have their values near by, and their means far away") {
   noise.materials[0].textures.emission = add_pattern(noise, TEXTURE_NOISE, 0.7);
   noise.textures[0].parameter[0] = 4, noise.textures[0].parameter[1] = 0.5,
   noise.textures[0].parameter[2] = 1;
+  SceneDescription bricks = white_plane();  // of the second course
+  bricks.materials[0].textures.emission = add_pattern(bricks, TEXTURE_BRICK);
+  bricks.textures[0].placement = glm::translate(glm::dmat4(1), dvec3(0, 1.5, 0));
+  bricks.textures[0].parameter[0] = 0.2, bricks.textures[0].parameter[1] = 0.1;
   on_every_device([&](const DeviceInfo& info) {
     CHECK(pattern_at(info, checker, 0.25, 0.25) == Approx(0).margin(1e-6));
     CHECK(pattern_at(info, checker, 0.75, 0.25) == Approx(1).margin(1e-6));
     CHECK(pattern_at(info, checker, 0.75, -0.25) == Approx(0).margin(1e-6));
     CHECK(pattern_at(info, stripes, 1.0, 0) == Approx(0).margin(1e-6));  // the first three quarters of 2
     CHECK(pattern_at(info, stripes, 1.8, 0) == Approx(1).margin(1e-6));
+    CHECK(pattern_at(info, bricks, 0.25, 0) == Approx(0).margin(1e-6));
+    CHECK(pattern_at(info, bricks, 0.35, 0) == Approx(1).margin(1e-6));  // mortar ends at half a brick
     const double near = pattern_at(info, noise, 0.31, 0.17);
     CHECK(near > 0.05);
     CHECK(near < 0.95);
