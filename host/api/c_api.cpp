@@ -109,7 +109,7 @@ MeshView mesh_of(const float* positions, size_t vertex_count, const uint32_t* tr
           .uvs = groups<2>(uvs, vertex_count)};
 }
 
-/// Calls back when nobody holds it any more, once it was handed over.
+/// Calls release() when its last holder lets go, if it was handed over before.
 struct Owner {
   void (*release)(void* user);
   void* user;

@@ -1,5 +1,5 @@
-// Threads that are inside of a driver's compiler or launch when nobody wants their work any more. A driver
-// cannot be interrupted: whoever owns its devices takes such threads over, and waits for them last of all.
+// Threads inside a driver's compiler or launch whose work is no longer needed. A driver cannot be
+// interrupted, so the owner of its devices takes such threads over and joins them last.
 #pragma once
 #include <chrono>
 #include <future>

@@ -9,8 +9,8 @@
 namespace sundog {
 
 /// Bytes that this process can still take: what the machine has available, or less where a cgroup (a
-/// container, a batch job) or the limit of the address space leaves less. None where nobody says. `root`:
-/// where proc and sys lie.
+/// container, a batch job) or the limit of the address space leaves less. None where neither is known.
+/// `root`: where proc and sys lie.
 std::optional<std::uint64_t> available_memory(const std::filesystem::path& root = "/");
 
 /// Asks for large pages where the system gives them to those who ask: memory that is about to be touched for

@@ -178,10 +178,10 @@ struct MaterialDescription {
   double normal_scale = 1;                  // factor on the slopes of a normal map
   double bump = 1;                          // height of a 1 of the height texture, object space
   double bump_uv = 0;                       // the same in units of u and v, added
-  double parallax = 0;              // above 0: how deep a 0 of the height texture is below a 1, object space
+  double parallax = 0;              // depth of a height of 0 below a height of 1, object space; 0: none
   int displaced_by = -1;            // index into textures: heights that move the vertices of meshes
-  double displacement = 1;          // how far a 1 of them moves, object space
-  double displacement_middle = 0;   // the height that moves nothing
+  double displacement = 1;          // the distance for a height of 1, object space
+  double displacement_middle = 0;   // the height that leaves vertices in place
   double displacement_edge = 0;     // of the triangles, object space; 0: about a texel's
   double occlusion = 1;             // how much of the occlusion texture counts, [0, 1]
   double coat = 0;                  // a clear layer's mirror above all else, [0, 1], times its texture

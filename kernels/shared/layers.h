@@ -1,5 +1,5 @@
 // Layered materials: from above fuzz, a coat, a film, and a base that is a metal or a dielectric over a matte
-// ground, in the terms of OpenPBR 1.1 (host/scene/openpbr.h has its names and ranges).
+// ground, in the terms of OpenPBR 1.1 (host/scene/materials/openpbr.h has its names and ranges).
 #ifndef SUNDOG_SHARED_LAYERS_H
 #define SUNDOG_SHARED_LAYERS_H
 #include "shared/types.h"
@@ -33,7 +33,7 @@ typedef struct Layers {
   float metal;            // factor on a metal's reflection
   float matte_roughness;  // of the ground
   float matte_scale,
-      matte_scale_bare;  // make up for T(wo) T(wi) of the layers above; below the interface alone
+      matte_scale_bare;  // normalise T(wo) T(wi) of the layers above, and of the interface alone
   float glass;           // the share of a dielectric base that transmits
   float shine_scale;     // 1, or what keeps the base's facets from returning more than all light
   float turn_x, turn_y;  // the tangent's turn from the surface's first coordinate

@@ -1,8 +1,8 @@
 // Photons: light on its way from the lamps through glass and off mirrors, and the maps that keep where it
 // lands (Jensen 1996, "Global Illumination using Photon Maps"; Hachisuka and Jensen 2009, "Stochastic
 // Progressive Photon Mapping"). A sample of a pixel looks at one map, samples one after another at many: each
-// is made of photons of its own and with a smaller radius than those before, which needs to remember nothing
-// of them (Knaus and Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach").
+// has photons of its own and a smaller radius than those before, and is independent of them (Knaus and
+// Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach").
 #ifndef SUNDOG_SHARED_PHOTONS_H
 #define SUNDOG_SHARED_PHOTONS_H
 #include "shared/types.h"

@@ -10,7 +10,7 @@
 
 namespace sundog {
 
-/// For rank 0. Once `stop` is set, warns on stderr of each rank that says nothing any more. `kept_in` is
+/// For rank 0. Once `stop` is set, warns on stderr about each rank that no longer responds. `kept_in` is
 /// where the frame's checkpoint goes. Without a job it does nothing.
 class RankWatch {
  public:

@@ -24,7 +24,7 @@ class FrameRunner {
   /// For the runs from now on. The size must be one that render() would take.
   void use(const WorkGroup& group) { options_.work_group = group; }
 
-  /// Most work-items that a group of its kernels may have; 0: nobody says.
+  /// The largest work-group that its kernels allow; 0: unknown.
   std::size_t greatest_group() const;
 
   /// Of the last run: on the device, of all launches of a kernel; by the host's clock where the driver gives

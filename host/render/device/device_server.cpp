@@ -43,7 +43,7 @@ void DeviceServer::change_scene(RenderTimes& times) {
   try {
     renderer_->change_scene(*scene_, *options_, times);
   } catch (const NotWantedAnyMore&) {
-    works_ = other_scene_ = true;  // it has what it had before
+    works_ = other_scene_ = true;  // the renderer still has its previous scene
     throw;
   }
 }

@@ -20,7 +20,7 @@ class DeviceServer : public SceneServer {
   void hurry() override { builder_.wants_no_more(); }
   void rest() override;
   void keep_programs() override;
-  /// Most work-items that a group of its kernels may have; 0: nobody says, or it is not open.
+  /// The largest work-group that its kernels allow; 0: unknown, or the server is not open.
   std::size_t greatest_group() const { return renderer_ ? renderer_->greatest_group() : 0; }
   std::size_t kernels_waiting() const override { return builder_.waiting(); }
 

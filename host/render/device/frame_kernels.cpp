@@ -69,14 +69,14 @@ bool keeps_programs(const Device& device) {
   return environment.kernel_cache && !environment.cache.empty();
 }
 
-/// Has the kernels built beside the work and waits for them, so that the device's thread is free again as
-/// soon as something else is to be drawn. Returns how many were built.
+/// Lets the builder's thread build the kernels and waits for it. The device's thread stops waiting when the
+/// scene is replaced. Returns the number of kernels built.
 unsigned wait_for_kernels(const Device& device, KernelBuilder& builder, const KernelOrder& order) {
   if (!keeps_programs(device)) return 0;
   if (builder.wait_for(order)) return 1;
   if (!builder.is_waited_for())
     throw NotWantedAnyMore("the scene was replaced before its kernels were built");
-  return 0;  // they do not build: whoever needs them builds them again, and reports why not
+  return 0;  // the build failed: the caller repeats it and reports the error
 }
 
 /// What to draw with: the wanted kernels where they are there or nothing stands in for them.

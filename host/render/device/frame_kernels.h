@@ -13,7 +13,7 @@
 
 namespace sundog {
 
-/// The kernels of a scene are still being built, and another is to be drawn. What was there is as it was.
+/// The scene was replaced while its kernels were being built. The previous kernels are unchanged.
 struct NotWantedAnyMore : DeviceError {
   using DeviceError::DeviceError;
 };
@@ -29,11 +29,11 @@ struct FrameKernels {
   SceneKernel<Buffer<u32>> find_media;                // only where the camera has been inside a solid
   std::string entry;                                  // of the integrator
   bool camera_inside = false;                         // tables.camera_media are not those of the outside
-  std::size_t most_group = 0;         // work-items that a group of theirs may have; 0: not known
-  std::vector<std::string> notes;     // why a cache could not be used
-  KernelBuilder* builder = nullptr;   // builds beside the work while other kernels draw; null: nobody does
-  std::vector<KernelConfig> known;    // that this device has built
-  std::vector<KernelConfig> general;  // with a builder: those that stand in for the scene's
+  std::size_t most_group = 0;                         // the largest work-group that they allow; 0: unknown
+  std::vector<std::string> notes;                     // why a cache could not be used
+  KernelBuilder* builder = nullptr;                   // builds while other kernels draw; may be null
+  std::vector<KernelConfig> known;                    // that this device has built
+  std::vector<KernelConfig> general;                  // with a builder: those that stand in for the scene's
 };
 
 /// Builds the integrator's kernel, with `aovs` that of the AOVs too, uploads the scene and finds out which
@@ -55,8 +55,8 @@ KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, co
                                   const WorkGroup& asked, bool aovs, FrameKernels& kernels,
                                   RenderTimes& times);
 
-/// Has kernels built that will stand in when an edit asks for others (general_configs()). Nothing without a
-/// builder.
+/// Queues the general kernels (general_configs()), which draw while an edit's own kernels are built. Without
+/// a builder it does nothing.
 void build_general_kernels(const Device& device, FrameKernels& kernels);
 
 /// Builds the kernel of photons where it is missing.

@@ -61,7 +61,7 @@ struct KernelBuilder::State {
   std::optional<KernelOrder> in_hand;
   std::vector<KernelOrder> done, failed;
   bool ends = false, is_waited_for = true;
-  // What somebody waits for has a thread of its own: it is not to stand behind what may come some day.
+  // An order with a waiting caller has its own thread, so that it never queues behind speculative orders.
   DriverThread urgent_thread;
   std::optional<KernelOrder> urgent, urgent_in_hand;
 
@@ -210,7 +210,7 @@ void KernelBuilder::State::build_in_hand(std::unique_lock<std::mutex>& lock, Dev
     device = share_context(std::move(device));
     build(device, *order);
   } catch (const std::exception&) {
-    works = false;  // whoever needs it builds it again, and reports why not
+    works = false;  // the caller repeats the build and reports the error
   }
   lock.lock();
   (works ? done : failed).push_back(std::move(*order));

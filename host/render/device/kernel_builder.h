@@ -19,23 +19,23 @@ struct KernelOrder {
 class KernelBuilder {
  public:
   explicit KernelBuilder(DeviceInfo info);
-  /// A compiler that is at work keeps its thread, which goes to DeviceInfo::threads.
+  /// If a compilation is still running, DeviceInfo::threads takes its thread over.
   ~KernelBuilder();
   KernelBuilder(const KernelBuilder&) = delete;
   KernelBuilder& operator=(const KernelBuilder&) = delete;
 
-  // Called by one thread, the server's, but for what says otherwise.
+  // Only the server's thread calls these, unless the comment says otherwise.
   /// To be built next. What waits already is built after it; what was built, or failed to, is not again.
   void want(KernelOrder order);
-  /// To be built in turn when nothing else was wanted for a second. They take the place of what waits so
-  /// already.
+  /// Builds them in turn once nothing else was wanted for a second. They replace the earlier orders of this
+  /// kind.
   void want_later(std::vector<KernelOrder> orders);
-  /// The same, and waits for it. False when it does not build, or wants_no_more() comes first: then it is
-  /// built nevertheless.
+  /// Builds it next and waits for it. Returns false if the build fails, or if wants_no_more() ends the wait;
+  /// the build then continues.
   bool wait_for(KernelOrder order);
-  /// From now on wait_for() waits, until wants_no_more().
+  /// Allows wait_for() to wait until the next wants_no_more().
   void may_wait();
-  /// Nobody wants what wait_for() waits for. Any thread.
+  /// Ends the wait of wait_for(). Any thread may call it.
   void wants_no_more();
   bool is_waited_for() const;
   /// What was built so far, the latest first.

@@ -39,9 +39,9 @@ class LaunchSizer {
   /// `fields`: launches begin small, since a field's sample may take a thousand times as long as others.
   LaunchSizer(const LaunchLimits& limits, const WorkGroup& asked, const Tuning& tuning, bool fields);
 
-  /// Other groups from now on; what launches have taken stays known.
+  /// Changes the work-group. Measured launch times are kept.
   void ask_for(const WorkGroup& group);
-  /// What is made may cost more from now on: begins with shorter launches again.
+  /// Starts with short launches again, because the next work may cost more.
   void calm();
   /// Begins a tile, or begins it again.
   void begin(const Tile& tile, unsigned samples);

@@ -48,7 +48,7 @@ class TileRenderer {
 
   /// What the constructor or the last change_scene() has built and uploaded.
   const KernelUpdate& update() const { return update_; }
-  /// Most work-items that a group of its kernels may have; 0: not known.
+  /// The largest work-group that its kernels allow; 0: unknown.
   std::size_t greatest_group() const { return sizer_.most_group(); }
   double readback_seconds() const { return readback_seconds_; }
   /// What did not stop it: a cache that could not be used, launches that had to be made smaller.

@@ -300,7 +300,7 @@ void leave_frame(Frame& frame, std::size_t i, bool closes) {
     TileServer& server = *frame.servers[i].server;
     closes ? server.close() : server.keep_programs();
   } catch (const std::exception&) {
-    // It is let go of as well as can be; the frame has what it made.
+    // The device is gone either way; the frame keeps its finished tiles.
   }
   set_phase(frame, i, Phase::gone);
 }

@@ -97,8 +97,8 @@ void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& pat
 /// Passes on the caller's wish to stop (options.stop); before the first tile is taken, none is.
 void look_for_stop(Frame& frame);
 
-/// Called by a server's thread behind serve_frame(), of a frame that watch_frame() watches: closes the server
-/// where it is not needed any more; else it keeps what was compiled.
+/// Called by a server's thread after serve_frame(), for a frame that watch_frame() watches. Closes the server
+/// if `closes`; otherwise writes its compiled kernels to the cache.
 void leave_frame(Frame& frame, std::size_t i, bool closes);
 
 /// Waits for the frame's end: finished, stopped (options.stop), or out of servers. With `wait`, every server

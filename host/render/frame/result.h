@@ -40,7 +40,7 @@ struct ServerPlan {
   DeviceInfo info;
   int processor = -1;  // devices with the same number run on the same cores (plan.h)
   std::function<std::shared_ptr<TileServer>(const RenderOptions&)> make;
-  // In the frame before, where it is one to go by:
+  // Measured in the previous frame, if that frame is comparable:
   double pixels_a_second = 0, measured_pixels = 0;
 };
 

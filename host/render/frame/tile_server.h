@@ -13,8 +13,7 @@
 
 namespace sundog {
 
-/// What is to be made: of a plain frame's tile all samples, and its AOVs; of a pass's tile the pixels that it
-/// stands for.
+/// The work of one tile: in a plain frame all samples and AOVs; in a pass the pixels of the pass.
 struct TileRequest {
   Tile tile;
   bool in_pass = false;
@@ -63,7 +62,7 @@ class TileServer {
   /// Makes what is asked for. Throws DeviceError; then it must be opened again.
   virtual TileResult render(const TileRequest& request, const StopFlags& flags) = 0;
   virtual ServerFigures figures() const = 0;
-  /// Keeps what was compiled so far for the next time, and stays open.
+  /// Writes compiled kernels to the cache and stays open.
   virtual void keep_programs() {}
   /// Lets go of the device, and keeps its compiled kernels for the next time.
   virtual void close() = 0;
@@ -89,10 +88,10 @@ class SceneServer : public TileServer {
   virtual void prepare_surfaces() = 0;
   /// It was opened, and nothing has failed since.
   virtual bool is_open() const = 0;
-  /// What open() is asked for is of no use any more: where it waits for a compiler, it throws DeviceError
-  /// instead. Until the next show(). Any thread.
+  /// Makes open() throw DeviceError instead of waiting for a compiler, until the next show(). Any thread may
+  /// call it.
   virtual void hurry() {}
-  /// Nothing is to be drawn for now: it may prepare for what comes, without delay for it.
+  /// Nothing has to be drawn now. The server may prepare for later work, as long as it delays none.
   virtual void rest() {}
   /// Kernels that are being built beside the work. Any thread.
   virtual std::size_t kernels_waiting() const { return 0; }

@@ -44,7 +44,7 @@ class Mailbox {
   std::function<std::unique_ptr<Channel>()> connector(int rank) const;
   /// The next channel that rank 0 has opened; none when the job is over.
   std::unique_ptr<Channel> accept();
-  /// Whether nothing will come from that rank any more.
+  /// Whether the rank will send nothing further.
   bool gone(int rank);
   /// The ranks of which nothing has been heard for so long.
   std::vector<int> silent_for(double seconds);

@@ -17,7 +17,7 @@ RenderResult render_frame(const std::shared_ptr<const CompiledScene>& scene,
                           const std::function<void(const std::shared_ptr<Frame>&)>& run);
 
 /// Runs a frame by a session of its own servers, which are closed behind it. With `wait`, every thread has
-/// ended on return; else those in a driver go to DeviceInfo::threads.
+/// ended on return; otherwise DeviceInfo::threads takes over the threads inside a driver.
 void run_frame(const std::shared_ptr<Frame>& frame, bool wait);
 
 }  // namespace sundog

@@ -152,7 +152,7 @@ RenderResult RenderSession::render(const std::shared_ptr<const CompiledScene>& s
       plans.push_back({worker->server->info(), worker->server->processor(),
                        [server = worker->server](const RenderOptions&) { return server; }, 0, 0});
   }
-  // Nobody waits for a tile of a device alone, however wrong its speed is by now.
+  // A single device keeps no other waiting, so an outdated speed does no harm.
   const bool alone = plans.size() == 1;
   if (alone) plans[0].pixels_a_second = state_->pixels_a_second;
   if (alone) plans[0].measured_pixels = state_->measured_pixels;

@@ -47,7 +47,7 @@ void RenderSession::State::add_worker(std::shared_ptr<TileServer> server) {
   });
 }
 
-/// What is in hand is of no use any more. The caller holds the mutex.
+/// Abandons the current frame. The caller holds the mutex.
 void RenderSession::State::drop_frame() {
   if (!current) return;
   current->frame->stop = true;

@@ -12,12 +12,12 @@
 // The part of the way to a light that shadow rays leave out, since the light's own surface lies at its end.
 #define SHORT_OF_LIGHT 0x1.ffep-1f
 
-// Whether a light is somewhere: neither parallel nor from all around.
+// Whether a light has a position: it is neither parallel nor an environment.
 static inline bool has_place(__global const Light* light) {
   return light->kind != LIGHT_DIRECTIONAL && light->kind != LIGHT_SUN && light->kind != LIGHT_ENVIRONMENT;
 }
 
-// The middle of a light; w: the square of its size, below which distances to it say nothing.
+// The middle of a light; w: the square of its size. Shorter distances to the middle mean nothing.
 static inline float4 middle_of_light(__global const Light* light) {
   const float3 corner = light->position.xyz, edges = light->edge_u.xyz + light->edge_v.xyz;
   if (light->kind == LIGHT_RECTANGLE) return (float4)(corner + 0.5f * edges, 0.1f * light->direction.w);

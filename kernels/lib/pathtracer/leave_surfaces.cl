@@ -1,5 +1,5 @@
-// Paths as they begin, their rays as these leave surfaces, and what becomes of wavelengths there. Photons go
-// the same ways.
+// How paths begin, how their rays leave surfaces, and how wavelengths part there. Photons use the same
+// functions.
 #ifndef SUNDOG_LIB_LEAVE_SURFACES_CL
 #define SUNDOG_LIB_LEAVE_SURFACES_CL
 #include "lib/light/shadow_rays.cl"
@@ -59,8 +59,8 @@ static inline void leave_surfaces(const Scene* scene, const Encounters* met, con
   join_rays(rays, &child, lanes);
 }
 
-// The hero decides where surfaces send light. Wavelengths part where interfaces that disperse let light
-// through, or scatter it. Where they mirror it all remain, each with its own part of the light.
+// The hero wavelength decides where surfaces send light. Wavelengths part where a dispersing interface
+// transmits or scatters light. Where it mirrors light all of them remain, each with its own reflectance.
 #if HAS_DISPERSION
 static inline void follow_hero(const Wavelengths* w, Bsdfs* bsdf) {
   set_wavelength_row(bsdf, wavelength_row(w->hero, 0));

@@ -1,6 +1,6 @@
-// One step of a batch of photons: each to the next interface, where it lands or is sent on. One that has been
-// mirrored or bent lands where light is scattered; a shadow ray would find the light of the others. A photon
-// a lane.
+// One step of a batch of photons: each moves to the next interface, where it lands or continues. Photons that
+// were mirrored or bent land on surfaces that scatter light; shadow rays find the light of all others. A
+// photon a lane.
 #ifndef SUNDOG_LIB_PHOTON_STEPS_CL
 #define SUNDOG_LIB_PHOTON_STEPS_CL
 #include "lib/pathtracer/leave_surfaces.cl"
@@ -28,8 +28,8 @@ static inline Photons begun_photons(const Scene* scene, const PhotonStarts* star
   return photons;
 }
 
-// Light without extent falls off as its light says, up to where it is first bent at the points p; from there
-// on as the rays spread. So glass gets from a lamp what any surface there does.
+// A light without extent falls off by its own rule up to the points p, where its photons are first bent, and
+// beyond them as the rays spread. So glass receives as much as any surface there.
 static inline void dim_with_distance(const Scene* scene, REAL3 p, MASK lanes, Photons* photons) {
   MASK left = lanes & MASK_OF(photons->dimmed != NOT_DIMMED);
   u32 index;
@@ -73,8 +73,8 @@ static inline MASK send_on(const Scene* scene, const Encounters* met, const Shad
   return going;
 }
 
-// Takes the photons of `lanes` a step further. Returns those that continue; `landed` are those that have come
-// to their ends where light counts.
+// Moves the photons of `lanes` by one step. Returns those that continue; `landed` are those that end on a
+// surface that scatters light.
 NEVER_INLINE MASK step_photons(const Scene* scene, Photons* photons, SceneRays* rays, MASK lanes,
                                Landings* landed, u32* counts) {
   Encounters met;
@@ -97,7 +97,7 @@ NEVER_INLINE MASK step_photons(const Scene* scene, Photons* photons, SceneRays* 
       &walks->at, (walks->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + BOUNCE_DIRECTION));
   const BsdfSamples sample = sample_lobes(scene, &at.bsdf, &lobes, wo, u.z, u.x, u.y, hit);
   const MASK perfect = hit & sample.specular, some = MASK_OF(greatest3(sample.weight) > 0.0f);
-  // Where a surface does both, chance decides what the photon is for.
+  // On a surface that scatters and mirrors, chance decides which of the two the photon represents.
   const REAL one = (REAL)(1.0f), rest = lobes.matte + lobes.glossy + lobes.facets;
   const MASK lands = hit & ~perfect & photons->bent & MASK_OF(rest > 0.0f) &
                      MASK_OF(carry_greatest(walks->throughput) > 0.0f);

@@ -113,8 +113,8 @@ static inline MASK layered_lanes(const Bsdfs* bsdf, MASK lanes) {
   return lanes & MASK_OF((bsdf->flags & (int)MATERIAL_LAYERED) != 0);
 }
 
-// pi times the BSDF times the cosine of the layers of `lanes`, for lights that reflected rays do not meet:
-// surfaces so smooth that these show what they mirror have less of it.
+// pi times the BSDF times the cosine of the layers of `lanes`, for lights that reflected rays do not meet.
+// The share that mirror_layers() sends as a reflected ray is left out.
 static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes,
                                   REAL3 light) {
   MASK layered = layered_lanes(bsdf, lanes & MASK_OF(dot3(bsdf->ng, wi) > 0.0f));
@@ -133,7 +133,7 @@ static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 w
   return sum;
 }
 
-// What surfaces of `lanes` mirror for integrators that send a reflected ray of its own: the smoother, the
+// The reflection of `lanes` for integrators that send a separate reflected ray: the smoother the surface, the
 // more.
 static inline void mirror_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes,
                                  SpecularSplits* split) {
