@@ -24,7 +24,7 @@ void check_jpeg(void* handle, int result) {
   const std::string_view reason = tjGetErrorStr2(handle);
   if (tjGetErrorCode(handle) == TJERR_WARNING && reason.find("extraneous bytes") != reason.npos) return;
   throw std::runtime_error(
-      fmt::format("wanted a PNG, JPEG, EXR, HDR or PFM image, found a bad JPEG: {}", reason));
+      fmt::format("wanted a PNG, JPEG, WebP, EXR, HDR or PFM image, found a bad JPEG: {}", reason));
 }
 
 /// Adobe's inks are stored inverted: 255 is no ink.

@@ -25,8 +25,8 @@ constexpr std::size_t most_chunk_bytes = std::size_t{1} << 26;
 
 void check_png(int error) {
   if (error)
-    throw std::runtime_error(
-        fmt::format("wanted a PNG, JPEG, EXR, HDR or PFM image, found a bad PNG: {}", spng_strerror(error)));
+    throw std::runtime_error(fmt::format(
+        "wanted a PNG, JPEG, WebP, EXR, HDR or PFM image, found a bad PNG: {}", spng_strerror(error)));
 }
 
 std::uint32_t big_endian(std::string_view four) {
