@@ -1,4 +1,6 @@
 // Where /sys is not mounted, as in a minimal chroot: PoCL would find no memory and end the process.
+#include <unistd.h>
+
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -60,8 +62,10 @@ TEST_CASE("without /sys PoCL has its device, with the machine's processors and m
   const CommandResult beside = run_sundog({"devices", "--json"}, hidden.options);
   const json usual = json::parse(beside.out).at("devices").at(0);
   CHECK(list[0].at("compute_units") == usual.at("compute_units"));
-  CHECK(list[0].at("global_memory").get<double>() ==
-        Approx(usual.at("global_memory").get<double>()).epsilon(0.1));
+  // PoCL leaves some to the system. Not what it has with /sys: a node there may lack memory that came later.
+  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+  CHECK(list[0].at("global_memory").get<double>() <= memory);
+  CHECK(list[0].at("global_memory").get<double>() > 0.6 * memory);
 }
 
 TEST_CASE("without /sys a picture has the bits that it has with it, and check names the mend") {
