@@ -174,14 +174,14 @@ void add_glass(std::vector<float>& table) {
 
 }  // namespace
 
-std::vector<float> make_lobe_energy(bool gains, bool glass) {
+std::vector<float> make_lobe_energy(LobeTables wanted) {
   std::vector<float> table;
   const auto alpha_of = [](u32 row) { return double(row) / (LOBE_STEPS - 1); };
   for (u32 row = 0; row < LOBE_STEPS; ++row)
     for (u32 column = 0; column < LOBE_STEPS; ++column)
       table.push_back(static_cast<float>(energy(cosine_of(column), alpha_of(row))));
-  if (gains) add_gains(table);
-  if (glass) {
+  if (wanted.gains) add_gains(table);
+  if (wanted.glass) {
     add_glass(table);
     add_further(table);
   }

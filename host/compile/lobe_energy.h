@@ -4,6 +4,11 @@
 
 namespace sundog {
 
+/// Which tables follow the first one.
+struct LobeTables {
+  bool gains = false, glass = false;
+};
+
 /// LOBE_STEPS times LOBE_STEPS values for white GGX facets: row by the distribution's width alpha, column by
 /// the cosine between the normal and the viewer, both from 0 to 1. By quadrature over visible normals. With
 /// `gains` as many values more: factors g(alpha, cosine) such that the BSDF times g of both its directions
@@ -15,6 +20,6 @@ namespace sundog {
 /// they please, and reflections of rough glass get a twentieth of what is theirs. So light that meets further
 /// facets is a lobe of its own (kernels/lib/shade/microfacets.cl): from GLASS_THROUGH on the part of it that
 /// enters the thicker medium, from GLASS_LOST on the means over directions of what the first meeting loses.
-std::vector<float> make_lobe_energy(bool gains, bool glass);
+std::vector<float> make_lobe_energy(LobeTables wanted);
 
 }  // namespace sundog

@@ -93,18 +93,18 @@ void set_figures(CompiledScene& out) {
 }
 
 /// The same for all scenes; path tracing has gains too, rough glass a table more.
-const SharedTable<float>& lobe_energies(bool gains, bool glass) {
-  static const SharedTable<float> energies(make_lobe_energy(false, false));
-  if (!gains && !glass) return energies;
-  if (!glass) {
-    static const SharedTable<float> with_gains(make_lobe_energy(true, false));
+const SharedTable<float>& lobe_energies(LobeTables wanted) {
+  static const SharedTable<float> energies(make_lobe_energy({}));
+  if (!wanted.gains && !wanted.glass) return energies;
+  if (!wanted.glass) {
+    static const SharedTable<float> with_gains(make_lobe_energy({.gains = true}));
     return with_gains;
   }
-  if (!gains) {
-    static const SharedTable<float> of_glass(make_lobe_energy(false, true));
+  if (!wanted.gains) {
+    static const SharedTable<float> of_glass(make_lobe_energy({.glass = true}));
     return of_glass;
   }
-  static const SharedTable<float> with_all(make_lobe_energy(true, true));
+  static const SharedTable<float> with_all(make_lobe_energy({.gains = true, .glass = true}));
   return with_all;
 }
 
@@ -228,8 +228,8 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
                                                 p.instances.made.instances.rows(), p.instances.boxes);
   finish_lights(scene, p.meshes.placed, out);
   if (out.features.rough || out.features.layers)
-    out.lobe_energy =
-        lobe_energies(traces_paths(out.integrator) || out.features.layers, out.features.rough_glass);
+    out.lobe_energy = lobe_energies({.gains = traces_paths(out.integrator) || out.features.layers != 0,
+                                     .glass = out.features.rough_glass != 0});
   add_photon_targets(scene, p.instances.boxes, out);
   set_counts(out);
   set_figures(out);

@@ -79,7 +79,7 @@ class Tester {
                             {"HAS_LAYERS", layered ? "1" : "0"}})
                     .kernel<Buffer<Material>, Buffer<Medium>, Buffer<float>, Buffer<Layers>, Buffer<float>,
                             Buffer<float4>, Buffer<float>, float4, u32>("run")),
-        energy_(device_.upload<float>(make_lobe_energy(true, true))),
+        energy_(device_.upload<float>(make_lobe_energy({.gains = true, .glass = true}))),
         layers_(device_.upload<Layers>(std::vector{Layers{}})),
         layer_rows_(device_.upload<float>(std::vector{0.f})) {}
 

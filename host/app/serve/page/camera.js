@@ -55,7 +55,7 @@ export function dolly(camera, factor) {
   return length(away) > 1e-9 && length(away) < 1e12 ? withView(camera, add(camera.target, away), camera.target) : camera;
 }
 
-/** Brief 2's commands: the camera, turned about an axis through its target or its own place. */
+/** The camera, turned about an axis through its target or its own place. */
 export function turnAbout(camera, axis, degrees, about) {
   if (about === 'target')
     return {...withView(camera, add(camera.target, turn(sub(camera.position, camera.target), axis, degrees)), camera.target),
