@@ -12,9 +12,9 @@ double now() {
 
 }  // namespace
 
-double launch_limit(double expected_seconds, bool first) {
-  constexpr double least = 30, compiling = 300, patience = 100;
-  return first ? compiling : std::max(least, patience * expected_seconds);
+double launch_limit(double expected_seconds, bool first, double longest_seconds) {
+  constexpr double least = 30, compiling = 300, patience = 100, again = 3;
+  return std::max(first ? compiling : std::max(least, patience * expected_seconds), again * longest_seconds);
 }
 
 void LaunchWatch::begin(double limit_seconds, bool first) {
@@ -23,7 +23,10 @@ void LaunchWatch::begin(double limit_seconds, bool first) {
   started_ = now();
 }
 
-void LaunchWatch::end() { started_ = -1; }
+void LaunchWatch::end() {
+  longest_ = std::max<double>(longest_, now() - started_);
+  started_ = -1;
+}
 
 double LaunchWatch::overdue() const {
   const double started = started_, seconds = now() - started;
