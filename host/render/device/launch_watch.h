@@ -6,7 +6,7 @@ namespace sundog {
 
 /// The limit of a launch that is expected to take so long: a hundred times that, at least 30 s; 5 min for the
 /// first launches of a kernel, in which a driver may compile. At least three times the longest launch so far:
-/// a driver that compiles in launches may do it again (llvmpipe does until its cache is written).
+/// on a busy machine llvmpipe has taken 67 s for a later launch, after a first one that compiled.
 double launch_limit(double expected_seconds, bool first, double longest_seconds);
 
 class LaunchWatch {
