@@ -18,7 +18,7 @@ RenderOptions options_of(const SessionSettings& settings) {
   options.tuning = settings.tuning;
   options.split = settings.split;
   options.tile = settings.tile;
-  options.general_kernels = true;
+  options.general_kernels = settings.general_kernels;
   return options;
 }
 

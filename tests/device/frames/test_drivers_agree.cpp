@@ -18,7 +18,7 @@ namespace {
 
 /// Small scenes which between them have every feature of the kernels but those below.
 const std::vector<std::string>& scenes_of_all_features() {
-  static const std::vector<std::string> list = {"glass", "fields", "lamps", "paths"};
+  static const std::vector<std::string> list = {"glass", "fields", "lamps", "layers", "paths"};
   return list;
 }
 

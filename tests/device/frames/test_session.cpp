@@ -23,8 +23,11 @@ namespace {
 
 using Scene = std::shared_ptr<const SceneDescription>;
 
-void check_settled(RenderSession& session, const SceneDescription& scene, const DeviceInfo& device) {
-  session.start(std::make_shared<const SceneDescription>(scene));
+void check_settled(RenderSession& session, const SceneDescription& scene, const DeviceInfo& device,
+                   bool general_kernels = false) {
+  SessionSettings settings;
+  settings.general_kernels = general_kernels;
+  session.start(std::make_shared<const SceneDescription>(scene), settings);
   session.wait();
   const Snapshot snapshot = session.snapshot();
   INFO(snapshot.error);
@@ -152,7 +155,7 @@ TEST_CASE(
   };
   SceneDescription scene = scenes::shipped_small("mandelbulb");
   scene.render.max_depth = 3;
-  check_settled(session, scene, device);
+  check_settled(session, scene, device, true);
   wait_for_kernels();
   // Kernels that no cache has: of an odd depth, with a highlight and a light of another kind.
   scene.render.max_depth = 4;
@@ -179,7 +182,7 @@ TEST_CASE(
       other.fog.density = 0.1;
     else
       other.camera.lens.radius = 0.02;
-    check_settled(session, other, device);
+    check_settled(session, other, device, true);
     CHECK(session.snapshot().work.kernels_built == 0);
   }
 }
@@ -230,7 +233,7 @@ TEST_CASE("while the kernel of a new formula is built, other edits are drawn; th
   const DeviceInfo& device = test_devices().front();
   RenderSession session(std::vector<DeviceInfo>{device});
   const SceneDescription usual = scenes::shipped_small("spheres");
-  check_settled(session, usual, device);
+  check_settled(session, usual, device, true);
   // A number that no run before had, so that its kernel is in no cache.
   const auto now = std::chrono::system_clock::now().time_since_epoch().count() % 1000000007;
   const nlohmann::json document = {{"image", {{"width", 37}, {"height", 26}}},
@@ -245,7 +248,7 @@ TEST_CASE("while the kernel of a new formula is built, other edits are drawn; th
   while (session.snapshot(false).kernels_waiting == 0) session.wait_for_change(0, 0.01);
   SceneDescription turned = usual;
   turned.camera.position += dvec3(0.2, 0, 0);
-  check_settled(session, turned, device);
+  check_settled(session, turned, device, true);
   const Snapshot drawn = session.snapshot();
   CHECK(drawn.kernels_waiting > 0);
   CHECK(drawn.work.kernels_built == 0);
@@ -253,5 +256,5 @@ TEST_CASE("while the kernel of a new formula is built, other edits are drawn; th
   session.start(std::make_shared<const SceneDescription>(field));
   session.wait();
   CHECK(session.snapshot().state == SessionState::settled);
-  check_settled(session, field, device);
+  check_settled(session, field, device, true);
 }
