@@ -1,6 +1,7 @@
 #!/bin/bash
 # Makes build/release ready: `prepare.sh program` for sundog alone, `prepare.sh tests` for the tests too; `prepare.sh packages`
-# only installs what the latter needs. Packages come from apt, and only those that are missing. Quiet unless there is something to do; else it says first how much that is.
+# installs what the latter needs, and builds the program meanwhile. Packages come from apt, and only those that are missing. Quiet
+# unless there is something to do; else it says first how much that is.
 set -eu
 goal=$1
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
@@ -82,18 +83,33 @@ mkdir -p "$build"
 exec 9>"$build/lock"
 flock 9  # two calls at once take turns
 
-install_missing "${needed[@]}"
-if [[ $goal != program ]]; then install_missing "${peers[@]}" "${checkers[@]}"; fi
-if [[ $goal == packages ]]; then exit 0; fi
-
 cd "$root"
-touch "$build/started"  # what changes during the build is built the next time
-first=()
-if [[ ! -e $build/CMakeCache.txt ]]; then first=(-DSUNDOG_UNITY=ON -DSUNDOG_UNITY_TESTS=ON); fi  # a folder of a developer keeps its way
-cmake --preset release "${first[@]}" >"$build/configure.log" 2>&1 || { cat "$build/configure.log" >&2; exit 1; }
-if [[ $goal == tests ]]; then target=all; else target=sundog; fi
-if [[ ! -e $build/built-$goal ]]; then
-  say "building for the first time: $(duration_of "$([[ $goal == tests ]] && echo "$tests_work" || echo "$program_work")")"
-fi
-cmake --build "$build" --target "$target"
-touch -r "$build/started" "$build/built-program" "$build/built-$goal"
+# Configures, and builds the program, or with `tests` everything.
+build() {
+  touch "$build/started"  # what changes during the build is built the next time
+  local first=() target=sundog
+  if [[ ! -e $build/CMakeCache.txt ]]; then first=(-DSUNDOG_UNITY=ON -DSUNDOG_UNITY_TESTS=ON); fi  # a folder of a developer keeps its way
+  cmake --preset release "${first[@]}" >"$build/configure.log" 2>&1 || { cat "$build/configure.log" >&2; exit 1; }
+  if [[ $1 == tests ]]; then target=all; fi
+  if [[ ! -e $build/built-$1 ]]; then
+    say "building for the first time: $(duration_of "$([[ $1 == tests ]] && echo "$tests_work" || echo "$program_work")")"
+  fi
+  cmake --build "$build" --target "$target"
+  touch -r "$build/started" "$build/built-program" "$build/built-$1"
+}
+
+install_missing "${needed[@]}"
+case $goal in
+  packages)
+    if [[ -n $(missing_of "${peers[@]}" "${checkers[@]}") ]]; then  # the download waits for the network, the compiler does not
+      install_missing "${peers[@]}" "${checkers[@]}" &
+      build program
+      wait $!
+    fi
+    ;;
+  tests)
+    install_missing "${peers[@]}" "${checkers[@]}"
+    build tests
+    ;;
+  *) build program ;;
+esac
