@@ -72,7 +72,6 @@ bool stands_in(const KernelConfig& general, const KernelConfig& wanted) {
 }
 
 KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
-  if (traces_paths(scene.integrator)) return make_kernel_config(scene, device, tuning);
   CompiledScene deep;
   deep.features = scene.features;
   deep.features.secondary_rays = true;
@@ -93,7 +92,6 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
 std::vector<KernelConfig> general_configs(const CompiledScene& scene, const DeviceInfo& device,
                                           const Tuning& tuning) {
   std::vector<KernelConfig> all{general_config(scene, device, tuning)};
-  if (traces_paths(scene.integrator)) return all;
   for (const char* name : {"HAS_FOG", "HAS_LENS"}) {
     KernelConfig other = all.front();
     std::string& value = other.defines.at(name);

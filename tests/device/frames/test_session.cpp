@@ -36,6 +36,13 @@ void check_settled(RenderSession& session, const SceneDescription& scene, const 
   CHECK(same_bits(*snapshot.picture, scenes::render_on(device, scene).image));
 }
 
+/// Until the kernels for edits to come are built.
+void wait_until_prepared(RenderSession& session) {
+  for (int i = 0; i < 8000 && !session.snapshot(false).prepared; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(25));
+  REQUIRE(session.snapshot(false).prepared);
+}
+
 SceneDescription mesh_scene() {
   SceneDescription scene = scene_of(bumpy_sphere(8));
   scene.image.width = 30;
@@ -148,15 +155,10 @@ TEST_CASE(
     "general kernels draw the same bits as a scene's own, and an edit that wants others waits for none") {
   const DeviceInfo& device = test_devices().front();
   RenderSession session(std::vector<DeviceInfo>{device});
-  const auto wait_for_kernels = [&] {
-    for (int i = 0; i < 8000 && !session.snapshot(false).prepared; ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(25));
-    REQUIRE(session.snapshot(false).prepared);
-  };
   SceneDescription scene = scenes::shipped_small("mandelbulb");
   scene.render.max_depth = 3;
   check_settled(session, scene, device, true);
-  wait_for_kernels();
+  wait_until_prepared(session);
   // Kernels that no cache has: of an odd depth, with a highlight and a light of another kind.
   scene.render.max_depth = 4;
   scene.materials.back().exponent = 7.5;
@@ -168,7 +170,7 @@ TEST_CASE(
   const Snapshot general = session.snapshot();
   REQUIRE(general.state == SessionState::settled);
   CHECK(general.work.kernels_built == 0);
-  wait_for_kernels();
+  wait_until_prepared(session);
   session.start(std::make_shared<const SceneDescription>(scene));
   session.wait();
   const Snapshot own = session.snapshot();
@@ -185,6 +187,26 @@ TEST_CASE(
     check_settled(session, other, device, true);
     CHECK(session.snapshot().work.kernels_built == 0);
   }
+}
+
+TEST_CASE("general kernels of paths draw the same bits as a scene's own, after most edits at once") {
+  const DeviceInfo& device = test_devices().front();
+  RenderSession session(std::vector<DeviceInfo>{device});
+  SceneDescription scene = scenes::shipped_small("cornell_path");
+  scene.render.samples = 2;
+  check_settled(session, scene, device, true);
+  wait_until_prepared(session);
+  // Kernels that no scene that ships has: of an odd highlight, a glass that absorbs, and lamps among many.
+  scene.materials.back().exponent = 7.5;
+  scene.materials.back().reflection = dvec3(0.2);
+  scene.materials.back().roughness = 0.3;
+  scene.lights.emplace_back();
+  scene.lights.back().type = LightType::point;
+  scene.lights.back().position = dvec3(0.5, 0.5, 0.5);
+  check_settled(session, scene, device, true);
+  CHECK(session.snapshot().work.kernels_built == 0);
+  wait_until_prepared(session);
+  check_settled(session, scene, device, true);
 }
 
 TEST_CASE("kernels stand in for others that leave harmless features out") {
