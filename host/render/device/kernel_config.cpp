@@ -44,29 +44,30 @@ void define_features(const SceneFeatures& features, const Define& define) {
 #undef SUNDOG_DEFINE_FEATURE
 }
 
-/// Definitions that change no bit of a scene that does without, so that kernels with them draw it too (a test
-/// renders scenes both ways). Fog, lenses, textures and meshes are not among them: they change the arithmetic
-/// of every ray.
-const std::set<std::string>& harmless_definitions() {
-  static const std::set<std::string> harmless{
+/// Whether a definition changes no bit of a scene that does without, so that kernels with it draw that scene
+/// too (a test renders scenes both ways). Fog, lenses, textures and meshes are not among them: they change
+/// the arithmetic of every ray. Surface coordinates turn the frame in which layers are sampled.
+bool harmless(const std::string& definition, const KernelDefines& defines) {
+  static const std::set<std::string> always{
       "HAS_ABSORPTION",     "HAS_AREA_LIGHTS", "HAS_BOX",          "HAS_BVH",
       "HAS_DISK",           "HAS_EMISSION",    "HAS_ENVIRONMENT",  "HAS_FRACTIONAL_EXPONENTS",
       "HAS_GLOW",           "HAS_LIGHT_TREE",  "HAS_MEDIA",        "HAS_METAL_ROUGH",
       "HAS_OCCLUSION",      "HAS_PLANE",       "HAS_ROUGH",        "HAS_SECONDARY",
       "HAS_SHADOW_FILTERS", "HAS_SKY",         "HAS_SOFT_SHADOWS", "HAS_SPHERE",
-      "HAS_TOUCHING",       "HAS_UV",          "SDF_TWO_SIDED"};
-  return harmless;
+      "HAS_TOUCHING",       "SDF_TWO_SIDED"};
+  if (definition == "HAS_UV") return defines.at("HAS_LAYERS") == "0";
+  return always.contains(definition);
 }
 
 }  // namespace
 
 bool stands_in(const KernelConfig& general, const KernelConfig& wanted) {
   if (general.generated != wanted.generated || general.defines.size() != wanted.defines.size()) return false;
-  return std::ranges::equal(general.defines, wanted.defines, [](const auto& has, const auto& wants) {
+  return std::ranges::equal(general.defines, wanted.defines, [&](const auto& has, const auto& wants) {
     if (has == wants) return true;
     if (has.first != wants.first) return false;
     const bool room = has.first == "RAY_STACK" || has.first == "BVH_STACK";
-    return (room || harmless_definitions().contains(has.first)) &&
+    return (room || harmless(has.first, wanted.defines)) &&
            std::stoul(has.second) >= std::stoul(wants.second);
   });
 }
@@ -84,7 +85,7 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
   const bool fields = config.generated.contains("generated/sdf.cl");
   for (auto& [name, value] : config.defines) {
     const bool of_fields = name == "HAS_OCCLUSION" || name == "HAS_SOFT_SHADOWS" || name == "SDF_TWO_SIDED";
-    if (harmless_definitions().contains(name) && (fields || !of_fields)) value = "1";
+    if (harmless(name, config.defines) && (fields || !of_fields)) value = "1";
   }
   return config;
 }

@@ -33,8 +33,9 @@ struct SessionSettings {
   std::function<Tuning(const DeviceInfo&)> tuning;  // of each device; empty: the defaults
   Split split;
   int tile = 0;  // as RenderOptions::tile
-  /// Kernels are built beside the drawing, general ones while the session rests, which draw while an edit's own
-  /// are built. Without, an edit that needs a compiler waits for it, and nothing is built that no edit asked for.
+  /// Kernels are built beside the drawing, general ones while the session rests, which draw while an edit's
+  /// own are built. Without, an edit that needs a compiler waits for it, and nothing is built that no edit
+  /// asked for.
   bool general_kernels = true;
 };
 

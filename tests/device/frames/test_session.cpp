@@ -223,6 +223,14 @@ TEST_CASE("kernels stand in for others that leave harmless features out") {
   CHECK(std::ranges::count_if(general_configs(scene, device),
                               [&](const KernelConfig& one) { return stands_in(one, fog); }) == 1);
   CHECK_FALSE(stands_in(general_config(compile(scenes::shipped_small("mandelbulb")), device), own));
+  // Surface coordinates turn the frame in which layers are sampled: other noise.
+  const CompiledScene layers =
+      compile(load_scene(SUNDOG_SOURCE_DIR "/tests/support/every_feature/layers.json"));
+  const KernelConfig layered = make_kernel_config(layers, device);
+  CHECK(general_config(layers, device).defines.at("HAS_UV") == layered.defines.at("HAS_UV"));
+  KernelConfig with_coordinates = layered;
+  with_coordinates.defines.at("HAS_UV") = "1";
+  CHECK_FALSE(stands_in(with_coordinates, layered));
 }
 
 TEST_CASE("a session renders frames to their end, and draws between them") {
