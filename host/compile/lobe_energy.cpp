@@ -30,9 +30,33 @@ dvec3 visible_normal(const dvec3& wo, double alpha, double u, double v) {
   return glm::normalize(dvec3(alpha * h.x, alpha * h.y, std::max(h.z, 1e-6)));
 }
 
-constexpr int steps = 24;
+// Places of a Fibonacci lattice, which is as even along the sum of its axes as along each: edges where light
+// begins to be sent through cut no whole row of it.
+constexpr int draws = 377, lattice_turn = 233;
 
-double cosine_of(u32 column) { return std::max(double(column) / (LOBE_STEPS - 1), 0.01); }
+// What white lobes are let to lose, so that none returns more than all light between the tables' places.
+constexpr double gain_margin = 0.0015, glass_margin = 0.005;
+
+dvec3 drawn_normal(const dvec3& wo, double alpha, int i) {
+  return visible_normal(wo, alpha, double(i * lattice_turn % draws) / draws, (i + 0.5) / draws);
+}
+
+double alpha_of(u32 row, u32 rows) {
+  const double root = double(row) / (rows - 1);
+  return std::max(root * root, double(LEAST_LOBE_ALPHA));
+}
+
+double cosine_of(u32 column, u32 columns, double alpha) {
+  return std::clamp(LOBE_COSINE(double(column) / (columns - 1), alpha), 1e-6, 1.0);
+}
+
+/// Between the columns of a row of the tables, as kernels read it.
+template <typename Row>
+double in_row(const Row& row, u32 columns, double cosine, double alpha) {
+  const double x = LOBE_COLUMN(cosine, alpha) * (columns - 1);
+  const u32 left = std::min(static_cast<u32>(x), columns - 2);
+  return std::lerp(double(row[left]), double(row[left + 1]), x - left);
+}
 
 /// Light that comes from the cosine `from` and the part of it that is sent on.
 struct Sent {
@@ -44,58 +68,49 @@ std::vector<Sent> sent_to(double cosine, double alpha) {
   const dvec3 wo(std::sqrt(1 - cosine * cosine), 0, cosine);
   const double lambda_o = smith_lambda(cosine, alpha);
   std::vector<Sent> sent;
-  for (int i = 0; i < steps; ++i)
-    for (int j = 0; j < steps; ++j) {
-      const dvec3 h = visible_normal(wo, alpha, (i + 0.5) / steps, (j + 0.5) / steps);
-      const double out = (2 * glm::dot(wo, h) * h - wo).z;
-      if (out > 0) sent.push_back({out, (1 + lambda_o) / (1 + lambda_o + smith_lambda(out, alpha))});
-    }
+  for (int i = 0; i < draws; ++i) {
+    const dvec3 h = drawn_normal(wo, alpha, i);
+    const double out = (2 * glm::dot(wo, h) * h - wo).z;
+    if (out > 0) sent.push_back({out, (1 + lambda_o) / (1 + lambda_o + smith_lambda(out, alpha))});
+  }
   return sent;
 }
 
 double energy(double cosine, double alpha) {
   double sum = 0;
   for (const Sent& one : sent_to(cosine, alpha)) sum += one.part;
-  return sum / (steps * steps);
+  return sum / draws;
 }
 
 using Row = std::array<double, LOBE_STEPS>;
 
-double gain_at(const Row& gains, double cosine) {
-  const double x = cosine * (LOBE_STEPS - 1);
-  const auto left = std::min(static_cast<std::size_t>(x), std::size_t{LOBE_STEPS - 2});
-  return std::lerp(gains[left], gains[left + 1], x - double(left));
-}
-
 Row gains_of(double alpha) {
   std::array<std::vector<Sent>, LOBE_STEPS> sent;
-  for (u32 column = 0; column < LOBE_STEPS; ++column) sent[column] = sent_to(cosine_of(column), alpha);
+  for (u32 column = 0; column < LOBE_STEPS; ++column)
+    sent[column] = sent_to(cosine_of(column, LOBE_STEPS, alpha), alpha);
   Row gains;
   gains.fill(1);
   for (int round = 0; round < 12; ++round) {
     Row next;
     for (u32 column = 0; column < LOBE_STEPS; ++column) {
       double sum = 0;
-      for (const Sent& one : sent[column]) sum += one.part * gain_at(gains, one.from);
-      next[column] = std::sqrt(gains[column] * (steps * steps) / sum);
+      for (const Sent& one : sent[column]) sum += one.part * in_row(gains, LOBE_STEPS, one.from, alpha);
+      next[column] = std::sqrt(gains[column] * draws / sum);
     }
     gains = next;
   }
+  for (double& gain : gains) gain *= std::sqrt(1 - gain_margin);
   return gains;
 }
 
 void add_gains(std::vector<float>& table) {
-  const auto alpha_of = [](u32 row) { return double(row) / (LOBE_STEPS - 1); };
   table.resize(2 * table.size());
   tbb::parallel_for(0u, LOBE_STEPS, [&](u32 row) {
-    const Row of_row = gains_of(alpha_of(row));
+    const Row of_row = gains_of(alpha_of(row, LOBE_STEPS));
     std::copy(of_row.begin(), of_row.end(),
               table.begin() + static_cast<std::ptrdiff_t>(LOBE_GAINS + row * LOBE_STEPS));
   });
 }
-
-// Of dielectrics: the numbers of a facet along an axis.
-constexpr int glass_draws = 20;
 
 /// Fresnel's reflectance at the cosine c; eta: the index behind over that before. `bent`: the cosine behind.
 double reflectance(double c, double eta, double& bent) {
@@ -112,27 +127,34 @@ double glass_energy(double cosine, double alpha, double eta) {
   const dvec3 wo(std::sqrt(1 - cosine * cosine), 0, cosine);
   const double seen = 1 + smith_lambda(cosine, alpha);
   double sum = 0;
-  for (int i = 0; i < glass_draws; ++i)
-    for (int j = 0; j < glass_draws; ++j) {
-      const dvec3 h = visible_normal(wo, alpha, (i + 0.5) / glass_draws, (j + 0.5) / glass_draws);
-      const double c = std::clamp(glm::dot(wo, h), 0.0, 1.0);
-      double bent = 0;
-      const double f = reflectance(c, eta, bent);
-      const double out = (2 * c * h - wo).z, through = ((c / eta - bent) * h - wo / eta).z;
-      if (out > 0) sum += f * seen / (seen + smith_lambda(out, alpha));
-      if (f < 1 && through < 0) sum += (1 - f) * seen / (seen + smith_lambda(through, alpha));
-    }
-  return sum / (glass_draws * glass_draws);
+  for (int i = 0; i < draws; ++i) {
+    const dvec3 h = drawn_normal(wo, alpha, i);
+    const double c = std::clamp(glm::dot(wo, h), 0.0, 1.0);
+    double bent = 0;
+    const double f = reflectance(c, eta, bent);
+    const double out = (2 * c * h - wo).z, through = ((c / eta - bent) * h - wo / eta).z;
+    if (out > 0) sum += f * seen / (seen + smith_lambda(out, alpha));
+    if (f < 1 && through < 0) sum += (1 - f) * seen / (seen + smith_lambda(through, alpha));
+  }
+  return sum / draws;
 }
 
-/// The mean over directions, by their cosine, of 1 minus values at even cosines.
-double mean_lost(const float* values) {
+/// The mean over directions, by their cosine, of 1 minus a row's values: more places at small cosines.
+double mean_lost(const float* row, double alpha) {
+  constexpr int places = 256;
   double sum = 0;
-  for (u32 i = 0; i + 1 < GLASS_STEPS; ++i) {
-    const double a = double(i) / (GLASS_STEPS - 1), b = double(i + 1) / (GLASS_STEPS - 1);
-    sum += (b - a) * ((1 - double(values[i])) * (2 * a + b) + (1 - double(values[i + 1])) * (a + 2 * b)) / 6;
+  for (int i = 0; i < places; ++i) {
+    const double s = (i + 0.5) / places, cosine = s * s * s;
+    sum += (1 - in_row(row, GLASS_STEPS, cosine, alpha)) * 2 * cosine * 3 * s * s;
   }
-  return std::max(2 * sum, 0.0);
+  return std::max(sum / places, 0.0);
+}
+
+/// Of the thicker medium, 1 - 1 / eta. Interfaces between equal indices are none: what is nearly so is
+/// computed a little beside.
+double less_of(u32 index) {
+  const double root = double(index) / (GLASS_INDICES - 1);
+  return std::max(double(GLASS_REACH) * root * root, 1e-3);
 }
 
 /// The part of even light that enters the thicker medium.
@@ -148,26 +170,26 @@ double mean_entering(double eta) {
 /// What is lost at the first meeting with a facet, in the mean, and where it goes.
 void add_further(std::vector<float>& table) {
   table.resize(GLASS_LOST + GLASS_INDICES * 2 * GLASS_STEPS);
-  for (u32 i = 0; i < GLASS_INDICES * 2 * GLASS_STEPS; ++i)
-    table[GLASS_LOST + i] = static_cast<float>(mean_lost(table.data() + LOBE_GLASS + i * GLASS_STEPS));
-  for (u32 i = 0; i < GLASS_INDICES * GLASS_STEPS; ++i) {
-    const u32 index = i / GLASS_STEPS;
-    const double less = std::max(double(GLASS_REACH) * index / (GLASS_INDICES - 1), 1e-3);
-    table[GLASS_THROUGH + i] = static_cast<float>(mean_entering(1 / (1 - less)));
+  for (u32 i = 0; i < GLASS_INDICES * 2 * GLASS_STEPS; ++i) {
+    const double alpha = alpha_of(i % GLASS_STEPS, GLASS_STEPS);
+    const double lost = mean_lost(table.data() + LOBE_GLASS + i * GLASS_STEPS, alpha);
+    table[GLASS_LOST + i] = static_cast<float>(lost / (alpha * alpha));
   }
+  for (u32 i = 0; i < GLASS_INDICES * GLASS_STEPS; ++i)
+    table[GLASS_THROUGH + i] = static_cast<float>(mean_entering(1 / (1 - less_of(i / GLASS_STEPS))));
 }
 
 void add_glass(std::vector<float>& table) {
   table.resize(LOBE_GLASS + GLASS_INDICES * 2 * GLASS_STEPS * GLASS_STEPS);
   tbb::parallel_for(0u, GLASS_INDICES * 2 * GLASS_STEPS, [&](u32 i) {
     const u32 index = i / (2 * GLASS_STEPS), side = i / GLASS_STEPS % 2, row = i % GLASS_STEPS;
-    // Interfaces between equal indices are none: what is nearly so is computed a little beside.
-    const double less = std::max(double(GLASS_REACH) * index / (GLASS_INDICES - 1), 1e-3);
-    const double eta = side == 0 ? 1 / (1 - less) : 1 - less;
+    const double less = less_of(index), eta = side == 0 ? 1 / (1 - less) : 1 - less;
+    const double alpha = alpha_of(row, GLASS_STEPS);
     for (u32 column = 0; column < GLASS_STEPS; ++column) {
-      const double cosine = std::max(double(column) / (GLASS_STEPS - 1), 0.01);
+      const double cosine = cosine_of(column, GLASS_STEPS, alpha);
+      const double lost = 1 - glass_energy(cosine, alpha, eta);
       table[LOBE_GLASS + i * GLASS_STEPS + column] =
-          static_cast<float>(glass_energy(cosine, double(row) / (GLASS_STEPS - 1), eta));
+          static_cast<float>(1 - std::max(lost - glass_margin, lost / 2));
     }
   });
 }
@@ -176,10 +198,11 @@ void add_glass(std::vector<float>& table) {
 
 std::vector<float> make_lobe_energy(LobeTables wanted) {
   std::vector<float> table;
-  const auto alpha_of = [](u32 row) { return double(row) / (LOBE_STEPS - 1); };
-  for (u32 row = 0; row < LOBE_STEPS; ++row)
+  for (u32 row = 0; row < LOBE_STEPS; ++row) {
+    const double alpha = alpha_of(row, LOBE_STEPS);
     for (u32 column = 0; column < LOBE_STEPS; ++column)
-      table.push_back(static_cast<float>(energy(cosine_of(column), alpha_of(row))));
+      table.push_back(static_cast<float>(energy(cosine_of(column, LOBE_STEPS, alpha), alpha)));
+  }
   if (wanted.gains) add_gains(table);
   if (wanted.glass) {
     add_glass(table);

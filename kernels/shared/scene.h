@@ -27,7 +27,7 @@ SUNDOG_SHARED_BEGIN
 #define LOBE_GAINS (LOBE_STEPS * LOBE_STEPS)  // where the second begins
 #define LOBE_GLASS (2u * LOBE_GAINS)          // where the one of dielectrics begins
 #define GLASS_STEPS 20u                       // of that one along alpha and along the cosine
-#define GLASS_INDICES 10u                     // and along 1 - 1 / eta, from 0 to GLASS_REACH
+#define GLASS_INDICES 16u                     // and along the root of 1 - 1 / eta, from 0 to GLASS_REACH
 #define GLASS_REACH 0.75f
 
 // 144 bytes. Each colour is already multiplied by its coefficient.

@@ -13,7 +13,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr int facet_draws = 20;  // of facets, along each axis
+constexpr int facet_draws = 610, lattice_turn = 377;  // a Fibonacci lattice of facets
 
 double squared(double x) { return x * x; }
 
@@ -48,13 +48,13 @@ struct SentLight {
 std::vector<SentLight> light_sent_to(const dvec3& wo, const FacetWidths& a) {
   std::vector<SentLight> sent;
   const double seen = 1 + hidden_by(wo, a);
-  for (int i = 0; i < facet_draws; ++i)
-    for (int j = 0; j < facet_draws; ++j) {
-      const dvec3 h = facet_seen_from(wo, a, (i + 0.5) / facet_draws, (j + 0.5) / facet_draws);
-      const double c = std::clamp(glm::dot(wo, h), 0.0, 1.0);
-      const dvec3 wi = 2 * c * h - wo;
-      if (wi.z > 0) sent.push_back({wi, seen / (seen + hidden_by(wi, a)), c});
-    }
+  for (int i = 0; i < facet_draws; ++i) {
+    const double u = double(i * lattice_turn % facet_draws) / facet_draws;
+    const dvec3 h = facet_seen_from(wo, a, u, (i + 0.5) / facet_draws);
+    const double c = std::clamp(glm::dot(wo, h), 0.0, 1.0);
+    const dvec3 wi = 2 * c * h - wo;
+    if (wi.z > 0) sent.push_back({wi, seen / (seen + hidden_by(wi, a)), c});
+  }
   return sent;
 }
 
@@ -70,7 +70,7 @@ double turn_of_row(std::size_t row) { return std::acos(std::sqrt(double(row) / (
 double white_returned(const FacetGains& gains, const dvec3& wo, const std::vector<SentLight>& sent) {
   double sum = 0;
   for (const SentLight& one : sent) sum += one.part * gain_for(gains, one.from);
-  return sum * gain_for(gains, wo) / (facet_draws * facet_draws);
+  return sum * gain_for(gains, wo) / facet_draws;
 }
 
 }  // namespace
@@ -111,7 +111,7 @@ FacetAlbedo facet_albedo(const FacetWidths& widths, const FacetGains& gains, con
         const double f = interface_reflects(one.cosine, interface);
         sum += one.part * f * (1 + f * (gain_o * gain_for(gains, one.from) - 1));
       }
-      albedo.of_interface[i] = std::max(albedo.of_interface[i], sum / (facet_draws * facet_draws));
+      albedo.of_interface[i] = std::max(albedo.of_interface[i], sum / facet_draws);
       most[i] = std::max(most[i], white_returned(gains, wo, sent));
     }
   });

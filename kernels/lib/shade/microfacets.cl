@@ -22,11 +22,12 @@ typedef struct FurtherLight {
 
 static inline FurtherLight find_further(const Scene* scene, REAL eta, REAL cosine, REAL alpha, MASK glass) {
   FurtherLight further;
-  const REAL thick = select(1.0f / eta, eta, MASK_OF(eta > 1.0f)), least = (REAL)(1e-9f);
+  const REAL thick = select(1.0f / eta, eta, MASK_OF(eta > 1.0f)), least = (REAL)(1e-3f),
+             area = real_max(alpha * alpha, (REAL)(1e-8f));
   further.lost = real_max(1.0f - glass_value(scene, eta, cosine, alpha, glass), (REAL)(0.0f));
-  const REAL thin_mean = real_max(glass_row(scene, GLASS_LOST, 2u, thick, alpha, glass), least);
+  const REAL thin_mean = area * real_max(glass_row(scene, GLASS_LOST, 2u, thick, alpha, glass), least);
   const REAL thick_mean =
-      real_max(glass_row(scene, GLASS_LOST + GLASS_STEPS, 2u, thick, alpha, glass), least);
+      area * real_max(glass_row(scene, GLASS_LOST + GLASS_STEPS, 2u, thick, alpha, glass), least);
   const REAL back = thin_mean / (thick_mean * thick * thick);
   const REAL through = real_min(glass_row(scene, GLASS_THROUGH, 1u, thick, alpha, glass), 1.0f / back);
   const MASK from_thin = MASK_OF(eta > 1.0f);

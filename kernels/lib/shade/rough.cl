@@ -7,14 +7,21 @@
 #include "shared/lobe_energy.h"
 
 #if HAS_ROUGH || HAS_LAYERS
-// One of the tables that host/compile/lobe_energy.h makes, by alpha and then by the cosine c to the normal;
-// `first` is its first value's index. 1 elsewhere than in `lanes`.
+// Where the tables that host/compile/lobe_energy.h makes have a lobe's width alpha and a cosine c to the
+// normal, from 0 to 1.
+static inline float2 lobe_place(float c, float alpha) {
+  const float a = clamp(alpha, LEAST_LOBE_ALPHA, 1.0f), x = clamp(c, 0.0f, 1.0f);
+  return (float2)(LOBE_COLUMN(x, a), sqrt(a));
+}
+
+// One of these tables, by alpha and then by the cosine c; `first` is its first value's index. 1 elsewhere
+// than in `lanes`.
 static inline REAL lobe_energy_at(const Scene* scene, u32 first, REAL c, REAL alpha, MASK lanes) {
   REAL energy = (REAL)(1.0f);
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    const float x = clamp(REAL_LANE(c, i), 0.0f, 1.0f) * (LOBE_STEPS - 1u),
-                y = clamp(REAL_LANE(alpha, i), 0.0f, 1.0f) * (LOBE_STEPS - 1u);
+    const float2 place = lobe_place(REAL_LANE(c, i), REAL_LANE(alpha, i)) * (LOBE_STEPS - 1u);
+    const float x = place.x, y = place.y;
     const u32 x0 = min((u32)x, LOBE_STEPS - 2u), y0 = min((u32)y, LOBE_STEPS - 2u);
     __global const float* at = scene->lobe_energy + first + y0 * LOBE_STEPS + x0;
     const float low = mix(at[0], at[1], x - (float)x0),
@@ -73,9 +80,9 @@ static inline REAL glass_value(const Scene* scene, REAL eta, REAL c, REAL alpha,
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     const float e = REAL_LANE(eta, i), less = 1.0f - fmin(e, 1.0f / e);
-    const float z = clamp(less / GLASS_REACH, 0.0f, 1.0f) * (GLASS_INDICES - 1u);
-    const float x = clamp(REAL_LANE(c, i), 0.0f, 1.0f) * (GLASS_STEPS - 1u),
-                y = clamp(REAL_LANE(alpha, i), 0.0f, 1.0f) * (GLASS_STEPS - 1u);
+    const float z = sqrt(clamp(less / GLASS_REACH, 0.0f, 1.0f)) * (GLASS_INDICES - 1u);
+    const float2 place = lobe_place(REAL_LANE(c, i), REAL_LANE(alpha, i)) * (GLASS_STEPS - 1u);
+    const float x = place.x, y = place.y;
     const u32 x0 = min((u32)x, GLASS_STEPS - 2u), y0 = min((u32)y, GLASS_STEPS - 2u),
               z0 = min((u32)z, GLASS_INDICES - 2u), side = e > 1.0f ? 0u : 1u;
     __global const float* at =
@@ -92,8 +99,8 @@ static inline REAL glass_row(const Scene* scene, u32 first, u32 rows, REAL thick
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     const float less = 1.0f - 1.0f / REAL_LANE(thick, i);
-    const float z = clamp(less / GLASS_REACH, 0.0f, 1.0f) * (GLASS_INDICES - 1u);
-    const float y = clamp(REAL_LANE(alpha, i), 0.0f, 1.0f) * (GLASS_STEPS - 1u);
+    const float z = sqrt(clamp(less / GLASS_REACH, 0.0f, 1.0f)) * (GLASS_INDICES - 1u);
+    const float y = lobe_place(1.0f, REAL_LANE(alpha, i)).y * (GLASS_STEPS - 1u);
     const u32 y0 = min((u32)y, GLASS_STEPS - 2u), z0 = min((u32)z, GLASS_INDICES - 2u);
     __global const float* at = scene->lobe_energy + first + z0 * rows * GLASS_STEPS + y0;
     __global const float* far = at + rows * GLASS_STEPS;

@@ -46,8 +46,10 @@ __kernel void run(__global const Material* materials, __global const Medium* med
   const REAL3 wo = real3(wo4.x, wo4.y, wo4.z), given = real3(wis[i].x, wis[i].y, wis[i].z);
   const Bsdfs bsdf = surface(materials, wo4.z < 0.0f);
   const Lobes lobes = make_lobes(&scene, &bsdf, wo, ALL_LANES);
-  // Roberts's sequence in three dimensions: even, and without a pattern of its own.
-  const float3 steps = 0.5f + (float)(i + 1u) * (float3)(0.81917251f, 0.67104361f, 0.54970048f), u = steps - floor(steps);
+  // Roberts's sequence in three dimensions: even, and without a pattern of its own. In integers, as few floats lie
+  // between large ones: numbers that are 0 too often draw lobes of small shares too often.
+  const uint3 turns = 0x80000000u + (i + 1u) * (uint3)(3518319155u, 2882110345u, 2360945575u);
+  const float3 u = convert_float3(turns >> 8) * (1.0f / 16777216.0f);
   const BsdfSamples s = sample_lobes(&scene, &bsdf, &lobes, wo, u.x, u.y, u.z, ALL_LANES);
   const bool draws = dot3(given, given) == 0.0f;
   REAL density = s.density;
@@ -115,8 +117,8 @@ class Tester {
     return lobes;
   }
 
-  std::vector<Lobe> draw(const Material& material, double index, const dvec3& wo) {
-    return look(material, index, wo, std::vector<dvec3>(count, dvec3(0)));
+  std::vector<Lobe> draw(const Material& material, double index, const dvec3& wo, u32 draws = count) {
+    return look(material, index, wo, std::vector<dvec3>(draws, dvec3(0)));
   }
 
  private:

@@ -5,14 +5,27 @@
 using namespace sundog;
 using namespace sundog::lobes;
 
-TEST_CASE("a white rough mirror returns all light at every roughness, a grey one no more than smooth") {
+namespace {
+
+/// At most all light but for the noise of the mean, and little less.
+void returns_all(const std::vector<Lobe>& drawn) {
+  double squares = 0;
+  const double mean = mean_weight(drawn);
+  for (const Lobe& one : drawn) squares += (one.value.x - mean) * (one.value.x - mean);
+  const double noise = std::sqrt(squares) / double(drawn.size());
+  CHECK(mean < 1.001 + noise);
+  CHECK(mean > 0.985 - noise);
+}
+
+}  // namespace
+
+TEST_CASE("a white rough mirror returns all light and no more, a grey one no more than smooth") {
   on_every_device([](const DeviceInfo& info) {
     Tester tester(info);
-    for (const double roughness : {0.02, 0.2, 0.4, 0.6, 0.8, 1.0})
-      for (const double cosine : {1.0, 0.6, 0.2}) {
+    for (const double roughness : {0.02, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0})
+      for (const double cosine : {1.0, 0.6, 0.2, 0.04}) {
         INFO(roughness << " at " << cosine);
-        CHECK(mean_weight(tester.draw(rough_metal(roughness), 1, at_cosine(cosine))) ==
-              Approx(1).epsilon(0.015));
+        returns_all(tester.draw(rough_metal(roughness), 1, at_cosine(cosine)));
         const double grey = mean_weight(tester.draw(rough_metal(roughness, 0.5f), 1, at_cosine(cosine)));
         CHECK(grey < 0.506);
         CHECK(grey > 0.3);
@@ -20,14 +33,15 @@ TEST_CASE("a white rough mirror returns all light at every roughness, a grey one
   });
 }
 
-TEST_CASE("white rough glass returns all light at every roughness and index, from either side") {
+TEST_CASE("white rough glass returns all light and no more at every roughness and index, from either side") {
   on_every_device([](const DeviceInfo& info) {
     Tester tester(info);
-    for (const double index : {1.2, 1.5, 2.4})
-      for (const double roughness : {0.1, 0.3, 0.6, 1.0})
-        for (const dvec3& wo : {at_cosine(0.9), at_cosine(0.4), -at_cosine(0.9), -at_cosine(0.5)}) {
-          INFO(index << ", " << roughness << " at " << wo.z);
-          CHECK(mean_weight(tester.draw(rough_glass(roughness), index, wo)) == Approx(1).epsilon(0.02));
+    for (const double index : {1.05, 1.2, 1.45, 3.5})
+      for (const double roughness : {0.03, 0.1, 0.2, 0.45, 1.0})
+        for (const double cosine : {0.9, 0.2, -0.9, -0.4}) {
+          INFO(index << ", " << roughness << " at " << cosine);
+          const dvec3 wo = cosine > 0 ? at_cosine(cosine) : -at_cosine(-cosine);
+          returns_all(tester.draw(rough_glass(roughness), index, wo, 16 * count));
         }
     Material tinted = rough_glass(0.8);
     tinted.transmission = {0.5f, 0.5f, 0.5f, 0};
