@@ -172,7 +172,7 @@ void add_further(std::vector<float>& table) {
   table.resize(GLASS_LOST + GLASS_INDICES * 2 * GLASS_STEPS);
   for (u32 i = 0; i < GLASS_INDICES * 2 * GLASS_STEPS; ++i) {
     const double alpha = alpha_of(i % GLASS_STEPS, GLASS_STEPS);
-    const double lost = mean_lost(table.data() + LOBE_GLASS + i * GLASS_STEPS, alpha);
+    const double lost = mean_lost(&table[LOBE_GLASS + i * GLASS_STEPS], alpha);
     table[GLASS_LOST + i] = static_cast<float>(lost / (alpha * alpha));
   }
   for (u32 i = 0; i < GLASS_INDICES * GLASS_STEPS; ++i)
