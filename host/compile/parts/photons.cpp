@@ -156,6 +156,8 @@ bool may_be_inside(const Light& light, std::span<const Bounds> boxes, const Comp
   return is_camera_inside(middle_of(light.position), out.instances.rows(), boxes);
 }
 
+constexpr double least_radius = 1e-15;  // less is nothing as the square of a float
+
 }  // namespace
 
 void add_photon_targets(const SceneDescription& scene, std::span<const Bounds> boxes, CompiledScene& out) {
@@ -168,8 +170,9 @@ void add_photon_targets(const SceneDescription& scene, std::span<const Bounds> b
   out.photon_lights = std::move(shares);
   out.photon_targets = share_balls(balls);
   out.photons_by.count = static_cast<u32>(scene.render.photons);
-  out.photons_by.radius =
+  const double radius =
       scene.render.photon_radius > 0 ? scene.render.photon_radius : usual_radius(balls, scene.render.photons);
+  out.photons_by.radius = std::max(radius, least_radius);
   out.photons_by.lights_inside =
       std::ranges::any_of(out.lights, [&](const Light& light) { return may_be_inside(light, boxes, out); });
   out.features.caustics = true;

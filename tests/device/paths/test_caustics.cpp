@@ -214,6 +214,11 @@ TEST_CASE("a picture with photons has the same bits however its work is cut, and
   SceneDescription growing = scene;
   growing.render.sampling.progressive = true;
   CHECK(same_bits(scenes::render_on(device, growing).image, whole));
+  if (device.max_sub_devices > 1) {
+    DeviceInfo part = device;
+    part.sub_units = 1;
+    CHECK(same_bits(render(compile(scene), {part, part}, options).image, whole));
+  }
   const TemporaryFolder folder;
   std::atomic<bool> stop{false};
   options.resume = folder.path() / "frame.checkpoint";
@@ -225,4 +230,15 @@ TEST_CASE("a picture with photons has the same bits however its work is cut, and
   options.stop = nullptr;
   options.on_progress = {};
   CHECK(same_bits(scenes::render_on(device, scene, options).image, whole));
+}
+
+TEST_CASE("photons of a radius next to nothing, or wider than the scene, leave no sample out") {
+  SceneDescription scene = ball_scene(of_point, 0, 4);
+  scene.render.photons = 64;
+  const DeviceInfo device = test_devices().front();
+  for (const double radius : {1e-300, 1e-30, 1e-15, 1e15}) {
+    CAPTURE(radius);
+    scene.render.photon_radius = radius;
+    CHECK(scenes::render_on(device, scene).counts[COUNT_NON_FINITE] == 0);
+  }
 }
