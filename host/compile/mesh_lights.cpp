@@ -73,7 +73,7 @@ void add_mesh_lights(const SceneDescription& scene, const std::vector<PlacedMesh
     const auto* shape = std::get_if<MeshShape>(&object.shape);
     if (!shape || object.light >= 0) continue;
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(shape->mesh)];
-    if (object.moves_by != dvec3(0)) continue;  // met, not chosen
+    if (object.moves()) continue;  // met, not chosen
     if (mesh.triangles.size() > most_shining || !shines_somewhere(scene, object, mesh)) continue;
     first[i] = static_cast<u32>(out.lights.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)

@@ -262,6 +262,16 @@ using Shape = std::variant<MeshShape, SOLIDS(SUNDOG_SHAPE_TYPE) FieldShape>;
 #undef SUNDOG_SHAPE_TYPE
 static_assert(std::variant_size_v<Shape> == SHAPE_COUNT);
 
+/// A turn about a point, and growth from it, while the shutter is open: all as in the space around, `frame`.
+struct TurnDescription {
+  glm::dmat3 frame{1};  // from there to the world
+  dvec3 axis{0, 1, 0};  // there
+  double degrees = 0;
+  dvec3 about{0};     // in the world, before any move
+  double growth = 1;  // how many times its first size when the shutter closes
+  dvec3 moves_by{0};  // how far it moves within this turn, as in Object
+};
+
 /// One placed thing. Groups are already flattened: the transform is the product of the group's and the
 /// object's.
 struct Object {
@@ -269,9 +279,11 @@ struct Object {
   Shape shape = SphereShape{};
   int material = -1;  // -1: the mesh's own materials
   dmat4 world_from_object{1};
-  std::string place;  // JSON pointer, for messages
-  int light = -1;     // index of the light that it shows; -1: none
-  dvec3 moves_by{0};  // how far it moves, straight on, while the shutter is open
+  std::string place;                     // JSON pointer, for messages
+  int light = -1;                        // index of the light that it shows; -1: none
+  dvec3 moves_by{0};                     // how far it moves, straight on, while the shutter is open
+  std::vector<TurnDescription> turns{};  // before that; the outermost group's first
+  bool moves() const { return moves_by != dvec3(0) || !turns.empty(); }
 };
 
 /// What lies between all things: light over a distance d keeps exp(-density d) of its own and gets the rest

@@ -99,6 +99,18 @@ typedef struct Instance {
 } Instance;
 SUNDOG_SHARED_SIZE(Instance, 128)
 
+// 80 bytes: how an instance turns about a point, grows from it and then moves on while the shutter is open,
+// seen in the world. After the part a of the turn, points p from there are where
+// p + sin(a) S p + (1 - cos(a)) S S p was (Rodrigues). An instance has a row for its own turn and for that of
+// each group around it, the outermost first; `moves`.w is one more than the index of the first, 0 without.
+typedef struct Turn {
+  float4 spin[3];  // rows of S; w: the coordinates of the point
+  float4 turn;     // in whole turns; growth: 1 less than the final size; how many rows follow; the greatest
+                   // coordinate that positions near the object round at
+  float4 moves;    // xyz: how far what it turns moves within
+} Turn;
+SUNDOG_SHARED_SIZE(Turn, 80)
+
 #define NO_MATERIAL 0xFFFFFFFFu
 #define NO_LIGHT 0xFFFFFFFFu
 #define INSTANCE_IDENTITY 1u   // object_from_world is the identity

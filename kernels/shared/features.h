@@ -36,6 +36,7 @@
   FEATURE(bool, HAS_LENS, lens)                     /* the camera has a lens */                         \
   FEATURE(bool, HAS_CAMERA_MOTION, camera_motion)   /* the camera moves while the shutter is open */    \
   FEATURE(bool, HAS_OBJECT_MOTION, object_motion)   /* some object does */                              \
+  FEATURE(bool, HAS_TURNS, turns)                   /* some object turns or grows meanwhile */          \
   FEATURE(bool, HAS_EMISSION, emission)             /* some material shines by itself */                \
   FEATURE(bool, HAS_MAPS, maps)                     /* some material has a texture, emission or opacity */ \
   FEATURE(bool, HAS_RELIEF, relief)                 /* some material has a normal or height map */      \

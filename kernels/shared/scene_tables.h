@@ -21,6 +21,7 @@
   TABLE(TriangleBlock, TriangleBlock, blocks, "triangle blocks")         \
   TABLE(Instance, Instance, instances, "instances")                      \
   TABLE(float4, float4, moves, "moves of instances")                     \
+  TABLE(Turn, Turn, turns, "turns of instances")                         \
   TABLE(TriangleShading, TriangleShading, triangles, "triangles")        \
   TABLE(Vertex, Vertex, vertices, "vertices")                            \
   TABLE(Material, Material, materials, "materials")                      \

@@ -1,6 +1,6 @@
 // Parts that rays meet: meshes with their coordinates for textures, and instances.
-#include "compile/instances.h"
 #include "compile/parts/parts.h"
+#include "compile/placing/instances.h"
 #include "compile/textures.h"
 #include "compile/touching/touching.h"
 
@@ -60,6 +60,9 @@ ContentKey instances_key(const SceneDescription& scene, const MeshesPart& meshes
   key.add(meshes.key).add(surfaces.default_material).add(origin).add(scene.objects.size());
   for (const Object& object : scene.objects) {
     key.add(object.shape).add(object.material).add(object.world_from_object).add(object.moves_by);
+    key.add(object.turns.size());
+    for (const auto& [frame, axis, degrees, about, growth, moves_by] : object.turns)
+      key.add_each(frame, axis, degrees, about, growth, moves_by);
     if (std::holds_alternative<PlaneShape>(object.shape)) key.add(place_of_plane(scene, object, origin));
   }
   for (const SdfDescription& field : scene.fields) key.add(field.lower).add(field.upper);

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "compile/instance_bounds.h"
-#include "compile/instances.h"
+#include "compile/placing/instance_bounds.h"
+#include "compile/placing/instances.h"
 #include "scene/integrators.h"
 #include "scene/lamps.h"
 

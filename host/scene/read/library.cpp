@@ -89,6 +89,7 @@ void ModelLibrary::place(const Parts& parts, const Placement& placement) {
       part.name = fmt::format("{}: {}", placement.name, part.name);
     part.place = placement.place;
     part.moves_by = placement.moves_by;
+    part.turns = placement.turns;
     scene_.objects.push_back(std::move(part));
   }
 }

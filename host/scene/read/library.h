@@ -19,6 +19,8 @@ struct Placement {
   int material = -1;  // -1: the model's own
   std::string name, place;
   dvec3 moves_by{0};
+  std::vector<TurnDescription> turns;
+  bool turns_about_middle = false;  // its own turn does, the last one
 };
 
 class ModelLibrary {

@@ -18,6 +18,7 @@
 #include "scene/lamps.h"
 #include "scene/procedural/procedural.h"
 #include "scene/read/library.h"
+#include "scene/read/motion.h"
 #include "scene/read/parts.h"
 #include "scene/read/surfaces.h"
 #include "scene/read/textures.h"
@@ -203,24 +204,28 @@ class SceneReader {
       placement.world_from_object = parent.world_from_object * read_transform(*transform);
       check_transform(placement.world_from_object, *transform);
     }
-    if (const auto moves = object.find("moves_by"))
-      placement.moves_by += glm::dmat3(parent.world_from_object) * moves->vec3();
+    read_motion(object, parent.world_from_object, placement);
     return placement;
   }
 
   void place_solid(JsonObject& object, const std::string& type, const Placement& placement) {
     if (placement.material < 0) object.at("material", "the name of a material, here or in a group around it");
     const PlacedShape solid = read_solid(object, type);
-    scene_.objects.push_back({placement.name, solid.shape, placement.material,
-                              placement.world_from_object * solid.placed, placement.place, -1,
-                              placement.moves_by});
+    Placement placed = placement;
+    placed.world_from_object = placement.world_from_object * solid.placed;
+    turn_about_middle(placed.world_from_object, placed);
+    add_object(solid.shape, placed);
     check_transform(scene_.objects.back().world_from_object, object.value());
   }
 
   void place_field(JsonObject& object, int field, const Placement& placement) {
     if (placement.material < 0) object.at("material", "the name of a material, here or in a group around it");
-    scene_.objects.push_back({placement.name, FieldShape{field}, placement.material,
-                              placement.world_from_object, placement.place, -1, placement.moves_by});
+    add_object(FieldShape{field}, placement);
+  }
+
+  void add_object(const Shape& shape, const Placement& placement) {
+    scene_.objects.push_back({placement.name, shape, placement.material, placement.world_from_object,
+                              placement.place, -1, placement.moves_by, placement.turns});
   }
 
   const JsonValue& root_;

@@ -1,13 +1,23 @@
-// Things that move straight on while the shutter is open: a ray of time t, in [0, 1), meets each where it is
-// then. The world is shifted about the ray, by a thing's row of the table `moves` times t, to where the thing
-// was when the shutter opened; its transform, bounds in its own space and normals stay as they are.
+// Things that move while the shutter is open: a ray of time t, in [0, 1), meets each where it is then. The
+// world is moved about the ray to where the thing was when the shutter opened: shifted by its row of the
+// table `moves` times t, then turned and shrunk about points by its rows of `turns`. Its transform and bounds
+// in its own space stay as they are.
 #ifndef SUNDOG_LIB_MOTION_CL
 #define SUNDOG_LIB_MOTION_CL
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
+#include "lib/core/turns.cl"
 
-#if HAS_OBJECT_MOTION
 // Points of the world at these times where instance `index` would have had them when the shutter opened.
+#if HAS_TURNS
+static inline REAL3 still_points(const Scene* scene, u32 index, REAL3 p, REAL time) {
+  return unturned_points(scene->turns, scene->moves[index], p, time);
+}
+static inline float3 still_point(const Scene* scene, u32 index, float3 p, float time) {
+  const REAL3 still = still_points(scene, index, all3(p), (REAL)(time));
+  return get3(&still, 0);
+}
+#elif HAS_OBJECT_MOTION
 static inline REAL3 still_points(const Scene* scene, u32 index, REAL3 p, REAL time) {
   return along3(p, -time, all3(scene->moves[index].xyz));
 }
@@ -17,6 +27,43 @@ static inline float3 still_point(const Scene* scene, u32 index, float3 p, float 
 #else
 static inline REAL3 still_points(const Scene* scene, u32 index, REAL3 p, REAL time) { return p; }
 static inline float3 still_point(const Scene* scene, u32 index, float3 p, float time) { return p; }
+#endif
+
+// The same for directions; and back, from when the shutter opened to these times, for normals and for vectors
+// along surfaces. How many times its first size the instance then has, and the greatest coordinate that its
+// points round at.
+#if HAS_TURNS
+static inline REAL3 still_vectors(const Scene* scene, u32 index, REAL3 d, REAL time) {
+  return unturned_vectors(scene->turns, scene->moves[index], d, time);
+}
+static inline float3 still_vector(const Scene* scene, u32 index, float3 d, float time) {
+  const REAL3 still = still_vectors(scene, index, all3(d), (REAL)(time));
+  return get3(&still, 0);
+}
+static inline REAL3 moved_normals(const Scene* scene, u32 index, REAL3 n, REAL time) {
+  return turned_normals(scene->turns, scene->moves[index], n, time);
+}
+static inline float3 moved_normal(const Scene* scene, u32 index, float3 n, float time) {
+  const REAL3 moved = moved_normals(scene, index, all3(n), (REAL)(time));
+  return get3(&moved, 0);
+}
+static inline REAL3 moved_vectors(const Scene* scene, u32 index, REAL3 a, REAL time) {
+  return turned_vectors(scene->turns, scene->moves[index], a, time);
+}
+static inline REAL moved_size(const Scene* scene, u32 index, REAL time) {
+  return turned_size(scene->turns, scene->moves[index], time);
+}
+static inline float moved_extent(const Scene* scene, u32 index) {
+  return turned_extent(scene->turns, scene->moves[index]);
+}
+#else
+static inline REAL3 still_vectors(const Scene* scene, u32 index, REAL3 d, REAL time) { return d; }
+static inline float3 still_vector(const Scene* scene, u32 index, float3 d, float time) { return d; }
+static inline REAL3 moved_normals(const Scene* scene, u32 index, REAL3 n, REAL time) { return n; }
+static inline float3 moved_normal(const Scene* scene, u32 index, float3 n, float time) { return n; }
+static inline REAL3 moved_vectors(const Scene* scene, u32 index, REAL3 a, REAL time) { return a; }
+static inline REAL moved_size(const Scene* scene, u32 index, REAL time) { return (REAL)(1.0f); }
+static inline float moved_extent(const Scene* scene, u32 index) { return 0.0f; }
 #endif
 
 #endif

@@ -16,9 +16,10 @@ NEVER_INLINE REAL field_openness(const Scene* scene, const SceneRays* rays, cons
     const float reach = scene->sdf_fields[scene->instances[index].root].occlusion_reach;
     const MASK mine = lanes & MASK_OF(hits->instance == (int)index);
     if (!(reach > 0.0f) || !any_lane(mine)) continue;
-    const REAL3 still = still_points(scene, index, rays->o, time_of_rays(rays));
+    const REAL time = time_of_rays(rays);
+    const REAL3 still = still_points(scene, index, rays->o, time);
     const REAL3 o = field_points(scene->instances + index, still),
-                d = object_vectors(scene->instances + index, rays->d);
+                d = object_vectors(scene->instances + index, still_vectors(scene, index, rays->d, time));
     const REAL value = sdf_openness(scene, scene->instances[index].root, along3(o, hits->t, d),
                                     unit3(hits->ng), reach, mine);
     open = select(open, value, mine);

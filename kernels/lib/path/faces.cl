@@ -2,6 +2,7 @@
 // A ray a lane.
 #ifndef SUNDOG_LIB_FACES_CL
 #define SUNDOG_LIB_FACES_CL
+#include "lib/core/motion.cl"
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
 #include "lib/trace/hits.cl"
@@ -26,7 +27,9 @@ static inline Faces hit_faces(const Scene* scene, REAL3 d, const Hits* hits, MAS
     const MASK mine = take_alike(hits->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
     if (!(instance->flags & INSTANCE_IDENTITY))
-      faces.outward = select3(faces.outward, world_normals(instance, hits->ng), mine);
+      faces.outward =
+          select3(faces.outward,
+                  moved_normals(scene, index, world_normals(instance, hits->ng), time_of_hits(hits)), mine);
     if (instance->material != NO_MATERIAL)
       faces.material = select(faces.material, (MASK)((int)instance->material), mine);
     else

@@ -50,10 +50,16 @@ static inline void set_search_times(const SceneRays* rays, FieldSearch* search) 
 static inline REAL3 search_origins(const Scene* scene, u32 index, const FieldSearch* search) {
   return still_points(scene, index, search->o, search->time);
 }
+static inline REAL3 search_directions(const Scene* scene, u32 index, const FieldSearch* search) {
+  return still_vectors(scene, index, search->d, search->time);
+}
 #else
 static inline void set_search_times(const SceneRays* rays, FieldSearch* search) {}
 static inline REAL3 search_origins(const Scene* scene, u32 index, const FieldSearch* search) {
   return search->o;
+}
+static inline REAL3 search_directions(const Scene* scene, u32 index, const FieldSearch* search) {
+  return search->d;
 }
 #endif
 
@@ -127,7 +133,7 @@ static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided
   __global const Instance* instance = scene->instances + index;
   MarchRays rays;
   rays.origin = field_points(instance, search_origins(scene, index, search));
-  rays.direction = object_vectors(instance, search->d);
+  rays.direction = object_vectors(instance, search_directions(scene, index, search));
   rays.t_min = search->t_min;
   rays.t_max = search->t_best;
   rays.footprint = search->footprint;
@@ -186,7 +192,7 @@ static inline void shade_lanes(const Scene* scene, u32 index, const FieldSearch*
   const MASK mine = MASK_OF(search->winner == (int)index);
   if (!any_lane(mine)) return;
   const REAL3 o = field_points(scene->instances + index, search_origins(scene, index, search)),
-              d = object_vectors(scene->instances + index, search->d);
+              d = object_vectors(scene->instances + index, search_directions(scene, index, search));
   const REAL3 normal = sdf_normal(scene, scene->instances[index].root, along3(o, search->t_best, d),
                                   search->threshold, mine, search->cut);
   // A normal must not contradict the side that the ray comes from: it is bent as far as the silhouette.

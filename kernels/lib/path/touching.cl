@@ -21,8 +21,9 @@ static inline float3 unit_normal(float3 n) {
 static inline float3 normal_of(const Hit* hit) { return (float3)(hit->ng_x, hit->ng_y, hit->ng_z); }
 
 // In world space, not normalised.
-static inline float3 outward_of(__global const Instance* restrict instances, const Hit* hit) {
-  return world_normal(instances + hit->instance, normal_of(hit));
+static inline float3 outward_of(const Scene* scene, const Hit* hit, float time) {
+  const float3 outward = world_normal(scene->instances + hit->instance, normal_of(hit));
+  return moved_normal(scene, hit->instance, outward, time);
 }
 
 // How far rounding may place a hit off its surface: `least` or what the size of the surface asks for. Twice
@@ -48,7 +49,7 @@ typedef struct Touching {
 static inline void find_touching(const Scene* scene, float3 o, float3 d, float t_min, const Hit* first,
                                  Touching* touching) {
   Stretch* met = &touching->met;
-  const float3 outward = outward_of(scene->instances, first), p = o + first->t * d;
+  const float3 outward = outward_of(scene, first, time_of_stretch(met)), p = o + first->t * d;
   const float least = fmax(greatest_component(o), greatest_component(p)) * 0x1p-19f;
   const float own = rounding_of(scene, first, outward, least);
   const float slope = fabs(dot(unit_normal(outward), d));
@@ -72,7 +73,7 @@ static inline void find_touching(const Scene* scene, float3 o, float3 d, float t
     const float from = touching->end;
     for (u32 i = 0; i < met->count; ++i) {
       const Hit* hit = &met->hits[i];
-      const float3 other = outward_of(scene->instances, hit);
+      const float3 other = outward_of(scene, hit, time_of_stretch(met));
       const float limit = fmax(own, rounding_of(scene, hit, other, least));
       const float steep = fmax(slope, fabs(dot(unit_normal(other), d)));
       if ((hit->t - from) * steep > (pass ? 0.5f : 1.25f) * limit) continue;
@@ -120,7 +121,7 @@ static inline Changes faces_of(const Scene* scene, const Stretch* met) {
     if (again || !(flags & MATERIAL_TRANSMITS)) continue;
     if (flags & MATERIAL_THIN)
       changes.thin |= 1u << i;
-    else if (dot(outward_of(scene->instances, hit), met->d) < 0.0f)
+    else if (dot(outward_of(scene, hit, time_of_stretch(met)), met->d) < 0.0f)
       changes.entered |= 1u << i;
     else
       changes.left |= 1u << i;
@@ -134,11 +135,13 @@ static inline void take_out_pairs(const Scene* scene, const Stretch* met, Change
   for (u32 facing = 2; facing-- > 0;)
     for (u32 entered = changes->entered; entered; entered &= entered - 1u) {
       const u32 i = lowest_bit(entered), medium = scene->materials[changes->material[i]].medium;
-      const float3 normal = unit_normal(outward_of(scene->instances, &met->hits[i]));
+      const float3 normal = unit_normal(outward_of(scene, &met->hits[i], time_of_stretch(met)));
       for (u32 left = changes->left; left; left &= left - 1u) {
         const u32 k = lowest_bit(left);
         if (scene->materials[changes->material[k]].medium != medium) continue;
-        if (facing && dot(normal, unit_normal(outward_of(scene->instances, &met->hits[k]))) > -0.9f) continue;
+        if (facing &&
+            dot(normal, unit_normal(outward_of(scene, &met->hits[k], time_of_stretch(met)))) > -0.9f)
+          continue;
         changes->entered &= ~(1u << i);
         changes->left &= ~(1u << k);
         break;
@@ -271,7 +274,7 @@ NEVER_INLINE float meet_touching(const Scene* scene, const SceneRays* rays, u32 
   *apart = touching.apart;
   seen->hit.t = first.t;
   set_hit(hits, i, &seen->hit);
-  const float3 outward = outward_of(scene->instances, &seen->hit);
+  const float3 outward = outward_of(scene, &seen->hit, REAL_LANE(time, i));
   set3(&faces->outward, i, outward);
   MASK_LANE(faces->entering, i) = dot(outward, get3(&rays->d, i)) < 0.0f ? -1 : 0;
   MASK_LANE(faces->material, i) = (int)seen->material;

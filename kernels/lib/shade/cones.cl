@@ -42,7 +42,7 @@ static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, 
                          ? triangle_curvatures(scene, s, mine)
                          : solid_curvatures(instance->shape, instance->parameters,
                                             points_of(scene, index, s, s->p), s->prim);
-    curvature = select(curvature, own * (1.0f / size), mine);
+    curvature = select(curvature, own * (1.0f / size) / moved_size(scene, index, time_of(s)), mine);
   }
   return select(-curvature, curvature, s->entering);
 }

@@ -46,20 +46,30 @@ static inline void set_surface_times(const Hits* hits, SurfaceInteractions* s) {
 static inline REAL3 points_of(const Scene* scene, u32 index, const SurfaceInteractions* s, REAL3 p) {
   return object_points(scene->instances + index, still_points(scene, index, p, s->time));
 }
+static inline REAL time_of(const SurfaceInteractions* s) { return s->time; }
 #else
 static inline void set_surface_times(const Hits* hits, SurfaceInteractions* s) {}
 static inline REAL3 points_of(const Scene* scene, u32 index, const SurfaceInteractions* s, REAL3 p) {
   return object_points(scene->instances + index, p);
 }
+static inline REAL time_of(const SurfaceInteractions* s) { return (REAL)(0.0f); }
 #endif
+
+// Directions of the world along such surfaces in the space of instance `index`, and its normals in the world.
+static inline REAL3 vectors_of(const Scene* scene, u32 index, const SurfaceInteractions* s, REAL3 a) {
+  return object_vectors(scene->instances + index, still_vectors(scene, index, a, time_of(s)));
+}
+static inline REAL3 normals_of(const Scene* scene, u32 index, const SurfaceInteractions* s, REAL3 n) {
+  return moved_normals(scene, index, world_normals(scene->instances + index, n), time_of(s));
+}
 
 static inline REAL greatest_size(REAL3 a) { return greatest3(real3(fabs(a.x), fabs(a.y), fabs(a.z))); }
 
 // How far from the surface a new ray must start: a few of the float's spacings at the magnitudes that made
 // the position (the idea of Waechter and Binder 2019, without their absolute threshold, so that a scene works
-// in any unit).
-static inline REAL offset_distance(REAL3 o, REAL3 p) {
-  return real_max(greatest_size(o), greatest_size(p)) * 0x1p-19f;
+// in any unit); `turned` is that of the point about which it was turned.
+static inline REAL offset_distance(REAL3 o, REAL3 p, REAL turned) {
+  return real_max(real_max(greatest_size(o), greatest_size(p)), turned) * 0x1p-19f;
 }
 
 // The same on triangles: corners that are far away round the hit as well, in the mesh's space. `normal` is
@@ -69,17 +79,17 @@ static inline REAL triangle_offset(REAL extent, REAL3 normal, REAL3 outward) {
   return extent * 0x1p-21f * greatest_size(normal) / nonzero(greatest_size(outward));
 }
 
-// Takes positions on a sphere, q in its own space, onto its surface by one Newton step; rounding of t is
-// largest for far origins.
-static inline REAL3 settle_on_sphere(__global const Instance* instance, REAL3 p, REAL3 q) {
-  const REAL3 gradient = world_normals(instance, q);
-  return along3(p, -0.5f * (dot3(q, q) - 1.0f) / dot3(gradient, gradient), gradient);
+// Takes the positions on a sphere onto its surface by one Newton step; rounding of t is largest for far
+// origins.
+static inline REAL3 settle_on_sphere(const Scene* scene, u32 index, const SurfaceInteractions* s) {
+  const REAL3 q = points_of(scene, index, s, s->p), gradient = normals_of(scene, index, s, q);
+  return along3(s->p, -0.5f * (dot3(q, q) - 1.0f) / dot3(gradient, gradient), gradient);
 }
 
 // Normals of the corners and their colours, interpolated, for the lanes of `lanes`, and the triangles'
 // extents. World space, unit.
-NEVER_INLINE REAL3 shading_normals(const Scene* scene, __global const Instance* instance, const Hits* hits,
-                                   MASK lanes, REAL3* color, REAL* extent) {
+NEVER_INLINE REAL3 shading_normals(const Scene* scene, u32 index, const Hits* hits, MASK lanes, REAL3* color,
+                                   REAL* extent) {
   REAL3 normal = hits->ng;
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
@@ -92,7 +102,8 @@ NEVER_INLINE REAL3 shading_normals(const Scene* scene, __global const Instance* 
     set3(&normal, i,
          w * (float3)(a.nx, a.ny, a.nz) + u * (float3)(b.nx, b.ny, b.nz) + v * (float3)(c.nx, c.ny, c.nz));
   }
-  return safe_unit3(world_normals(instance, normal));
+  normal = world_normals(scene->instances + index, normal);
+  return safe_unit3(moved_normals(scene, index, normal, time_of_hits(hits)));
 }
 
 // Shading normals `ns` of a mesh, turned against the rays; the geometric ones where they say nothing. One
@@ -176,27 +187,28 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
   s->medium = faces->medium;
   s->entering = faces->entering;
   set_surface_times(hits, s);
-  REAL extent = (REAL)(0.0f);
+  REAL extent = (REAL)(0.0f), turned = extent;
   REAL3 color = white;
   MASK on_field = NO_LANES;
   u32 index;
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(hits->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
+    turned = select(turned, (REAL)(moved_extent(scene, index)), mine);
     if (HAS_SPHERE && instance->shape == SHAPE_SPHERE)
-      s->p = select3(s->p, settle_on_sphere(instance, s->p, points_of(scene, index, s, s->p)), mine);
+      s->p = select3(s->p, settle_on_sphere(scene, index, s), mine);
     if (HAS_MESH && instance->shape == SHAPE_MESH) {
-      const REAL3 ns = shading_normals(scene, instance, hits, mine, &color, &extent);
+      const REAL3 ns = shading_normals(scene, index, hits, mine, &color, &extent);
       s->ns = select3(s->ns, facing_normals(ns, s->ng, faces->entering, d), mine);
     }
     if (HAS_SDF && instance->shape == SHAPE_SDF) {
-      const REAL3 still = still_origins(hits, index, o);
-      color = select3(color, field_colors(scene, index, &still, &d, hits->t), mine);
+      const REAL3 still = still_origins(hits, index, o), way = still_directions(hits, index, d);
+      color = select3(color, field_colors(scene, index, &still, &way, hits->t), mine);
       on_field |= mine;
     }
   }
   s->color = select3(white, color, has_color(faces, on_field));
-  s->offset = real_max(triangle_offset(extent, hits->ng, faces->outward), offset_distance(o, s->p));
+  s->offset = real_max(triangle_offset(extent, hits->ng, faces->outward), offset_distance(o, s->p, turned));
   locate(scene, hits, lanes, s);
 }
 

@@ -81,8 +81,8 @@ static inline void texture_points(const Scene* scene, const SurfaceInteractions*
     __global const Instance* instance = scene->instances + index;
     const float4 scale = instance->pattern_scale;
     at->p = select3(at->p, multiply3(points_of(scene, index, s, p), all3(scale.xyz)), mine);
-    at->scale = select(at->scale, (REAL)(scale.w), mine);
-    at->n = select3(at->n, multiply3(object_vectors(instance, s->ng), all3(scale.xyz)), mine);
+    at->scale = select(at->scale, scale.w / moved_size(scene, index, time_of(s)), mine);
+    at->n = select3(at->n, multiply3(vectors_of(scene, index, s, s->ng), all3(scale.xyz)), mine);
   }
 }
 

@@ -43,7 +43,7 @@ static inline ReliefWays relief_ways(const Scene* scene, __global const Material
   for (MASK left = lanes; any_lane(left);) {
     const MASK mine = take_alike(at->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
-    const REAL3 own = multiply3(object_vectors(instance, way), all3(instance->pattern_scale.xyz));
+    const REAL3 own = multiply3(vectors_of(scene, index, s, way), all3(instance->pattern_scale.xyz));
     ways.p = select3(ways.p, own, mine);
   }
   const REAL texel = maps->height_texels > 0.0f ? at->uv_length / maps->height_texels : (REAL)(0.0f);

@@ -11,6 +11,7 @@
 //   field           u = v = 0, dpdu and dpdv any directions in the surface
 #ifndef SUNDOG_LIB_PARAMETRIZE_CL
 #define SUNDOG_LIB_PARAMETRIZE_CL
+#include "lib/core/motion.cl"
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
 #include "lib/solids/solids.cl"
@@ -91,7 +92,9 @@ NEVER_INLINE void find_coordinates(const Scene* scene, const Hits* hits, const R
     points_on_solid(instance->shape, instance->parameters,
                     object_points(instance, still_origins(hits, index, *p)), hits->prim, &points);
     if (HAS_MESH && instance->shape == SHAPE_MESH) on_triangles(scene, hits, mine, &points);
-    const REAL3 dpdu = world_vectors(instance, points.dpdu), dpdv = world_vectors(instance, points.dpdv);
+    const REAL time = time_of_hits(hits);
+    const REAL3 dpdu = moved_vectors(scene, index, world_vectors(instance, points.dpdu), time),
+                dpdv = moved_vectors(scene, index, world_vectors(instance, points.dpdv), time);
     at->u = select(at->u, points.u, mine);
     at->v = select(at->v, points.v, mine);
     at->dpdu = select3(at->dpdu, dpdu, mine);

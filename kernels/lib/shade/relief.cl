@@ -50,7 +50,7 @@ static inline void mesh_frames(const Scene* scene, const SurfaceInteractions* s,
     REAL3 tangent = frame->tangent;
     REAL sign = (REAL)(1.0f);
     mesh_tangents(scene, s, mine, &tangent, &sign);
-    tangent = world_vectors(instance, tangent);
+    tangent = moved_vectors(scene, index, world_vectors(instance, tangent), time_of(s));
     // Mirrored instances turn the frame round.
     const float3 r0 = instance->object_from_world[0].xyz, r1 = instance->object_from_world[1].xyz,
                  r2 = instance->object_from_world[2].xyz;
@@ -108,7 +108,7 @@ static inline REAL3 bumped_normals(const Scene* scene, __global const MaterialMa
     for (MASK left = lanes; k > 0u && any_lane(left);) {
       const MASK mine = take_alike(at->instance, &left, &index);
       __global const Instance* instance = scene->instances + index;
-      const REAL3 way = multiply3(object_vectors(instance, along), all3(instance->pattern_scale.xyz));
+      const REAL3 way = multiply3(vectors_of(scene, index, s, along), all3(instance->pattern_scale.xyz));
       there.p = select3(there.p, along3(at->p, part, way), mine);
     }
     const REAL height = slot_values(scene, maps, MAP_HEIGHT, &there, lanes).x;

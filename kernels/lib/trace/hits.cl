@@ -5,6 +5,7 @@
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
+#include "lib/core/turns.cl"
 #include "lib/solids/solids.cl"
 
 // The members of Hit; `instance` is -1 (NO_INSTANCE) where nothing was hit, and t then the ray's t_max.
@@ -15,6 +16,9 @@ typedef struct Hits {
 #if HAS_OBJECT_MOTION
   REAL time;                     // of the ray
   __global const float4* moves;  // the scene's table
+#endif
+#if HAS_TURNS
+  __global const Turn* turns;  // the same
 #endif
 } Hits;
 
@@ -29,14 +33,52 @@ static inline Hits no_hits(REAL t_max) {
   return hits;
 }
 
-// The times of the rays, and their origins where instance `index` would have had them when the shutter opened
-// (core/motion.cl); solids_origins(): each lane of `bits` for the instance of its own.
+// The times of the rays, and their origins and directions as instance `index` would have had them when the
+// shutter opened (core/motion.cl); solids_origins(): each lane of `bits` for the instance of its own.
 #if HAS_OBJECT_MOTION
+static inline REAL time_of_hits(const Hits* hits) { return hits->time; }
+#else
+static inline REAL time_of_hits(const Hits* hits) { return (REAL)(0.0f); }
+#endif
+
+#if HAS_TURNS
+static inline void set_time_of_hits(const Scene* scene, REAL time, Hits* hits) {
+  hits->time = time;
+  hits->moves = scene->moves;
+  hits->turns = scene->turns;
+}
+static inline REAL3 still_origins(const Hits* hits, u32 index, REAL3 o) {
+  return unturned_points(hits->turns, hits->moves[index], o, hits->time);
+}
+static inline REAL3 still_directions(const Hits* hits, u32 index, REAL3 d) {
+  return unturned_vectors(hits->turns, hits->moves[index], d, hits->time);
+}
+static inline REAL3 solids_origins(const Hits* hits, const u32* solids, u32 bits, REAL3 o) {
+  REAL3 still = o;
+  for (; bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    still = select3(still, still_origins(hits, solids[i], o), lanes_of(1u << i));
+  }
+  return still;
+}
+static inline REAL3 solids_directions(const Hits* hits, const u32* solids, u32 bits, REAL3 d) {
+  REAL3 still = d;
+  for (; bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    still = select3(still, still_directions(hits, solids[i], d), lanes_of(1u << i));
+  }
+  return still;
+}
+static inline void join_times(const Hits* a, const Hits* b, MASK m, Hits* hits) {
+  hits->time = select(a->time, b->time, m);
+  hits->moves = b->moves;
+  hits->turns = b->turns;
+}
+#elif HAS_OBJECT_MOTION
 static inline void set_time_of_hits(const Scene* scene, REAL time, Hits* hits) {
   hits->time = time;
   hits->moves = scene->moves;
 }
-static inline REAL time_of_hits(const Hits* hits) { return hits->time; }
 static inline REAL3 still_origins(const Hits* hits, u32 index, REAL3 o) {
   return along3(o, -hits->time, all3(hits->moves[index].xyz));
 }
@@ -51,10 +93,14 @@ static inline void join_times(const Hits* a, const Hits* b, MASK m, Hits* hits) 
 }
 #else
 static inline void set_time_of_hits(const Scene* scene, REAL time, Hits* hits) {}
-static inline REAL time_of_hits(const Hits* hits) { return (REAL)(0.0f); }
 static inline REAL3 still_origins(const Hits* hits, u32 index, REAL3 o) { return o; }
 static inline REAL3 solids_origins(const Hits* hits, const u32* solids, u32 bits, REAL3 o) { return o; }
 static inline void join_times(const Hits* a, const Hits* b, MASK m, Hits* hits) {}
+#endif
+
+#if !HAS_TURNS
+static inline REAL3 still_directions(const Hits* hits, u32 index, REAL3 d) { return d; }
+static inline REAL3 solids_directions(const Hits* hits, const u32* solids, u32 bits, REAL3 d) { return d; }
 #endif
 
 static inline MASK hit_anything(const Hits* hits) { return MASK_OF(hits->instance != (int)NO_INSTANCE); }
@@ -123,10 +169,10 @@ NEVER_INLINE void hit_solids(__global const Instance* restrict instances, u32 fi
     if (!any_lane(active)) break;
     __global const Instance* instance = instances + i;
     const bool moves = !(instance->flags & INSTANCE_IDENTITY);
-    const REAL3 origins = still_origins(&found, i, o);
+    const REAL3 origins = still_origins(&found, i, o), directions = still_directions(&found, i, d);
     offer_solids(instance->shape, instance->parameters, (MASK)((int)i),
-                 moves ? object_points(instance, origins) : origins, moves ? object_vectors(instance, d) : d,
-                 t_min, active, &found);
+                 moves ? object_points(instance, origins) : origins,
+                 moves ? object_vectors(instance, directions) : directions, t_min, active, &found);
   }
   *hits = found;
 }

@@ -172,10 +172,11 @@ NEVER_INLINE void packet_in_object(const Scene* scene, u32 index, const PacketRa
   const int16 lanes = lanes_of(active);
   float16 o[3], d[3];
   const REAL3 still = still_origins(hits, index, real3(world->o[0], world->o[1], world->o[2]));
-  const REAL origins[3] = {still.x, still.y, still.z};
+  const REAL3 way = still_directions(hits, index, real3(world->d[0], world->d[1], world->d[2]));
+  const REAL origins[3] = {still.x, still.y, still.z}, directions[3] = {way.x, way.y, way.z};
   for (u32 axis = 0; axis < 3u; ++axis) {
     o[axis] = select((float16)(get_lane(&origins[axis], stand_in)), origins[axis], lanes);
-    d[axis] = select((float16)(get_lane(&world->d[axis], stand_in)), world->d[axis], lanes);
+    d[axis] = select((float16)(get_lane(&directions[axis], stand_in)), directions[axis], lanes);
   }
   for (u32 axis = 0; axis < 3u; ++axis) {
     const float4 row = instance->object_from_world[axis];

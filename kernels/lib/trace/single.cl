@@ -68,7 +68,7 @@ static inline void trace_instance(const Scene* scene, u32 index, float3 o, float
     float3 oo = o, dd = d;
     if (!(instance->flags & INSTANCE_IDENTITY)) {
       oo = object_point(instance, still_point(scene, index, o, time));
-      dd = object_vector(instance, d);
+      dd = object_vector(instance, still_vector(scene, index, d, time));
     }
     const SlabRay slabs = make_slab_ray(oo, dd);
     const ShearRay shear = make_shear_ray(oo, dd);

@@ -63,7 +63,8 @@ static inline Hit next_hit(const Scene* scene, u32 index, const Stretch* stretch
 // grazed. Its exit is the same hit, seen from behind. Planes have no end.
 static inline void note_exit(const Scene* scene, u32 index, Stretch* stretch, Hit hit) {
   if (scene->instances[index].shape == SHAPE_PLANE || stretch->count >= MOST_TOUCHING) return;
-  const float3 outward = world_normal(scene->instances + index, (float3)(hit.ng_x, hit.ng_y, hit.ng_z));
+  const float3 normal = world_normal(scene->instances + index, (float3)(hit.ng_x, hit.ng_y, hit.ng_z));
+  const float3 outward = moved_normal(scene, index, normal, time_of_stretch(stretch));
   if (dot(outward, stretch->d) >= 0.0f) return;
   if (next_hit(scene, index, stretch, hit.t, INFINITY).instance != NO_INSTANCE) return;
   Hit behind = hit;
@@ -137,7 +138,7 @@ static inline void note_mesh(const Scene* scene, u32 index, Stretch* stretch, u3
   float3 o = stretch->o, d = stretch->d;
   if (!(instance->flags & INSTANCE_IDENTITY)) {
     o = object_point(instance, still_point(scene, index, o, time_of_stretch(stretch)));
-    d = object_vector(instance, d);
+    d = object_vector(instance, still_vector(scene, index, d, time_of_stretch(stretch)));
   }
   const SlabRay slabs = make_slab_ray(o, d);
   const ShearRay shear = make_shear_ray(o, d);

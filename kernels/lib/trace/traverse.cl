@@ -109,7 +109,7 @@ static inline void trace_bounded_batch(const Scene* scene, const REAL3* world_o,
       HAS_MESH && scene->info->bounded_count == 1u && scene->instances->shape == SHAPE_MESH;
   if (WIDE_VECTORS && lone_mesh && !(scene->instances->flags & INSTANCE_IDENTITY)) {
     o = object_points(scene->instances, still_origins(hits, 0u, o));
-    d = object_vectors(scene->instances, d);
+    d = object_vectors(scene->instances, still_directions(hits, 0u, d));
   }
   const bool any = way & TRACE_ANY;
   if ((way & TRACE_COHERENT) && trace_packet(scene, &o, &d, t_min, active, lone_mesh, any, hits)) return;

@@ -90,7 +90,7 @@ NEVER_INLINE void aim_in_meshes(__global const Instance* restrict instances, con
     }
     entering &= ~alike;
     const REAL3 o = object_points(instances + index, still_origins(rays->hits, index, *rays->o)),
-                d = object_vectors(instances + index, *rays->d);
+                d = object_vectors(instances + index, still_directions(rays->hits, index, *rays->d));
     aim_rays(turned, &o, &d, alike);
   }
 }

@@ -61,9 +61,10 @@ NEVER_INLINE void hit_solids_by_lane(__global const Instance* restrict instances
       MASK_LANE(places, ray) = (int)solids[ray];
     }
     bits &= ~alike;
-    const REAL3 origins = solids_origins(hits, solids, alike, *o);
+    const REAL3 origins = solids_origins(hits, solids, alike, *o),
+                directions = solids_directions(hits, solids, alike, *d);
     offer_solids(first->shape, first->parameters, places, points_by_lane(&transform, origins),
-                 vectors_by_lane(&transform, *d), *t_min, lanes_of(alike), hits);
+                 vectors_by_lane(&transform, directions), *t_min, lanes_of(alike), hits);
   } while (bits);
 }
 

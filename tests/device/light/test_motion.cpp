@@ -1,5 +1,5 @@
-// Things that move while the shutter is open: a moving edge by closed form; the blurred picture is the mean
-// of still ones, also in mirrors, through glass and in shadows.
+// Things that move, turn and grow while the shutter is open: edges by closed form; the blurred picture is the
+// mean of still ones, also in mirrors, through glass and in shadows.
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "compile/compiled_scene.h"
+#include "compile/placing/motion.h"
 #include "devices.h"
 #include "moving_edge.h"
 #include "same_bits.h"
@@ -20,11 +21,16 @@ namespace {
 
 SceneDescription moving_things() { return load_scene(SUNDOG_SOURCE_DIR "/tests/support/moving_things.json"); }
 
+SceneDescription turning_things() {
+  return load_scene(SUNDOG_SOURCE_DIR "/tests/support/turning_things.json");
+}
+
 /// The scene as it is at a time, with its own kernels: something behind the camera still moves.
 SceneDescription still_at(SceneDescription scene, double time, int samples) {
   for (Object& object : scene.objects) {
-    object.world_from_object[3] += glm::dvec4(time * object.moves_by, 0);
+    object.world_from_object = world_at(object, time) * object.world_from_object;
     object.moves_by = dvec3(0);
+    object.turns.clear();
   }
   scenes::place(scene, SphereShape{0.01}, 0, glm::translate(glm::dmat4(1), dvec3(0, 9, 30)));
   scene.objects.back().moves_by = {0, 1, 0};
@@ -87,6 +93,82 @@ TEST_CASE("a picture of moving things is the mean of still ones, and the same fo
     scene.render.tracer = Tracer::compact;
     const BlockDifference compact = difference(blurred, scenes::render_on(device, scene).image);
     CHECK(compact.most < 0.005);
+  });
+}
+
+TEST_CASE("an edge that turns is a ramp in the angle, however far it turns") {
+  SceneDescription scene = moving_edge::scene();  // from x = 0 to the right
+  scene.render.samples = 64;
+  for (const double degrees : {90.0, -240.0, 540.0}) {
+    scene.objects.back().turns = {{.axis = {0, 0, 2}, .degrees = degrees, .about = {0, 0, -5}}};
+    // The part of the time in which a direction at `angle` is less than a quarter turn from the edge's
+    // middle.
+    const auto covered = [&](double angle) {
+      int count = 0;
+      for (int i = 0; i < 1000; ++i)
+        count += std::cos(glm::radians(angle - (i + 0.5) / 1000 * degrees)) > 0 ? 1 : 0;
+      return count / 1000.0;
+    };
+    on_picture_devices([&](const DeviceInfo& device) {
+      const Image image = scenes::render_on(device, scene).image;
+      for (int angle = 5; angle < 360; angle += 10) {
+        double sum = 0;
+        const double from = moving_edge::size / 2.0;
+        for (int radius = 14; radius < 30; ++radius)
+          sum += double(image.pixel(int(from + radius * std::cos(glm::radians(double(angle)))),
+                                    int(from - radius * std::sin(glm::radians(double(angle)))))[0]);
+        INFO(degrees << " degrees, at " << angle);
+        CHECK(std::abs(sum / 16 - covered(angle)) < 0.03);
+      }
+    });
+  }
+}
+
+TEST_CASE("a ball that grows has a rim as wide as it grows") {
+  SceneDescription scene = moving_edge::scene();
+  scene.objects.pop_back();
+  scene.render.samples = 64;
+  scenes::place(scene, SphereShape{1}, scenes::add_glow(scene, {1, 1, 1}),
+                glm::translate(glm::dmat4(1), {0, 0, -20}) * glm::scale(glm::dmat4(1), dvec3(1.5)));
+  scene.objects.back().turns = {{.degrees = 90, .about = {0, 0, -20}, .growth = 2}};
+  on_picture_devices([&](const DeviceInfo& device) {
+    const Image image = scenes::render_on(device, scene).image;
+    const int middle = moving_edge::size / 2;
+    for (int x = 0; x < middle; ++x) {
+      const double off = (x + 0.5) / moving_edge::pixels_a_unit(scene),
+                   radius = 20 * std::sin(std::atan(off));
+      const double expected = std::clamp(1 - (radius / 1.5 - 1), 0.0, 1.0);
+      double mean = 0;
+      for (const int row : {middle - 1, middle})
+        for (const int column : {middle + x, middle - 1 - x}) mean += double(image.pixel(column, row)[0]) / 4;
+      INFO(x);
+      CHECK(std::abs(mean - expected) < 0.05);
+    }
+  });
+}
+
+TEST_CASE("a picture of turning things is the mean of still ones, and the same for every tile and group") {
+  SceneDescription scene = turning_things();
+  on_picture_devices([&](const DeviceInfo& device) {
+    const Image stills = mean_of_stills(device, scene, 16, 16);
+    const Image blurred = scenes::render_on(device, scene).image;
+    const BlockDifference apart = difference(blurred, stills);
+    CHECK(apart.most < 0.03);
+    CHECK(apart.mean < 0.003);
+    CHECK(difference(blurred, scenes::render_on(device, still_at(scene, 0, 16)).image).mean > 0.015);
+    RenderOptions options;
+    options.tile = 8;
+    options.work_group = {WorkGroup::Kind::fixed, 2, 1};
+    CHECK(same_bits(blurred, scenes::render_on(device, scene, options).image));
+    scene.render.tracer = Tracer::compact;
+    CHECK(difference(blurred, scenes::render_on(device, scene).image).most < 0.005);
+    scene.render.tracer = Tracer::automatic;
+    scene.render.integrator = "path";
+    scene.render.max_depth = 3;
+    const BlockDifference paths =
+        difference(scenes::render_on(device, scene).image, mean_of_stills(device, scene, 16, 16));
+    CHECK(paths.most < 0.1);
+    CHECK(paths.mean < 0.012);
   });
 }
 

@@ -386,5 +386,10 @@ TEST_CASE("bad transforms are refused with their place") {
       object(R"({"type": "group", "transform": [{"scale": 1e-9}], "material": "m", "objects": [
                  {"type": "sphere", "transform": [{"scale": 1e-9}]}]})",
              "/objects/0/transform", {"singular"}, false),
+      sphere(R"("turns_by": {"degrees": 10})", "/turns_by", {"axis"}),
+      sphere(R"("turns_by": {"axis": [0, 0, 0], "degrees": 10})", "/turns_by/axis", {"length 0"}, false),
+      sphere(R"("turns_by": {"axis": [0, 1, 0], "degrees": 1e6})", "/turns_by/degrees", {"36000"}),
+      sphere(R"("turns_by": 10)", "/turns_by", {"object"}),
+      sphere(R"("grows_to": 0)", "/grows_to", {"0.001", "found 0"}),
   });
 }

@@ -129,7 +129,11 @@ std::string line(const Object& o) {
       fmt::format("object {} {} {} {}", o.name, std::visit(ShapeText{}, o.shape), o.material, o.place);
   for (int column = 0; column < 4; ++column)
     out += fmt::format(" {}", text(dvec3(o.world_from_object[column])));
-  return out + " " + text(o.moves_by) + '\n';
+  out += " " + text(o.moves_by);
+  for (const TurnDescription& turn : o.turns)
+    out += fmt::format(" turn {} {} {} {} {} {}", text(turn.frame[0] + turn.frame[1] + turn.frame[2]),
+                       text(turn.axis), turn.degrees, text(turn.about), turn.growth, text(turn.moves_by));
+  return out + '\n';
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // See instance_bounds.h.
-#include "compile/instance_bounds.h"
+#include "compile/placing/instance_bounds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,20 +1,19 @@
 // See instances.h.
-#include "compile/instances.h"
+#include "compile/placing/instances.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/error.h"
 #include "compile/bvh/wide_bvh.h"
-#include "compile/instance_bounds.h"
 #include "compile/local_origin.h"
+#include "compile/placing/instance_bounds.h"
+#include "compile/placing/motion.h"
 #include "compile/shapes.h"
 #include "compile/textures.h"
 #include "compile/touching/touching.h"
-#include "scene/pack.h"
 
 namespace sundog {
 namespace {
@@ -38,7 +37,7 @@ struct Placed {
 /// Writes the rows of the inverse of `world_from_unit`; returns the transform that a kernel then really uses.
 dmat4 set_transform(const SceneDescription& scene, const Object& object, const dmat4& world_from_unit,
                     Instance& instance) {
-  if (world_from_unit == dmat4(1) && object.moves_by == dvec3(0)) instance.flags |= INSTANCE_IDENTITY;
+  if (world_from_unit == dmat4(1) && !object.moves()) instance.flags |= INSTANCE_IDENTITY;
   const dmat4 inverse = glm::inverse(world_from_unit);
   dmat4 used(1);
   for (int row = 0; row < 3; ++row) {
@@ -129,25 +128,18 @@ class Placer {
     local_from_object[3] -= glm::dvec4(out_.origin, 0);
     if (!placed.bounded()) local_from_object = place_of_plane(scene_, object, out_.origin);
     const dmat4 world_from_unit = set_transform(scene_, object, local_from_object * scale, placed.instance);
-    if (object.moves_by != dvec3(0)) set_moves(object, placed);
+    if (object.moves()) set_motion(object, placed);
     if (!placed.bounded()) return;
     const bool exact = placed.instance.flags & INSTANCE_IDENTITY;
-    placed.box = world_bounds(unit, boxes, world_from_unit, exact);
-    if (object.moves_by != dvec3(0)) {
-      dmat4 at_end = world_from_unit;
-      at_end[3] += glm::dvec4(object.moves_by, 0);
-      placed.box.extend(world_bounds(unit, boxes, at_end, exact));
-    }
+    placed.box = object.moves() ? moving_bounds(object, unit, boxes, world_from_unit, out_.origin)
+                                : world_bounds(unit, boxes, world_from_unit, exact);
     placed.instance.world_center = sphere_around(placed.box);
   }
 
-  void set_moves(const Object& object, Placed& placed) {
-    for (int axis = 0; axis < 3; ++axis)
-      if (!(std::abs(object.moves_by[axis]) <= double(std::numeric_limits<float>::max())))
-        throw SceneError(scene_.file.string(), object.place + "/moves_by",
-                         "wanted a move that single precision holds");
-    placed.moves = pack(object.moves_by);
+  void set_motion(const Object& object, Placed& placed) {
+    placed.moves = add_motion(scene_, object, out_.origin, out_.turns.edit());
     out_.features.object_motion = true;
+    out_.features.turns |= !object.turns.empty();
   }
 
   void set_surface(const Object& object, const PlacedMesh* mesh, Instance& instance) {
