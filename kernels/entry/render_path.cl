@@ -4,6 +4,7 @@
 // Shadow rays see what paths that meet lights by chance would.
 #define SHADOWS_AS_PATHS 1
 #include "lib/core/counters.cl"
+#include "lib/core/ray_counts.cl"
 #include "lib/path/camera_samples.cl"
 #include "lib/pathtracer/steps.cl"
 #include "shared/launch.h"
@@ -42,9 +43,10 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
 // One work-item of the kernel below.
 NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launch* launch, u32 item,
                               __global const u32* restrict pixels, __global float4* restrict film,
-                              __global float* restrict weights, __global u32* restrict counters) {
-  u32 counts[COUNTERS];
-  for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
+                              __global float* restrict weights, __global u32* restrict counters,
+                              __global u32* restrict ray_counts) {
+  u32 counts[ALL_COUNTS];
+  for (u32 i = 0; i < ALL_COUNTS; ++i) counts[i] = 0;
   LaneWork work;
   for (u32 lane = 0; lane < BATCH; ++lane) work.next[lane] = launch->first_sample;
   const LaneSamples nowhere = {NO_LANES, NO_LANES, NO_LANES};
@@ -57,6 +59,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     const MASK going = lanes | begun;
     if (!any_lane(going)) break;
     counts[COUNT_PRIMARY] += lane_count(begun);
+    note_own_rays(begun, counts);
     start_marching(counts);
     lanes = step_walks(scene, &walks, &rays, going, !any_lane(lanes), counts);
     const MASK over = going & ~lanes;
@@ -70,20 +73,21 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);
+  add_ray_counts(launch, pixels, item, counts, ray_counts);
   add_finished(counters, counts[COUNT_PRIMARY], launch->sample_count);
 }
 
 // Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of work-items
 // [first_item, last_item) of the rectangle (x0, y0, width, height), or of the image's pixels that it stands
 // for (`pixels`, where the launch is of a list), to film (rgb and coverage) and their number to weights, as
-// render_whitted does; adds to counters.
+// render_whitted does; adds to counters and ray_counts.
 __kernel void render_path(SCENE_PARAMETERS, __global const u32* restrict camera_media,
                           __global const u32* restrict pixels, __global float4* restrict film,
                           __global float* restrict weights, __global u32* restrict counters,
-                          const Launch launch) {
+                          __global u32* restrict ray_counts, const Launch launch) {
   const Scene scene = SCENE_OF_PARAMETERS;
   const u32 item = launch.first_item + get_global_id(1) * launch.row_items + get_global_id(0);
   if (get_global_id(0) >= launch.row_items || item >= launch.last_item) return;
   render_item(&scene, (MediaStack)camera_media[1] << 32 | camera_media[0], &launch, item, pixels, film,
-              weights, counters);
+              weights, counters, ray_counts);
 }

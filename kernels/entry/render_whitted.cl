@@ -2,6 +2,7 @@
 // place in the image is a multiple of the tile, so that the pixels it works on together are the same however
 // the frame is cut.
 #include "lib/core/counters.cl"
+#include "lib/core/ray_counts.cl"
 #include "lib/path/camera_samples.cl"
 #include "lib/whitted/whitted.cl"
 #include "shared/launch.h"
@@ -24,9 +25,10 @@ static inline MASK start_rays(const Scene* scene, const Launch* launch, __global
 // One work-item of the kernel below.
 NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launch* launch, u32 item,
                               __global const u32* restrict pixels, __global float4* restrict film,
-                              __global float* restrict weights, __global u32* restrict counters) {
-  u32 counts[COUNTERS];
-  for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
+                              __global float* restrict weights, __global u32* restrict counters,
+                              __global u32* restrict ray_counts) {
+  u32 counts[ALL_COUNTS];
+  for (u32 i = 0; i < ALL_COUNTS; ++i) counts[i] = 0;
   RayStack stack;
   for (u32 sample = launch->first_sample; sample < launch->first_sample + launch->sample_count; ++sample) {
     float4 radiance[BATCH];
@@ -37,6 +39,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     TileSamples tile;
     const MASK lanes = start_rays(scene, launch, pixels, item, sample, around, &rays, signs, &tile);
     counts[COUNT_PRIMARY] += lane_count(lanes);
+    note_own_rays(lanes, counts);
     trace_whitted(scene, &tile, &rays, lanes, &stack, radiance, counts);
     for (u32 lane = 0; lane < BATCH; ++lane)
       if (MASK_LANE(lanes, lane))
@@ -44,6 +47,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);
+  add_ray_counts(launch, pixels, item, counts, ray_counts);
   add_finished(counters, counts[COUNT_PRIMARY], launch->sample_count);
 }
 
@@ -51,15 +55,15 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
 // [first_item, last_item) of the rectangle (x0, y0, width, height), or of the image's pixels that it stands
 // for (`pixels`, where the launch is of a list), to film (rgb and coverage) and their
 // number to weights (a sample that is not finite counts for nothing, one in a filter's lobe below zero -1);
-// adds to counters.
+// adds to counters, and where they are asked for the rays of each pixel to ray_counts.
 __kernel void render_whitted(SCENE_PARAMETERS, __global const u32* restrict camera_media,
                              __global const u32* restrict pixels, __global float4* restrict film,
                              __global float* restrict weights, __global u32* restrict counters,
-                             const Launch launch) {
+                             __global u32* restrict ray_counts, const Launch launch) {
   const Scene scene = SCENE_OF_PARAMETERS;
   // Items count through the rectangle row by row; a launch in two dimensions takes whole rows of them.
   const u32 item = launch.first_item + get_global_id(1) * launch.row_items + get_global_id(0);
   if (get_global_id(0) >= launch.row_items || item >= launch.last_item) return;
   render_item(&scene, (MediaStack)camera_media[1] << 32 | camera_media[0], &launch, item, pixels, film,
-              weights, counters);
+              weights, counters, ray_counts);
 }

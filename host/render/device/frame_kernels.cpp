@@ -50,7 +50,7 @@ void find_camera_media(Device& device, FrameKernels& kernels) {
 void build_integrator(Device& device, const Integrator& integrator, FrameKernels& kernels, RenderTimes& times,
                       KernelUpdate& update) {
   kernels.integrator =
-      scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
+      scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>(
           build(device, integrator.entry, kernels.config, kernels, times, &update.built), integrator.kernel);
   kernels.entry = integrator.entry;
   kernels.first_surfaces = {};
@@ -100,6 +100,7 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
                    bool aovs, FrameKernels& kernels, RenderTimes& times, KernelUpdate& update) {
   const Integrator& integrator = *find_integrator(scene.integrator);
   KernelConfig config = make_kernel_config(scene, device.info(), tuning);
+  if (kernels.counts_rays) config.defines["HAS_RAY_COUNTS"] = "1";
   if (kernels.builder) kernels.general = general_configs(scene, device.info(), tuning);
   const auto is_there = [&] {
     return kernels.integrator.kernel() && kernels.entry == integrator.entry &&

@@ -21,11 +21,13 @@ struct NotWantedAnyMore : DeviceError {
 struct FrameKernels {
   KernelConfig config;
   DeviceScene tables;
-  SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch> integrator;
+  SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>
+      integrator;
   SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>
       first_surfaces;                                                                 // only with AOVs
   SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch> trace_photons;  // only with caustics
   bool wants_all_aovs = false, has_all_aovs = false;  // of first_surfaces: all vectors of AOVs
+  bool counts_rays = false;                           // of the integrator: those of each pixel
   SceneKernel<Buffer<u32>> find_media;                // only where the camera has been inside a solid
   std::string entry;                                  // of the integrator
   bool camera_inside = false;                         // tables.camera_media are not those of the outside

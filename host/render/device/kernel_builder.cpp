@@ -27,10 +27,11 @@ bool is_among(const std::vector<KernelOrder>& list, const KernelOrder& order) {
 void build(const DeviceInfo& info, const KernelOrder& order) {
   Device device(info);
   const Program program = device.build(order.entry, order.config.defines, nullptr, order.config.generated);
-  auto kernel = scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
-      program, order.kernel);
+  auto kernel =
+      scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>(
+          program, order.kernel);
   const DeviceScene nothing = upload_scene(device, CompiledScene{});
-  const auto pixels = device.make<u32>(1), counters = device.make<u32>(COUNTERS);
+  const auto pixels = device.make<u32>(1), counters = device.make<u32>(COUNTERS), rays = device.make<u32>(1);
   const auto film = device.make<float4>(1);
   const auto weights = device.make<float>(1);
   Launch launch{};
@@ -39,9 +40,9 @@ void build(const DeviceInfo& info, const KernelOrder& order) {
   const std::vector<std::size_t> groups =
       many_pixels ? std::vector<std::size_t>{4, 1} : std::vector<std::size_t>{64};
   for (const std::size_t group : groups)
-    run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
-        device, kernel, {group, 1, group, 1}, nothing, nothing.camera_media, pixels, film, weights, counters,
-        launch);
+    run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>,
+                     Launch>(device, kernel, {group, 1, group, 1}, nothing, nothing.camera_media, pixels,
+                             film, weights, counters, rays, launch);
   device.finish();
   device.save_programs();
 }

@@ -37,6 +37,7 @@ FrameKernels kernels_with(const RenderOptions& options, KernelBuilder* builder) 
   FrameKernels none;
   none.builder = options.general_kernels ? builder : nullptr;
   none.wants_all_aovs = aov_vectors(options.aovs) == all_aov_vectors;
+  none.counts_rays = counts_rays(options.aovs);
   return none;
 }
 
@@ -76,6 +77,7 @@ void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions&
   photons_ = PhotonMaps(scene);
   kernels_.builder = options.general_kernels ? builder_ : nullptr;
   kernels_.wants_all_aovs = aov_vectors(options.aovs) == all_aov_vectors;
+  kernels_.counts_rays = counts_rays(options.aovs);
   kernels_.notes.clear();
   update_ =
       update_frame_kernels(device_, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times);
@@ -122,9 +124,10 @@ double TileRenderer::launch_integrator(const Launch& whole, const SizedLaunch& s
     const Stopwatch clock;
     const WatchedLaunch watched(watch_, sized.expected_seconds, sized.expected_seconds <= 0,
                                 value_of(device_.info().environment).launch_limit);
-    run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Launch>(
-        device_, kernels_.integrator, sized.size, kernels_.tables, kernels_.tables.camera_media, pixels_,
-        film_, weights_, counters_, launch);
+    run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>,
+                     Launch>(device_, kernels_.integrator, sized.size, kernels_.tables,
+                             kernels_.tables.camera_media, pixels_, film_, weights_, counters_, rays_,
+                             launch);
     device_.finish();
     seconds += clock.seconds();
   }
@@ -209,6 +212,12 @@ void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   result.weights.resize(pixels);
   device_.write(film_, std::span<const float4>(result.sums));
   device_.write(weights_, std::span<const float>(result.weights));
+  const std::size_t counted = kernels_.counts_rays ? pixels : 0;
+  if (rays_.count < std::max<std::size_t>(1, counted))
+    rays_ = device_.make<u32>(std::max<std::size_t>(1, counted));
+  result.rays = request.rays;
+  result.rays.resize(counted);
+  if (counted > 0) device_.write(rays_, std::span<const u32>(result.rays));
 }
 
 // A failed launch may have added some of its samples, so a tile is always begun from what it was.
@@ -228,6 +237,7 @@ TileResult TileRenderer::try_render(const TileRequest& request, const StopFlags&
   const Stopwatch reading;
   device_.read(film_, std::span<float4>(result.sums));
   device_.read(weights_, std::span<float>(result.weights));
+  if (!result.rays.empty()) device_.read(rays_, std::span<u32>(result.rays));
   device_.read(counters_, std::span<u32>(counts));
   readback_seconds_ += reading.seconds();
   std::copy(counts.begin(), counts.end(), result.counts.begin());

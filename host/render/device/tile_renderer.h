@@ -84,6 +84,7 @@ class TileRenderer {
   Buffer<float4> film_;
   Buffer<float> weights_;
   Buffer<float4> aovs_;
+  Buffer<u32> rays_;  // of each pixel, where they are counted; else of one
   Buffer<u32> counters_;
   double readback_seconds_ = 0;
 };

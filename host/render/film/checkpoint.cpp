@@ -52,6 +52,7 @@ void write_checkpoint(const std::filesystem::path& path, const Film& film, std::
   append(bytes, film.sums);
   append(bytes, film.weights);
   append(bytes, film.aovs);
+  append(bytes, film.rays);
   append(bytes, film.done);
   const std::uint64_t checksum = hash_bytes(bytes.data(), bytes.size());
   bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
@@ -83,7 +84,7 @@ void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_
     throw damaged;
   const std::size_t expected = sizeof header + film.sums.size() * sizeof(float4) +
                                film.weights.size() * sizeof(float) + film.aovs.size() * sizeof(float4) +
-                               film.done.size();
+                               film.rays.size() * sizeof(u32) + film.done.size();
   if (header.key != key || header.width != film.width || header.height != film.height || body != expected)
     throw UsageError(path.string() +
                      ": is a checkpoint of another scene or of other settings; remove it to start anew");
@@ -91,6 +92,7 @@ void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_
   take(bytes, at, film.sums);
   take(bytes, at, film.weights);
   take(bytes, at, film.aovs);
+  take(bytes, at, film.rays);
   take(bytes, at, film.done);
 }
 

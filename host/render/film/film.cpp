@@ -15,6 +15,12 @@ Film::Film(int width_, int height_, bool with_aovs, std::size_t vectors_)
   if (with_aovs) aovs.resize(vectors * pixels);
 }
 
+Film Film::with_aovs(int width, int height, const std::vector<std::string>& names) {
+  Film film(width, height, !names.empty(), aov_vectors(names));
+  if (counts_rays(names)) film.rays.resize(film.done.size());
+  return film;
+}
+
 namespace {
 
 std::size_t offset(const Film& film, int x, int y) {
@@ -41,10 +47,12 @@ bool Film::is_done(const Tile& tile) const {
 }
 
 std::uint64_t Film::put(const Tile& tile, std::span<const float4> tile_sums,
-                        std::span<const float> tile_weights, std::span<const float4> tile_aovs) {
+                        std::span<const float> tile_weights, std::span<const float4> tile_aovs,
+                        std::span<const u32> tile_rays) {
   copy_rows(*this, tile, 1, tile_sums, sums);
   copy_rows(*this, tile, 1, tile_weights, weights);
   if (!tile_aovs.empty()) copy_rows(*this, tile, vectors, tile_aovs, aovs);
+  if (!tile_rays.empty()) copy_rows(*this, tile, 1, tile_rays, rays);
   std::uint64_t fresh = 0;
   for (int y = tile.y; y < tile.y + tile.height; ++y) {
     const auto row = done.begin() + static_cast<std::ptrdiff_t>(offset(*this, tile.x, y));
@@ -92,7 +100,7 @@ const std::vector<std::string>& aov_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
     for (const AovPlace& place : places) all.emplace_back(place.name);
-    for (const char* of_samples : {"samples", "variance"}) all.emplace_back(of_samples);
+    for (const char* of_samples : {"samples", "rays", "variance"}) all.emplace_back(of_samples);
     return all;
   }();
   return names;
@@ -106,7 +114,20 @@ std::size_t aov_vectors(const std::vector<std::string>& names) {
   return vectors;
 }
 
+bool counts_rays(const std::vector<std::string>& names) { return std::ranges::count(names, "rays") > 0; }
+
+std::size_t film_bytes(const std::vector<std::string>& names) {
+  const std::size_t aovs = names.empty() ? 0 : sizeof(float4) * aov_vectors(names);
+  return sizeof(float4) + sizeof(float) + 1 + aovs + (counts_rays(names) ? sizeof(u32) : 0);
+}
+
 Image Film::develop_aov(const std::string& name) const {
+  if (name == "rays" && !rays.empty()) {
+    Image image(width, height, 1);
+    for (std::size_t i = 0; i < done.size(); ++i)
+      if (done[i]) image.data[i] = static_cast<float>(rays[i]);
+    return image;
+  }
   const AovPlace* place = find_place(name);
   if (!place || aovs.empty() || place->first >= 4 * vectors)
     throw UsageError("no AOV is called '" + name + "'");

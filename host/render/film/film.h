@@ -30,15 +30,18 @@ struct Film {
   std::vector<float4> sums;    // rgb and coverage
   std::vector<float> weights;  // samples that count
   std::vector<float4> aovs;
+  std::vector<u32> rays;           // of each pixel; empty where they are not counted
   std::vector<std::uint8_t> done;  // 1: the pixel has all its samples
 
   Film() = default;
   Film(int width, int height, bool with_aovs, std::size_t vectors = few_aov_vectors);
+  /// One that holds what these AOVs want.
+  static Film with_aovs(int width, int height, const std::vector<std::string>& names);
   bool is_done(const Tile& tile) const;
   /// Puts a finished tile's pixels, row by row, in their places. Spans as long as the tile (aovs: `vectors`
-  /// times, or empty). Returns how many of them were not done before.
+  /// times; they and the rays may be empty). Returns how many of them were not done before.
   std::uint64_t put(const Tile& tile, std::span<const float4> tile_sums, std::span<const float> tile_weights,
-                    std::span<const float4> tile_aovs);
+                    std::span<const float4> tile_aovs, std::span<const u32> tile_rays = {});
   /// The mean of the samples; alpha, if there are 4 channels, is coverage; pixels that are not done are 0.
   Image develop(int channels = 4) const;
   /// The named AOV (one of aov_names(), but those that develop_aovs() makes of more than the film); pixels
@@ -62,5 +65,11 @@ const std::vector<std::string>& aov_names();
 
 /// The vectors a pixel that these AOVs want.
 std::size_t aov_vectors(const std::vector<std::string>& names);
+
+/// Whether they want the rays of each pixel to be counted.
+bool counts_rays(const std::vector<std::string>& names);
+
+/// Bytes of a pixel of a film with these AOVs.
+std::size_t film_bytes(const std::vector<std::string>& names);
 
 }  // namespace sundog

@@ -15,12 +15,10 @@ namespace fs = std::filesystem;
 namespace {
 
 // Sums, weight, and whether it is done; the vectors of AOVs that passes ask for.
-constexpr std::uint64_t film_bytes = 16 + 4 + 1, film_aov_bytes = 48;
+constexpr std::uint64_t own_bytes = 16 + 4 + 1, film_aov_bytes = 48;
 
 /// Bytes of the AOVs in the film.
-std::uint64_t film_aovs(const FrameOutput& output) {
-  return output.aovs.empty() ? 0 : 16 * aov_vectors(output.aovs);
-}
+std::uint64_t film_aovs(const FrameOutput& output) { return film_bytes(output.aovs) - film_bytes({}); }
 
 /// Floats of an AOV's image.
 std::uint64_t aov_floats(const std::string& name) {
@@ -44,7 +42,7 @@ std::uint64_t encoder_bytes(const std::string& file, std::uint64_t aovs) {
 }
 
 // What a frame in passes holds besides: the film of all passes, with surfaces, and what has become of pixels.
-constexpr std::uint64_t passes_bytes = film_bytes + film_aov_bytes + 4 + 1 + 16 + 4;
+constexpr std::uint64_t passes_bytes = own_bytes + film_aov_bytes + 4 + 1 + 16 + 4;
 
 // Tiles that are on their way, on the device and off it, and what the allocator keeps of them: measured where
 // frames are drawn so fast that tiles are large.
@@ -53,7 +51,7 @@ constexpr std::uint64_t tile_bytes = 4;
 }  // namespace
 
 std::uint64_t bytes_a_pixel(const FrameOutput& output) {
-  const std::uint64_t film = film_bytes + film_aovs(output);
+  const std::uint64_t film = own_bytes + film_aovs(output);
   std::uint64_t aovs = 0;
   for (const std::string& name : output.aovs) aovs += 4 * aov_floats(name);
   const std::uint64_t image = drops_alpha(output.file) ? 12 : 16;
@@ -66,7 +64,7 @@ std::uint64_t bytes_a_pixel(const FrameOutput& output) {
 void check_frame_memory(int width, int height, const FrameOutput& output) {
   const auto pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   const auto edge = [&](int whole) { return static_cast<std::uint64_t>(std::min(output.tile, whole)); };
-  const std::uint64_t film = film_bytes + film_aovs(output);
+  const std::uint64_t film = own_bytes + film_aovs(output);
   const std::uint64_t wanted = pixels * bytes_a_pixel(output) + 2 * film * edge(width) * edge(height);
   const auto there = available_memory();
   if (!there || wanted <= *there) return;

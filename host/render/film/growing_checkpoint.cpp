@@ -26,10 +26,11 @@ struct GrowingHeader {
 /// Calls visit(array) for each array of the file, in its order.
 template <class Growing, class Pixels, class Made, class Visit>
 void for_each_array(Growing& film, Pixels& pixels, Made& made, const Visit& visit) {
-  visit(film.film.sums), visit(film.film.weights), visit(film.film.aovs), visit(film.film.done);
+  visit(film.film.sums), visit(film.film.weights), visit(film.film.aovs), visit(film.film.rays),
+      visit(film.film.done);
   visit(film.taken), visit(film.states), visit(film.earlier);
   visit(pixels);
-  visit(made.sums), visit(made.weights), visit(made.aovs), visit(made.done);
+  visit(made.sums), visit(made.weights), visit(made.aovs), visit(made.rays), visit(made.done);
 }
 
 }  // namespace
@@ -78,7 +79,7 @@ void read_growing_checkpoint(const std::filesystem::path& path, GrowingFilm& fil
   pass.width = header.pass_width, pass.height = header.pass_height;
   pass.first_sample = header.first_sample, pass.sample_count = header.sample_count;
   pass.surfaces = header.surfaces != 0;
-  made = Film(pass.width, pass.height, header.has_aovs != 0, film.film.vectors);
+  made = film_of_pass(film, pass, header.has_aovs != 0);
   film.stage = header.stage, film.step = header.step;
   film.surfaces_seen = header.surfaces_seen;
   std::size_t at = sizeof header;

@@ -51,6 +51,12 @@ GrowingFilm::GrowingFilm(int width, int height, bool with_aovs, std::size_t vect
   earlier.resize(film.done.size());
 }
 
+Film film_of_pass(const GrowingFilm& film, const Pass& pass, bool surfaces) {
+  Film made(pass.width, pass.height, surfaces, film.film.vectors);
+  if (!film.film.rays.empty()) made.rays.resize(made.done.size());
+  return made;
+}
+
 std::int64_t image_index(const GrowingFilm& film, const Pass& pass, std::size_t i) {
   if (pass.pixels.empty()) return static_cast<std::int64_t>(i);
   const u32 pixel = pass.pixels[i];
@@ -74,6 +80,7 @@ void add_pass(GrowingFilm& film, const Pass& pass, const Film& made, bool comple
     film.earlier[p] = {whole.sums[p].x, whole.sums[p].y, whole.sums[p].z, whole.weights[p]};
     whole.sums[p] = made.sums[i];
     whole.weights[p] = made.weights[i];
+    if (!whole.rays.empty()) whole.rays[p] = made.rays[i];
     whole.done[p] = 1;
     film.taken[p] = pass.first_sample + pass.sample_count;
     film.states[p] = PixelState::sampled;

@@ -39,6 +39,9 @@ struct GrowingFilm {
   GrowingFilm(int width, int height, bool with_aovs, std::size_t vectors = few_aov_vectors);
 };
 
+/// An empty film of the pass's size, which holds what the frame's does.
+Film film_of_pass(const GrowingFilm& film, const Pass& pass, bool surfaces);
+
 /// The image's pixel (y * width + x) that pixel `i` of the pass stands for; -1: none.
 std::int64_t image_index(const GrowingFilm& film, const Pass& pass, std::size_t i);
 

@@ -103,6 +103,7 @@ void add(Film& whole, const Film& part) {
     whole.sums[i] = part.sums[i];
     whole.weights[i] = part.weights[i];
     for (std::size_t k = 0; k < aovs; ++k) whole.aovs[aovs * i + k] = part.aovs[aovs * i + k];
+    if (!whole.rays.empty()) whole.rays[i] = part.rays[i];
     whole.done[i] = 1;
   }
 }
@@ -117,7 +118,7 @@ PartFile merge_parts(const std::vector<std::filesystem::path>& paths) {
     PartFile file = read_part(path);
     if (found.empty()) {
       static_cast<PartHeader&>(whole) = file;
-      whole.film = Film(file.film.width, file.film.height, !file.aovs.empty(), file.film.vectors);
+      whole.film = Film::with_aovs(file.film.width, file.film.height, file.aovs);
     } else if (const std::string why = difference(whole, file); !why.empty()) {
       throw SceneError(path.string(), "",
                        fmt::format("does not belong to {}: it is {}", found.begin()->second, why));

@@ -90,8 +90,7 @@ std::optional<PartFile> read_header(const json& head) {
 void check_memory(const std::filesystem::path& path, const PartFile& file) {
   const auto pixels =
       static_cast<std::uint64_t>(file.film.width) * static_cast<std::uint64_t>(file.film.height);
-  const std::uint64_t wanted = pixels * (21 + (file.aovs.empty() ? 0 : 16 * aov_vectors(file.aovs))),
-                      there = available_memory().value_or(wanted);
+  const std::uint64_t wanted = pixels * film_bytes(file.aovs), there = available_memory().value_or(wanted);
   if (wanted > there)
     throw SceneError(
         path.string(), "",
@@ -105,12 +104,13 @@ void check_memory(const std::filesystem::path& path, const PartFile& file) {
 bool read_film(const std::string& bytes, std::size_t at, const std::vector<std::string>& aovs, Film& film) {
   const auto pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
   if (pixels > bytes.size() - at) return false;
-  film = Film(film.width, film.height, !aovs.empty(), aov_vectors(aovs));
+  film = Film::with_aovs(film.width, film.height, aovs);
   std::memcpy(film.done.data(), bytes.data() + at, pixels);
   at += pixels;
   if (std::ranges::any_of(film.done, [](std::uint8_t done) { return done > 1; })) return false;
   return take_done(bytes, at, film.sums, film.done) && take_done(bytes, at, film.weights, film.done) &&
-         take_done(bytes, at, film.aovs, film.done) && at == bytes.size();
+         take_done(bytes, at, film.aovs, film.done) && take_done(bytes, at, film.rays, film.done) &&
+         at == bytes.size();
 }
 
 }  // namespace
@@ -128,6 +128,7 @@ void write_part(const std::filesystem::path& path, const PartHeader& header, con
   append_done(bytes, film.sums, film.done);
   append_done(bytes, film.weights, film.done);
   append_done(bytes, film.aovs, film.done);
+  append_done(bytes, film.rays, film.done);
   bytes += checksum(bytes);
   write_file(path, bytes, faults);
 }

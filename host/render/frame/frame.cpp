@@ -63,6 +63,8 @@ TileRequest request_of(Frame& frame, const Tile& tile) {
     const std::int64_t p = image_index(film, pass, i);
     request.sums.push_back(p < 0 ? float4{} : film.film.sums[static_cast<std::size_t>(p)]);
     request.weights.push_back(p < 0 ? 0 : film.film.weights[static_cast<std::size_t>(p)]);
+    if (!film.film.rays.empty())
+      request.rays.push_back(p < 0 ? 0 : film.film.rays[static_cast<std::size_t>(p)]);
   });
   return request;
 }
@@ -144,7 +146,7 @@ void take_figures(Frame& frame, std::size_t i) {
 void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
   const std::lock_guard lock(frame.mutex);
   if (frame.over || made.tile.height == 0) return;
-  frame.pixels_done += frame.film.put(made.tile, made.sums, made.weights, made.aovs);
+  frame.pixels_done += frame.film.put(made.tile, made.sums, made.weights, made.aovs, made.rays);
   for (std::size_t c = 0; c < COUNTERS; ++c) frame.counts[c] += made.counts[c];
   frame.servers[i].report.pixels += pixel_count(made.tile);
   if (!frame.stop) plan_next_pass(frame);

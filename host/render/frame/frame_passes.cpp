@@ -44,7 +44,7 @@ void begin_coarse(Frame& frame, int block) {
   passes.coarse_block = block;
   passes.pass =
       block > 0 ? coarse_pass(whole.width, whole.height, block) : *next_pass(passes.film, passes.plan);
-  frame.film = Film(passes.pass.width, passes.pass.height, passes.pass.surfaces, whole.vectors);
+  frame.film = film_of_pass(passes.film, passes.pass, passes.pass.surfaces);
 }
 
 void plan_next_pass(Frame& frame) {
@@ -58,7 +58,7 @@ void plan_next_pass(Frame& frame) {
     FramePasses& passes = *frame.passes;
     passes.pass = std::move(*next);
     passes.since_pass = Stopwatch();
-    frame.film = Film(passes.pass.width, passes.pass.height, passes.pass.surfaces, passes.film.film.vectors);
+    frame.film = film_of_pass(passes.film, passes.pass, passes.pass.surfaces);
     frame.queue.refill(passes.tiles(frame.film));
   }
 }

@@ -23,6 +23,7 @@ struct TileRequest {
   bool surfaces = false;                   // AOVs
   std::vector<float4> sums;                // of each pixel's earlier samples; empty: none
   std::vector<float> weights;
+  std::vector<u32> rays;  // of each pixel so far, where they are counted
 };
 
 /// A tile's pixels and ray counts. `tile` is what was finished: less rows than asked for when it was stopped
@@ -32,6 +33,7 @@ struct TileResult {
   std::vector<float4> sums;
   std::vector<float> weights;
   std::vector<float4> aovs;
+  std::vector<u32> rays;  // of each pixel, where they are counted
   RayCounts counts{};
 };
 

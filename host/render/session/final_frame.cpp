@@ -52,6 +52,7 @@ FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devi
   passes.plan = {scene->sampling, scene->info.samples, options.noise, !options.aovs.empty()};
   passes.film = GrowingFilm(width, height, !options.aovs.empty() || needs_surfaces(scene->sampling),
                             aov_vectors(options.aovs));
+  if (counts_rays(options.aovs)) passes.film.film.rays.resize(passes.film.taken.size());
   passes.tiles = [options, shares = estimates(devices)](const Film& of_pass) {
     return plan_tiles(options, of_pass, shares);
   };
@@ -60,14 +61,14 @@ FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devi
     return passes;
   }
   passes.pass = *next_pass(passes.film, passes.plan);
-  film = Film(passes.pass.width, passes.pass.height, passes.pass.surfaces, passes.film.film.vectors);
+  film = film_of_pass(passes.film, passes.pass, passes.pass.surfaces);
   return passes;
 }
 
 /// A film that holds what a checkpoint has of the frame.
 Film begin_film(const CompiledScene& scene, const RenderOptions& options, std::uint64_t key) {
-  Film film(static_cast<int>(scene.info.width), static_cast<int>(scene.info.height), !options.aovs.empty(),
-            aov_vectors(options.aovs));
+  Film film =
+      Film::with_aovs(static_cast<int>(scene.info.width), static_cast<int>(scene.info.height), options.aovs);
   if (!options.resume.empty() && std::filesystem::exists(options.resume))
     read_checkpoint(options.resume, film, key);
   return film;

@@ -74,6 +74,11 @@
 #define MAX_CROSSINGS 64
 #endif
 
+// Whether the rays of each pixel are counted.
+#ifndef HAS_RAY_COUNTS
+#define HAS_RAY_COUNTS 0
+#endif
+
 // Whether rays carry the cone that a pixel sees, by which textures are filtered.
 #define HAS_CONES (HAS_MAPS && TEXTURE_KINDS)
 

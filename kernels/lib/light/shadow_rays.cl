@@ -1,6 +1,7 @@
 // Shadow rays from surfaces to the lights, left on a stack with the light that each would bring.
 #ifndef SUNDOG_LIB_SHADOW_RAYS_CL
 #define SUNDOG_LIB_SHADOW_RAYS_CL
+#include "lib/core/ray_counts.cl"
 #include "lib/light/choose_light.cl"
 #include "lib/light/field_light.cl"
 #include "lib/light/light.cl"
@@ -102,6 +103,7 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
   const MASK lit = facing & MASK_OF(greatest3(possible) >= FLT_MIN);
   if (!any_lane(lit)) return;
   counts[COUNT_SHADOW] += lane_count(lit);
+  note_rays(paths->pixel, lit, counts);
   SceneRays to_light = *rays;
   start_on_surfaces(scene->info, &to_light, hits, ~s->entering, lit);
   REAL way;

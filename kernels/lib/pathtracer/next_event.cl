@@ -1,6 +1,7 @@
 // Light chosen at the surfaces of paths: one light each, a place on it, and a shadow ray there.
 #ifndef SUNDOG_LIB_NEXT_EVENT_CL
 #define SUNDOG_LIB_NEXT_EVENT_CL
+#include "lib/core/ray_counts.cl"
 #include "lib/light/shadow.cl"
 #include "lib/light/shadow_rays.cl"
 #include "lib/pathtracer/guides.cl"
@@ -145,6 +146,7 @@ NEVER_INLINE Carried next_event(const Scene* scene, const Walks* walks, const Sc
   const MASK lit = lanes & MASK_OF(carry_greatest(possible) >= FLT_MIN) & MASK_OF(light.distance > 0.0f);
   if (!any_lane(lit)) return none;
   counts[COUNT_SHADOW] += lane_count(lit);
+  note_own_rays(lit, counts);
   SceneRays to_light = rays_to_light(scene, rays, met, at, &light, below, lit);
   return carry_select(none, carried_to_light(scene, &walks->wavelengths, &to_light, possible, lit, counts),
                       lit);

@@ -3,6 +3,7 @@
 // path a lane.
 #ifndef SUNDOG_LIB_SCATTER_MEDIA_CL
 #define SUNDOG_LIB_SCATTER_MEDIA_CL
+#include "lib/core/ray_counts.cl"
 #include "lib/pathtracer/next_event.cl"
 #include "lib/pathtracer/walk_state.cl"
 
@@ -141,6 +142,7 @@ NEVER_INLINE Carried light_on_stretch(const Scene* scene, const Walks* walks, co
   const MASK lit = lanes & MASK_OF(carry_greatest(possible) >= FLT_MIN) & MASK_OF(light.distance > 0.0f);
   if (!any_lane(lit)) return carry_all(0.0f);
   counts[COUNT_SHADOW] += lane_count(lit);
+  note_own_rays(lit, counts);
   SceneRays to_light = rays_from_stretch(scene, begun, rays, s, at, light.wi, light.distance, lit);
   return carry_select(carry_all(0.0f),
                       carried_to_light(scene, &walks->wavelengths, &to_light, possible, lit, counts), lit);
@@ -166,6 +168,7 @@ static inline MASK turn_on_stretch(const Scene* scene, Walks* walks, const Begun
   going = play_roulette(scene, walks, u.w, allowed);
   walks->depth -= lanes;
   counts[COUNT_REFLECTION] += lane_count(going);
+  note_own_rays(going, counts);
   SceneRays child = rays_from_stretch(scene, begun, rays, s, at, direction_about(s->d, cosine, u.y),
                                       (REAL)(INFINITY), lanes);
   spread_scattered(&child, lanes);

@@ -2,6 +2,7 @@
 // chosen there, and the ray that continues. Nothing waits: a path is its one ray and its Walks.
 #ifndef SUNDOG_LIB_PATH_STEPS_CL
 #define SUNDOG_LIB_PATH_STEPS_CL
+#include "lib/core/ray_counts.cl"
 #include "lib/pathtracer/gather_photons.cl"
 #include "lib/pathtracer/guides.cl"
 #include "lib/pathtracer/leave_surfaces.cl"
@@ -45,6 +46,7 @@ NEVER_INLINE MASK scatter(const Scene* scene, const Encounters* met, const Shadi
   walks->depth -= lanes;
   counts[COUNT_REFRACTION] += lane_count(going & below);
   counts[COUNT_REFLECTION] += lane_count(going & ~below);
+  note_own_rays(going, counts);
   leave_surfaces(scene, met, at, &sample, below, going, rays);
   return going;
 }

@@ -1,6 +1,7 @@
 // The reflected and refracted rays that come of surfaces (Whitted 1980), left on a stack.
 #ifndef SUNDOG_LIB_CHILDREN_CL
 #define SUNDOG_LIB_CHILDREN_CL
+#include "lib/core/ray_counts.cl"
 #include "lib/path/path_samples.cl"
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
@@ -28,6 +29,7 @@ NEVER_INLINE void spawn(__global const SceneInfo* restrict info, RayStack* stack
   }
   if (!bits) return;
   counts[kind] += popcount(bits);
+  note_rays(paths->pixel, lanes_of(bits), counts);
   push_rays(stack, rays, paths, lanes_of(bits));
 }
 

@@ -8,6 +8,7 @@
 #include "catch.h"
 #include "compile/compiled_scene.h"
 #include "compile/placing/motion.h"
+#include "scene/load.h"
 #include "scene_text.h"
 #include "scenes.h"
 

@@ -1,0 +1,36 @@
+// Rays of each of a work-item's pixels, where the host asks for them: behind the counts of the launch.
+// Counted are those of the statistics: camera, reflected, refracted and shadow rays.
+#ifndef SUNDOG_LIB_RAY_COUNTS_CL
+#define SUNDOG_LIB_RAY_COUNTS_CL
+#include "lib/core/lanes.h"
+#include "lib/path/tile.cl"
+
+#if HAS_RAY_COUNTS
+#define ALL_COUNTS (COUNTERS + BATCH)
+
+// A ray in each lane of `lanes`, of the work-item's pixels `pixels`.
+static inline void note_rays(MASK pixels, MASK lanes, u32* counts) {
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u)
+    counts[COUNTERS + MASK_LANE(pixels, lowest_bit(bits))] += 1u;
+}
+// The same where lane i is of pixel i.
+static inline void note_own_rays(MASK lanes, u32* counts) {
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) counts[COUNTERS + lowest_bit(bits)] += 1u;
+}
+static inline void add_ray_counts(const Launch* launch, __global const u32* restrict pixels, u32 item,
+                                  const u32* counts, __global u32* restrict rays) {
+  for (u32 lane = 0; lane < BATCH; ++lane) {
+    const uint2 at = lane_pixel(launch, item, lane);
+    uint2 pixel;
+    if (image_pixel(launch, pixels, at, &pixel)) rays[at.y * launch->width + at.x] += counts[COUNTERS + lane];
+  }
+}
+#else
+#define ALL_COUNTS COUNTERS
+static inline void note_rays(MASK pixels, MASK lanes, u32* counts) {}
+static inline void note_own_rays(MASK lanes, u32* counts) {}
+static inline void add_ray_counts(const Launch* launch, __global const u32* restrict pixels, u32 item,
+                                  const u32* counts, __global u32* restrict rays) {}
+#endif
+
+#endif
