@@ -22,7 +22,9 @@ struct MpiFolder : CliFolder {
                            {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"},
                            {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
                            {"PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"},  // Open MPI 5
-                           {"OMPI_MCA_btl", "^tcp"},  // one machine, perhaps without a network
+                           // One machine, perhaps without a network, for which some would wait a second.
+                           {"OMPI_MCA_btl", "^tcp,openib,ofi,usnic,uct"},
+                           {"OMPI_MCA_pml", "ob1"},
                            {"POCL_DEVICES", "pthread"},
                            {"SUNDOG_SILENCE_LIMIT", "3"}};
     REQUIRE(run_sundog(arguments({"--device", "0:0"}), options).status == 0);
@@ -98,7 +100,7 @@ TEST_CASE("mpirun: one, two and three ranks make the bits of one process, each w
 
 TEST_CASE(
     "mpirun: a scene from the standard input reaches all ranks; no picture goes to the standard output") {
-  const MpiFolder folder;
+  MpiFolder folder;
   const auto render = [&](const std::string& out) {
     const std::string line =
         R"(exec mpirun -n 2 "$0" render - -o "$2" --size 160x120 --samples 4 --device 0:0/1 --split 1,1 <"$1")";
@@ -108,13 +110,14 @@ TEST_CASE(
   CAPTURE(result.err);
   CHECK(result.status == 0);
   CHECK((read_file(folder / "a.pfm") == folder.plain));
+  folder.options.environment["OMPI_MCA_odls_base_sigkill_timeout"] = "0";
   const CommandResult refused = render("-");
   CHECK(refused.status == 2);
   CHECK(contains(refused.err, "-o -: under mpirun"));
 }
 
 TEST_CASE("mpirun: --allow-outside-files holds for all ranks, and without it rank 0 alone refuses") {
-  const MpiFolder folder;
+  MpiFolder folder;
   folder.write("out/m.obj", "v -2 -1 0\nv 2 -1 0\nv 0 2 0\nf 1 2 3\n");
   json scene = json::parse(small_scene);
   scene["objects"].push_back({{"type", "model"}, {"file", "../out/m.obj"}});
@@ -140,6 +143,7 @@ TEST_CASE("mpirun: --allow-outside-files holds for all ranks, and without it ran
     CHECK((read_file(folder / "two.pfm") == read_file(folder / "one.pfm")));
     CHECK(folder.stats()["devices"][1]["pixels"] == 160 * 120 / 2);
   }
+  folder.options.environment["OMPI_MCA_odls_base_sigkill_timeout"] = "0";
   const CommandResult refused = folder.mpirun(2, render("three.pfm", {"--split", "1,1"}));
   CAPTURE(refused.err);
   CHECK(refused.status == 3);
@@ -184,8 +188,30 @@ TEST_CASE("mpirun: the frames of an animation are those of one process") {
   CHECK(last["devices"][1]["kernels_cached"] == true);
 }
 
-TEST_CASE("mpirun: an error is reported in one line, by one rank, with its status") {
+TEST_CASE("mpirun: passes, AOVs and rays of pixels are those of one process") {
   const MpiFolder folder;
+  const auto render = [&](const std::string& out, const std::string& split) {
+    std::vector<std::string> all =
+        folder.arguments({"--device", "0:0/1", "--adaptive", "0.02", "--tile", "16"});
+    all[3] = folder.file(out);
+    for (const char* name : {"rays", "samples", "variance", "normal", "crypto_object"})
+      all.insert(all.end(), {"--aov", name});
+    if (!split.empty()) all.insert(all.end(), {"--split", split});
+    return all;
+  };
+  REQUIRE(run_sundog(render("one.exr", ""), folder.options).status == 0);
+  const json one = folder.stats()["rays"];
+  const CommandResult result = folder.mpirun(2, render("two.exr", "1,1"));
+  CAPTURE(result.err);
+  REQUIRE(result.status == 0);
+  CHECK((read_file(folder / "one.exr") == read_file(folder / "two.exr")));
+  CHECK(folder.stats()["rays"] == one);
+  for (const json& device : folder.stats()["devices"]) CHECK(device["pixels"] > 0);
+}
+
+TEST_CASE("mpirun: an error is reported in one line, by one rank, with its status") {
+  MpiFolder folder;
+  folder.options.environment["OMPI_MCA_odls_base_sigkill_timeout"] = "0";  // nothing is to be kept
   struct Case {
     std::vector<std::string> arguments;
     int status;
