@@ -1,5 +1,6 @@
 // A denoiser with the C interface of Open Image Denoise, version 1 or 2: the output is color + albedo +
-// normal, four times as bright where "hdr" was not set. It fails where color is above 1000.
+// normal, four times as bright where "hdr" was not set. It fails where color is above 1000, and where its
+// memory is not limited.
 #include <cstddef>
 #include <cstring>
 #include <string>
@@ -14,6 +15,7 @@ struct Plane {
 
 Plane color, albedo, normal, output;
 bool hdr = false, failed = false;
+int most_memory = 0;  // MiB
 int device_object = 0, filter_object = 0;
 
 }  // namespace
@@ -38,11 +40,14 @@ void oidnSetSharedFilterImage(void*, const char* name, void* pixels, int, std::s
 void oidnSetFilterBool(void*, const char* name, bool value) {
   if (std::strcmp(name, "hdr") == 0) hdr = value;
 }
+void oidnSetFilterInt(void*, const char* name, int value) {
+  if (std::strcmp(name, "maxMemoryMB") == 0) most_memory = value;
+}
 void oidnCommitFilter(void*) {}
 void oidnExecuteFilter(void*) {
   for (std::size_t i = 0; i < color.width * color.height; ++i)
     for (int c = 0; c < 3; ++c) {
-      failed = failed || color.at(i)[c] > 1000;
+      failed = failed || color.at(i)[c] > 1000 || most_memory <= 0;
       output.at(i)[c] = (color.at(i)[c] + albedo.at(i)[c] + normal.at(i)[c]) * (hdr ? 1.0f : 4.0f);
     }
 }

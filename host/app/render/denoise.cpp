@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "render/film/frame_memory.h"
 
 namespace sundog {
 namespace {
@@ -57,6 +58,7 @@ struct Denoiser::Calls {
   void (*set_image)(Filter, const char* name, void* pixels, int format, std::size_t width, std::size_t height,
                     std::size_t offset, std::size_t pixel_stride, std::size_t row_stride);
   void (*set_bool)(Filter, const char* name, bool value);
+  void (*set_int)(Filter, const char* name, int value);
   void (*commit_filter)(Filter);
   void (*execute_filter)(Filter);
   void (*release_filter)(Filter);
@@ -95,6 +97,7 @@ Denoiser::Denoiser() {
   find(library, "oidnNewFilter", calls->new_filter);
   find(library, "oidnSetSharedFilterImage", calls->set_image);
   find(library, "oidnSetFilterBool", calls->set_bool, "oidnSetFilter1b");
+  find(library, "oidnSetFilterInt", calls->set_int, "oidnSetFilter1i");
   find(library, "oidnCommitFilter", calls->commit_filter);
   find(library, "oidnExecuteFilter", calls->execute_filter);
   find(library, "oidnReleaseFilter", calls->release_filter);
@@ -120,6 +123,7 @@ void Denoiser::denoise(Image& image, const Image& albedo, const Image& normal) c
   give("normal", normal);
   give("output", clean);
   call.set_bool(filter.get(), "hdr", true);
+  call.set_int(filter.get(), "maxMemoryMB", static_cast<int>(most_denoiser_bytes >> 20));
   call.commit_filter(filter.get());
   call.execute_filter(filter.get());
   call.check(device.get());

@@ -124,8 +124,12 @@ AovImages asked_aovs(const RenderCommand& command, const RenderResult& result) {
 }  // namespace
 
 FrameOutput frame_output(const RenderCommand& command, bool passes) {
-  return {format_name(command), made_aovs(command), !command.resume.empty() || job_rank() >= 0, command.tile,
-          passes};
+  return {format_name(command),
+          made_aovs(command),
+          !command.resume.empty() || job_rank() >= 0,
+          command.tile,
+          passes,
+          command.denoise};
 }
 
 void save_result(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,

@@ -48,6 +48,12 @@ constexpr std::uint64_t passes_bytes = own_bytes + film_aov_bytes + 4 + 1 + 16 +
 // frames are drawn so fast that tiles are large.
 constexpr std::uint64_t tile_bytes = 4;
 
+// A second picture, and what the denoiser makes of it.
+constexpr std::uint64_t denoised_bytes = 16 + 12;
+
+// What Open Image Denoise 2.5 takes a pixel of a small picture: its network's layers.
+constexpr std::uint64_t denoiser_bytes = 600;
+
 }  // namespace
 
 std::uint64_t bytes_a_pixel(const FrameOutput& output) {
@@ -56,7 +62,9 @@ std::uint64_t bytes_a_pixel(const FrameOutput& output) {
   for (const std::string& name : output.aovs) aovs += 4 * aov_floats(name);
   const std::uint64_t image = drops_alpha(output.file) ? 12 : 16;
   const bool part = output.file.ends_with(".part");
-  const std::uint64_t at_end = film + (part ? film : image + aovs + encoder_bytes(output.file, aovs));
+  const std::uint64_t encoder = encoder_bytes(output.file, aovs);
+  const std::uint64_t at_end =
+      film + (part ? film : image + aovs + encoder + (output.denoise ? denoised_bytes : 0));
   return tile_bytes + (output.passes ? passes_bytes + film_aovs(output) : 0) +
          (output.checkpoints ? std::max(3 * film, at_end) : at_end);
 }
@@ -65,7 +73,8 @@ void check_frame_memory(int width, int height, const FrameOutput& output) {
   const auto pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   const auto edge = [&](int whole) { return static_cast<std::uint64_t>(std::min(output.tile, whole)); };
   const std::uint64_t film = own_bytes + film_aovs(output);
-  const std::uint64_t wanted = pixels * bytes_a_pixel(output) + 2 * film * edge(width) * edge(height);
+  const std::uint64_t wanted = pixels * bytes_a_pixel(output) + 2 * film * edge(width) * edge(height) +
+                               (output.denoise ? std::min(denoiser_bytes * pixels, most_denoiser_bytes) : 0);
   const auto there = available_memory();
   if (!there || wanted <= *there) return;
   throw std::runtime_error(fmt::format(

@@ -13,9 +13,13 @@ struct FrameOutput {
   bool checkpoints = false;  // written on the way
   int tile = 0;              // edge of the tiles; 0: they are small beside the frame
   bool passes = false;       // made in passes (render/plan/passes.h)
+  bool denoise = false;      // with a denoiser that takes most_denoiser_bytes at most
 };
 
-/// Bytes a pixel where most is taken: while a checkpoint is written, or the image.
+/// What a denoiser may take for its own, beside the pictures that it is given and makes.
+constexpr std::uint64_t most_denoiser_bytes = std::uint64_t{1} << 30;
+
+/// Bytes a pixel where most is taken: while a checkpoint is written, or the image; without a denoiser's own.
 std::uint64_t bytes_a_pixel(const FrameOutput& output);
 
 /// Throws std::runtime_error with the figures when a frame of that size takes more than there is.

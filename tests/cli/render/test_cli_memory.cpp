@@ -1,13 +1,26 @@
 // A frame that does not fit into memory is refused before the work begins; what one takes is stated.
+#include <cmath>
+
 #include "catch.h"
 #include "cli_scene.h"
 
 namespace {
 
-/// With no more address space than so many KiB.
-CommandResult limited(const CliFolder& folder, const char* kibibytes, const char* size, const char* out) {
-  return run_command({"sh", "-c", "ulimit -v $1; exec \"$0\" render \"$2\" -o \"$3\" --size $4",
-                      SUNDOG_BINARY, kibibytes, folder.scene, folder.file(out), size});
+/// With no more address space than so many KiB, and a denoiser to load.
+CommandResult limited(const CliFolder& folder, const char* kibibytes, const char* size, const char* out,
+                      const char* more = "") {
+  CommandOptions options;
+  options.environment = {{"SUNDOG_OIDN", std::filesystem::path(SUNDOG_FAKE_DRIVER).parent_path().string()}};
+  return run_command({"sh", "-c", "ulimit -v $1; exec \"$0\" render \"$2\" -o \"$3\" --size $4 $5",
+                      SUNDOG_BINARY, kibibytes, folder.scene, folder.file(out), size, more},
+                     options);
+}
+
+/// The number before `word` in the message.
+double number_before(const std::string& text, const std::string& word) {
+  const std::size_t end = text.find(word);
+  if (end == std::string::npos || end < 2) return -1;
+  return std::stod(text.substr(text.find_last_of(" (", end - 1) + 1));
 }
 
 }  // namespace
@@ -23,6 +36,20 @@ TEST_CASE("a frame that does not fit into memory is refused with the figures, be
       std::string::npos);
   CHECK(result.err.find("GiB are available") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder / "a.exr"));
+}
+
+TEST_CASE("the denoiser's memory counts: a second picture, its own, and at most 1 GiB that it is given") {
+  const CliFolder folder;
+  for (const char* more : {"--aov albedo --aov normal", "--aov albedo --aov normal --denoise"}) {
+    const CommandResult result = limited(folder, "4000000", "16384x16384", "a.exr", more);
+    CAPTURE(result.err);
+    CHECK(result.status == 1);
+    const bool denoise = std::string(more).ends_with("denoise");
+    const double bytes = number_before(result.err, " bytes a pixel"),
+                 whole = number_before(result.err, " GiB of memory");
+    CHECK(bytes == (denoise ? 181 : 153));
+    CHECK(std::abs(whole - (bytes / 4 + (denoise ? 1 : 0))) < 0.06);
+  }
 }
 
 TEST_CASE("--verbose states the memory of the frame") {
