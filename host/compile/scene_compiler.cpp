@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 
 #include "base/error.h"
@@ -74,7 +75,16 @@ void set_view(const SceneDescription& scene, CompiledScene& out) {
   out.features.guides = !out.guides.empty();
 }
 
+/// log2 of the places that each pixel has in the one sequence of blue noise; rays to a light divide samples.
+void set_sample_room(CompiledScene& out) {
+  if (out.features.sampler != SAMPLER_BLUE_NOISE) return;
+  u32 parts = 1;
+  for (const LightRay& ray : out.light_rays) parts = std::max(parts, ray.rays);
+  out.features.sample_room = static_cast<u32>(std::bit_width(out.info.samples * parts - 1));
+}
+
 void set_counts(CompiledScene& out) {
+  set_sample_room(out);
   out.info.light_count = static_cast<u32>(out.light_rays.size());
   out.info.table_lights = static_cast<u32>(out.lights.size());
   out.info.guide_count = static_cast<u32>(out.guides.size());

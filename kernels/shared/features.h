@@ -26,6 +26,7 @@
   FEATURE(bool, HAS_UV, surface_coordinates)        /* some material asks for surface coordinates */    \
   FEATURE(bool, HAS_FILTER, filter)                 /* samples lie elsewhere than evenly in their pixels */ \
   FEATURE(u32, SAMPLER, sampler)                    /* a SAMPLER_* constant */                          \
+  FEATURE(u32, SAMPLE_ROOM, sample_room)            /* of SAMPLER_BLUE_NOISE: log2 of a pixel's samples */ \
   FEATURE(bool, HAS_AREA_LIGHTS, area_lights)       /* some light has an extent */                      \
   FEATURE(bool, HAS_ENVIRONMENT, environment)       /* there is light from all around */                \
   FEATURE(bool, HAS_SKY, sky)                       /* rays that meet nothing see an environment or a sun */ \

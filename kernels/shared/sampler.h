@@ -7,19 +7,22 @@
 SUNDOG_SHARED_BEGIN
 
 // How samples lie in their pixels: their names in scene files. AUTO is a set of Hammersley's for a fixed
-// number of samples, which STRATIFIED and REGULAR need to know too; to the samples of the others more can be
-// added. In dimensions other than the pixel's all but INDEPENDENT use Sobol's sequence.
-#define SAMPLERS(SAMPLER)                 \
-  SAMPLER(SAMPLER_AUTO, auto)             \
-  SAMPLER(SAMPLER_SOBOL, sobol)           \
-  SAMPLER(SAMPLER_STRATIFIED, stratified) \
-  SAMPLER(SAMPLER_REGULAR, regular)       \
-  SAMPLER(SAMPLER_INDEPENDENT, independent)
+// number of samples, which STRATIFIED, REGULAR and BLUE_NOISE need to know too; to the samples of the others
+// more can be added. In dimensions other than the pixel's all but INDEPENDENT and BLUE_NOISE use the Sobol
+// sequence of the pixel.
+#define SAMPLERS(SAMPLER)                   \
+  SAMPLER(SAMPLER_AUTO, auto)               \
+  SAMPLER(SAMPLER_SOBOL, sobol)             \
+  SAMPLER(SAMPLER_STRATIFIED, stratified)   \
+  SAMPLER(SAMPLER_REGULAR, regular)         \
+  SAMPLER(SAMPLER_INDEPENDENT, independent) \
+  SAMPLER(SAMPLER_BLUE_NOISE, blue_noise)
 #define SAMPLER_AUTO 0
 #define SAMPLER_SOBOL 1
 #define SAMPLER_STRATIFIED 2
 #define SAMPLER_REGULAR 3
 #define SAMPLER_INDEPENDENT 4
+#define SAMPLER_BLUE_NOISE 5
 
 // The dimensions of a pixel's sample. Four from a multiple of four on belong together: their points are
 // spread evenly in all four, best in the first two, so a pair of values has an even number. What a path needs
@@ -118,6 +121,42 @@ static inline u32 sobol_bits(u32 x, u32 y, u32 sample, u32 dimension) {
   const u32 seed = hash_pixel(x, y, dimension >> 2), order = sobol_order(sample, seed);
   const u32 pair = dimension & 2u ? sobol_pair_23(order) : sobol_pair_01(order);
   return sobol_scrambled(dimension & 1u ? pair >> 16 : pair, seed, dimension & 3u);
+}
+
+// Blue noise on the screen: the pixels in Z-order take runs of 2^room samples of one sequence, the first two
+// dimensions of Sobol's, shuffled anew for every two dimensions (Ahmed and Wonka 2020, "Screen-Space
+// Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels"; pbrt's
+// ZSobolSampler, here shuffled as above). Blocks of pixels together then have their samples spread evenly, so
+// errors of neighbours cancel.
+
+// The bits of x and of y in turn. Both may be vectors.
+#define SPREAD_STEP(v, shift, mask) (((v) | ((v) << (shift))) & (mask))
+#define SPREAD_BITS(v)                                                                                      \
+  SPREAD_STEP(                                                                                              \
+      SPREAD_STEP(SPREAD_STEP(SPREAD_STEP((v) & 0xffffu, 8, 0x00ff00ffu), 4, 0x0f0f0f0fu), 2, 0x33333333u), \
+      1, 0x55555555u)
+#define Z_ORDER(x, y) (SPREAD_BITS(x) | SPREAD_BITS(y) << 1)
+
+// The reversed index in the sequence; of pictures that are too large for its 2^32 samples the greatest bits
+// of the pixels' order are left out.
+static inline u32 blue_noise_order(u32 x, u32 y, u32 sample, u32 room, u32 dimension) {
+  return owen_hash(reversed_bits(Z_ORDER(x, y) << room | sample), hash_u32(dimension >> 1));
+}
+
+// Sobol's second dimension for a reversed index: Pascal's triangle, modulo 2.
+static inline u32 sobol_second(u32 order) {
+  order ^= order << 16;
+  order ^= (order & 0x00ff00ffu) << 8;
+  order ^= (order & 0x0f0f0f0fu) << 4;
+  order ^= (order & 0x33333333u) << 2;
+  return order ^ (order & 0x55555555u) << 1;
+}
+
+// As sobol_bits().
+static inline u32 blue_noise_bits(u32 x, u32 y, u32 sample, u32 room, u32 dimension) {
+  const u32 order = blue_noise_order(x, y, sample, room, dimension);
+  const u32 place = dimension & 1u ? sobol_second(order) : order;
+  return reversed_bits(owen_hash(reversed_bits(place), hash_u32(dimension + 0x9e3779b9u)));
 }
 
 SUNDOG_SHARED_END

@@ -119,7 +119,8 @@ void read_sampling(JsonObject& object, RenderSettings& render) {
   const bool grows = sampling.threshold > 0 || sampling.progressive;
   if (sampling.subsample && grows)
     object.value().fail("\"subsample\" goes with neither \"adaptive\" nor \"progressive\": leave one out");
-  if (grows && (render.sampler == SAMPLER_STRATIFIED || render.sampler == SAMPLER_REGULAR))
+  if (grows && (render.sampler == SAMPLER_STRATIFIED || render.sampler == SAMPLER_REGULAR ||
+                render.sampler == SAMPLER_BLUE_NOISE))
     object.value().fail(
         fmt::format("the sampler {} has a fixed number of samples: wanted auto, sobol or "
                     "independent with \"adaptive\" or \"progressive\"",

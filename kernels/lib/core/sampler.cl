@@ -9,11 +9,17 @@
 #define SAMPLER SAMPLER_AUTO
 #endif
 
+#ifndef SAMPLE_ROOM
+#define SAMPLE_ROOM 0u
+#endif
+
 // [0, 1), 24 bits.
 static inline float unit_float(u32 bits) { return (float)(bits >> 8) * 0x1p-24f; }
 
 // A number in [0, 1) for a dimension of a pixel's sample.
 static inline float sample_1d(uint2 pixel, u32 sample, u32 dimension) {
+  if (SAMPLER == SAMPLER_BLUE_NOISE)
+    return unit_float(blue_noise_bits(pixel.x, pixel.y, sample, SAMPLE_ROOM, dimension));
   return unit_float(SAMPLER == SAMPLER_INDEPENDENT
                         ? hash_u32(sample + hash_pixel(pixel.x, pixel.y, dimension))
                         : sobol_bits(pixel.x, pixel.y, sample, dimension));

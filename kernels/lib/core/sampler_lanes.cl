@@ -48,6 +48,18 @@ static inline REAL scrambled_lanes(LANE_U32 reversed, LANE_U32 seed, u32 compone
   return unit_lanes(reversed_lanes(owen_lanes(reversed & 0xffffu, own)));
 }
 
+static inline LANE_U32 second_lanes(LANE_U32 order) {
+  order ^= order << 16;
+  order ^= (order & 0x00ff00ffu) << 8;
+  order ^= (order & 0x0f0f0f0fu) << 4;
+  order ^= (order & 0x33333333u) << 2;
+  return order ^ (order & 0x55555555u) << 1;
+}
+
+static inline REAL blue_noise_lanes(LANE_U32 place, LANE_U32 dimension) {
+  return unit_lanes(reversed_lanes(owen_lanes(reversed_lanes(place), hash_lanes(dimension + 0x9e3779b9u))));
+}
+
 // The pixel and the sample of each lane.
 typedef struct LaneSamples {
   MASK x, y, sample;
@@ -61,6 +73,15 @@ typedef struct FourNumbers {
 static inline FourNumbers sample_lanes(const LaneSamples* at, MASK dimension) {
   const LANE_U32 first = AS_LANE_U32(dimension), x = AS_LANE_U32(at->x), y = AS_LANE_U32(at->y),
                  sample = AS_LANE_U32(at->sample);
+  if (SAMPLER == SAMPLER_BLUE_NOISE) {
+    const LANE_U32 index = reversed_lanes(Z_ORDER(x, y) << SAMPLE_ROOM | sample);
+    const LANE_U32 low = owen_lanes(index, hash_lanes(first >> 1)),
+                   high = owen_lanes(index, hash_lanes((first >> 1) + 1u));
+    const FourNumbers u = {blue_noise_lanes(low, first), blue_noise_lanes(second_lanes(low), first + 1u),
+                           blue_noise_lanes(high, first + 2u),
+                           blue_noise_lanes(second_lanes(high), first + 3u)};
+    return u;
+  }
   if (SAMPLER == SAMPLER_INDEPENDENT) {
     const FourNumbers u = {
         unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first))))),

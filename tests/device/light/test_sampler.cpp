@@ -1,10 +1,14 @@
 // Sample values: where camera samples lie in their pixels.
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 
 #include "catch.h"
+#include "compile/compiled_scene.h"
 #include "devices.h"
+#include "scene/load.h"
+#include "scenes.h"
 #include "shared/sampler.h"
 
 using namespace sundog;
@@ -105,6 +109,60 @@ TEST_CASE("a device's samples are the host's to the bit") {
         REQUIRE(found[k] == of(in[i], dimension + k));
       }
   });
+}
+
+TEST_CASE("a device's blue noise is the host's to the bit") {
+  std::vector<Pixel> in;
+  for (u32 i = 0; i < 1024; ++i) in.push_back({i * 7, i / 5, i & 15u, 16});
+  const std::map<std::string, std::string> defines{{"SAMPLER", std::to_string(SAMPLER_BLUE_NOISE)},
+                                                   {"SAMPLE_ROOM", "4"}};
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    const auto out = run_text<Place>(device, text, in, defines);
+    const auto of = [&](const Pixel& at, u32 d) {
+      return static_cast<float>(blue_noise_bits(at.x, at.y, at.sample, 4, d) >> 8) * 0x1p-24f;
+    };
+    std::map<std::string, std::string> lanes = defines;
+    lanes.insert({{"TILE_W", "2"}, {"TILE_H", "2"}, {"LANES", "4"}});
+    const auto four = run_text<float4>(device, lanes_text, in, lanes);
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      REQUIRE(out[i].a == of(in[i], DIMENSION_PIXEL));
+      REQUIRE(out[i].second == of(in[i], dimension + 1));
+      const float found[] = {four[i].x, four[i].y, four[i].z, four[i].w};
+      for (u32 k = 0; k < 4; ++k) REQUIRE(found[k] == of(in[i], dimension + k));
+    }
+  });
+}
+
+TEST_CASE("blue noise errs less than Sobol's sequence of each pixel once it is blurred") {
+  SceneDescription scene = load_scene(SUNDOG_SOURCE_DIR "/scenes/soft_light.json");
+  scene.image.width = scene.image.height = 64;
+  scene.camera.position.z = 4;  // the back wall and the floor alone
+  const DeviceInfo& info = test_devices().front();
+  const auto picture = [&](u32 sampler, int samples) {
+    scene.render.sampler = sampler;
+    scene.render.samples = samples;
+    return scenes::render_on(info, scene).image;
+  };
+  const Image right = picture(SAMPLER_SOBOL, 256);
+  const auto error = [&](const Image& image) {  // of means of 4x4 pixels
+    double sum = 0;
+    for (int y = 0; y < 64; y += 4)
+      for (int x = 0; x < 64; x += 4) {
+        double mean = 0;
+        for (int i = 0; i < 16; ++i)
+          mean += double(image.pixel(x + i % 4, y + i / 4)[0]) - double(right.pixel(x + i % 4, y + i / 4)[0]);
+        sum += mean * mean;
+      }
+    return std::sqrt(sum);
+  };
+  for (const int samples : {1, 4})
+    CHECK(error(picture(SAMPLER_BLUE_NOISE, samples)) < 0.85 * error(picture(SAMPLER_SOBOL, samples)));
+  scene.render.sampler = SAMPLER_SOBOL;
+  CHECK(compile(scene).features.sample_room == 0);
+  scene.render.sampler = SAMPLER_BLUE_NOISE;
+  scene.render.samples = 5;
+  CHECK(compile(scene).features.sample_room == 3);
 }
 
 TEST_CASE("stratified and regular samples have a cell of a grid each") {

@@ -1,4 +1,5 @@
 // The Sobol sequence of kernels/shared/sampler.h, whose code the kernels share: how evenly its points lie.
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -45,6 +46,29 @@ double squared_discrepancy(u32 x, u32 y, u32 dimension, u32 count) {
 }
 
 }  // namespace
+
+TEST_CASE("blue noise fills every elementary interval by the samples of each aligned block of pixels") {
+  constexpr u32 room = 2;  // 4 samples a pixel
+  for (const u32 block : {1u, 2u, 4u, 8u})
+    for (const u32 dimension : {0u, 2u, 4u, 4104u})
+      for (const u32 corner : {0u, 3u, 700u}) {
+        const u32 count = block * block << room;
+        for (u32 columns = 1; columns <= count; columns *= 2) {
+          const u32 rows = count / columns;
+          std::vector<u32> filled(count);
+          for (u32 i = 0; i < count; ++i) {
+            const u32 pixel = i >> room, x = corner * block + pixel % block,
+                      y = (corner + 5) * block + pixel / block, sample = i & 3u;
+            const auto at = [&](u32 d, u32 cells) {
+              return static_cast<u32>(blue_noise_bits(x, y, sample, room, d) / 4294967296.0 * cells);
+            };
+            ++filled[at(dimension, columns) * rows + at(dimension + 1, rows)];
+          }
+          INFO(block << " dimension " << dimension << " corner " << corner << " columns " << columns);
+          CHECK(std::ranges::count(filled, 1u) == count);
+        }
+      }
+}
 
 TEST_CASE("the first 2^k samples of a pixel are in every elementary interval, and so is each aligned run") {
   for (const u32 pixel : {0u, 5u, 40000u})
