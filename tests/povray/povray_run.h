@@ -19,9 +19,12 @@ struct Run {
   std::uint64_t rays = 0, shadow_tests = 0;
 };
 
-/// Renders one sample a pixel at the pixels' centres. Files go to `folder` (made if missing) as `name`.pov,
+/// POV-Ray's options for one sample a pixel, at its centre.
+inline constexpr const char* at_centres = "-A";
+
+/// Renders with `sampling`, options of POV-Ray. Files go to `folder` (made if missing) as `name`.pov,
 /// .png and .log. Throws std::runtime_error with the end of POV-Ray's log when it fails.
 Run run(const std::string& scene, int width, int height, int threads, const std::filesystem::path& folder,
-        const std::string& name);
+        const std::string& name, const std::string& sampling = at_centres);
 
 }  // namespace sundog::povray
