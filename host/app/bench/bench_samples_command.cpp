@@ -25,21 +25,25 @@ std::vector<std::string> split_list(const std::string& text) {
 }
 
 struct SamplesOptions : BenchOptions {
-  std::string counts = "1,2,4,8,16,32";
+  std::string counts = "1,5,17,26";
   int reference = 0;                        // 0: four times the most
   std::string adaptive = "0.01,0.02,0.05";  // thresholds
 };
 
-/// Frames whose samples go where they are needed, up to four times the most that all pixels get.
-std::vector<SampleWay> sample_ways(const SamplesOptions& options, int most) {
+/// Frames whose samples go where they are needed: adaptive ones up to four times the most that all pixels
+/// get, and subsampled ones of each count.
+std::vector<SampleWay> sample_ways(const SamplesOptions& options, const std::vector<int>& counts) {
   std::vector<SampleWay> ways;
   for (const std::string& threshold : split_list(options.adaptive))
     ways.push_back(
-        {"adaptive, " + threshold,
-         {fmt::format("/render/samples={}", 4 * most), "/render/adaptive/threshold=" + threshold}});
-  ways.push_back({fmt::format("subsampled, {}", most),
-                  {fmt::format("/render/samples={}", most), "/render/adaptive/threshold=0",
-                   "/render/subsample/on=true"}});
+        {"adaptive",
+         threshold,
+         {fmt::format("/render/samples={}", 4 * counts.back()), "/render/adaptive/threshold=" + threshold}});
+  for (const int samples : counts)
+    ways.push_back({"subsampled",
+                    std::to_string(samples),
+                    {fmt::format("/render/samples={}", samples), "/render/adaptive/threshold=0",
+                     "/render/subsample/on=true"}});
   return ways;
 }
 
@@ -67,11 +71,11 @@ int bench_samples(const SamplesOptions& options) {
       const auto on_step = [&](const std::string& step) { show_step(options, step); };
       const std::vector<SampleTime> even = measure_samples(plan, on_step);
       add_sample_tables(report, plan, even);
-      SampleWays ways{plan.scene, {}, device, sample_ways(options, counts.back()), reference, options.repeat};
+      SampleWays ways{plan, {}, sample_ways(options, counts)};
       ways.compile_with = [&](const std::vector<std::string>& overrides) {
         return bench_scene(file, options, overrides);
       };
-      add_way_table(report, ways, measure_ways(ways, even, on_step));
+      add_way_tables(report, ways, even, measure_ways(ways, even, on_step));
     }
   report.notes.push_back(
       fmt::format("Median of {} frames after one to warm up; the counts take turns, and the image of each "
@@ -94,7 +98,7 @@ void add_bench_samples(Arguments& bench, Command& chosen) {
   Arguments* app = bench.add_subcommand("samples", "Time and error by samples a pixel");
   add_bench_options(app, *options);
   add_bench_size(app, *options);
-  value(app, "--counts", "LIST", options->counts, "samples a pixel (default 1,2,4,8,16,32)");
+  value(app, "--counts", "LIST", options->counts, "samples a pixel (default 1,5,17,26)");
   app->add_option("--reference", options->reference,
                   "samples of the picture that counts as right (default: four times the most)")
       ->type_name("N")

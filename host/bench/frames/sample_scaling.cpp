@@ -13,8 +13,6 @@
 namespace sundog {
 namespace {
 
-constexpr double visible_error = 0.02;  // in linear color
-
 /// A scene for one number of samples, ready to be rendered again and again.
 struct SampleRunner {
   CompiledScene scene;
@@ -46,8 +44,7 @@ Spread milliseconds(const Spread& seconds) {
   return {1e3 * seconds.median, 1e3 * seconds.min, 1e3 * seconds.max};
 }
 
-std::vector<Cell> figures(const SampleTime& time) {
-  const double samples = time.samples;
+std::vector<Cell> figures(const SampleTime& time, double samples) {
   return {milliseconds(time.seconds),
           1e3 * time.seconds.median / samples,
           time.seconds.median > 0 ? time.rays / 1e6 / time.seconds.median : 0,
@@ -106,34 +103,47 @@ std::vector<SampleTime> measure_samples(const SampleScaling& plan,
   return times;
 }
 
+void add_measurement(Report& report, const SampleScaling& plan, const std::string& way,
+                     const SampleTime& time, double samples, double of_even) {
+  Table& measured = report.measurements;
+  if (measured.columns.empty()) {
+    measured.columns = {
+        {"scene", ""}, {"device", ""}, {"way", ""}, {"samples", ""}, {"reference samples", ""}, {"runs", ""}};
+    measured.columns.insert(measured.columns.end(), figure_columns.begin(), figure_columns.end());
+    measured.columns.insert(measured.columns.end(),
+                            {{"rays", "millions"}, {"of even rays", "%"}, {"problem", ""}});
+  }
+  std::vector<Cell> row{plan.scene,
+                        plan.device.label(),
+                        way,
+                        samples,
+                        static_cast<double>(plan.reference),
+                        static_cast<double>(plan.repeat)};
+  if (time.problem.empty()) {
+    for (const Cell& cell : figures(time, samples)) row.push_back(cell);
+    row.emplace_back(time.rays / 1e6);
+    if (of_even > 0) row.emplace_back(of_even);
+  }
+  row.resize(measured.columns.size());
+  if (!time.problem.empty()) row.back() = time.problem;
+  measured.rows.push_back(std::move(row));
+}
+
 void add_sample_tables(Report& report, const SampleScaling& plan, const std::vector<SampleTime>& times) {
   Table table{fmt::format("{} on {}: time and error by samples a pixel", plan.scene, plan.device.label()),
               {{"samples", ""}},
               {}};
-  Table& measured = report.measurements;
-  if (measured.columns.empty()) {
-    measured.columns = {
-        {"scene", ""}, {"device", ""}, {"samples", ""}, {"reference samples", ""}, {"runs", ""}};
-    measured.columns.insert(measured.columns.end(), figure_columns.begin(), figure_columns.end());
-    measured.columns.push_back({"problem", ""});
-  }
   table.columns.insert(table.columns.end(), figure_columns.begin(), figure_columns.end());
   const bool sound = std::ranges::all_of(times, [](const SampleTime& time) { return time.problem.empty(); });
   if (!sound) table.columns.push_back({"problem", ""});
   for (const SampleTime& time : times) {
     std::vector<Cell> row{static_cast<double>(time.samples)};
-    std::vector<Cell> tidy{plan.scene, plan.device.label(), static_cast<double>(time.samples),
-                           static_cast<double>(plan.reference), static_cast<double>(plan.repeat)};
     if (time.problem.empty())
-      for (const Cell& cell : figures(time)) {
-        row.push_back(cell);
-        tidy.push_back(cell);
-      }
+      for (const Cell& cell : figures(time, time.samples)) row.push_back(cell);
     row.resize(table.columns.size());
-    tidy.resize(measured.columns.size());
-    if (!time.problem.empty()) row.back() = tidy.back() = time.problem;
+    if (!time.problem.empty()) row.back() = time.problem;
     table.rows.push_back(std::move(row));
-    measured.rows.push_back(std::move(tidy));
+    add_measurement(report, plan, "even", time, time.samples, 100);
   }
   report.parts.emplace_back(std::move(table));
   report.parts.emplace_back(

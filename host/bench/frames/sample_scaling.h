@@ -11,6 +11,9 @@
 
 namespace sundog {
 
+/// In linear colour: a pixel that is off by more looks wrong.
+inline constexpr double visible_error = 0.02;
+
 struct SampleScaling {
   std::string scene;  // its name, for the report
   /// The scene compiled for so many samples a pixel.
@@ -25,7 +28,7 @@ struct SampleTime {
   int samples = 0;
   Spread seconds;
   double rays = 0;        // of a frame, of all kinds
-  ImageDifference error;  // from the reference, in linear color; tolerance 0.02
+  ImageDifference error;  // from the reference, in linear color; tolerance visible_error
   std::string problem;    // not empty: no time counts, and why
 };
 
@@ -33,6 +36,12 @@ struct SampleTime {
 /// image is not that of the warm-up to the bit is a problem. `on_step` hears what is being measured.
 std::vector<SampleTime> measure_samples(const SampleScaling& plan,
                                         const std::function<void(const std::string&)>& on_step);
+
+/// Appends a measurement: frames of `samples` a pixel, made in the given way ("even": the same number for
+/// each). `of_even` are their rays in per cent of those that even samples need for the same error; 0:
+/// unknown.
+void add_measurement(Report& report, const SampleScaling& plan, const std::string& way,
+                     const SampleTime& time, double samples, double of_even);
 
 /// Adds the table, the curves and the measurements.
 void add_sample_tables(Report& report, const SampleScaling& plan, const std::vector<SampleTime>& times);

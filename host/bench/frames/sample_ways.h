@@ -11,24 +11,22 @@ namespace sundog {
 
 /// One way to share samples out.
 struct SampleWay {
-  std::string name;                    // for the report
+  std::string family;                  // "adaptive", "subsampled": a curve of the report
+  std::string setting;                 // the threshold, or the samples
   std::vector<std::string> overrides;  // of the scene
 };
 
 struct SampleWays {
-  std::string scene;
+  SampleScaling even;  // the frames that they are compared with
   std::function<CompiledScene(const std::vector<std::string>& overrides)> compile_with;
-  DeviceInfo device;
   std::vector<SampleWay> ways;
-  int reference = 128, repeat = 5;
 };
 
 struct WayTime {
-  std::string name;
-  Spread seconds;
-  double rays = 0, samples_a_pixel = 0;  // rays of all kinds, those that only look among them
-  double rms = 0;
-  double even_rays = 0;  // that even samples take to the same error, from `even`; 0: beyond what was measured
+  SampleWay way;
+  SampleTime time;             // `samples` is 0; rays that only look are among the rays
+  double samples_a_pixel = 0;  // in the mean
+  double even_rays = 0;        // that even samples take to the same error; 0: beyond what was measured
 };
 
 /// The rays that `even` samples would need for an error of `rms`: between two measured counts as a power.
@@ -38,7 +36,8 @@ double rays_for_error(const std::vector<SampleTime>& even, double rms);
 std::vector<WayTime> measure_ways(const SampleWays& plan, const std::vector<SampleTime>& even,
                                   const std::function<void(const std::string&)>& on_step);
 
-/// Adds a table of them.
-void add_way_table(Report& report, const SampleWays& plan, const std::vector<WayTime>& times);
+/// Adds a table of them, curves beside those of `even`, and the measurements.
+void add_way_tables(Report& report, const SampleWays& plan, const std::vector<SampleTime>& even,
+                    const std::vector<WayTime>& times);
 
 }  // namespace sundog

@@ -246,26 +246,37 @@ TEST_CASE("bench devices ranks devices and combinations, with shares that add up
 
 TEST_CASE("bench samples tells time and error by samples, and the error falls") {
   const CliFolder folder;
-  CommandResult result = run_sundog({"bench", "samples", folder.scene, "--device", "portable", "--counts",
-                                     "8,1,2", "--reference", "64", "--repeat", "2", "--json",
-                                     folder.file("t.json"), "--html", folder.file("t.html")});
+  CommandResult result =
+      run_sundog({"bench", "samples", folder.scene, "--device", "portable", "--counts", "8,1,2",
+                  "--reference", "64", "--repeat", "2", "--json", folder.file("t.json"), "--html",
+                  folder.file("t.html"), "--adaptive", "0.02", "--csv", folder.file("t.csv")});
   CAPTURE(result.out, result.err);
   REQUIRE(result.status == 0);
   CHECK_THAT(result.out, ContainsSubstring("time and error by samples a pixel"));
   const json report = json::parse(sundog::read_file(folder.file("t.json")));
   const json& rows = report.at("measurements");
-  REQUIRE(rows.size() == 3);
+  REQUIRE(rows.size() == 3 + 1 + 3);
   for (const json& row : rows) {
     CAPTURE(row.dump());
     CHECK(row.at("problem").is_null());
     CHECK(row.at("reference_samples") == 64);
     CHECK(row.at("time_ms").at("median") > 0);
+    CHECK(row.at("rays_millions") > 0);
   }
+  for (std::size_t i = 0; i < 3; ++i)
+    CHECK((rows[i].at("way") == "even" && rows[i].at("of_even_rays_%") == 100));
+  CHECK(rows[3].at("way") == "adaptive, 0.02");
+  CHECK(rows[3].at("samples") >= 2);
+  CHECK(rows[6].at("way") == "subsampled, 8");
+  CHECK(rows[6].at("rays_millions") < rows[2].at("rays_millions"));
+  CHECK_THAT(sundog::read_file(folder.file("t.csv")), ContainsSubstring("\"adaptive, 0.02\""));
   CHECK(rows[0].at("samples") == 1);  // ascending
   CHECK(rows[1].at("rms_error") < rows[0].at("rms_error"));
   CHECK(rows[2].at("rms_error") < 0.5 * rows[0].at("rms_error").get<double>());
   CHECK(rows[2].at("rms_error") > 0);
-  CHECK(sundog::read_file(folder.file("t.html")).starts_with("<!DOCTYPE html>"));
+  const std::string page = sundog::read_file(folder.file("t.html"));
+  CHECK(page.starts_with("<!DOCTYPE html>"));
+  CHECK_THAT(page, ContainsSubstring(": error by rays") && ContainsSubstring(": error by time"));
 
   result = run_sundog({"bench", "samples", folder.scene, "--counts", "4,8", "--reference", "8"});
   CHECK(result.status == 2);
