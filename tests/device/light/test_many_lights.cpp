@@ -1,8 +1,10 @@
 // Many lights: a surface that chooses among them receives what it would of all.
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "catch.h"
+#include "compile/compiled_scene.h"
 #include "devices.h"
 #include "scenes.h"
 
@@ -30,6 +32,68 @@ SceneDescription floor_under(int count) {
     scene.lights.push_back(light);
   }
   return scene;
+}
+
+// The lights that even numbers choose for a point, with the probabilities reported, and those of the leaves.
+const char* const choose_kernel = R"(
+#include "lib/light/choose_light.cl"
+__kernel void choose(__global const LightNode* nodes, __global const float4* point, __global const u32* leaves,
+                     __global float4* chosen, __global float* of_leaves, u32 count, u32 leaf_count) {
+  const u32 i = get_global_id(0);
+  const Scene scene = {.light_nodes = nodes};
+  if (i < leaf_count) of_leaves[i] = light_probability(&scene, leaves[i], point[0].xyz);
+  if (i >= count) return;
+  float probability;
+  const u32 light = choose_light(&scene, point[0].xyz, ((float)i + 0.5f) / (float)count, &probability);
+  chosen[i] = (float4)((float)light, probability, 0.0f, 0.0f);
+}
+)";
+
+struct Choices {
+  std::vector<u32> lights;              // of each leaf
+  std::vector<float> probabilities;     // of each leaf
+  std::vector<float> shares, reported;  // of the numbers that chose it; what choose_light() said
+};
+
+Choices choices(const DeviceInfo& info, SceneDescription scene, const glm::vec3& p) {
+  constexpr u32 count = 1u << 14;
+  scene.render.light_samples = 1;
+  const CompiledScene flat = compile(scene);
+  std::vector<u32> leaves;
+  Choices found;
+  for (u32 node = 0; node < flat.light_nodes.size(); ++node)
+    if (flat.light_nodes[node].next & LIGHT_LEAF) {
+      leaves.push_back(node);
+      found.lights.push_back(flat.light_nodes[node].next & ~LIGHT_LEAF);
+    }
+  Device device(info);
+  auto kernel =
+      build_text(device, choose_kernel,
+                 {{"TILE_W", "1"}, {"TILE_H", "1"}, {"LANES", "1"}, {"HAS_LIGHT_TREE", "1"}})
+          .kernel<Buffer<LightNode>, Buffer<float4>, Buffer<u32>, Buffer<float4>, Buffer<float>, u32, u32>(
+              "choose");
+  const float4 at{p.x, p.y, p.z, 0};
+  const auto leaf_count = static_cast<u32>(leaves.size());
+  const auto nodes = device.upload<LightNode>(flat.light_nodes);
+  const auto point = device.upload<float4>(std::span<const float4>(&at, 1));
+  const auto of = device.upload<u32>(leaves);
+  const auto chosen = device.make<float4>(count);
+  const auto probabilities = device.make<float>(leaf_count);
+  device.run(kernel, {.x = count}, nodes, point, of, chosen, probabilities, count, leaf_count);
+  found.probabilities.resize(leaf_count);
+  device.read(probabilities, std::span<float>(found.probabilities));
+  std::vector<float4> drawn(count);
+  device.read(chosen, std::span<float4>(drawn));
+  found.shares.resize(leaf_count);
+  found.reported.resize(leaf_count);
+  for (const float4& one : drawn) {
+    const auto leaf = static_cast<std::size_t>(std::ranges::find(found.lights, static_cast<u32>(one.x)) -
+                                               found.lights.begin());
+    REQUIRE(leaf < leaves.size());
+    found.shares[leaf] += 1.0f / static_cast<float>(count);
+    found.reported[leaf] = one.y;
+  }
+  return found;
 }
 
 struct Mean {
@@ -75,5 +139,40 @@ TEST_CASE("a thousand lights need no more rays than are asked for") {
     const RenderResult result = scenes::render_on(device, scene);
     CHECK(result.counts[COUNT_SHADOW] <= 144u * 5u);
     CHECK(mean_of(result.image).value > 1);
+  });
+}
+
+TEST_CASE("each light of a tree is chosen as often as its probability says, and these sum to one") {
+  on_every_device([&](const DeviceInfo& device) {
+    for (const glm::vec3 p : {glm::vec3(0, 0, 0), glm::vec3(8, 1, -7), glm::vec3(-300, 20, 90)}) {
+      const Choices found = choices(device, floor_under(23), p);
+      REQUIRE(found.lights.size() == 23);
+      double sum = 0;
+      for (std::size_t i = 0; i < found.lights.size(); ++i) {
+        INFO("light " << found.lights[i]);
+        sum += static_cast<double>(found.probabilities[i]);
+        CHECK(found.shares[i] == Approx(found.probabilities[i]).margin(0.001));
+        if (found.shares[i] > 0) CHECK(found.reported[i] == Approx(found.probabilities[i]).epsilon(1e-5));
+      }
+      CHECK(sum == Approx(1).epsilon(1e-5));
+    }
+  });
+}
+
+TEST_CASE("of two lamps alike, one twice as far away, the near one is chosen four times of five") {
+  SceneDescription scene = scenes::line_of_sight({1, 1, 0}, {0, 0, 0});
+  for (const double height : {20.0, 40.0}) {
+    LightDescription light;
+    light.type = LightType::disk;
+    light.position = {0, height, 0};
+    light.direction = {0, -1, 0};
+    light.radius = 0.1;
+    scene.lights.push_back(light);
+  }
+  on_every_device([&](const DeviceInfo& device) {
+    const Choices found = choices(device, scene, {0, 0, 0});
+    REQUIRE(found.lights.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i)
+      CHECK(found.probabilities[i] == Approx(found.lights[i] == 0 ? 0.8 : 0.2).epsilon(1e-4));
   });
 }
