@@ -123,6 +123,7 @@ std::vector<Found> look(Device& device, const SceneDescription& scene, const std
   const DeviceScene tables = upload_scene(device, flat);
   KernelDefines defines = one_lane;
   defines["WIDE_VECTORS"] = traces_compact(flat, device.info()) ? "0" : "1";
+  defines["HAS_OBJECT_MOTION"] = defines["HAS_TURNS"] = "0";  // what rests has no row in the table of moves
   auto kernel =
       scene_kernel<Buffer<Ray>, Buffer<float>, u32>(build_text(device, look_kernel, defines), "look");
   const auto in = device.upload<Ray>(rays);
