@@ -4,8 +4,8 @@
 // Shadow rays see what paths that meet lights by chance would.
 #define SHADOWS_AS_PATHS 1
 #include "lib/core/counters.cl"
-#include "lib/core/ray_counts.cl"
 #include "lib/path/camera_samples.cl"
+#include "lib/path/ray_counts.cl"
 #include "lib/pathtracer/steps.cl"
 #include "shared/launch.h"
 

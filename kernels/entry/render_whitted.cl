@@ -2,8 +2,8 @@
 // place in the image is a multiple of the tile, so that the pixels it works on together are the same however
 // the frame is cut.
 #include "lib/core/counters.cl"
-#include "lib/core/ray_counts.cl"
 #include "lib/path/camera_samples.cl"
+#include "lib/path/ray_counts.cl"
 #include "lib/whitted/whitted.cl"
 #include "shared/launch.h"
 

@@ -14,8 +14,8 @@ TEST_CASE("the examples build and run from an installed tree") {
   const fs::path prefix = install_library(folder.path());
   fs::copy(fs::path(SUNDOG_SOURCE_DIR) / "examples", folder / "examples");
   const std::string build = (folder / "build").string();
-  must(
-      {"cmake", "-S", (folder / "examples").string(), "-B", build, "-DCMAKE_PREFIX_PATH=" + prefix.string()});
+  must({"cmake", "-G", "Ninja", "-S", (folder / "examples").string(), "-B", build,
+        "-DCMAKE_PREFIX_PATH=" + prefix.string()});
   must({"cmake", "--build", build, "--parallel", "2"});
   const std::string scene = shipped_scene("julia").string();
   // A scene in 640x480 is too much for a test.

@@ -1,12 +1,12 @@
 // Shadow rays from surfaces to the lights, left on a stack with the light that each would bring.
 #ifndef SUNDOG_LIB_SHADOW_RAYS_CL
 #define SUNDOG_LIB_SHADOW_RAYS_CL
-#include "lib/core/ray_counts.cl"
 #include "lib/light/choose_light.cl"
 #include "lib/light/field_light.cl"
 #include "lib/light/light.cl"
 #include "lib/light/relief_shadow.cl"
 #include "lib/path/path_samples.cl"
+#include "lib/path/ray_counts.cl"
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"

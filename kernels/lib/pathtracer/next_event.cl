@@ -1,9 +1,9 @@
 // Light chosen at the surfaces of paths: one light each, a place on it, and a shadow ray there.
 #ifndef SUNDOG_LIB_NEXT_EVENT_CL
 #define SUNDOG_LIB_NEXT_EVENT_CL
-#include "lib/core/ray_counts.cl"
 #include "lib/light/shadow.cl"
 #include "lib/light/shadow_rays.cl"
+#include "lib/path/ray_counts.cl"
 #include "lib/pathtracer/guides.cl"
 #include "lib/pathtracer/walk_state.cl"
 #include "lib/shade/bsdf_sample.cl"

@@ -3,7 +3,7 @@
 // path a lane.
 #ifndef SUNDOG_LIB_SCATTER_MEDIA_CL
 #define SUNDOG_LIB_SCATTER_MEDIA_CL
-#include "lib/core/ray_counts.cl"
+#include "lib/path/ray_counts.cl"
 #include "lib/pathtracer/next_event.cl"
 #include "lib/pathtracer/walk_state.cl"
 

@@ -2,7 +2,7 @@
 // chosen there, and the ray that continues. Nothing waits: a path is its one ray and its Walks.
 #ifndef SUNDOG_LIB_PATH_STEPS_CL
 #define SUNDOG_LIB_PATH_STEPS_CL
-#include "lib/core/ray_counts.cl"
+#include "lib/path/ray_counts.cl"
 #include "lib/pathtracer/gather_photons.cl"
 #include "lib/pathtracer/guides.cl"
 #include "lib/pathtracer/leave_surfaces.cl"

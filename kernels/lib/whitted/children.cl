@@ -1,8 +1,8 @@
 // The reflected and refracted rays that come of surfaces (Whitted 1980), left on a stack.
 #ifndef SUNDOG_LIB_CHILDREN_CL
 #define SUNDOG_LIB_CHILDREN_CL
-#include "lib/core/ray_counts.cl"
 #include "lib/path/path_samples.cl"
+#include "lib/path/ray_counts.cl"
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"

@@ -108,7 +108,7 @@ TEST_CASE("tune ends a device that takes longer than its budget, and keeps what 
   CAPTURE(nothing.out, nothing.err);
   CHECK(nothing.status == 4);
   CHECK(is_one_error_line(nothing.err));
-  CHECK_THAT(nothing.err, ContainsSubstring("was ended after 3 s") &&
+  CHECK_THAT(nothing.err, ContainsSubstring("was ended after ") &&
                               ContainsSubstring("(scene, render_whitted: the first small frame)") &&
                               ContainsSubstring("--budget"));
   CHECK_THAT(folder.run({"--show"}).out, ContainsSubstring("There are no results"));
