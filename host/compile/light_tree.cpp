@@ -74,7 +74,11 @@ void add_light_tree(const SceneDescription& scene, CompiledScene& out) {
   const bool triangles =
       std::ranges::any_of(out.lights, [](const Light& light) { return light.kind == LIGHT_TRIANGLE; });
   const bool chooses = scene.render.light_samples > 0 || traces_paths(scene.render.integrator) || triangles;
-  if (!chooses || lamps.empty() || (lamps.size() == 1 && !triangles)) return;
+  if (!chooses || lamps.empty() || (lamps.size() == 1 && !triangles)) {
+    // General kernels ask for the way to each light: there is no choice on it.
+    out.light_leaves = std::vector<u32>(out.lights.size(), 0u);
+    return;
+  }
   append(lamps, out.light_nodes.edit());
   std::vector<u32> leaves(out.lights.size());
   for (u32 node = 0; node < out.light_nodes.size(); ++node)

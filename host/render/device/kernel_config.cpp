@@ -81,6 +81,7 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
   deep.integrator = scene.integrator;
   deep.tracer = scene.tracer;
   deep.field_source = scene.field_source;
+  deep.pattern_source = scene.pattern_source;
   KernelConfig config = make_kernel_config(deep, device, tuning);
   const bool fields = config.generated.contains("generated/sdf.cl");
   for (auto& [name, value] : config.defines) {

@@ -223,6 +223,8 @@ TEST_CASE("kernels stand in for others that leave harmless features out") {
   CHECK(std::ranges::count_if(general_configs(scene, device),
                               [&](const KernelConfig& one) { return stands_in(one, fog); }) == 1);
   CHECK_FALSE(stands_in(general_config(compile(scenes::shipped_small("mandelbulb")), device), own));
+  const CompiledScene patterns = compile(scenes::shipped_small("patterns"));
+  CHECK(stands_in(general_config(patterns, device), make_kernel_config(patterns, device)));
   // Surface coordinates turn the frame in which layers are sampled: other noise.
   const CompiledScene layers =
       compile(load_scene(SUNDOG_SOURCE_DIR "/tests/support/every_feature/layers.json"));

@@ -176,3 +176,11 @@ TEST_CASE("of two lamps alike, one twice as far away, the near one is chosen fou
       CHECK(found.probabilities[i] == Approx(found.lights[i] == 0 ? 0.8 : 0.2).epsilon(1e-4));
   });
 }
+
+TEST_CASE("a lone lamp has no tree, and the way to it no choices for kernels that know of trees") {
+  SceneDescription scene = scenes::shipped_small("cornell_path");
+  const CompiledScene flat = compile(scene);
+  REQUIRE_FALSE(flat.features.light_tree);
+  REQUIRE_FALSE(flat.lights.empty());
+  CHECK(std::ranges::equal(flat.light_leaves, std::vector<u32>(flat.lights.size(), 0u)));
+}
