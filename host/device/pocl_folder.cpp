@@ -74,21 +74,33 @@ void try_to_make(const fs::path& folder) {
   }
 }
 
-/// A new folder in the cache, or where that cannot be written or is full, among the temporary files; empty:
-/// neither can.
+/// A new folder below `root`, locked; empty: none can be made. Another process that removes folders left over
+/// may take one before it is locked: then another is made.
+std::string make_locked_below(const fs::path& root, std::string_view beginning) {
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    std::string folder = (root / beginning).string() + "XXXXXX";
+    if (!::mkdtemp(folder.data())) break;
+    std::error_code error;
+    const int lock = lock_folder(folder, O_CREAT);
+    if (lock >= 0 && fs::exists(fs::path(folder) / "lock", error)) return folder;
+    if (lock >= 0) ::close(lock);
+  }
+  return "";
+}
+
+/// A new locked folder in the cache, or where that cannot be written or is full, among the temporary files;
+/// empty: neither can.
 std::string make_folder(const HostEnvironment& environment) {
   std::error_code error;
   const fs::path root = cache_folder(environment.cache, "pocl");
   if (!root.empty()) try_to_make(root);
   if (!root.empty() && fs::is_directory(root, error)) remove_left_over(root, "");
   if (!root.empty() && room_in(root, environment).value_or(0) >= ample_room) {
-    std::string folder = (root / "XXXXXX").string();
-    if (::mkdtemp(folder.data())) return folder;
+    if (std::string folder = make_locked_below(root, ""); !folder.empty()) return folder;
   }
   const fs::path temporary = fs::temp_directory_path(error);
   remove_left_over(temporary, temporary_name);
-  std::string folder = (temporary / temporary_name).string() + "XXXXXX";
-  return ::mkdtemp(folder.data()) ? folder : "";
+  return make_locked_below(temporary, temporary_name);
 }
 
 }  // namespace
@@ -98,10 +110,11 @@ bool is_pocl(const DeviceInfo& device) { return device.platform_name == "Portabl
 PoclFolder::PoclFolder(const HostEnvironment& environment) noexcept {
   try {
     if (!environment.driver("POCL_CACHE_DIR").empty()) return;
+    ::unsetenv("POCL_CACHE_DIR");  // an empty one ends PoCL's process
     const std::string folder = make_folder(environment);
-    if (folder.empty() || lock_folder(folder, O_CREAT) < 0) return;
+    if (folder.empty()) return;
     own_ = folder;
-    ::setenv("POCL_CACHE_DIR", folder.c_str(), 1);  // an empty one ends PoCL's process
+    ::setenv("POCL_CACHE_DIR", folder.c_str(), 1);
   } catch (const std::exception&) {
     // PoCL's own folder does as well, as long as it can be written and nothing damages it.
   }
