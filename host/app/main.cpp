@@ -17,7 +17,7 @@
 #include "app/process/exit_status.h"
 #include "app/process/interrupt.h"
 #include "base/error.h"
-#include "device/pocl_folder.h"
+#include "device/driver_folder.h"
 
 namespace sundog {
 namespace {
@@ -77,7 +77,7 @@ void bound_the_end(int status) {
   std::signal(SIGABRT, [](int) { ::_exit(static_cast<int>(final_status)); });
   if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0)
     ::dup2(nowhere, STDERR_FILENO);
-  pocl_folder(*program_environment()).remove();
+  driver_folder(*program_environment()).remove();
   ::_exit(status);
 }
 

@@ -17,7 +17,7 @@
 #include "base/memory_file.h"
 #include "device/cl_status.h"
 #include "device/device.h"
-#include "device/pocl_folder.h"
+#include "device/driver_folder.h"
 
 namespace sundog {
 namespace {

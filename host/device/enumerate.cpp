@@ -15,9 +15,9 @@
 #include "device/build_options.h"
 #include "device/cl_status.h"
 #include "device/devices.h"
+#include "device/driver_folder.h"
 #include "device/estimate.h"
 #include "device/machine_topology.h"
-#include "device/pocl_folder.h"
 
 namespace sundog {
 namespace {
@@ -163,7 +163,7 @@ void list_platform(DeviceInfo platform, cl_platform_id id, std::vector<DeviceInf
   cl_int status = clGetDeviceIDs(id, CL_DEVICE_TYPE_ALL, 0, nullptr, &count);
   if (status == CL_DEVICE_NOT_FOUND || (status == CL_SUCCESS && count == 0)) {
     const HostEnvironment& environment = value_of(platform.environment);
-    const std::string why = is_pocl(platform) ? pocl_folder(environment).problem(environment) : "";
+    const std::string why = is_pocl(platform) ? driver_folder(environment).problem(environment) : "";
     return problem("the platform has no device" + (why.empty() ? "" : ": " + why));
   }
   if (status != CL_SUCCESS) return problem("clGetDeviceIDs: " + cl_status_name(status));
@@ -195,7 +195,7 @@ void enlarge_thread_stacks() {
 bool prepare_drivers(const HostEnvironment& environment) {
   for (const auto& [name, value] : environment.drivers) setenv(name.c_str(), value.c_str(), 0);
   if (!environment.build_log.empty()) bypass_driver_caches();
-  (void)pocl_folder(environment);
+  (void)driver_folder(environment);
   describe_machine_to_drivers(environment);
   enlarge_thread_stacks();
   return true;

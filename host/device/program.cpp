@@ -13,7 +13,7 @@
 #include "device/build_options.h"
 #include "device/cl_status.h"
 #include "device/compile_process.h"
-#include "device/pocl_folder.h"
+#include "device/driver_folder.h"
 #include "device/program_cache.h"
 
 namespace sundog {
@@ -203,7 +203,7 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
   if (fault(environment.faults, "build", place_of(info)))
     throw BuildError(fmt::format("{} did not build on {}: a fault was asked for", entry, info.label()), "");
   if (is_pocl(info))
-    if (const std::string problem = pocl_folder(environment).problem(environment); !problem.empty())
+    if (const std::string problem = driver_folder(environment).problem(environment); !problem.empty())
       throw BuildError(fmt::format("{} cannot be built on {}: {}", entry, info.label(), problem), "");
   auto record = std::make_shared<ProgramRecord>();
   record->device = info;

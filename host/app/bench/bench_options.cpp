@@ -24,7 +24,7 @@
 #include "base/file.h"
 #include "bench/report/machine.h"
 #include "device/build_options.h"
-#include "device/pocl_folder.h"
+#include "device/driver_folder.h"
 #include "scene/json/override.h"
 #include "scene/load.h"
 

@@ -122,6 +122,17 @@ TEST_CASE("where PoCL has no room to write, the message tells the folder and the
   CHECK(contains(result.err, "name one that can be written by XDG_CACHE_HOME or TMPDIR"));
 }
 
+TEST_CASE("where the cache cannot be written, Mesa keeps kernels among the temporary files") {
+  // Without a folder Mesa says so, and compiles a kernel anew for each launch.
+  CommandOptions options;
+  options.environment["HOME"] = options.environment["XDG_CACHE_HOME"] = "/proc/nobody";
+  options.environment["RUSTICL_ENABLE"] = "llvmpipe";
+  const CommandResult result = run_sundog({"devices"}, options);
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+  CHECK_FALSE(contains(result.err, "shader cache"));
+}
+
 TEST_CASE(
     "a program of which the driver makes no kernels is built again without optimisation, and both logs are "
     "kept") {

@@ -1,6 +1,6 @@
 // A folder is in use while its file "lock" is locked: the kernel lets go of the lock when a process ends,
 // however it ends.
-#include "device/pocl_folder.h"
+#include "device/driver_folder.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -107,7 +107,7 @@ std::string make_folder(const HostEnvironment& environment) {
 
 bool is_pocl(const DeviceInfo& device) { return device.platform_name == "Portable Computing Language"; }
 
-PoclFolder::PoclFolder(const HostEnvironment& environment) noexcept {
+DriverFolder::DriverFolder(const HostEnvironment& environment) noexcept {
   try {
     if (!environment.driver("POCL_CACHE_DIR").empty()) return;
     ::unsetenv("POCL_CACHE_DIR");  // an empty one ends PoCL's process
@@ -115,17 +115,19 @@ PoclFolder::PoclFolder(const HostEnvironment& environment) noexcept {
     if (folder.empty()) return;
     own_ = folder;
     ::setenv("POCL_CACHE_DIR", folder.c_str(), 1);
+    const bool temporary = fs::path(folder).filename().string().starts_with(temporary_name);
+    if (temporary) ::setenv("MESA_SHADER_CACHE_DIR", folder.c_str(), 0);  // the user's stays
   } catch (const std::exception&) {
     // PoCL's own folder does as well, as long as it can be written and nothing damages it.
   }
 }
 
-void PoclFolder::remove() const noexcept {
+void DriverFolder::remove() const noexcept {
   std::error_code ignored;
   if (!own_.empty()) fs::remove_all(own_, ignored);
 }
 
-std::string PoclFolder::problem(const HostEnvironment& environment) const {
+std::string DriverFolder::problem(const HostEnvironment& environment) const {
   const std::string users = environment.driver("POCL_CACHE_DIR"), folder = users.empty() ? own_ : users;
   if (folder.empty())
     return "no folder can be made for what PoCL writes: name one that can be written by XDG_CACHE_HOME or "
@@ -138,8 +140,8 @@ std::string PoclFolder::problem(const HostEnvironment& environment) const {
       folder, *room >> 10, least_room >> 10, users.empty() ? "XDG_CACHE_HOME or TMPDIR" : "POCL_CACHE_DIR");
 }
 
-const PoclFolder& pocl_folder(const HostEnvironment& environment) {
-  static const PoclFolder folder(environment);
+const DriverFolder& driver_folder(const HostEnvironment& environment) {
+  static const DriverFolder folder(environment);
   return folder;
 }
 

@@ -1,4 +1,4 @@
-// A folder of its own for what PoCL writes. Internal to the device layer.
+// A folder of its own for what drivers write. Internal to the device layer.
 #pragma once
 #include <string>
 
@@ -14,15 +14,16 @@ bool is_pocl(const DeviceInfo& device);
 /// there is damaged. Sundog's own cache holds the same binaries behind a checksum, so each process gives PoCL
 /// an empty folder, "pocl/*" in the cache, which is removed at its end; those of processes that were killed
 /// are removed too. Where the cache cannot be written it is one among the temporary files: PoCL has no device
-/// without a folder. A POCL_CACHE_DIR that the user set stays.
-class PoclFolder {
+/// without a folder, and Mesa, which gets it then too, compiles a kernel anew for each launch. A
+/// POCL_CACHE_DIR or MESA_SHADER_CACHE_DIR that the user set stays.
+class DriverFolder {
  public:
   /// To be made before the first OpenCL call; never throws.
-  explicit PoclFolder(const HostEnvironment& environment) noexcept;
+  explicit DriverFolder(const HostEnvironment& environment) noexcept;
   /// After PoCL's own end, where it was made before PoCL was loaded.
-  ~PoclFolder() { remove(); }
-  PoclFolder(const PoclFolder&) = delete;
-  PoclFolder& operator=(const PoclFolder&) = delete;
+  ~DriverFolder() { remove(); }
+  DriverFolder(const DriverFolder&) = delete;
+  DriverFolder& operator=(const DriverFolder&) = delete;
 
   /// For a process that ends by _exit(). PoCL may end the process when one of its threads is at work.
   void remove() const noexcept;
@@ -31,10 +32,10 @@ class PoclFolder {
   std::string problem(const HostEnvironment& environment) const;
 
  private:
-  std::string own_;  // empty: PoCL has the user's, or its own
+  std::string own_;  // empty: drivers have the user's, or their own
 };
 
 /// The process's own, which the first call makes: drivers take their settings once a process.
-const PoclFolder& pocl_folder(const HostEnvironment& environment);
+const DriverFolder& driver_folder(const HostEnvironment& environment);
 
 }  // namespace sundog
