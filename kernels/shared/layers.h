@@ -21,7 +21,7 @@ SUNDOG_SHARED_BEGIN
 // Narrower lobes are widened to this: mirrors are lobes too.
 #define LEAST_LAYER_ALPHA 1e-3f
 
-// 112 bytes, one for each material; its base colour is the material's diffuse term.
+// 128 bytes, one for each material; its base colour is the material's diffuse term.
 typedef struct Layers {
   float4 specular;              // a dielectric's tint, a metal's at its edge; w = metalness
   float4 coat;                  // colour of what lies below, seen through it straight on; w = weight
@@ -38,8 +38,12 @@ typedef struct Layers {
   float shine_scale;     // 1, or what keeps the base's facets from returning more than all light
   float turn_x, turn_y;  // the tangent's turn from the surface's first coordinate
   u32 first;             // of the rows
+  float darkening;       // how much of the coat's inner reflections' darkening there is
+  float inner;           // what the coat's inside sends back of light from the base
+  float straight;        // what the base's interface reflects straight on
+  float unused;
 } Layers;
-SUNDOG_SHARED_SIZE(Layers, 112)
+SUNDOG_SHARED_SIZE(Layers, 128)
 
 SUNDOG_SHARED_END
 #endif

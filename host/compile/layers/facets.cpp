@@ -30,14 +30,6 @@ dvec3 facet_seen_from(const dvec3& wo, const FacetWidths& a, double u, double v)
   return glm::normalize(dvec3(a.x * h.x, a.y * h.y, std::max(h.z, 1e-6)));
 }
 
-double interface_reflects(double c, const Interface& interface) {
-  const double eta = interface.eta, behind2 = 1 - (1 - c * c) / (eta * eta);
-  const double behind = std::sqrt(std::max(behind2, 0.0));
-  const double s = (c - eta * behind) / (c + eta * behind), p = (eta * c - behind) / (eta * c + behind);
-  const double plain = eta == 1 ? 0 : behind2 <= 0 ? 1 : (s * s + p * p) / 2;
-  return interface.film > 0 ? std::lerp(plain, at_cosine(interface.film_row, c), interface.film) : plain;
-}
-
 /// Light of white facets, each drawn with the same weight: where it comes from, the part that is sent on, and
 /// the cosine to the facet.
 struct SentLight {
@@ -74,6 +66,14 @@ double white_returned(const FacetGains& gains, const dvec3& wo, const std::vecto
 }
 
 }  // namespace
+
+double interface_reflects(double c, const Interface& interface) {
+  const double eta = interface.eta, behind2 = 1 - (1 - c * c) / (eta * eta);
+  const double behind = std::sqrt(std::max(behind2, 0.0));
+  const double s = (c - eta * behind) / (c + eta * behind), p = (eta * c - behind) / (eta * c + behind);
+  const double plain = eta == 1 ? 0 : behind2 <= 0 ? 1 : (s * s + p * p) / 2;
+  return interface.film > 0 ? std::lerp(plain, at_cosine(interface.film_row, c), interface.film) : plain;
+}
 
 FacetGains facet_gains(const FacetWidths& widths) {
   const std::size_t turns = widths.x == widths.y ? 1 : LAYER_TURNS;

@@ -11,6 +11,8 @@ struct Interface {
   AlbedoRow film_row;
 };
 
+double interface_reflects(double cosine, const Interface& interface);
+
 /// By the turn about the normal: row i for directions whose part along the tangent has the square i /
 /// (LAYER_TURNS - 1) of the whole.
 using FacetGains = std::array<AlbedoRow, LAYER_TURNS>;

@@ -29,6 +29,19 @@ double roughened(const OpenPbr& v) {
   return std::lerp(v.specular_roughness, both, v.coat_weight);
 }
 
+/// What a coat's inside sends back of the light from a base (OpenPBR 1.1, "Coat", "Darkening"): of one
+/// without roughness what it sends back straight on, of a rough one as of a matte one.
+double inner_reflectance(double eta, double roughness) {
+  constexpr int steps = 256;
+  const Interface outer{eta, 0, {}};
+  double outside = 0;  // what it reflects of light from all around
+  for (int i = 0; i < steps; ++i) {
+    const double cosine = (i + 0.5) / steps;
+    outside += 2 * cosine * interface_reflects(cosine, outer) / steps;
+  }
+  return std::lerp(interface_reflects(1, outer), 1 - (1 - outside) / (eta * eta), roughness);
+}
+
 double greatest(const dvec3& color) { return std::max({color.x, color.y, color.z}); }
 
 /// The rows of a film; empty without one.
@@ -84,6 +97,12 @@ Layers make_layers(const OpenPbr& v, std::vector<float>& rows) {
     past_shine[i] = 1 - std::min(greatest(v.specular_color) * shine.of_interface[i], 1.0);
     past_all[i] = past_fuzz[i] * past_coat[i] * past_shine[i];
   }
+  const double straight = std::min(shine.of_interface.back(), 1.0);
+  const double of_glass = std::lerp(1.0, v.specular_roughness, straight);
+  to.straight = float(straight);
+  to.darkening = float(v.coat_weight * v.coat_darkening);
+  to.inner =
+      float(inner_reflectance(v.coat_ior, std::lerp(of_glass, v.specular_roughness, v.base_metalness)));
   to.shine_scale = float(shine.scale);
   to.matte_scale = float(1 / matte_albedo(v.base_diffuse_roughness, past_all));
   to.matte_scale_bare = float(1 / matte_albedo(v.base_diffuse_roughness, past_shine));

@@ -34,9 +34,15 @@ bool set_openpbr(const OpenPbr& values, MaterialDescription& material, MediumDes
     const double abbe = values.transmission_dispersion_abbe_number / values.transmission_dispersion_scale;
     inside.dispersion = cauchy_of_abbe(values.specular_ior, std::max(abbe, 1.0));
   }
-  if (in_depth)
-    inside.absorption =
+  if (in_depth) {
+    const dvec3 lost =
         -glm::log(glm::max(values.transmission_color, dvec3(1e-6))) / values.transmission_depth + 0.0;
+    inside.scattering = values.transmission_scatter / values.transmission_depth;
+    inside.anisotropy = values.transmission_scatter_anisotropy;
+    // More may be scattered of a colour than is lost in all: then all colours lose as much more.
+    const dvec3 rest = lost - inside.scattering;
+    inside.absorption = rest - std::min({rest.x, rest.y, rest.z, 0.0});
+  }
   return true;
 }
 

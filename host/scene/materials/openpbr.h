@@ -19,13 +19,16 @@ struct OpenPbr {
   double specular_ior = 1.5;
   double transmission_weight = 0;
   glm::dvec3 transmission_color{1};
-  double transmission_depth = 0;  // where that colour is left; 0: it is that of the surface
+  double transmission_depth = 0;               // where that colour is left; 0: it is that of the surface
+  glm::dvec3 transmission_scatter{0};          // over that depth, of the light that does not get through
+  double transmission_scatter_anisotropy = 0;  // [-0.99, 0.99]: mean cosine of its turns
   double transmission_dispersion_scale = 0;
   double transmission_dispersion_abbe_number = 20;
   double coat_weight = 0;
   glm::dvec3 coat_color{1};
   double coat_roughness = 0;
   double coat_ior = 1.6;
+  double coat_darkening = 1;  // how much of what inner reflections of the coat take from the base
   double fuzz_weight = 0;
   glm::dvec3 fuzz_color{1};
   double fuzz_roughness = 0.5;
@@ -52,8 +55,8 @@ struct MediumDescription;
 ///   reflection    transmission_weight (1 - base_metalness) specular_color, by Fresnel: what lies over a
 ///   medium transmission  the same share of transmission_color, or of 1 where that is the medium's at a depth
 ///   roughness, emission, opacity by their names
-/// Returns whether light goes through, and sets `inside` then: index and dispersion, and absorption that
-/// leaves transmission_color after transmission_depth.
+/// Returns whether light goes through, and sets `inside` then: index and dispersion, and absorption and
+/// scattering that leave transmission_color after transmission_depth.
 bool set_openpbr(const OpenPbr& values, MaterialDescription& material, MediumDescription& inside);
 
 }  // namespace sundog

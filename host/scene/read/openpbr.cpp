@@ -30,6 +30,9 @@ void read_transmission(JsonObject& object, OpenPbr& to) {
   to.transmission_weight = object.number("transmission_weight", to.transmission_weight, zero_to_one);
   to.transmission_color = object.color("transmission_color", to.transmission_color, zero_to_one);
   to.transmission_depth = object.number("transmission_depth", to.transmission_depth, at_least_0);
+  to.transmission_scatter = object.color("transmission_scatter", to.transmission_scatter, zero_to_one);
+  to.transmission_scatter_anisotropy =
+      object.number("transmission_scatter_anisotropy", to.transmission_scatter_anisotropy, mean_cosines);
   to.transmission_dispersion_scale =
       object.number("transmission_dispersion_scale", to.transmission_dispersion_scale, zero_to_one);
   to.transmission_dispersion_abbe_number = object.number(
@@ -41,6 +44,7 @@ void read_above(JsonObject& object, OpenPbr& to) {
   to.coat_color = object.color("coat_color", to.coat_color, zero_to_one);
   to.coat_roughness = object.number("coat_roughness", to.coat_roughness, zero_to_one);
   to.coat_ior = object.number("coat_ior", to.coat_ior, {.low = 1, .high = 3});
+  to.coat_darkening = object.number("coat_darkening", to.coat_darkening, zero_to_one);
   to.fuzz_weight = object.number("fuzz_weight", to.fuzz_weight, zero_to_one);
   to.fuzz_color = object.color("fuzz_color", to.fuzz_color, zero_to_one);
   to.fuzz_roughness = object.number("fuzz_roughness", to.fuzz_roughness, zero_to_one);

@@ -14,12 +14,13 @@ static inline REAL3 left_by_layers(const Scene* scene, __global const Layers* m,
   if (m->fuzz.w == 0.0f && m->coat.w == 0.0f) return white;
   const MASK through = MASK_OF(c_i < 0.0f);
   const REAL of_o = past_layers(scene, m, c_o, lanes), of_i = past_layers(scene, m, fabs(c_i), lanes);
-  const REAL3 tint_o = coat_tints(m, c_o), tint_i = coat_tints(m, fabs(c_i));
+  const REAL3 tint_o = multiply3(coat_tints(m, c_o), coat_darkening(m, bsdf->base)),
+              tint_i = coat_tints(m, fabs(c_i));
   const MASK front = lanes & bsdf->coated, back = lanes & bsdf->coated_behind & through;
   REAL3 left = scale3(multiply3(tint_o, tint_i), real_min(of_o, of_i));
   left = select3(left, scale3(tint_o, of_o), through);
   left = select3(white, left, front);
-  return select3(left, scale3(tint_i, of_i), back);
+  return select3(left, scale3(multiply3(tint_i, coat_darkening(m, bsdf->base)), of_i), back);
 }
 
 // The shares of samples for the viewer in wo, as large as what the lobes may return; and what the layers

@@ -43,6 +43,22 @@ static inline REAL3 coat_tints(__global const Layers* m, REAL c) {
                coat_tint(m->coat.z, m->coat.w, way));
 }
 
+// What reflections between the coat and a base of the colours `base` leave of the light from it (OpenPBR 1.1,
+// "Coat", "Darkening"): (1 - K) / (1 - E K), where K is sent back and E the base's albedo straight on.
+static inline REAL3 coat_darkening(__global const Layers* m, REAL3 base) {
+  const REAL3 one = all3((float3)(1.0f));
+  if (m->darkening == 0.0f) return one;
+  const float metal = m->specular.w, glassy = (1.0f - metal) * m->straight,
+              matte = (1.0f - metal) * (1.0f - m->straight) * (1.0f - m->glass);
+  const REAL3 back =
+      along3(scale3(base, (REAL)(fma(metal, m->metal, matte))), (REAL)(glassy), all3(m->specular.xyz));
+  const float inner = m->inner;
+  const REAL3 left = real3((1.0f - inner) / (1.0f - inner * real_min(back.x, one.x)),
+                           (1.0f - inner) / (1.0f - inner * real_min(back.y, one.y)),
+                           (1.0f - inner) / (1.0f - inner * real_min(back.z, one.z)));
+  return along3(scale3(one, (REAL)(1.0f - m->darkening)), (REAL)(m->darkening), left);
+}
+
 // What the base's interface reflects at the cosine c: of the dielectric's opaque share and of the metal.
 static inline REAL3 shine_color(const Scene* scene, __global const Layers* m, REAL3 base, REAL c,
                                 MASK lanes) {
@@ -86,6 +102,7 @@ static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, 
     value = add3(value, real3(coat, coat, coat));
     kept = real_min(past_layers(scene, m, wo.z, coated), past_layers(scene, m, wi.z, coated));
     tint = multiply3(coat_tints(m, wo.z), coat_tints(m, wi.z));
+    tint = multiply3(tint, coat_darkening(m, bsdf->base));
     chance += shares->coat * lobe.density;
   }
   const REAL gains = shine_gain(scene, m, wo, lanes) * shine_gain(scene, m, wi, lanes);

@@ -152,3 +152,28 @@ TEST_CASE("what layers leave for those below is what they do not return") {
     }
   }
 }
+
+TEST_CASE("a coat darkens a matte base as reflections within it do") {
+  Tester tester(picture_devices().front(), true);
+  const double index = 1.6, albedo = 0.5, turn_back = std::sqrt(1 - 1 / (index * index));
+  // What the inside of the coat sends back of light from all around, with all of it beyond the critical
+  // angle.
+  double inner = turn_back * turn_back;
+  constexpr int steps = 4000;
+  for (int i = 0; i < steps; ++i) {
+    const double cosine = turn_back + (1 - turn_back) * (i + 0.5) / steps;
+    const double outside = std::sqrt(std::max(0.0, 1 - index * index * (1 - cosine * cosine)));
+    const double across = (index * cosine - outside) / (index * cosine + outside),
+                 along = (cosine - index * outside) / (cosine + index * outside);
+    inner += (1 - turn_back) / steps * cosine * (across * across + along * along);
+  }
+  const double straight = std::pow((index - 1) / (index + 1), 2);
+  OpenPbr values{.base_color = dvec3(albedo), .specular_weight = 0, .coat_weight = 1, .coat_ior = index};
+  for (const double darkening : {1.0, 0.0, 0.5}) {
+    values.coat_darkening = darkening;
+    tester.set_layers(values);
+    const double factor = std::lerp(1.0, (1 - inner) / (1 - albedo * inner), darkening);
+    CHECK(mean_weight(tester.draw(layered(values).material, 1, at_cosine(1), 4 * count)) ==
+          Approx(straight + (1 - straight) * albedo * factor).margin(0.005));
+  }
+}

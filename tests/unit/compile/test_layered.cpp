@@ -83,6 +83,7 @@ TEST_CASE("OpenPBR's values become a material's terms") {
   const SceneDescription scene = load_scene_text(R"({"materials": {
     "paint": {"type": "openpbr", "base_color": [0.5, 0.2, 0.1], "base_weight": 0.5, "coat_weight": 1},
     "ink": {"type": "openpbr", "transmission_weight": 1, "transmission_color": [0.5, 1, 1], "transmission_depth": 2,
+      "transmission_scatter": [0.2, 0.5, 0], "transmission_scatter_anisotropy": 0.3,
       "specular_ior": 1.4, "specular_roughness": 0.1, "emission_luminance": 2}},
     "objects": [{"type": "sphere", "material": "ink"}, {"type": "sphere", "material": "paint"}]})");
   const MaterialDescription& ink =
@@ -95,8 +96,12 @@ TEST_CASE("OpenPBR's values become a material's terms") {
   CHECK(ink.emission == dvec3(2));
   const MediumDescription& inside = scene.media.at(static_cast<std::size_t>(ink.medium));
   CHECK(inside.ior == 1.4);
-  CHECK(inside.absorption.x == Approx(std::log(2) / 2));
+  // Of green more is scattered than lost: all colours lose as much more.
+  CHECK(inside.scattering == dvec3(0.1, 0.25, 0));
+  CHECK(inside.anisotropy == 0.3);
+  CHECK(inside.absorption.x == Approx(std::log(2) / 2 - 0.1 + 0.25));
   CHECK(inside.absorption.y == 0);
+  CHECK(inside.absorption.z == Approx(0.25));
   const CompiledScene compiled = compile(scene);
   CHECK(compiled.features.layers);
   CHECK(compiled.layers.size() == scene.materials.size() + 1);

@@ -63,6 +63,7 @@ void add_gltf_layers(const JsonAt& material, OpenPbr& values) {
   values.coat_weight = coat->number("clearcoatFactor", 0, unit_range);
   values.coat_roughness = coat->number("clearcoatRoughnessFactor", 0, unit_range);
   values.coat_ior = 1.5;
+  values.coat_darkening = 0;  // the extension mixes colours
 }
 
 }  // namespace sundog::models
