@@ -64,8 +64,9 @@ enum class Tracer { automatic, wide, compact };
 /// How samples are shared out among the pixels.
 struct Sampling {
   double threshold = 0;    // above 0: a pixel gets samples until its estimated error is below it (adaptive)
-  int first_samples = 2;   // adaptive: that each pixel gets
-  double contrast = 4;     // adaptive: neighbours that differ by so many thresholds get more samples
+  int first_samples = 1;   // adaptive: that each pixel gets
+  bool surfaces = false;   // adaptive: neighbours that show different surfaces or colours get more samples
+  double contrast = 4;     // adaptive: by so many thresholds colours differ then
   double budget = 0;       // adaptive: samples a pixel in the mean; 0: no limit
   bool subsample = false;  // every second pixel each way gets samples, the others where they must
   double subsample_contrast = 0.1;  // difference of colours between which is not interpolated

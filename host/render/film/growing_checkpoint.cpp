@@ -12,7 +12,7 @@
 namespace sundog {
 namespace {
 
-constexpr char growing_magic[8] = {'S', 'U', 'N', 'D', 'O', 'G', 'P', '1'};
+constexpr char growing_magic[8] = {'S', 'U', 'N', 'D', 'O', 'G', 'P', '2'};
 
 struct GrowingHeader {
   char magic[8];
@@ -28,7 +28,7 @@ template <class Growing, class Pixels, class Made, class Visit>
 void for_each_array(Growing& film, Pixels& pixels, Made& made, const Visit& visit) {
   visit(film.film.sums), visit(film.film.weights), visit(film.film.aovs), visit(film.film.rays),
       visit(film.film.done);
-  visit(film.taken), visit(film.states), visit(film.earlier);
+  visit(film.taken), visit(film.states), visit(film.earlier), visit(film.moved);
   visit(pixels);
   visit(made.sums), visit(made.weights), visit(made.aovs), visit(made.rays), visit(made.done);
 }

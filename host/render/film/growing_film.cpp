@@ -21,6 +21,29 @@ u32 morton(u32 x, u32 y) {
   return spread(x) | spread(y) << 1;
 }
 
+/// Of pixel_errors(), that of a pixel with samples.
+float pixel_error(const GrowingFilm& film, std::size_t p) {
+  const float4 &sum = film.film.sums[p], &before = film.earlier[p];
+  const float weight = film.film.weights[p];
+  if (!(weight > 0) || !(before.w > 0)) return std::numeric_limits<float>::infinity();
+  const float now[3] = {sum.x / weight, sum.y / weight, sum.z / weight};
+  const float then[3] = {before.x / before.w, before.y / before.w, before.z / before.w};
+  float moved = 0, light = 0;
+  for (int c = 0; c < 3; ++c) {
+    moved += std::abs(now[c] - then[c]);
+    light += now[c];
+  }
+  constexpr float darkest = 0.01f;  // below it nobody sees a relative error
+  return moved / std::sqrt(std::sqrt(std::max(light, darkest)));
+}
+
+/// After a pass over the pixel: one doubling may move it little by chance, so earlier ones count too.
+void note_movement(GrowingFilm& film, std::size_t p) {
+  const float error = pixel_error(film, p), square = error * error;
+  const float before = squares_of_doubling * film.moved[p];
+  film.moved[p] = std::isfinite(before) ? (square + before) / 2 : square;
+}
+
 }  // namespace
 
 Pass list_pass(std::vector<u32> indices, int image_width, u32 first_sample, u32 sample_count) {
@@ -49,6 +72,7 @@ GrowingFilm::GrowingFilm(int width, int height, bool with_aovs, std::size_t vect
   taken.resize(film.done.size());
   states.resize(film.done.size());
   earlier.resize(film.done.size());
+  moved.assign(film.done.size(), std::numeric_limits<float>::infinity());
 }
 
 Film film_of_pass(const GrowingFilm& film, const Pass& pass, bool surfaces) {
@@ -84,30 +108,15 @@ void add_pass(GrowingFilm& film, const Pass& pass, const Film& made, bool comple
     whole.done[p] = 1;
     film.taken[p] = pass.first_sample + pass.sample_count;
     film.states[p] = PixelState::sampled;
+    note_movement(film, p);
   }
   film.stage += complete;
 }
 
 std::vector<float> pixel_errors(const GrowingFilm& film) {
   std::vector<float> errors(film.taken.size());
-  for (std::size_t p = 0; p < errors.size(); ++p) {
-    if (film.states[p] != PixelState::sampled) continue;
-    const float4 &sum = film.film.sums[p], &before = film.earlier[p];
-    const float weight = film.film.weights[p];
-    if (!(weight > 0) || !(before.w > 0)) {
-      errors[p] = std::numeric_limits<float>::infinity();
-      continue;
-    }
-    const float now[3] = {sum.x / weight, sum.y / weight, sum.z / weight};
-    const float then[3] = {before.x / before.w, before.y / before.w, before.z / before.w};
-    float moved = 0, light = 0;
-    for (int c = 0; c < 3; ++c) {
-      moved += std::abs(now[c] - then[c]);
-      light += now[c];
-    }
-    constexpr float darkest = 0.01f;  // below it nobody sees a relative error
-    errors[p] = moved / std::sqrt(std::sqrt(std::max(light, darkest)));
-  }
+  for (std::size_t p = 0; p < errors.size(); ++p)
+    if (film.states[p] == PixelState::sampled) errors[p] = pixel_error(film, p);
   return errors;
 }
 

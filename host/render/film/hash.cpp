@@ -33,6 +33,7 @@ std::uint64_t hash_scene(const CompiledScene& scene) {
   const Sampling& sampling = scene.sampling;
   const double shared_out[] = {sampling.threshold,
                                static_cast<double>(sampling.first_samples),
+                               sampling.surfaces ? 1.0 : 0.0,
                                sampling.contrast,
                                sampling.budget,
                                sampling.subsample ? 1.0 : 0.0,

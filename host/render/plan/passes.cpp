@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "render/plan/convergence.h"
 #include "render/plan/pixel_rules.h"
 #include "render/plan/subsample.h"
 
@@ -45,36 +46,15 @@ void mark_differences(const GrowingFilm& film, float threshold, std::vector<std:
   }
 }
 
-/// The mean of the squares of the 3x3 errors about each pixel, of those with `level` samples: one pixel's own
-/// estimate may be small by chance.
-std::vector<float> smoothed_squares(const GrowingFilm& film, const std::vector<float>& errors, u32 level) {
-  const int width = film.film.width, height = film.film.height;
-  const auto at = [&](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-  };
-  std::vector<float> smooth(errors.size());
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      float sum = 0;
-      for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
-        for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u)
-          if (film.taken[at(u, v)] == level) sum += errors[at(u, v)] * errors[at(u, v)];
-      smooth[at(x, y)] = sum / 9;
-    }
-  return smooth;
-}
-
-/// The pixels with `level` samples that need more. An error of n samples is compared with the threshold times
-/// the root of n / 2: samples go where each lowers the picture's squared error most.
-std::vector<u32> unconverged(const GrowingFilm& film, const SamplingPlan& plan, u32 level) {
+/// The pixels with `level` samples that need more. Samples go where each lowers the picture's squared error
+/// most: for n samples the threshold is sqrt(n / 2) times as high.
+std::vector<u32> unconverged(const GrowingFilm& film, const SamplingPlan& plan, u32 level,
+                             const std::vector<float>& squares) {
   const auto threshold = static_cast<float>(plan.settings.threshold);
+  const float most = threshold * threshold * static_cast<float>(level) / 2;
   std::vector<std::uint8_t> marked(film.taken.size());
-  if (level > 1) {
-    const std::vector<float> squares = smoothed_squares(film, pixel_errors(film), level);
-    const float most = threshold * threshold * static_cast<float>(level) / 2;
-    for (std::size_t p = 0; p < squares.size(); ++p) marked[p] = !(squares[p] <= most);
-  }
-  if (level == first_level(plan))
+  for (std::size_t p = 0; p < squares.size(); ++p) marked[p] = !(squares[p] <= most);
+  if (level == first_level(plan) && plan.settings.surfaces)
     mark_differences(film, static_cast<float>(plan.settings.contrast) * threshold, marked);
   std::vector<u32> indices;
   for (std::size_t p = 0; p < marked.size(); ++p)
@@ -83,14 +63,14 @@ std::vector<u32> unconverged(const GrowingFilm& film, const SamplingPlan& plan, 
 }
 
 /// Those of the greatest errors, so that the frame's samples stay within the budget.
-void keep_budget(const GrowingFilm& film, const SamplingPlan& plan, u32 more, std::vector<u32>& indices) {
+void keep_budget(const GrowingFilm& film, const SamplingPlan& plan, u32 more,
+                 const std::vector<float>& squares, std::vector<u32>& indices) {
   if (!(plan.settings.budget > 0)) return;
   const double spent = std::accumulate(film.taken.begin(), film.taken.end(), 0.0);
   const double left = plan.settings.budget * static_cast<double>(film.taken.size()) - spent;
   const auto most = static_cast<std::size_t>(std::max(0.0, left / more));
   if (indices.size() <= most) return;
-  const std::vector<float> errors = pixel_errors(film);
-  const auto worse = [&](u32 a, u32 b) { return errors[a] != errors[b] ? errors[a] > errors[b] : a < b; };
+  const auto worse = [&](u32 a, u32 b) { return squares[a] != squares[b] ? squares[a] > squares[b] : a < b; };
   std::ranges::nth_element(indices, indices.begin() + static_cast<std::ptrdiff_t>(most), worse);
   indices.resize(most);
 }
@@ -102,8 +82,9 @@ std::optional<Pass> double_samples(const GrowingFilm& film, const SamplingPlan& 
   const bool adaptive = plan.settings.threshold > 0;
   if (adaptive && level < first_level(plan)) next = std::min(next, first_level(plan));
   if (!adaptive || level < first_level(plan)) return whole_pass(film, level, next - level, false);
-  std::vector<u32> indices = unconverged(film, plan, level);
-  keep_budget(film, plan, next - level, indices);
+  const std::vector<float> squares = expected_squares(film, level);
+  std::vector<u32> indices = unconverged(film, plan, level, squares);
+  keep_budget(film, plan, next - level, squares, indices);
   if (indices.empty()) return std::nullopt;
   return list_pass(std::move(indices), film.film.width, level, next - level);
 }
@@ -121,7 +102,9 @@ bool in_passes(const Sampling& settings) {
   return settings.threshold > 0 || settings.progressive || settings.subsample;
 }
 
-bool needs_surfaces(const Sampling& settings) { return settings.threshold > 0 || settings.subsample; }
+bool needs_surfaces(const Sampling& settings) {
+  return (settings.threshold > 0 && settings.surfaces) || settings.subsample;
+}
 
 double mean_error(const GrowingFilm& film) {
   const std::vector<float> errors = pixel_errors(film);

@@ -12,9 +12,13 @@ Color color_at(const Film& film, std::size_t pixel) {
   return {sum.x / weight, sum.y / weight, sum.z / weight};
 }
 
-float contrast(const Color& a, const Color& b) {
+float seen_light(const Color& color) {
   constexpr float darkest = 0.01f;
-  const float light = std::max({a.r + a.g + a.b, b.r + b.g + b.b, darkest});
+  return std::max(color.r + color.g + color.b, darkest);
+}
+
+float contrast(const Color& a, const Color& b) {
+  const float light = std::max(seen_light(a), seen_light(b));
   return (std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b)) / std::sqrt(std::sqrt(light));
 }
 

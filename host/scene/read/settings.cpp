@@ -97,12 +97,14 @@ void read_path(JsonObject& object, RenderSettings& render) {
 void read_adaptive(JsonObject& object, Sampling& sampling) {
   sampling.threshold = object.number("threshold", 0, {.low = 0, .high = 100});
   sampling.first_samples = object.integer("first_samples", sampling.first_samples, 1, 65536);
+  sampling.surfaces = object.boolean("surfaces", sampling.surfaces);
   sampling.contrast = object.number("contrast", sampling.contrast, {.low = 0, .high = 1e6});
   sampling.budget = object.number("budget", 0, {.low = 0, .high = 65536});
 }
 
 void read_sampling(JsonObject& object, RenderSettings& render) {
   Sampling& sampling = render.sampling;
+  constexpr int least_paths = 4;  // of one or two paths often all find no light, where there is some
   if (const auto adaptive = object.find("adaptive"))
     adaptive->object("adaptive", [&](JsonObject& inner) {
       read_adaptive(inner, sampling);
@@ -115,6 +117,7 @@ void read_sampling(JsonObject& object, RenderSettings& render) {
           inner.number("contrast", sampling.subsample_contrast, {.low = 0, .high = 100});
       return true;
     });
+  if (render.integrator == "path") sampling.first_samples = std::max(sampling.first_samples, least_paths);
   sampling.progressive = object.boolean("progressive", false);
   const bool grows = sampling.threshold > 0 || sampling.progressive;
   if (sampling.subsample && grows)

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "catch.h"
+#include "render/plan/convergence.h"
 #include "render/plan/subsample.h"
 #include "shared/sampler.h"
 #include "temporary_folder.h"
@@ -107,7 +108,7 @@ TEST_CASE("a picture without noise gets the first samples alone, and an edge all
   const auto flat = [](int, int, u32) { return MadeUpPixel{0.5f, 1}; };
   GrowingFilm film(width, height, true);
   run(film, adaptive_plan(0.02, 64), flat);
-  for (const u32 taken : film.taken) REQUIRE(taken == 2);
+  for (const u32 taken : film.taken) REQUIRE(taken == 1);
 
   const auto edge = [](int x, int, u32 sample) {  // noise in column 16 that does not go away
     const bool odd = (sample & (sample - 1)) == 0;
@@ -117,17 +118,53 @@ TEST_CASE("a picture without noise gets the first samples alone, and an edge all
   run(other, adaptive_plan(0.02, 64), edge);
   for (int y = 0; y < height; ++y) {
     CHECK(other.taken[at(16, y)] == 64);
-    CHECK(other.taken[at(2, y)] == 2);
-    CHECK(other.taken[at(30, y)] == 2);
+    CHECK(other.taken[at(2, y)] == 1);
+    CHECK(other.taken[at(30, y)] == 1);
   }
 }
 
 TEST_CASE("neighbours with other objects get more samples though they have the same colour") {
   const auto two = [](int x, int, u32) { return MadeUpPixel{0.5f, x < 10 ? 1 : 2}; };
   GrowingFilm film(width, height, true);
-  run(film, adaptive_plan(0.02, 64), two);
+  SamplingPlan plan = adaptive_plan(0.02, 64);
+  plan.settings.surfaces = true;
+  run(film, plan, two);
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) CHECK(film.taken[at(x, y)] == (x == 9 || x == 10 ? 4 : 2));
+    for (int x = 0; x < width; ++x) CHECK(film.taken[at(x, y)] == (x == 9 || x == 10 ? 2 : 1));
+}
+
+TEST_CASE("a pixel whose samples all fell on one side of an edge gets more, as its neighbours tell of the edge") {
+  const auto step = [](int x, int, u32) { return MadeUpPixel{x < 10 ? 0.25f : 0.75f, 1}; };
+  GrowingFilm film(width, height, false);
+  run(film, adaptive_plan(0.02, 64), step);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const u32 taken = film.taken[at(x, y)];
+      if (x == 9 || x == 10)
+        CHECK(taken >= 8);
+      else if (x < 7 || x > 12)
+        CHECK(taken == 1);
+      CHECK(taken < 64);  // no sample ever moves a pixel
+    }
+}
+
+TEST_CASE("the expected error is that of the doublings, the last counting half, and falls with the samples") {
+  // Of one brightness throughout; pixels move by m1 with their second sample, m2 with the third and fourth.
+  const float m1 = 0.2f, m2 = 0.05f;
+  const auto moving = [&](int, int, u32 sample) {
+    const float sums[] = {1 - m1 - m2, 1 + m1 - m2, 1 + m2, 1 + m2};
+    return MadeUpPixel{sums[sample], 1};
+  };
+  GrowingFilm film(width, height, false);
+  SamplingPlan plan;
+  plan.settings.progressive = true;
+  plan.samples = 4;
+  run(film, plan, moving);
+  const auto square = [&](float moved, float at) { return 9 * moved * moved / std::sqrt(3 * at); };
+  const float last = square(m2, 1), first = square(m1, 1 - m2);
+  const std::vector<float> expected = expected_squares(film, 4);
+  for (const float found : expected)
+    CHECK(found == Approx((0.4 + 0.1) * (last + squares_of_doubling * first) / 2).epsilon(1e-4));
 }
 
 TEST_CASE("a budget is kept, and the pixels of the largest errors get it") {
