@@ -65,36 +65,39 @@ typedef struct LaneSamples {
   MASK x, y, sample;
 } LaneSamples;
 
+// Two numbers in [0, 1) for each lane: of the dimensions from `dimension` on, a multiple of four, or with
+// `later` of the two behind those.
+static inline void pair_lanes(const LaneSamples* at, MASK dimension, bool later, REAL* u, REAL* v) {
+  const LANE_U32 first = AS_LANE_U32(dimension), x = AS_LANE_U32(at->x), y = AS_LANE_U32(at->y),
+                 sample = AS_LANE_U32(at->sample), own = later ? first + 2u : first;
+  if (SAMPLER == SAMPLER_BLUE_NOISE) {
+    const LANE_U32 index = reversed_lanes(Z_ORDER(x, y) << SAMPLE_ROOM | sample);
+    const LANE_U32 place = owen_lanes(index, hash_lanes(own >> 1));
+    *u = blue_noise_lanes(place, own);
+    *v = blue_noise_lanes(second_lanes(place), own + 1u);
+    return;
+  }
+  if (SAMPLER == SAMPLER_INDEPENDENT) {
+    *u = unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(own)))));
+    *v = unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(own + 1u)))));
+    return;
+  }
+  const LANE_U32 seed = hash_lanes(x + hash_lanes(y + hash_lanes(first >> 2)));
+  const LANE_U32 order = owen_lanes(reversed_lanes(sample) >> 16, seed) & 0xffffu;
+  const LANE_U32 pair = later ? SOBOL_PAIR_23 : SOBOL_PAIR_01;
+  *u = scrambled_lanes(pair, seed, later ? 2u : 0u);
+  *v = scrambled_lanes(pair >> 16, seed, later ? 3u : 1u);
+}
+
 // Four numbers in [0, 1) for each lane: of the dimensions from `dimension` on, a multiple of four.
 typedef struct FourNumbers {
   REAL x, y, z, w;
 } FourNumbers;
 
 static inline FourNumbers sample_lanes(const LaneSamples* at, MASK dimension) {
-  const LANE_U32 first = AS_LANE_U32(dimension), x = AS_LANE_U32(at->x), y = AS_LANE_U32(at->y),
-                 sample = AS_LANE_U32(at->sample);
-  if (SAMPLER == SAMPLER_BLUE_NOISE) {
-    const LANE_U32 index = reversed_lanes(Z_ORDER(x, y) << SAMPLE_ROOM | sample);
-    const LANE_U32 low = owen_lanes(index, hash_lanes(first >> 1)),
-                   high = owen_lanes(index, hash_lanes((first >> 1) + 1u));
-    const FourNumbers u = {blue_noise_lanes(low, first), blue_noise_lanes(second_lanes(low), first + 1u),
-                           blue_noise_lanes(high, first + 2u),
-                           blue_noise_lanes(second_lanes(high), first + 3u)};
-    return u;
-  }
-  if (SAMPLER == SAMPLER_INDEPENDENT) {
-    const FourNumbers u = {
-        unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first))))),
-        unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first + 1u))))),
-        unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first + 2u))))),
-        unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(first + 3u)))))};
-    return u;
-  }
-  const LANE_U32 seed = hash_lanes(x + hash_lanes(y + hash_lanes(first >> 2)));
-  const LANE_U32 order = owen_lanes(reversed_lanes(sample) >> 16, seed) & 0xffffu;
-  const LANE_U32 low = SOBOL_PAIR_01, high = SOBOL_PAIR_23;
-  const FourNumbers u = {scrambled_lanes(low, seed, 0u), scrambled_lanes(low >> 16, seed, 1u),
-                         scrambled_lanes(high, seed, 2u), scrambled_lanes(high >> 16, seed, 3u)};
+  FourNumbers u;
+  pair_lanes(at, dimension, false, &u.x, &u.y);
+  pair_lanes(at, dimension, true, &u.z, &u.w);
   return u;
 }
 

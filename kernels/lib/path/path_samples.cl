@@ -1,7 +1,7 @@
 // Random numbers for what happens on the way of rays: of each ray's pixel, sample and place in the ray tree.
 #ifndef SUNDOG_LIB_PATH_SAMPLES_CL
 #define SUNDOG_LIB_PATH_SAMPLES_CL
-#include "lib/core/sampler.cl"
+#include "lib/core/sampler_lanes.cl"
 #include "lib/path/ray_stack.cl"
 
 // The pixels of a work-item's tile, and which of their samples is made.
@@ -38,16 +38,15 @@ static inline void start_branch(const PathStates* parent, u32 kind, PathStates* 
 // `parts` into which the pixel's sample is divided.
 NEVER_INLINE void bounce_numbers(const TileSamples* tile, const PathStates* paths, u32 light, u32 offset,
                                  u32 part, u32 parts, MASK lanes, REAL* u_x, REAL* u_y) {
-  *u_x = *u_y = (REAL)(0.5f);
+  LaneSamples at = {NO_LANES, NO_LANES, (MASK)((int)(tile->sample * parts + part))};
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits), pixel = (u32)MASK_LANE(paths->pixel, i);
-    const u32 first =
-        dimension_of_bounce((u32)MASK_LANE(paths->depth, i), light) + (u32)MASK_LANE(paths->branch, i);
-    const float2 u =
-        sample_2d((uint2)(tile->x[pixel], tile->y[pixel]), tile->sample * parts + part, first + offset);
-    REAL_LANE(*u_x, i) = u.x;
-    REAL_LANE(*u_y, i) = u.y;
+    MASK_LANE(at.x, i) = (int)tile->x[pixel];
+    MASK_LANE(at.y, i) = (int)tile->y[pixel];
   }
+  const MASK first =
+      paths->depth * (int)DIMENSIONS_A_BOUNCE + paths->branch + (int)(dimension_of_bounce(0u, light) + (offset & ~3u));
+  pair_lanes(&at, first, offset & 2u, u_x, u_y);
 }
 #else
 static inline void set_tile_pixel(TileSamples* tile, u32 lane, uint2 pixel) {}
