@@ -69,6 +69,9 @@ SUNDOG_SHARED_SIZE(Medium, 48)
 #define STRATEGY_LIGHTS 1u
 #define STRATEGY_SURFACES 2u
 
+// Surfaces ask by shafts in scenes of so many instances at most: the answer has a bit for each.
+#define SHAFT_INSTANCES 32u
+
 // 384 bytes: the scene's constants. Positions in all tables count from a point of the world, `origin` plus
 // `origin_rest`, near what the camera looks at (host/compile/local_origin.h). The pixel (x, y), y down,
 // sample offset (a, b) in [0, 1)^2, looks along camera_corner + (x + a) camera_dx + (y + b) camera_dy, which
@@ -109,7 +112,8 @@ typedef struct SceneInfo {
   u32 roulette_depth;  // from this ray on paths end by chance
   u32 light_strategy;  // STRATEGY_*
   u32 guide_count;     // rows of the table `guides`: balls, w = radius
-  u32 pad0;
+  // Whitted's integrator:
+  u32 shafts;  // 1: surfaces ask by shafts what stands before lights with an extent (lib/light/direct_light.cl)
 } SceneInfo;
 SUNDOG_SHARED_SIZE(SceneInfo, 384)
 

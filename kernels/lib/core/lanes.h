@@ -153,6 +153,9 @@ static inline REAL3 along3(REAL3 a, REAL s, REAL3 b) {
   return real3(fma(s, b.x, a.x), fma(s, b.y, a.y), fma(s, b.z, a.z));
 }
 static inline REAL dot3(REAL3 a, REAL3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+static inline REAL3 cross3(REAL3 a, REAL3 b) {
+  return real3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
 static inline REAL3 select3(REAL3 a, REAL3 b, MASK m) {
   return real3(select(a.x, b.x, m), select(a.y, b.y, m), select(a.z, b.z, m));
 }

@@ -114,17 +114,22 @@ static inline REAL used_solid_angle(const SphericalRectangles* r) {
   return select((REAL)(0.0f), r->solid_angle, MASK_OF(r->solid_angle > LEAST_SOLID_ANGLE));
 }
 
-static inline LightSamples sample_rectangle(__global const Light* light, REAL3 p, REAL u_x, REAL u_y) {
-  const SphericalRectangles r = see_rectangle(light, p);
+static inline LightSamples sample_seen_rectangle(__global const Light* light, const SphericalRectangles* r,
+                                                 REAL3 p, REAL u_x, REAL u_y) {
   REAL x, y;
-  place_in_rectangle(&r, u_x, u_y, &x, &y);
-  const REAL used = used_solid_angle(&r);
+  place_in_rectangle(r, u_x, u_y, &x, &y);
+  const REAL used = used_solid_angle(r);
   const MASK by_angle = MASK_OF(used > 0.0f);
-  x = select(u_x, (x - r.x0) / light->edge_u.w, by_angle);
-  y = select(u_y, (y - r.y0) / light->edge_v.w, by_angle);
+  x = select(u_x, (x - r->x0) / light->edge_u.w, by_angle);
+  y = select(u_y, (y - r->y0) / light->edge_v.w, by_angle);
   REAL3 to = subtract3(all3(light->position.xyz), p);
   to = along3(along3(to, x, all3(light->edge_u.xyz)), y, all3(light->edge_v.xyz));
   return sample_of_flat(light, to, used);
+}
+
+static inline LightSamples sample_rectangle(__global const Light* light, REAL3 p, REAL u_x, REAL u_y) {
+  const SphericalRectangles r = see_rectangle(light, p);
+  return sample_seen_rectangle(light, &r, p, u_x, u_y);
 }
 
 // Uniform in area (Heitz 2019, "A Low-Distortion Map Between Triangle and Square").

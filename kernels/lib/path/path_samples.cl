@@ -33,20 +33,39 @@ static inline void start_branch(const PathStates* parent, u32 kind, PathStates* 
   child->branch = child_branch(parent->branch, kind);
 }
 
-// Two numbers for each of `lanes`, whose rays have met a surface: the dimensions `offset` (BOUNCE_...) and
-// the next of that surface, for the light `light` (0 where it is no light's); of the sample `part` of the
-// `parts` into which the pixel's sample is divided.
-NEVER_INLINE void bounce_numbers(const TileSamples* tile, const PathStates* paths, u32 light, u32 offset,
-                                 u32 part, u32 parts, MASK lanes, REAL* u_x, REAL* u_y) {
-  LaneSamples at = {NO_LANES, NO_LANES, (MASK)((int)(tile->sample * parts + part))};
+// The numbers of the surfaces that the rays of `lanes` have met: pixels, and the dimensions from `offset`
+// (BOUNCE_...) on of that surface, for the light `light` (0 where it is no light's).
+typedef struct BounceNumbers {
+  LaneSamples at;
+  MASK first;
+  bool later;
+} BounceNumbers;
+
+static inline void begin_numbers(const TileSamples* tile, const PathStates* paths, u32 light, u32 offset,
+                                 MASK lanes, BounceNumbers* numbers) {
+  numbers->at.x = numbers->at.y = NO_LANES;
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits), pixel = (u32)MASK_LANE(paths->pixel, i);
-    MASK_LANE(at.x, i) = (int)tile->x[pixel];
-    MASK_LANE(at.y, i) = (int)tile->y[pixel];
+    MASK_LANE(numbers->at.x, i) = (int)tile->x[pixel];
+    MASK_LANE(numbers->at.y, i) = (int)tile->y[pixel];
   }
-  const MASK first =
-      paths->depth * (int)DIMENSIONS_A_BOUNCE + paths->branch + (int)(dimension_of_bounce(0u, light) + (offset & ~3u));
-  pair_lanes(&at, first, offset & 2u, u_x, u_y);
+  numbers->first = paths->depth * (int)DIMENSIONS_A_BOUNCE + paths->branch +
+                   (int)(dimension_of_bounce(0u, light) + (offset & ~3u));
+  numbers->later = offset & 2u;
+}
+
+// Two of them in the sample `part` of the `parts` into which the pixel's sample is divided.
+static inline void next_numbers(const TileSamples* tile, u32 part, u32 parts, BounceNumbers* numbers,
+                                REAL* u_x, REAL* u_y) {
+  numbers->at.sample = (MASK)((int)(tile->sample * parts + part));
+  pair_lanes(&numbers->at, numbers->first, numbers->later, u_x, u_y);
+}
+
+NEVER_INLINE void bounce_numbers(const TileSamples* tile, const PathStates* paths, u32 light, u32 offset,
+                                 u32 part, u32 parts, MASK lanes, REAL* u_x, REAL* u_y) {
+  BounceNumbers numbers;
+  begin_numbers(tile, paths, light, offset, lanes, &numbers);
+  next_numbers(tile, part, parts, &numbers, u_x, u_y);
 }
 #else
 static inline void set_tile_pixel(TileSamples* tile, u32 lane, uint2 pixel) {}

@@ -30,10 +30,6 @@ static inline REAL3 any_tangents(REAL3 n) {
   return select3(real3(zero, n.z, -n.y), real3(-n.z, zero, n.x), MASK_OF(fabs(n.x) > fabs(n.y)));
 }
 
-static inline REAL3 cross3(REAL3 a, REAL3 b) {
-  return real3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-}
-
 // Of surfaces without coordinates, whose normals are n.
 static inline SurfacePoints points_without_place(REAL3 n) {
   const REAL3 tangent = any_tangents(n);

@@ -2,6 +2,7 @@
 // ray a lane.
 #ifndef SUNDOG_LIB_WHITTED_BATCH_CL
 #define SUNDOG_LIB_WHITTED_BATCH_CL
+#include "lib/light/direct_light.cl"
 #include "lib/light/shadow.cl"
 #include "lib/whitted/steps.cl"
 
@@ -24,13 +25,15 @@ static inline void add_lights(const Scene* scene, const TileSamples* tile, const
                               const PathStates* paths, MASK lanes, bool coherent, bool last, const Hits* hits,
                               const Shading* at, ShadowStack* stack, float4* radiance, u32* counts) {
   u32 light = any_lane(lanes) ? 0u : scene->info->light_count;
+  MASK casting = lanes;
   for (;;) {
     u32 most = BATCH;
     bool together = false;
     if (stack->count < BATCH) {
       if (light < scene->info->light_count) {
+        if (!sends_ray(scene, tile, rays, paths, lanes, at, &light, &casting, radiance, counts)) continue;
         const u32 before = stack->count;
-        cast_shadows(scene, light++, tile, rays, paths, lanes, hits, at, stack, counts);
+        cast_shadows(scene, light++, tile, rays, paths, casting, hits, at, stack, counts);
         most = stack->count - before;
         together = coherent && most;
         if (!together) continue;

@@ -4,6 +4,7 @@
 // whatever kind.
 #ifndef SUNDOG_LIB_WHITTED_SINGLE_CL
 #define SUNDOG_LIB_WHITTED_SINGLE_CL
+#include "lib/light/direct_light.cl"
 #include "lib/light/shadow.cl"
 #include "lib/whitted/steps.cl"
 
@@ -11,6 +12,42 @@
 // A ray that met a surface with more lights than the stack has room for waits itself, to meet it once more:
 // its depth then holds the next light in the bits from here on.
 #define DEPTH_BITS 8u
+
+// Shadow rays of the surface from the number `light` on, as far as there is room; the ray `whole` waits for
+// the rest.
+#if HAS_SHAFTS
+static inline void send_to_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
+                                  const PathStates* paths, const PathStates* whole, u32 light, MASK hit,
+                                  const Hits* hits, const Shading* at, RayStack* stack, float4* radiance,
+                                  u32* counts) {
+  u32 sent[LIGHT_ROOM], count = 0;
+  MASK casting = hit;  // also where a light's first rays have been sent before: shafts have not found all
+  while (light < scene->info->light_count && count < LIGHT_ROOM)
+    if (sends_ray(scene, tile, rays, paths, hit, at, &light, &casting, radiance, counts))
+      sent[count++] = light++;
+  if (light < scene->info->light_count) {
+    PathStates again = *whole;
+    again.depth = paths->depth | (int)(light << DEPTH_BITS);
+    push_rays(stack, rays, &again, ALL_LANES);
+  }
+  for (u32 i = 0; i < count; ++i)
+    cast_shadows(scene, sent[i], tile, rays, paths, hit, hits, at, stack, counts);
+}
+#else
+static inline void send_to_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
+                                  const PathStates* paths, const PathStates* whole, u32 light, MASK hit,
+                                  const Hits* hits, const Shading* at, RayStack* stack, float4* radiance,
+                                  u32* counts) {
+  const u32 last = min(scene->info->light_count, light + LIGHT_ROOM);
+  if (last < scene->info->light_count) {
+    PathStates again = *whole;
+    again.depth = paths->depth | (int)(last << DEPTH_BITS);
+    push_rays(stack, rays, &again, ALL_LANES);
+  }
+  for (; light < last; ++light)
+    cast_shadows(scene, light, tile, rays, paths, hit, hits, at, stack, counts);
+}
+#endif
 
 // Takes a ray to what it meets next. Returns whether it continues.
 static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, SceneRays* rays, PathStates* paths,
@@ -32,14 +69,7 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   add_to_pixels(seen, paths->pixel, fresh, radiance);
   forget_glow(rays);
   if (!hit) return unseen;
-  const u32 last = min(scene->info->light_count, light + LIGHT_ROOM);
-  if (last < scene->info->light_count) {
-    PathStates again = whole;
-    again.depth = paths->depth | (int)(last << DEPTH_BITS);
-    push_rays(stack, rays, &again, ALL_LANES);
-  }
-  for (; light < last; ++light)
-    cast_shadows(scene, light, tile, rays, paths, hit, &met.hit, &at, stack, counts);
+  send_to_lights(scene, tile, rays, paths, &whole, light, hit, &met.hit, &at, stack, radiance, counts);
   return NO_LANES;
 }
 

@@ -1,0 +1,150 @@
+// Light of the lights with an extent that surfaces see whole or behind solids alone, without rays that go
+// through the scene: a shaft says what may stand before the light (trace/shaft.cl). Where nothing does, the
+// diffuse term is exact and highlights are sampled; else samples are tried against the solids in the shafts.
+#ifndef SUNDOG_LIB_DIRECT_LIGHT_CL
+#define SUNDOG_LIB_DIRECT_LIGHT_CL
+#include "lib/light/light.cl"
+#include "lib/light/seen_light.cl"
+#include "lib/light/shadow_rays.cl"
+#include "lib/trace/shaft.cl"
+
+#if HAS_SHAFTS
+// The lanes of `lanes` whose surfaces have highlights.
+#if HAS_MAPS
+static inline MASK with_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
+  return lanes & MASK_OF(greatest3(bsdf->specular) > 0.0f);
+}
+#else
+static inline MASK with_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
+  MASK shine = NO_LANES;
+  u32 index;
+  while (any_lane(lanes)) {
+    const MASK mine = take_alike(bsdf->material, &lanes, &index);
+    const float4 specular = scene->materials[index].specular;
+    if (specular.x != 0.0f || specular.y != 0.0f || specular.z != 0.0f) shine |= mine;
+  }
+  return shine;
+}
+#endif
+
+// The lanes of `lanes` whose ways (o, d) meet one of `solids` before `t_max`.
+static inline MASK blocked_by(const Scene* scene, u32 solids, REAL3 o, REAL3 d, REAL t_max, MASK lanes) {
+  Hits hits = no_hits(t_max);
+  const REAL t_min = (REAL)(0.0f);
+  for (; HAS_SOLID && solids; solids &= solids - 1u) {
+    const u32 i = lowest_bit(solids);
+    hit_solids(scene->instances, i, i + 1u, &o, &d, &t_min, lanes, true, &hits);
+  }
+  return lanes & hit_anything(&hits);
+}
+
+// Light of the samples of the light of `way` on the surfaces of `lanes`, which `bsdf` describes; of those of
+// `soft` what passes `solids`.
+static inline REAL3 sampled_light(const Scene* scene, const LightRay* way, const TileSamples* tile,
+                                  const PathStates* paths, REAL3 wo, const SurfaceInteractions* s,
+                                  const Bsdfs* bsdf, MASK lanes, MASK soft, u32 solids, u32* counts) {
+  __global const Light* light = scene->lights + way->light;
+  BounceNumbers numbers;
+  begin_numbers(tile, paths, way->light, BOUNCE_LIGHT_POINT, lanes, &numbers);
+  SphericalRectangles rectangle;
+  const bool flat = light->kind == LIGHT_RECTANGLE;
+  if (flat) rectangle = see_rectangle(light, s->p);
+  const REAL3 o = along3(s->p, s->offset, s->ng);
+  REAL3 sum = all3((float3)(0.0f));
+  for (u32 ray = 0; ray < way->rays; ++ray) {
+    REAL u_x, u_y;
+    next_numbers(tile, ray, way->rays, &numbers, &u_x, &u_y);
+    const LightSamples sample = flat ? sample_seen_rectangle(light, &rectangle, s->p, u_x, u_y)
+                                     : sample_area_light(light, s->p, u_x, u_y);
+    const MASK facing = lanes & MASK_OF(dot3(s->ns, sample.wi) > 0.0f);
+    if (!any_lane(facing)) continue;
+    const REAL weight = light_weight(&sample) / (float)way->rays;
+    const REAL3 possible =
+        multiply3(scale3(sample.radiance, weight), bsdf_eval(scene, bsdf, wo, sample.wi, facing));
+    MASK lit = facing & MASK_OF(greatest3(possible) >= FLT_MIN);
+    const MASK asking = lit & soft;
+    if (any_lane(asking)) {
+      counts[COUNT_SHADOW] += lane_count(asking);
+      note_rays(paths->pixel, asking, counts);
+      lit &= ~blocked_by(scene, solids, o, sample.wi, sample.distance, asking);
+    }
+    sum = select3(sum, add3(sum, possible), lit);
+  }
+  return sum;
+}
+
+// The light of `way` on the surfaces of `lanes`: goes to `sum` for those that see it behind solids at most.
+// Returns the others, which have to send their rays through the scene.
+NEVER_INLINE MASK direct_light(const Scene* scene, const LightRay* way, const TileSamples* tile,
+                               const SceneRays* rays, const PathStates* paths, MASK lanes, const Shading* at,
+                               REAL3* sum, u32* counts) {
+  const SurfaceInteractions* s = &at->s;
+  __global const Light* light = scene->lights + way->light;
+  SeenLights seen;
+  see_light(light, s->p, &seen);
+  Shafts shafts;
+  shafts.o = along3(s->p, s->offset, s->ng);
+  shafts.slack = s->offset;
+  MASK above = s->entering, facing = NO_LANES;
+  for (u32 i = 0; i < 4u; ++i) {
+    const REAL3 corner = seen.corner[i];
+    shafts.edge[i] = corner;
+    above &= MASK_OF(dot3(s->ng, corner) > 1e-3f * sum_of_sizes(corner));
+    facing |= MASK_OF(dot3(s->ns, corner) > 0.0f);
+  }
+  shafts.under_light = select((MASK)((int)NO_INSTANCE), s->instance, above);
+  lanes &= facing & ~seen.behind;
+  const MASK asking = lanes & seen.in_front;
+  MASK soft = NO_LANES, hard = NO_LANES;
+  u32 solids = 0;
+  if (any_lane(asking)) cast_shafts(scene, way->light, &shafts, asking, &soft, &hard, &solids);
+  Bsdfs bsdf = at->bsdf;
+  MASK sampled = asking & ~hard, whole = NO_LANES;
+  *sum = all3((float3)(0.0f));
+  if (light->kind == LIGHT_RECTANGLE || light->kind == LIGHT_TRIANGLE) {
+    REAL integral;
+    whole = sampled & ~soft & cosine_of_polygon(seen.corner, s->ns, &integral);
+    const REAL3 diffuse = multiply3(all3(light->color.xyz), scale3(bsdf.diffuse, integral * (1.0f / M_PI_F)));
+    *sum = select3(*sum, diffuse, whole);
+    bsdf.diffuse = select3(bsdf.diffuse, all3((float3)(0.0f)), whole);
+    sampled = (sampled & ~whole) | with_highlights(scene, &bsdf, whole);
+  }
+  if (any_lane(sampled))
+    *sum = add3(*sum, sampled_light(scene, way, tile, paths, negate3(rays->d), s, &bsdf, sampled, soft,
+                                    solids, counts));
+  return hard | (lanes & ~asking);
+}
+
+static inline bool has_shafts(const Scene* scene, u32 light) {
+  if (light == LIGHT_CHOSEN) return false;
+  const u32 kind = scene->lights[light].kind;
+  return kind == LIGHT_RECTANGLE || kind == LIGHT_DISK || kind == LIGHT_SPHERE || kind == LIGHT_TRIANGLE;
+}
+
+// The shadow ray *index is the next of the surfaces of `lanes`: returns whether any of them, `casting`, sends
+// it. Where it is the first to a light that shafts are for, the pixels receive what these find; where they
+// find all, *index becomes the first ray to the next light.
+static inline bool sends_ray(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
+                             const PathStates* paths, MASK lanes, const Shading* at, u32* index,
+                             MASK* casting, float4* radiance, u32* counts) {
+  if (!scene->info->shafts) return true;
+  const LightRay way = scene->light_rays[*index];
+  if (way.ray) return true;
+  *casting = lanes;
+  if (!has_shafts(scene, way.light)) return true;
+  REAL3 sum;
+  *casting = direct_light(scene, &way, tile, rays, paths, lanes, at, &sum, counts);
+  add_to_pixels(multiply3(paths->throughput, sum), paths->pixel, lanes, radiance);
+  if (any_lane(*casting)) return true;
+  *index += way.rays;
+  return false;
+}
+#else
+static inline bool sends_ray(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
+                             const PathStates* paths, MASK lanes, const Shading* at, u32* index,
+                             MASK* casting, float4* radiance, u32* counts) {
+  return true;
+}
+#endif
+
+#endif

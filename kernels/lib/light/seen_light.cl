@@ -1,0 +1,123 @@
+// A light with an extent as points see it: the corners of what holds it, and the irradiance of one that
+// nothing hides. A point a lane.
+#ifndef SUNDOG_LIB_SEEN_LIGHT_CL
+#define SUNDOG_LIB_SEEN_LIGHT_CL
+#include "lib/core/directions.cl"
+#include "lib/light/area_light.cl"
+
+typedef struct SeenLights {
+  REAL3 corner[4];  // from the point to the corners, in turn; of a triangle the last two are one
+  MASK in_front;    // the light shines on the point, from a place that is clearly before it
+  MASK behind;      // it shines away from the point
+} SeenLights;
+
+static inline REAL sum_of_sizes(REAL3 a) { return fabs(a.x) + fabs(a.y) + fabs(a.z); }
+
+static inline void set_corners(REAL3 to, REAL3 u, REAL3 v, SeenLights* seen) {
+  seen->corner[0] = to;
+  seen->corner[1] = add3(to, u);
+  seen->corner[2] = add3(seen->corner[1], v);
+  seen->corner[3] = add3(to, v);
+}
+
+static inline void see_flat_light(__global const Light* light, REAL3 p, SeenLights* seen) {
+  const REAL3 to = subtract3(all3(light->position.xyz), p), u = all3(light->edge_u.xyz),
+              v = all3(light->edge_v.xyz);
+  if (light->kind == LIGHT_DISK)
+    set_corners(subtract3(subtract3(to, u), v), scale3(u, (REAL)(2.0f)), scale3(v, (REAL)(2.0f)), seen);
+  else
+    set_corners(to, u, v, seen);
+  if (light->kind == LIGHT_TRIANGLE) seen->corner[2] = seen->corner[3];
+  const REAL depth = -dot3(to, all3(light->direction.xyz));
+  const REAL near = 1e-4f * (sum_of_sizes(to) + light->edge_u.w + light->edge_v.w);
+  seen->in_front = MASK_OF(depth > near);
+  seen->behind = MASK_OF(depth < -near);
+}
+
+// The square around the cone in which a sphere is seen, at the distance of its middle.
+static inline void see_sphere_light(__global const Light* light, REAL3 p, SeenLights* seen) {
+  const REAL3 to = subtract3(all3(light->position.xyz), p), axis = safe_unit3(to);
+  const REAL middle = dot3(to, axis), sine = light->edge_u.w / nonzero(middle);
+  const REAL half_side = 1.001f * light->edge_u.w * real_rsqrt(real_max(1.0f - sine * sine, (REAL)(0.1f)));
+  REAL3 s, t;
+  tangent_frame(axis, &s, &t);
+  s = scale3(s, 2.0f * half_side);
+  t = scale3(t, 2.0f * half_side);
+  set_corners(along3(along3(to, (REAL)(-0.5f), s), (REAL)(-0.5f), t), s, t, seen);
+  seen->in_front = MASK_OF(sine < 0.9f) & MASK_OF(middle > 0.0f);
+  seen->behind = NO_LANES;
+}
+
+// What points p see of a rectangle, triangle, disk or sphere.
+static inline void see_light(__global const Light* light, REAL3 p, SeenLights* seen) {
+  if (light->kind == LIGHT_SPHERE)
+    see_sphere_light(light, p, seen);
+  else
+    see_flat_light(light, p, seen);
+}
+
+// The angle between unit vectors whose cosine is x, over its sine: a polynomial on Chebyshev's nodes in
+// [0, 1] (error 3e-7), and the supplement below.
+static inline REAL angle_over_sine(REAL x) {
+  const REAL y = 1.0f - real_min(fabs(x), (REAL)(1.0f));
+  REAL f = fma(y, (REAL)(0.0176536683f), (REAL)(-0.0432606409f));
+  f = fma(y, f, (REAL)(0.0617602527f));
+  f = fma(y, f, (REAL)(-0.026127294f));
+  f = fma(y, f, (REAL)(0.039620386f));
+  f = fma(y, f, (REAL)(0.0541928006f));
+  f = fma(y, f, (REAL)(0.133635433f));
+  f = fma(y, f, (REAL)(0.333321541f));
+  f = fma(y, f, (REAL)(1.0f));
+  const REAL sine2 = real_max(y * (2.0f - y), (REAL)(1e-12f));
+  return select(f, fma((REAL)(M_PI_F), real_rsqrt(sine2), -f), MASK_OF(x < 0.0f));
+}
+
+// What the side of a polygon from the unit vector a to b adds to twice the integral of the cosine to n.
+static inline REAL cosine_of_side(REAL3 a, REAL3 b, REAL3 n) {
+  return angle_over_sine(dot3(a, b)) * dot3(cross3(a, b), n);
+}
+
+// The integral of the cosine to n over the directions above the horizon in which the corners' polygon is
+// seen (Lambert 1760; the sides cut at the horizon, and closed along it). Returns the lanes where its sum is
+// no small difference of great terms.
+static inline MASK cosine_of_polygon(const REAL3* corner, REAL3 n, REAL* integral) {
+  REAL3 v[4];
+  REAL z[4];
+#pragma unroll
+  for (u32 i = 0; i < 4u; ++i) {
+    v[i] = safe_unit3(corner[i]);
+    z[i] = dot3(n, v[i]);
+  }
+  REAL sum = (REAL)(0.0f), size = sum;
+  REAL3 rises = v[0], sets = v[0];
+  MASK cut = NO_LANES;
+#pragma unroll
+  for (u32 i = 0; i < 4u; ++i) {
+    const REAL3 a = v[i], b = v[(i + 1u) & 3u];
+    const REAL za = z[i], zb = z[(i + 1u) & 3u];
+    const MASK above = MASK_OF(za > 0.0f), next_above = MASK_OF(zb > 0.0f), crosses = above ^ next_above;
+    REAL3 from = a, to = b;
+    if (any_lane(crosses)) {
+      const REAL3 way = select3(subtract3(scale3(b, za), scale3(a, zb)),
+                                subtract3(scale3(a, zb), scale3(b, za)), next_above);
+      const REAL3 horizon = safe_unit3(way);
+      from = select3(a, horizon, crosses & next_above);
+      to = select3(b, horizon, crosses & above);
+      rises = select3(rises, horizon, crosses & next_above);
+      sets = select3(sets, horizon, crosses & above);
+      cut |= crosses;
+    }
+    const REAL term = select((REAL)(0.0f), cosine_of_side(from, to, n), above | next_above);
+    sum += term;
+    size += fabs(term);
+  }
+  if (any_lane(cut)) {
+    const REAL term = select((REAL)(0.0f), cosine_of_side(sets, rises, n), cut);
+    sum += term;
+    size += fabs(term);
+  }
+  *integral = 0.5f * fabs(sum);
+  return MASK_OF(fabs(sum) >= 1e-3f * size);
+}
+
+#endif

@@ -1,0 +1,124 @@
+// Whether anything may stand between points and a light: a shaft (Haines and Wallace 1991, "Shaft Culling for
+// Efficient Ray-Traced Radiosity") is a pyramid from a point to the corners of what holds the light, a point
+// a lane. In: shafts and a scene of few instances. Out: the instances that some shaft may touch. Lanes that
+// touch none send no shadow ray that anything blocks; the reverse does not hold.
+#ifndef SUNDOG_LIB_SHAFT_CL
+#define SUNDOG_LIB_SHAFT_CL
+#include "lib/core/tables.h"
+#include "lib/core/transform.cl"
+
+// The shape that holds a solid in its own space is so much larger, for the rounding of rays that meet it.
+#define SHAFT_MARGIN 1e-3f
+
+typedef struct Shafts {
+  REAL3 o;           // where shadow rays start
+  REAL3 edge[4];     // from there to the corners, in turn
+  REAL slack;        // how far rounding may have moved o
+  MASK under_light;  // the instance that o lies on where the light is outside it; else NO_INSTANCE
+} Shafts;
+
+// The half sizes of a unit solid; w: 0 a box, 1 round about y, 2 round.
+static inline float4 solid_reach(u32 shape, float4 parameters) {
+  if (shape == SHAPE_SPHERE) return (float4)(1.0f, 1.0f, 1.0f, 2.0f);
+  if (shape == SHAPE_CYLINDER) return (float4)(1.0f);
+  if (shape == SHAPE_DISK) return (float4)(1.0f, 0.0f, 1.0f, 1.0f);
+  if (shape == SHAPE_ROUNDBOX) return (float4)(parameters.xyz, 0.0f);
+  if (shape == SHAPE_BOX) return (float4)(1.0f, 1.0f, 1.0f, 0.0f);
+  const float radius = shape == SHAPE_CONE ? fmax(parameters.x, parameters.y) : 1.0f + parameters.x;
+  return (float4)(radius, shape == SHAPE_CONE ? 1.0f : parameters.x, radius, 1.0f);
+}
+
+// How far what `reach` describes goes along n, which need not be unit.
+static inline REAL reach_along(float4 reach, REAL3 n) {
+  if (reach.w == 2.0f) return reach.x * length3(n);
+  const REAL up = reach.y * fabs(n.y);
+  if (reach.w == 1.0f) return fma((REAL)(reach.x), real_sqrt(fma(n.x, n.x, n.z * n.z)), up);
+  return fma((REAL)(reach.x), fabs(n.x), fma((REAL)(reach.z), fabs(n.z), up));
+}
+
+// Whether all of the shaft lies beyond `reach` on one side of 0, along an axis.
+static inline MASK beyond(REAL o, REAL a, REAL b, REAL c, REAL d, REAL reach) {
+  const REAL zero = (REAL)(0.0f);
+  const REAL low = real_min(real_min(zero, a), real_min(b, real_min(c, d))),
+             high = real_max(real_max(zero, a), real_max(b, real_max(c, d)));
+  return MASK_OF(o + low > reach) | MASK_OF(o + high < -reach);
+}
+
+// Whether a plane through o with the normal n, in whose direction the shaft lies where `within` is above 0,
+// parts it from what `reach` describes. All in the space of that.
+static inline MASK parted(REAL3 o, REAL3 n, REAL within, float4 reach, REAL pad) {
+  const REAL most = reach_along(reach, n) + pad * (fabs(n.x) + fabs(n.y) + fabs(n.z));
+  const REAL away = dot3(n, o);
+  return (MASK_OF(within > 0.0f) & MASK_OF(away > most)) | (MASK_OF(within < 0.0f) & MASK_OF(-away > most));
+}
+
+// The lanes of `lanes` whose shafts, of origin o and edges e in the space of what `reach` describes, may
+// touch it: neither its sides nor theirs part them, nor does the plane of the light.
+static inline MASK may_touch_solid(REAL3 o, const REAL3* e, float4 reach, REAL pad, MASK lanes) {
+  lanes &= ~beyond(o.x, e[0].x, e[1].x, e[2].x, e[3].x, reach.x + pad);
+  lanes &= ~beyond(o.y, e[0].y, e[1].y, e[2].y, e[3].y, reach.y + pad);
+  lanes &= ~beyond(o.z, e[0].z, e[1].z, e[2].z, e[3].z, reach.z + pad);
+  if (!any_lane(lanes)) return lanes;
+#pragma unroll
+  for (u32 i = 0; i < 4u; ++i) {
+    const REAL3 n = cross3(e[i], e[(i + 1u) & 3u]);
+    lanes &= ~parted(o, n, dot3(n, add3(e[(i + 2u) & 3u], e[(i + 3u) & 3u])), reach, pad);
+  }
+  const REAL3 front = cross3(subtract3(e[1], e[0]), subtract3(e[2], e[0]));
+  return lanes & ~parted(add3(o, e[0]), front, -dot3(front, e[0]), reach, pad);
+}
+
+// The lanes of `lanes` whose shafts may touch the ball (center, radius) of the world.
+static inline MASK may_touch_ball(const Shafts* shafts, float4 ball, MASK lanes) {
+  const REAL3 o = subtract3(shafts->o, all3(ball.xyz));
+  return may_touch_solid(o, shafts->edge, (float4)(ball.w, ball.w, ball.w, 2.0f),
+                         shafts->slack + SHAFT_MARGIN * ball.w, lanes);
+}
+
+// The lanes of `lanes` whose shafts may touch the solid `index`. Nothing that a light above the tangent plane
+// of a convex solid sends to its surface is blocked by the solid itself.
+static inline MASK may_touch_instance(const Scene* scene, u32 index, const Shafts* shafts, MASK lanes) {
+  __global const Instance* instance = scene->instances + index;
+  if (HAS_MESH && instance->shape == SHAPE_MESH) return may_touch_ball(shafts, instance->world_center, lanes);
+  if (!HAS_TORUS || instance->shape != SHAPE_TORUS) lanes &= MASK_OF(shafts->under_light != (int)index);
+  if (!any_lane(lanes)) return lanes;
+  const float4 x = instance->object_from_world[0], y = instance->object_from_world[1],
+               z = instance->object_from_world[2];
+  const float scale = fmax(length(x.xyz), fmax(length(y.xyz), length(z.xyz)));
+  const REAL3 o = object_points(instance, shafts->o);
+  const REAL3 e[4] = {object_vectors(instance, shafts->edge[0]), object_vectors(instance, shafts->edge[1]),
+                      object_vectors(instance, shafts->edge[2]), object_vectors(instance, shafts->edge[3])};
+  const REAL pad = scale * shafts->slack;
+  if (HAS_PLANE && instance->shape == SHAPE_PLANE)
+    return lanes & ~beyond(o.y, e[0].y, e[1].y, e[2].y, e[3].y, pad);
+  return may_touch_solid(o, e, solid_reach(instance->shape, instance->parameters), pad + SHAFT_MARGIN, lanes);
+}
+
+// Whether the instance is how rays meet the light, which stands before none of its own.
+static inline bool shows_light(const Scene* scene, __global const Instance* instance, u32 light) {
+  if (instance->light != light) return false;
+  return instance->shape != SHAPE_MESH || scene->lights[light].kind == LIGHT_RECTANGLE;
+}
+
+// The instances that the shafts of `lanes` to the light `light` may touch: the lanes that touch only opaque
+// solids go to `soft`, with a bit of `solids` for each of these, those that touch anything else to `hard`.
+NEVER_INLINE void cast_shafts(const Scene* scene, u32 light, const Shafts* shafts, MASK lanes, MASK* soft,
+                              MASK* hard, u32* solids) {
+  *soft = *hard = NO_LANES;
+  *solids = 0;
+  for (u32 i = 0; i < scene->info->instance_count; ++i) {
+    __global const Instance* instance = scene->instances + i;
+    if (shows_light(scene, instance, light)) continue;
+    const MASK touched = may_touch_instance(scene, i, shafts, lanes);
+    if (!any_lane(touched)) continue;
+    if (instance->shape == SHAPE_MESH || (instance->flags & INSTANCE_FILTERS)) {
+      *hard |= touched;
+    } else {
+      *soft |= touched;
+      *solids |= 1u << i;
+    }
+  }
+  *soft &= ~*hard;
+}
+
+#endif
