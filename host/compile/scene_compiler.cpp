@@ -83,8 +83,8 @@ void set_sample_room(CompiledScene& out) {
   out.features.sample_room = static_cast<u32>(std::bit_width(out.info.samples * parts - 1));
 }
 
-/// Whether surfaces ask by shafts what stands before lights with an extent: there are few things to ask about,
-/// and light changes on its way by surfaces alone.
+/// Whether surfaces ask by shafts what stands before lights with an extent: there are few things to ask
+/// about, and light changes on its way by surfaces alone.
 bool asks_by_shafts(const CompiledScene& scene) {
   return scene.features.area_lights && !traces_paths(scene.integrator) && !scene.features.absorption &&
          scene.info.instance_count <= SHAFT_INSTANCES && scene.info.field_end == scene.info.instance_count;

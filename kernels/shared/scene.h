@@ -113,7 +113,8 @@ typedef struct SceneInfo {
   u32 light_strategy;  // STRATEGY_*
   u32 guide_count;     // rows of the table `guides`: balls, w = radius
   // Whitted's integrator:
-  u32 shafts;  // 1: surfaces ask by shafts what stands before lights with an extent (lib/light/direct_light.cl)
+  u32 shafts;  // 1: surfaces ask by shafts what stands before lights with an extent
+               // (lib/light/direct_light.cl)
 } SceneInfo;
 SUNDOG_SHARED_SIZE(SceneInfo, 384)
 

@@ -87,7 +87,7 @@
 
 // Whether surfaces may ask by shafts what stands before a light (light/direct_light.cl). The scene says
 // whether they do: SceneInfo.shafts.
-#define HAS_SHAFTS                                                                                        \
+#define HAS_SHAFTS \
   (HAS_AREA_LIGHTS && !HAS_SDF && !HAS_OBJECT_MOTION && !HAS_RELIEF && !HAS_PARALLAX && !HAS_LAYERS)
 
 // Whether rays continue behind surfaces: interfaces that they do not see, or filters.

@@ -38,6 +38,27 @@ static inline MASK blocked_by(const Scene* scene, u32 solids, REAL3 o, REAL3 d, 
   return lanes & hit_anything(&hits);
 }
 
+// From so many rays on it pays to look first whether a solid hides all of a light.
+#define RAYS_THAT_PAY 8u
+
+// The lanes of `lanes` before whose lights one of `solids` stands and hides them whole: it is convex, and
+// every way to a corner of a square a little larger meets it.
+static inline MASK hidden_lanes(const Scene* scene, u32 solids, const Shafts* shafts, MASK lanes) {
+  MASK dark = NO_LANES;
+  const REAL3 middle = scale3(add3(shafts->edge[0], shafts->edge[2]), (REAL)(0.5f));
+  for (; solids; solids &= solids - 1u) {
+    const u32 i = lowest_bit(solids);
+    MASK hidden = lanes & ~dark & outside_convex(scene->instances + i, shafts->o);
+    for (u32 k = 0; k < 4u && any_lane(hidden); ++k) {
+      const REAL3 beside = subtract3(shafts->edge[k], middle);
+      hidden = blocked_by(scene, 1u << i, shafts->o, along3(shafts->edge[k], (REAL)(SHAFT_MARGIN), beside),
+                          (REAL)(SHORT_OF_LIGHT), hidden);
+    }
+    dark |= hidden;
+  }
+  return dark;
+}
+
 // Light of the samples of the light of `way` on the surfaces of `lanes`, which `bsdf` describes; of those of
 // `soft` what passes `solids`.
 static inline REAL3 sampled_light(const Scene* scene, const LightRay* way, const TileSamples* tile,
@@ -85,25 +106,29 @@ NEVER_INLINE MASK direct_light(const Scene* scene, const LightRay* way, const Ti
   Shafts shafts;
   shafts.o = along3(s->p, s->offset, s->ng);
   shafts.slack = s->offset;
-  MASK above = s->entering, facing = NO_LANES;
+  MASK facing = NO_LANES;
   for (u32 i = 0; i < 4u; ++i) {
-    const REAL3 corner = seen.corner[i];
-    shafts.edge[i] = corner;
-    above &= MASK_OF(dot3(s->ng, corner) > 1e-3f * sum_of_sizes(corner));
-    facing |= MASK_OF(dot3(s->ns, corner) > 0.0f);
+    shafts.edge[i] = seen.corner[i];
+    facing |= MASK_OF(dot3(s->ns, seen.corner[i]) > 0.0f);
   }
-  shafts.under_light = select((MASK)((int)NO_INSTANCE), s->instance, above);
+  shafts.outside = select((MASK)((int)NO_INSTANCE), s->instance, s->entering);
   lanes &= facing & ~seen.behind;
-  const MASK asking = lanes & seen.in_front;
+  MASK asking = lanes & seen.in_front;
   MASK soft = NO_LANES, hard = NO_LANES;
   u32 solids = 0;
   if (any_lane(asking)) cast_shafts(scene, way->light, &shafts, asking, &soft, &hard, &solids);
   Bsdfs bsdf = at->bsdf;
+  if (way->rays >= RAYS_THAT_PAY) {
+    const MASK dark = hidden_lanes(scene, solids, &shafts, soft);
+    lanes &= ~dark;
+    asking &= ~dark;
+    soft &= ~dark;
+  }
   MASK sampled = asking & ~hard, whole = NO_LANES;
   *sum = all3((float3)(0.0f));
-  if (light->kind == LIGHT_RECTANGLE || light->kind == LIGHT_TRIANGLE) {
+  if (light->kind == LIGHT_RECTANGLE) {
     REAL integral;
-    whole = sampled & ~soft & cosine_of_polygon(seen.corner, s->ns, &integral);
+    whole = cosine_of_rectangle(light, &seen, s->ns, sampled & ~soft, &integral);
     const REAL3 diffuse = multiply3(all3(light->color.xyz), scale3(bsdf.diffuse, integral * (1.0f / M_PI_F)));
     *sum = select3(*sum, diffuse, whole);
     bsdf.diffuse = select3(bsdf.diffuse, all3((float3)(0.0f)), whole);
@@ -118,7 +143,7 @@ NEVER_INLINE MASK direct_light(const Scene* scene, const LightRay* way, const Ti
 static inline bool has_shafts(const Scene* scene, u32 light) {
   if (light == LIGHT_CHOSEN) return false;
   const u32 kind = scene->lights[light].kind;
-  return kind == LIGHT_RECTANGLE || kind == LIGHT_DISK || kind == LIGHT_SPHERE || kind == LIGHT_TRIANGLE;
+  return kind == LIGHT_RECTANGLE || kind == LIGHT_DISK || kind == LIGHT_SPHERE;
 }
 
 // The shadow ray *index is the next of the surfaces of `lanes`: returns whether any of them, `casting`, sends

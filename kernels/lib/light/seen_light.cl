@@ -6,7 +6,7 @@
 #include "lib/light/area_light.cl"
 
 typedef struct SeenLights {
-  REAL3 corner[4];  // from the point to the corners, in turn; of a triangle the last two are one
+  REAL3 corner[4];  // from the point to the corners, in turn
   MASK in_front;    // the light shines on the point, from a place that is clearly before it
   MASK behind;      // it shines away from the point
 } SeenLights;
@@ -27,7 +27,6 @@ static inline void see_flat_light(__global const Light* light, REAL3 p, SeenLigh
     set_corners(subtract3(subtract3(to, u), v), scale3(u, (REAL)(2.0f)), scale3(v, (REAL)(2.0f)), seen);
   else
     set_corners(to, u, v, seen);
-  if (light->kind == LIGHT_TRIANGLE) seen->corner[2] = seen->corner[3];
   const REAL depth = -dot3(to, all3(light->direction.xyz));
   const REAL near = 1e-4f * (sum_of_sizes(to) + light->edge_u.w + light->edge_v.w);
   seen->in_front = MASK_OF(depth > near);
@@ -48,7 +47,7 @@ static inline void see_sphere_light(__global const Light* light, REAL3 p, SeenLi
   seen->behind = NO_LANES;
 }
 
-// What points p see of a rectangle, triangle, disk or sphere.
+// What points p see of a rectangle, disk or sphere.
 static inline void see_light(__global const Light* light, REAL3 p, SeenLights* seen) {
   if (light->kind == LIGHT_SPHERE)
     see_sphere_light(light, p, seen);
@@ -118,6 +117,40 @@ static inline MASK cosine_of_polygon(const REAL3* corner, REAL3 n, REAL* integra
   }
   *integral = 0.5f * fabs(sum);
   return MASK_OF(fabs(sum) >= 1e-3f * size);
+}
+
+// A light that takes up less than this part of its distance is integrated at four places.
+#define FAR_PART 0.05f
+
+// The same of a rectangle far away, of which nothing is below the horizon: by the product of Gauss and
+// Legendre's two places along each side.
+static inline MASK cosine_of_far_rectangle(__global const Light* light, const REAL3* corner, REAL3 n,
+                                           REAL* integral) {
+  const float places[2] = {0.211324865f, 0.788675135f};
+  const float3 first = light->edge_u.xyz, second = light->edge_v.xyz;
+  const REAL quarter = (REAL)(0.25f * light->direction.w);
+  MASK far = ALL_LANES;
+  REAL sum = (REAL)(0.0f);
+  for (u32 i = 0; i < 4u; ++i) {
+    const REAL3 to = add3(corner[0], all3(places[i & 1u] * first + places[i >> 1] * second));
+    const REAL3 wi = safe_unit3(to);
+    sum -= dot3(n, wi) * dot3(all3(light->direction.xyz), wi) * (quarter / dot3(to, to));
+    far &= MASK_OF(dot3(n, corner[i]) > 0.0f);
+  }
+  *integral = sum;
+  return far &
+         MASK_OF(dot(first, first) + dot(second, second) < FAR_PART * FAR_PART * dot3(corner[0], corner[0]));
+}
+
+// The same of a rectangle anywhere, for `lanes`. Returns those where it is known.
+static inline MASK cosine_of_rectangle(__global const Light* light, const SeenLights* seen, REAL3 n,
+                                       MASK lanes, REAL* integral) {
+  const MASK known = lanes & cosine_of_polygon(seen->corner, n, integral), open = lanes & ~known;
+  if (!any_lane(open)) return known;
+  REAL from_afar;
+  const MASK far = open & cosine_of_far_rectangle(light, seen->corner, n, &from_afar);
+  *integral = select(*integral, from_afar, far);
+  return known | far;
 }
 
 #endif

@@ -7,14 +7,15 @@
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
 
+#if HAS_SHAFTS
 // The shape that holds a solid in its own space is so much larger, for the rounding of rays that meet it.
 #define SHAFT_MARGIN 1e-3f
 
 typedef struct Shafts {
-  REAL3 o;           // where shadow rays start
-  REAL3 edge[4];     // from there to the corners, in turn
-  REAL slack;        // how far rounding may have moved o
-  MASK under_light;  // the instance that o lies on where the light is outside it; else NO_INSTANCE
+  REAL3 o;        // where shadow rays start
+  REAL3 edge[4];  // from there to the corners, in turn
+  REAL slack;     // how far rounding may have moved o
+  MASK outside;   // the instance on whose outside o lies, if it does on one; else NO_INSTANCE
 } Shafts;
 
 // The half sizes of a unit solid; w: 0 a box, 1 round about y, 2 round.
@@ -75,12 +76,12 @@ static inline MASK may_touch_ball(const Shafts* shafts, float4 ball, MASK lanes)
                          shafts->slack + SHAFT_MARGIN * ball.w, lanes);
 }
 
-// The lanes of `lanes` whose shafts may touch the solid `index`. Nothing that a light above the tangent plane
-// of a convex solid sends to its surface is blocked by the solid itself.
+// The lanes of `lanes` whose shafts may touch the solid `index`. A solid without hollows blocks nothing that
+// its outside receives from above: light from below its tangent plane does not count there.
 static inline MASK may_touch_instance(const Scene* scene, u32 index, const Shafts* shafts, MASK lanes) {
   __global const Instance* instance = scene->instances + index;
   if (HAS_MESH && instance->shape == SHAPE_MESH) return may_touch_ball(shafts, instance->world_center, lanes);
-  if (!HAS_TORUS || instance->shape != SHAPE_TORUS) lanes &= MASK_OF(shafts->under_light != (int)index);
+  if (!HAS_TORUS || instance->shape != SHAPE_TORUS) lanes &= MASK_OF(shafts->outside != (int)index);
   if (!any_lane(lanes)) return lanes;
   const float4 x = instance->object_from_world[0], y = instance->object_from_world[1],
                z = instance->object_from_world[2];
@@ -92,6 +93,19 @@ static inline MASK may_touch_instance(const Scene* scene, u32 index, const Shaft
   if (HAS_PLANE && instance->shape == SHAPE_PLANE)
     return lanes & ~beyond(o.y, e[0].y, e[1].y, e[2].y, e[3].y, pad);
   return may_touch_solid(o, e, solid_reach(instance->shape, instance->parameters), pad + SHAFT_MARGIN, lanes);
+}
+
+// The points o outside a box around a solid, if it is convex and closed or flat.
+static inline MASK outside_convex(__global const Instance* instance, REAL3 o) {
+  const u32 shape = instance->shape;
+  const float4 parameters = instance->parameters;
+  if (shape == SHAPE_PLANE) return ALL_LANES;
+  if (shape == SHAPE_TORUS || (shape == SHAPE_CYLINDER && parameters.x == 0.0f) ||
+      (shape == SHAPE_CONE && parameters.z == 0.0f) || (shape == SHAPE_DISK && parameters.x > 0.0f))
+    return NO_LANES;
+  const REAL3 p = object_points(instance, o);
+  const float4 reach = solid_reach(shape, parameters);
+  return MASK_OF(fabs(p.x) > reach.x) | MASK_OF(fabs(p.y) > reach.y) | MASK_OF(fabs(p.z) > reach.z);
 }
 
 // Whether the instance is how rays meet the light, which stands before none of its own.
@@ -120,5 +134,7 @@ NEVER_INLINE void cast_shafts(const Scene* scene, u32 light, const Shafts* shaft
   }
   *soft &= ~*hard;
 }
+
+#endif
 
 #endif

@@ -44,8 +44,7 @@ static inline void send_to_lights(const Scene* scene, const TileSamples* tile, c
     again.depth = paths->depth | (int)(last << DEPTH_BITS);
     push_rays(stack, rays, &again, ALL_LANES);
   }
-  for (; light < last; ++light)
-    cast_shadows(scene, light, tile, rays, paths, hit, hits, at, stack, counts);
+  for (; light < last; ++light) cast_shadows(scene, light, tile, rays, paths, hit, hits, at, stack, counts);
 }
 #endif
 
