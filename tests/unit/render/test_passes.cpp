@@ -133,7 +133,8 @@ TEST_CASE("neighbours with other objects get more samples though they have the s
     for (int x = 0; x < width; ++x) CHECK(film.taken[at(x, y)] == (x == 9 || x == 10 ? 2 : 1));
 }
 
-TEST_CASE("a pixel whose samples all fell on one side of an edge gets more, as its neighbours tell of the edge") {
+TEST_CASE(
+    "a pixel whose samples all fell on one side of an edge gets more, as its neighbours tell of the edge") {
   const auto step = [](int x, int, u32) { return MadeUpPixel{x < 10 ? 0.25f : 0.75f, 1}; };
   GrowingFilm film(width, height, false);
   run(film, adaptive_plan(0.02, 64), step);
