@@ -21,20 +21,14 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
                                   LaneWork* work, Walks* walks, SceneRays* rays) {
   const u32 last = launch->first_sample + launch->sample_count;
   BegunSamples begun = no_samples();
-  LaneSamples at = {NO_LANES, NO_LANES, NO_LANES};
   for (u32 bits = lane_bits(idle); bits; bits &= bits - 1u) {
     const u32 lane = lowest_bit(bits), sample = work->next[lane];
-    uint2 pixel;
-    if (sample >= last) continue;
-    if (!begin_sample(scene, launch, pixels, item, lane, sample, &begun, &pixel, &work->sign[lane])) continue;
+    if (sample >= last || !begin_sample(launch, pixels, item, lane, sample, &begun)) continue;
     work->next[lane] = sample + 1u;
-    MASK_LANE(at.x, lane) = (int)pixel.x;
-    MASK_LANE(at.y, lane) = (int)pixel.y;
-    MASK_LANE(at.sample, lane) = (int)sample;
   }
   if (!any_lane(begun.lanes)) return NO_LANES;
-  const SceneRays first = begun_rays(scene, &begun, around);
-  const Walks fresh = start_walks(scene, &at, begun.lanes);
+  const SceneRays first = begun_rays(scene, &begun, around, work->sign);
+  const Walks fresh = start_walks(scene, &begun.at, begun.lanes);
   join_rays(rays, &first, begun.lanes);
   join_walks(walks, &fresh, begun.lanes);
   return begun.lanes;

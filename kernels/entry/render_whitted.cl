@@ -13,12 +13,9 @@ static inline MASK start_rays(const Scene* scene, const Launch* launch, __global
                               TileSamples* tile) {
   BegunSamples begun = no_samples();
   tile->sample = sample;
-  for (u32 lane = 0; lane < BATCH; ++lane) {
-    uint2 pixel;
-    if (begin_sample(scene, launch, pixels, item, lane, sample, &begun, &pixel, &signs[lane]))
-      set_tile_pixel(tile, lane, pixel);
-  }
-  *rays = begun_rays(scene, &begun, around);
+  for (u32 lane = 0; lane < BATCH; ++lane) begin_sample(launch, pixels, item, lane, sample, &begun);
+  set_tile_pixels(tile, &begun.at);
+  *rays = begun_rays(scene, &begun, around, signs);
   return begun.lanes;
 }
 

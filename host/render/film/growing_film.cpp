@@ -21,26 +21,33 @@ u32 morton(u32 x, u32 y) {
   return spread(x) | spread(y) << 1;
 }
 
-/// Of pixel_errors(), that of a pixel with samples.
-float pixel_error(const GrowingFilm& film, std::size_t p) {
+/// x + y * 65536 of a code of morton().
+u32 place_of(u32 code) {
+  const auto gather = [](u32 v) {
+    v &= 0x55555555u;
+    v = (v | v >> 1) & 0x33333333u;
+    v = (v | v >> 2) & 0x0f0f0f0fu;
+    v = (v | v >> 4) & 0x00ff00ffu;
+    return (v | v >> 8) & 0xffffu;
+  };
+  return gather(code) | gather(code >> 1) << 16;
+}
+
+/// The square of pixel_errors() of a pixel with samples.
+float squared_error(const GrowingFilm& film, std::size_t p) {
   const float4 &sum = film.film.sums[p], &before = film.earlier[p];
   const float weight = film.film.weights[p];
   if (!(weight > 0) || !(before.w > 0)) return std::numeric_limits<float>::infinity();
-  const float now[3] = {sum.x / weight, sum.y / weight, sum.z / weight};
-  const float then[3] = {before.x / before.w, before.y / before.w, before.z / before.w};
-  float moved = 0, light = 0;
-  for (int c = 0; c < 3; ++c) {
-    moved += std::abs(now[c] - then[c]);
-    light += now[c];
-  }
+  const float now = 1 / weight, then = 1 / before.w;
+  const float moved = std::abs(sum.x * now - before.x * then) + std::abs(sum.y * now - before.y * then) +
+                      std::abs(sum.z * now - before.z * then);
   constexpr float darkest = 0.01f;  // below it nobody sees a relative error
-  return moved / std::sqrt(std::sqrt(std::max(light, darkest)));
+  return moved * moved / std::sqrt(std::max((sum.x + sum.y + sum.z) * now, darkest));
 }
 
 /// After a pass over the pixel: one doubling may move it little by chance, so earlier ones count too.
 void note_movement(GrowingFilm& film, std::size_t p) {
-  const float error = pixel_error(film, p), square = error * error;
-  const float before = squares_of_doubling * film.moved[p];
+  const float square = squared_error(film, p), before = squares_of_doubling * film.moved[p];
   film.moved[p] = std::isfinite(before) ? (square + before) / 2 : square;
 }
 
@@ -48,8 +55,8 @@ void note_movement(GrowingFilm& film, std::size_t p) {
 
 Pass list_pass(std::vector<u32> indices, int image_width, u32 first_sample, u32 sample_count) {
   const auto width = static_cast<u32>(image_width);
-  for (u32& index : indices) index = (index % width) | (index / width) << 16;
-  std::ranges::sort(indices, {}, [](u32 pixel) { return morton(pixel & 0xffffu, pixel >> 16); });
+  for (u32& index : indices) index = morton(index % width, index / width);
+  std::ranges::sort(indices);
   const int blocks = static_cast<int>((indices.size() + 15) / 16);
   const int columns = std::clamp(blocks, 1, list_width / block);
   Pass pass;
@@ -60,7 +67,7 @@ Pass list_pass(std::vector<u32> indices, int image_width, u32 first_sample, u32 
     const int at = static_cast<int>(i / 16), in = static_cast<int>(i % 16);
     const int x = at % columns * block + in % block, y = at / columns * block + in / block;
     pass.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(pass.width) +
-                static_cast<std::size_t>(x)] = indices[i];
+                static_cast<std::size_t>(x)] = place_of(indices[i]);
   }
   pass.first_sample = first_sample;
   pass.sample_count = sample_count;
@@ -116,7 +123,7 @@ void add_pass(GrowingFilm& film, const Pass& pass, const Film& made, bool comple
 std::vector<float> pixel_errors(const GrowingFilm& film) {
   std::vector<float> errors(film.taken.size());
   for (std::size_t p = 0; p < errors.size(); ++p)
-    if (film.states[p] == PixelState::sampled) errors[p] = pixel_error(film, p);
+    if (film.states[p] == PixelState::sampled) errors[p] = std::sqrt(squared_error(film, p));
   return errors;
 }
 

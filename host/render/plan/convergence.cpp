@@ -1,6 +1,9 @@
 // See convergence.h.
 #include "render/plan/convergence.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -17,25 +20,6 @@ namespace {
 constexpr float own = 0.4f, neighbors = 0.1f, variation = 0.15f;
 constexpr float variation_of_one = 0.5f, wider_of_one = 0.3f;
 
-/// The 3x3 pixels around one, as far as they lie in the image.
-struct Around {
-  std::size_t left, right, top, bottom, width;
-
-  Around(const Film& film, std::size_t pixel) : width(static_cast<std::size_t>(film.width)) {
-    const std::size_t x = pixel % width, y = pixel / width;
-    left = x - (x > 0), right = std::min(x + 1, width - 1);
-    top = y - (y > 0), bottom = std::min(y + 1, static_cast<std::size_t>(film.height) - 1);
-  }
-  float count() const { return static_cast<float>((right - left + 1) * (bottom - top + 1)); }
-
-  /// Calls visit(index) for each of them.
-  template <class Visit>
-  void each(const Visit& visit) const {
-    for (std::size_t y = top; y <= bottom; ++y)
-      for (std::size_t x = left; x <= right; ++x) visit(y * width + x);
-  }
-};
-
 /// By how many times the squared error is smaller with each doubling, from 1 sample to 2^i: Sobol points do
 /// better than chance, whose 1 / n^2 would be 1 / n.
 float shrunk(u32 samples) {
@@ -48,64 +32,91 @@ float shrunk(u32 samples) {
   return powers[static_cast<std::size_t>(std::bit_width(samples) - 1)];
 }
 
-std::vector<Color> mean_colors(const Film& film) {
-  std::vector<Color> colors(film.done.size());
-  for (std::size_t p = 0; p < colors.size(); ++p) colors[p] = color_at(film, p);
-  return colors;
+/// What of a pixel counts for its neighbours: its colour, the squares of the colour's channels, and how far
+/// doublings moved it, as if it had one sample.
+struct Seen {
+  float red = 0, green = 0, blue = 0, squares = 0, moved = 0;
+
+  Seen& operator+=(const Seen& other) {
+    red += other.red, green += other.green, blue += other.blue;
+    squares += other.squares, moved += other.moved;
+    return *this;
+  }
+};
+
+Seen see(const GrowingFilm& film, std::size_t pixel) {
+  const Color color = color_at(film.film, pixel);
+  const float squares = color.r * color.r + color.g * color.g + color.b * color.b;
+  const u32 taken = film.taken[pixel];
+  return {color.r, color.g, color.b, squares, taken > 1 ? film.moved[pixel] / shrunk(taken) : 0};
 }
 
-/// How much colours vary about a pixel: their variance in the units of squared pixel_errors().
-float color_variance(const Film& film, const std::vector<Color>& colors, std::size_t pixel) {
-  const Around around(film, pixel);
-  float sum[3] = {0, 0, 0}, squares = 0;
-  around.each([&](std::size_t p) {
-    const float channels[3] = {colors[p].r, colors[p].g, colors[p].b};
-    for (int c = 0; c < 3; ++c) sum[c] += channels[c], squares += channels[c] * channels[c];
+/// Calls visit(first, last) for the pixels of rows, several threads at once.
+template <class Visit>
+void for_each_row(std::size_t width, std::size_t height, const Visit& visit) {
+  constexpr std::size_t rows_at_once = 16;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height, rows_at_once), [&](const auto& rows) {
+    for (std::size_t y = rows.begin(); y != rows.end(); ++y) visit(y * width, (y + 1) * width);
   });
-  const float n = around.count();
-  const float of_means = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / (n * n);
-  const Color& color = colors[pixel];
+}
+
+/// Calls visit(pixel, sum, count) for the pixels for which wants(pixel): the sum of the values of the 3x3
+/// pixels around, as far as they lie in the image, and their number. Several threads at once.
+template <class Value, class Wants, class Visit>
+void for_each_3x3(const std::vector<Value>& values, std::size_t width, const Wants& wants,
+                  const Visit& visit) {
+  const std::size_t height = values.size() / width;
+  for_each_row(width, height, [&](std::size_t first, std::size_t last) {
+    const std::size_t top = first ? first - width : first, bottom = last < values.size() ? last : first;
+    std::vector<Value> columns(width);
+    for (std::size_t row = top; row <= bottom; row += width)
+      for (std::size_t x = 0; x < width; ++x) columns[x] += values[row + x];
+    const auto rows = static_cast<float>((bottom - top) / width + 1);
+    for (std::size_t x = 0; x < width; ++x) {
+      if (!wants(first + x)) continue;
+      const std::size_t left = x - (x > 0), right = std::min(x + 1, width - 1);
+      Value sum = columns[left];
+      for (std::size_t u = left + 1; u <= right; ++u) sum += columns[u];
+      visit(first + x, sum, rows * static_cast<float>(right - left + 1));
+    }
+  });
+}
+
+/// How much the `count` colours of `sum` vary about a pixel's: their variance in the units of squared
+/// pixel_errors().
+float color_variance(const Seen& pixel, const Seen& sum, float count) {
+  const float of_means =
+      (sum.red * sum.red + sum.green * sum.green + sum.blue * sum.blue) / (count * count);
   constexpr float channels = 3;  // pixel_errors() adds up the channels' errors before they are squared
-  return channels * std::max(0.0f, squares / n - of_means) / std::sqrt(seen_light(color));
-}
-
-/// Of pixels with one sample: how much colours vary about each, and about its neighbours.
-void of_one_sample(const GrowingFilm& film, const std::vector<Color>& colors, std::vector<float>& expected) {
-  std::vector<float> variances(colors.size());
-  for (std::size_t p = 0; p < variances.size(); ++p) variances[p] = color_variance(film.film, colors, p);
-  for (std::size_t p = 0; p < variances.size(); ++p) {
-    if (film.taken[p] != 1) continue;
-    const Around around(film.film, p);
-    float wider = 0;
-    around.each([&](std::size_t q) { wider += variances[q]; });
-    expected[p] = variation_of_one * variances[p] + wider_of_one * wider / around.count();
-  }
-}
-
-/// Of pixels with `level` samples, which were doubled before.
-void of_doublings(const GrowingFilm& film, const std::vector<Color>& colors, u32 level,
-                  std::vector<float>& expected) {
-  for (std::size_t p = 0; p < colors.size(); ++p) {
-    if (film.taken[p] != level) continue;
-    const Around around(film.film, p);
-    float moved = 0;
-    around.each([&](std::size_t q) {
-      if (film.taken[q] > 1) moved += film.moved[q] * shrunk(level) / shrunk(film.taken[q]);
-    });
-    expected[p] = own * film.moved[p] + neighbors * moved / around.count() +
-                  variation * shrunk(level) * color_variance(film.film, colors, p);
-  }
+  return channels * std::max(0.0f, sum.squares / count - of_means) /
+         std::sqrt(seen_light({pixel.red, pixel.green, pixel.blue}));
 }
 
 }  // namespace
 
 std::vector<float> expected_squares(const GrowingFilm& film, u32 level) {
-  const std::vector<Color> colors = mean_colors(film.film);
-  std::vector<float> expected(colors.size());
-  if (level == 1)
-    of_one_sample(film, colors, expected);
-  else
-    of_doublings(film, colors, level, expected);
+  const auto width = static_cast<std::size_t>(film.film.width), all = film.taken.size();
+  std::vector<Seen> seen(all);
+  for_each_row(width, all / width, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) seen[p] = see(film, p);
+  });
+  const auto every = [](std::size_t) { return true; };
+  const auto of_level = [&](std::size_t p) { return film.taken[p] == level; };
+  std::vector<float> expected(all);
+  if (level == 1) {
+    std::vector<float> variances(all);
+    for_each_3x3(seen, width, every, [&](std::size_t p, const Seen& sum, float count) {
+      variances[p] = color_variance(seen[p], sum, count);
+    });
+    for_each_3x3(variances, width, of_level, [&](std::size_t p, float sum, float count) {
+      expected[p] = variation_of_one * variances[p] + wider_of_one * sum / count;
+    });
+  } else {
+    for_each_3x3(seen, width, of_level, [&](std::size_t p, const Seen& sum, float count) {
+      const float around = neighbors * sum.moved / count + variation * color_variance(seen[p], sum, count);
+      expected[p] = own * film.moved[p] + shrunk(level) * around;
+    });
+  }
   for (float& square : expected)  // of infinite pixels nothing is known, and sorting needs an order
     if (std::isnan(square)) square = std::numeric_limits<float>::infinity();
   return expected;

@@ -17,13 +17,14 @@ static inline float filter_offset(__global const float* restrict table, float u,
   return copysign(distances[0] + (at - (float)step) * (distances[1] - distances[0]), side);
 }
 
-// Takes a place in a pixel's square to one in the reach of the filter; 1.0 or -1.0 is what a sample there
-// counts.
-static inline float filter_place(__global const float* restrict table, u32 samples, float2* place) {
+// Takes the place (*x, *y) in a pixel's square to one in the reach of the filter; 1.0 or -1.0 is what a
+// sample there counts.
+static inline float filter_place(__global const float* restrict table, u32 samples, float* x, float* y) {
   float sign = 1.0f;
-  if (HAS_FILTER && samples > 1u)
-    *place =
-        (float2)(0.5f + filter_offset(table, place->x, &sign), 0.5f + filter_offset(table, place->y, &sign));
+  if (HAS_FILTER && samples > 1u) {
+    *x = 0.5f + filter_offset(table, *x, &sign);
+    *y = 0.5f + filter_offset(table, *y, &sign);
+  }
   return sign;
 }
 

@@ -1,4 +1,5 @@
-// The sample values of shared/sampler.h for a pixel's sample a lane: the same bits, several at once.
+// The sample values of shared/sampler.h for a pixel's sample a lane: the same bits, several at once. Pure
+// functions of pixel, sample and dimension.
 #ifndef SUNDOG_LIB_SAMPLER_LANES_CL
 #define SUNDOG_LIB_SAMPLER_LANES_CL
 #include "lib/core/lanes.h"
@@ -99,6 +100,36 @@ static inline FourNumbers sample_lanes(const LaneSamples* at, MASK dimension) {
   pair_lanes(at, dimension, false, &u.x, &u.y);
   pair_lanes(at, dimension, true, &u.z, &u.w);
   return u;
+}
+
+// Hammersley's set of `samples` points, shifted per pixel (Cranley and Patterson 1976).
+static inline void hammersley_lanes(const LaneSamples* at, u32 samples, REAL* u, REAL* v) {
+  const LANE_U32 x = AS_LANE_U32(at->x), y = AS_LANE_U32(at->y);
+  const LANE_U32 shift_u = hash_lanes(x + hash_lanes(y + hash_u32(0u))),
+                 shift_v = hash_lanes(x + hash_lanes(y + hash_u32(1u)));
+  const REAL a = (TO_REAL(at->sample) + 0.5f) / (float)samples + unit_lanes(shift_u);
+  *u = real_min(a - floor(a), (REAL)(0x1.fffffep-1f));
+  *v = unit_lanes(reversed_lanes(AS_LANE_U32(at->sample)) + shift_v);
+}
+
+// Where the camera samples of `lanes` lie in their pixels, in [0, 1) each way: in the middle where `samples`,
+// those of a pixel, are one.
+static inline void places_in_pixels(const LaneSamples* at, MASK lanes, u32 samples, REAL* u, REAL* v) {
+  *u = *v = (REAL)(0.5f);
+  if (samples <= 1u) return;
+  if (SAMPLER == SAMPLER_AUTO) {
+    hammersley_lanes(at, samples, u, v);
+  } else if ((SAMPLER == SAMPLER_REGULAR) | (SAMPLER == SAMPLER_STRATIFIED)) {
+    for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+      const u32 i = lowest_bit(bits);
+      const uint2 pixel = (uint2)((u32)MASK_LANE(at->x, i), (u32)MASK_LANE(at->y, i));
+      const float2 place = place_in_grid(pixel, (u32)MASK_LANE(at->sample, i), samples);
+      REAL_LANE(*u, i) = place.x;
+      REAL_LANE(*v, i) = place.y;
+    }
+  } else {
+    pair_lanes(at, (MASK)((int)DIMENSION_PIXEL), false, u, v);
+  }
 }
 
 #endif

@@ -2,40 +2,47 @@
 #ifndef SUNDOG_LIB_CAMERA_SAMPLES_CL
 #define SUNDOG_LIB_CAMERA_SAMPLES_CL
 #include "lib/core/filter.cl"
-#include "lib/core/sampler.cl"
 #include "lib/path/lens.cl"
 #include "lib/path/scene_ray.cl"
 #include "lib/path/tile.cl"
 
 typedef struct BegunSamples {
-  REAL x, y;   // in the image
+  LaneSamples at;
   MASK lanes;  // those that have a sample
-  CameraSamples camera;
 } BegunSamples;
 
 static inline BegunSamples no_samples(void) {
-  const BegunSamples none = {(REAL)(0.0f), (REAL)(0.0f), NO_LANES, {.sample = 0u}};
+  const BegunSamples none = {{NO_LANES, NO_LANES, NO_LANES}, NO_LANES};
   return none;
 }
 
-// The lane begins with sample `sample` of its pixel. Returns whether it has one; `sign` is what the sample
-// counts.
-static inline bool begin_sample(const Scene* scene, const Launch* launch, __global const u32* restrict pixels,
-                                u32 item, u32 lane, u32 sample, BegunSamples* begun, uint2* pixel,
-                                float* sign) {
-  if (!image_pixel(launch, pixels, lane_pixel(launch, item, lane), pixel)) return false;
-  float2 in_pixel = pixel_sample(*pixel, sample, scene->info->samples);
-  *sign = filter_place(scene->filter, scene->info->samples, &in_pixel);
-  REAL_LANE(begun->x, lane) = (float)pixel->x + in_pixel.x;
-  REAL_LANE(begun->y, lane) = (float)pixel->y + in_pixel.y;
+// The lane begins with sample `sample` of its pixel. Returns whether it has one.
+static inline bool begin_sample(const Launch* launch, __global const u32* restrict pixels, u32 item, u32 lane,
+                                u32 sample, BegunSamples* begun) {
+  uint2 pixel;
+  if (!image_pixel(launch, pixels, lane_pixel(launch, item, lane), &pixel)) return false;
+  MASK_LANE(begun->at.x, lane) = (int)pixel.x;
+  MASK_LANE(begun->at.y, lane) = (int)pixel.y;
+  MASK_LANE(begun->at.sample, lane) = (int)sample;
   MASK_LANE(begun->lanes, lane) = -1;
-  begun->camera.sample = sample;
-  set_camera_sample(&begun->camera, lane, *pixel);
   return true;
 }
 
-static inline SceneRays begun_rays(const Scene* scene, const BegunSamples* begun, MediaStack around) {
-  const Rays camera = sampled_camera_rays(scene->info, begun->x, begun->y, &begun->camera);
+// The rays of the samples; signs[lane] becomes what the lane's sample counts.
+static inline SceneRays begun_rays(const Scene* scene, const BegunSamples* begun, MediaStack around,
+                                   float* signs) {
+  const u32 samples = scene->info->samples;
+  REAL u_x, u_y;
+  places_in_pixels(&begun->at, begun->lanes, samples, &u_x, &u_y);
+  for (u32 bits = lane_bits(begun->lanes); bits; bits &= bits - 1u) {
+    const u32 lane = lowest_bit(bits);
+    signs[lane] = filter_place(scene->filter, samples, &REAL_LANE(u_x, lane), &REAL_LANE(u_y, lane));
+  }
+  CameraSamples places;
+  places.x = TO_REAL(begun->at.x) + u_x;
+  places.y = TO_REAL(begun->at.y) + u_y;
+  set_camera_samples(&begun->at, &places);
+  const Rays camera = sampled_camera_rays(scene->info, &places);
   return scene_rays(&camera, around);
 }
 

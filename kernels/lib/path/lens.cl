@@ -2,7 +2,7 @@
 #ifndef SUNDOG_LIB_LENS_CL
 #define SUNDOG_LIB_LENS_CL
 #include "lib/core/directions.cl"
-#include "lib/core/sampler.cl"
+#include "lib/core/sampler_lanes.cl"
 #include "lib/path/camera.cl"
 
 // A point of the regular polygon of `blades` corners on the unit circle, uniform in area: one of its
@@ -15,15 +15,15 @@ static inline void place_in_polygon(float blades, REAL u_x, REAL u_y, REAL* x, R
   *y = out * (sin(from) + u_y * (sin(to) - sin(from)));
 }
 
-// What a sample needs beside its place in the pixel.
+// Where samples lie: in the image, on the lens, in time.
 typedef struct CameraSamples {
+  REAL x, y;
 #if HAS_LENS
   REAL lens_x, lens_y;
 #endif
 #if HAS_CAMERA_MOTION || HAS_OBJECT_MOTION
   REAL time;
 #endif
-  u32 sample;
 } CameraSamples;
 
 // The pinhole camera at one time, before lens and motion; `along` is of length 1 along the view.
@@ -32,12 +32,13 @@ typedef struct CameraPlaces {
 } CameraPlaces;
 
 #if HAS_CAMERA_MOTION || HAS_OBJECT_MOTION
-static inline void set_time(CameraSamples* samples, u32 lane, uint2 pixel) {
-  REAL_LANE(samples->time, lane) = sample_1d(pixel, samples->sample, DIMENSION_TIME);
+static inline void set_times(const LaneSamples* at, CameraSamples* samples) {
+  REAL free;
+  pair_lanes(at, (MASK)((int)DIMENSION_TIME), false, &samples->time, &free);
 }
 static inline REAL sampled_time(const CameraSamples* samples) { return samples->time; }
 #else
-static inline void set_time(CameraSamples* samples, u32 lane, uint2 pixel) {}
+static inline void set_times(const LaneSamples* at, CameraSamples* samples) {}
 static inline REAL sampled_time(const CameraSamples* samples) { return (REAL)(0.0f); }
 #endif
 
@@ -55,10 +56,8 @@ static inline void move_camera(__global const SceneInfo* restrict info, const Ca
 #endif
 
 #if HAS_LENS
-static inline void set_lens_place(CameraSamples* samples, u32 lane, uint2 pixel) {
-  const float2 u = sample_2d(pixel, samples->sample, DIMENSION_LENS);
-  REAL_LANE(samples->lens_x, lane) = u.x;
-  REAL_LANE(samples->lens_y, lane) = u.y;
+static inline void set_lens_places(const LaneSamples* at, CameraSamples* samples) {
+  pair_lanes(at, (MASK)((int)DIMENSION_PIXEL), true, &samples->lens_x, &samples->lens_y);
 }
 // What the lens adds to the origin, by its two numbers.
 static inline REAL3 lens_offset(__global const SceneInfo* restrict info, REAL u_x, REAL u_y) {
@@ -77,28 +76,29 @@ static inline void pass_lens(__global const SceneInfo* restrict info, const Came
       along3(camera->along, (REAL)(-1.0f / info->lens_x.w), offset);  // still through what is sharp
 }
 #else
-static inline void set_lens_place(CameraSamples* samples, u32 lane, uint2 pixel) {}
+static inline void set_lens_places(const LaneSamples* at, CameraSamples* samples) {}
 static inline void pass_lens(__global const SceneInfo* restrict info, const CameraSamples* samples,
                              CameraPlaces* camera) {}
 #endif
 
-static inline void set_camera_sample(CameraSamples* samples, u32 lane, uint2 pixel) {
-  set_lens_place(samples, lane, pixel);
-  set_time(samples, lane, pixel);
+// On the lens and in time.
+static inline void set_camera_samples(const LaneSamples* at, CameraSamples* samples) {
+  set_lens_places(at, samples);
+  set_times(at, samples);
 }
 
-// The rays through the places (x, y) of the image.
-static inline Rays sampled_camera_rays(__global const SceneInfo* restrict info, REAL x, REAL y,
+// The rays of samples.
+static inline Rays sampled_camera_rays(__global const SceneInfo* restrict info,
                                        const CameraSamples* samples) {
   if (!(HAS_LENS | HAS_CAMERA_MOTION)) {
-    Rays still = camera_rays(info, x, y);
+    Rays still = camera_rays(info, samples->x, samples->y);
     set_ray_times(sampled_time(samples), &still);
     return still;
   }
   CameraPlaces camera = {all3(info->camera_position.xyz), all3(info->camera_corner.xyz),
                          all3(info->camera_dx.xyz), all3(info->camera_dy.xyz)};
   move_camera(info, samples, &camera);
-  camera.along = along3(along3(camera.along, x, camera.dx), y, camera.dy);
+  camera.along = along3(along3(camera.along, samples->x, camera.dx), samples->y, camera.dy);
   pass_lens(info, samples, &camera);
   const REAL depth_to_t = length3(camera.along);
   Rays rays;

@@ -7,15 +7,15 @@
 // The pixels of a work-item's tile, and which of their samples is made.
 typedef struct TileSamples {
 #if HAS_RANDOM
-  u32 x[BATCH], y[BATCH];
+  MASK x, y;
 #endif
   u32 sample;
 } TileSamples;
 
 #if HAS_RANDOM
-static inline void set_tile_pixel(TileSamples* tile, u32 lane, uint2 pixel) {
-  tile->x[lane] = pixel.x;
-  tile->y[lane] = pixel.y;
+static inline void set_tile_pixels(TileSamples* tile, const LaneSamples* at) {
+  tile->x = at->x;
+  tile->y = at->y;
 }
 
 static inline void start_branches(PathStates* paths) { paths->branch = NO_LANES; }
@@ -23,10 +23,7 @@ static inline void start_branches(PathStates* paths) { paths->branch = NO_LANES;
 // Place in the ray tree of a child of `branch` (0: the camera's ray) by the number of its kind: what it adds
 // to dimensions, so that surfaces of one depth differ.
 static inline MASK child_branch(MASK branch, u32 kind) {
-  MASK child;
-  for (u32 i = 0; i < BATCH; ++i)
-    MASK_LANE(child, i) = (int)(hash_u32((u32)MASK_LANE(branch, i) + kind + 1u) & ~0xFFFu);
-  return child;
+  return AS_MASK(hash_lanes(AS_LANE_U32(branch) + (kind + 1u)) & ~0xFFFu);
 }
 
 static inline void start_branch(const PathStates* parent, u32 kind, PathStates* child) {
@@ -46,8 +43,8 @@ static inline void begin_numbers(const TileSamples* tile, const PathStates* path
   numbers->at.x = numbers->at.y = NO_LANES;
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits), pixel = (u32)MASK_LANE(paths->pixel, i);
-    MASK_LANE(numbers->at.x, i) = (int)tile->x[pixel];
-    MASK_LANE(numbers->at.y, i) = (int)tile->y[pixel];
+    MASK_LANE(numbers->at.x, i) = MASK_LANE(tile->x, pixel);
+    MASK_LANE(numbers->at.y, i) = MASK_LANE(tile->y, pixel);
   }
   numbers->first = paths->depth * (int)DIMENSIONS_A_BOUNCE + paths->branch +
                    (int)(dimension_of_bounce(0u, light) + (offset & ~3u));
@@ -68,7 +65,7 @@ NEVER_INLINE void bounce_numbers(const TileSamples* tile, const PathStates* path
   next_numbers(tile, part, parts, &numbers, u_x, u_y);
 }
 #else
-static inline void set_tile_pixel(TileSamples* tile, u32 lane, uint2 pixel) {}
+static inline void set_tile_pixels(TileSamples* tile, const LaneSamples* at) {}
 static inline void start_branches(PathStates* paths) {}
 static inline void start_branch(const PathStates* parent, u32 kind, PathStates* child) {}
 static inline void bounce_numbers(const TileSamples* tile, const PathStates* paths, u32 light, u32 offset,

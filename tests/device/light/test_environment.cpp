@@ -32,15 +32,17 @@ EnvironmentDescription picture(int width, int height, float all, int x = 0, int 
 // Four floats for each of `count` directions that are even over the sphere (density there, radiance) and each
 // of as many samples (the density reported, that of the direction; radiance by density).
 const char* const draw_kernel = R"(
-#include "lib/core/sampler.cl"
+#include "lib/core/sampler_lanes.cl"
 #include "lib/light/environment.cl"
 __kernel void draw(__global const Environment* environments, __global const float4* pixels,
                    __global const float* shares, __global float4* out, u32 count) {
   const u32 i = get_global_id(0);
   if (i >= count) return;
   const Scene scene = {.environments = environments, .environment = pixels, .environment_shares = shares};
-  const uint2 pixel = (uint2)(3u, 5u);
-  const float2 u = sample_2d(pixel, i, 8u), v = sample_2d(pixel, i, 16u);
+  const LaneSamples at = {3, 5, (int)i};
+  float2 u, v;
+  pair_lanes(&at, 8, false, (REAL*)&u, (REAL*)&u + 1);
+  pair_lanes(&at, 16, false, (REAL*)&v, (REAL*)&v + 1);
   const float up = 1.0f - 2.0f * u.y, side = sqrt(fmax(1.0f - up * up, 0.0f));
   const REAL3 d = real3(side * cospi(2.0f * u.x), up, side * sinpi(2.0f * u.x));
   out[2u * i] = (float4)(environment_density(&scene, d, ALL_LANES), environment_along(&scene, d, ALL_LANES).x, d.y, 0.0f);

@@ -26,16 +26,18 @@ struct Place {
 constexpr u32 dimension = 4;
 
 const char* const text = R"(
-#include "lib/core/sampler.cl"
+#include "lib/core/sampler_lanes.cl"
 typedef struct Pixel { u32 x, y, sample, samples; } Pixel;
 typedef struct Place { float a, b, first, second; } Place;
 __kernel void run(__global const Pixel* in, __global Place* out, u32 count) {
   const u32 i = get_global_id(0);
   if (i >= count) return;
-  const uint2 pixel = (uint2)(in[i].x, in[i].y);
-  const float2 at = pixel_sample(pixel, in[i].sample, in[i].samples);
-  const float2 two = sample_2d(pixel, in[i].sample, 4u);
-  out[i].a = at.x, out[i].b = at.y, out[i].first = two.x, out[i].second = two.y;
+  const LaneSamples at = {(MASK)((int)in[i].x), (MASK)((int)in[i].y), (MASK)((int)in[i].sample)};
+  REAL a, b, first, second;
+  places_in_pixels(&at, ALL_LANES, in[i].samples, &a, &b);
+  pair_lanes(&at, (MASK)(4), false, &first, &second);
+  out[i].a = REAL_LANE(a, 0), out[i].b = REAL_LANE(b, 0);
+  out[i].first = REAL_LANE(first, 0), out[i].second = REAL_LANE(second, 0);
 }
 )";
 

@@ -18,7 +18,7 @@ constexpr double pi = std::numbers::pi;
 constexpr u32 count = 1u << 15;
 
 const std::string draw_kernel = surface_text + R"(
-#include "lib/core/sampler.cl"
+#include "lib/core/sampler_lanes.cl"
 // One material, ns = ng = +z, the viewer at the cosine `cosine` to it in the plane y = 0; behind it the medium 1. Eight floats
 // a sample: wi, density, weight, whether it is specular.
 __kernel void draw(__global const Material* materials, __global const Medium* media, __global float* out, float cosine,
@@ -28,9 +28,9 @@ __kernel void draw(__global const Material* materials, __global const Medium* me
   const Scene scene = {.materials = materials, .media = media};
   const REAL3 n = real3(0.0f, 0.0f, 1.0f), wo = real3(-sqrt(1.0f - cosine * cosine), 0.0f, cosine);
   const Bsdfs bsdf = make_surface(materials, n, 0, 1);
-  const uint2 pixel = (uint2)(7u, 9u);
-  const float2 u = sample_2d(pixel, i, 1u);
-  const BsdfSamples s = bsdf_sample(&scene, &bsdf, wo, sample_1d(pixel, i, 0u), u.x, u.y, ALL_LANES);
+  const LaneSamples at = {7, 9, (int)i};
+  const FourNumbers u = sample_lanes(&at, 0);
+  const BsdfSamples s = bsdf_sample(&scene, &bsdf, wo, u.x, u.y, u.z, ALL_LANES);
   __global float* to = out + 8u * i;
   to[0] = s.wi.x; to[1] = s.wi.y; to[2] = s.wi.z; to[3] = s.density;
   to[4] = s.weight.x; to[5] = s.weight.y; to[6] = s.weight.z; to[7] = s.specular ? 1.0f : 0.0f;
