@@ -31,7 +31,7 @@ struct GrowingFilm {
   std::vector<u32> taken;           // samples of each pixel
   std::vector<PixelState> states;   // of each pixel
   std::vector<float4> earlier;      // the sums before a pixel's last pass; w = weight
-  std::vector<float> moved;         // squares of how far doublings moved it, the last counting half; see below
+  std::vector<float> moved;         // squares of how far doublings moved it, the last for half
   u32 stage = 0;                    // passes that are complete
   u32 step = 0;                     // of the planner
   std::uint64_t surfaces_seen = 0;  // pixels looked at by a ray of their own, for the surface alone

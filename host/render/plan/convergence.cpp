@@ -85,8 +85,7 @@ void for_each_3x3(const std::vector<Value>& values, std::size_t width, const Wan
 /// How much the `count` colours of `sum` vary about a pixel's: their variance in the units of squared
 /// pixel_errors().
 float color_variance(const Seen& pixel, const Seen& sum, float count) {
-  const float of_means =
-      (sum.red * sum.red + sum.green * sum.green + sum.blue * sum.blue) / (count * count);
+  const float of_means = (sum.red * sum.red + sum.green * sum.green + sum.blue * sum.blue) / (count * count);
   constexpr float channels = 3;  // pixel_errors() adds up the channels' errors before they are squared
   return channels * std::max(0.0f, sum.squares / count - of_means) /
          std::sqrt(seen_light({pixel.red, pixel.green, pixel.blue}));
