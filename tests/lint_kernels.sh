@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
-# Every kernel file through clang as OpenCL C 1.2, warnings as errors, with all features of a scene and with few. Unused parameters
-# are allowed: what a feature needs stays in the signature without it.
+# Every kernel file through clang as OpenCL C 1.2, warnings as errors, with all features of a scene and with few; then both
+# integrators with features by chance, as scenes may combine them. Unused parameters are allowed: what a feature needs stays in the
+# signature without it.
+#   tests/lint_kernels.sh [COMBINATIONS [SEED]]   (24 of them, seed 1)
 set -eu
 cd "$(dirname "$0")/.."
 clang=$(command -v clang || ls /usr/bin/clang-[0-9]* 2>/dev/null | sort -V | tail -n 1 || true)
@@ -12,13 +14,44 @@ for shape in MESH $solids BVH; do shapes+=" -DHAS_$shape=1"; done
 for feature in $features; do all+=" -D$feature=1"; few+=" -D$feature=0"; done
 all+=$shapes; few+=$shapes
 failed=0
+check() {  # FILE OPTION...
+  "$clang" -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter -Werror -Ikernels \
+    "${@:2}" "$1" || failed=1
+}
 for lanes in "-DTILE_W=4 -DTILE_H=4 $all" "-DTILE_W=4 -DTILE_H=4 -DSUNDOG_PORTABLE $all" "-DTILE_W=1 -DTILE_H=1 -DWIDE_VECTORS=0 $all" \
   "-DTILE_W=4 -DTILE_H=4 $few" "-DTILE_W=1 -DTILE_H=1 -DSUNDOG_PORTABLE $few"; do
   for file in kernels/lib/*/*.cl kernels/entry/*.cl; do
     unused=""; case "$file" in kernels/lib/*) unused=-Wno-unused-function ;; esac  # a library file alone uses nothing
     # shellcheck disable=SC2086
-    "$clang" -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter $unused -Werror \
-      $lanes -Ikernels "$file" || failed=1
+    check "$file" $unused $lanes
+  done
+done
+
+# What features of scenes bring with them, in an order in which one pass over the list is enough.
+brings="PARALLAX:RELIEF RELIEF:MAPS RELIEF:UV METAL_ROUGH:MAPS TEXEL_PAGES:MAPS TURNS:OBJECT_MOTION ENVIRONMENT:AREA_LIGHTS
+  LIGHT_TREE:AREA_LIGHTS ROUGH_GLASS:ROUGH ROUGH:SECONDARY SHADOW_FILTERS:SECONDARY ABSORPTION:MEDIA SCATTERING:MEDIA TOUCHING:MEDIA
+  DISPERSION:MEDIA GLOW:SDF OCCLUSION:SDF SOFT_SHADOWS:SDF MESH:BVH"
+of_paths="DISPERSION SCATTERING GUIDES CAUSTICS"  # no frame of Whitted's integrator has them
+lanes=("-DTILE_W=4 -DTILE_H=4" "-DTILE_W=4 -DTILE_H=4 -DSUNDOG_PORTABLE" "-DTILE_W=1 -DTILE_H=1 -DSUNDOG_PORTABLE"
+  "-DTILE_W=1 -DTILE_H=1 -DWIDE_VECTORS=0")
+RANDOM=${2:-1}
+for ((i = 0; i < ${1:-24}; ++i)); do
+  unset has; declare -A has
+  for feature in SDF MESH $solids BVH $(grep -o 'FEATURE(bool, HAS_[A-Z_]*' kernels/shared/features.h | sed 's/.*HAS_//'); do
+    has[$feature]=$((RANDOM % 5 < 2))
+  done
+  for pair in $brings; do [ "${has[${pair%:*}]}" = 0 ] || has[${pair#*:}]=1; done
+  maps=${has[MAPS]}
+  numbers="-DSAMPLER=$((RANDOM % 6)) -DSAMPLE_ROOM=4 -DTEXTURE_MAPPINGS=$((maps * (RANDOM % 256))) -DTEXTURE_KINDS=$((maps * RANDOM))
+    -DTEXTURE_STACK=$((maps * (RANDOM % 4))) -DTEXEL_FORMATS=$((maps * (RANDOM % 16))) -DEXTRA_UVS=$((has[UV] * (RANDOM % 2)))
+    -DSDF_TWO_SIDED=$((has[SDF] * (RANDOM % 2))) -DSDF_FLAGS=$((has[SDF] * (RANDOM % 4)))"
+  options=""
+  for feature in "${!has[@]}"; do options+=" -DHAS_$feature=${has[$feature]}"; done
+  for entry in whitted path; do
+    without=""
+    if [ $entry = whitted ]; then for feature in $of_paths; do without+=" -UHAS_$feature -DHAS_$feature=0"; done; fi
+    # shellcheck disable=SC2086
+    check kernels/entry/render_$entry.cl -Wno-unused-function $options $without $numbers ${lanes[i % 4]}
   done
 done
 exit $failed

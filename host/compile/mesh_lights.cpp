@@ -67,7 +67,6 @@ std::vector<u32> lamps_of(const SceneDescription& scene) {
 void add_mesh_lights(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
                      CompiledScene& out) {
   std::vector<u32> first = lamps_of(scene);
-  bool shines = false;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
     const auto* shape = std::get_if<MeshShape>(&object.shape);
@@ -79,10 +78,9 @@ void add_mesh_lights(const SceneDescription& scene, const std::vector<PlacedMesh
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       out.lights.push_back(light_of(object, mesh, mesh.triangles[t],
                                     even_emission(scene, material_of(object, mesh, t)), out.origin));
-    shines = true;
+    out.features.area_lights = true;
   }
-  out.features.area_lights |= shines;
-  if (!shines && !traces_paths(out.integrator)) return;  // nobody asks which light an instance shows
+  if (std::ranges::all_of(first, [](u32 light) { return light == NO_LIGHT; })) return;
   for (Instance& instance : out.instances.edit()) {
     if (instance.object >= first.size() || first[instance.object] == NO_LIGHT) continue;
     instance.light = first[instance.object];

@@ -17,6 +17,12 @@
 #include "lib/solids/solids.cl"
 #include "lib/trace/hits.cl"
 
+// The corner `corner` of the triangle `lane` of a block.
+static inline float3 corner_of(__global const TriangleBlock* block, u32 corner, u32 lane) {
+  __global const float* at = block->v0_x + corner * 24u + lane;
+  return (float3)(at[0], at[8], at[16]);
+}
+
 #if HAS_UV
 typedef struct Coordinates {
   REAL u, v;
@@ -35,11 +41,6 @@ static inline SurfacePoints points_without_place(REAL3 n) {
   const REAL3 tangent = any_tangents(n);
   const SurfacePoints points = {(REAL)(0.0f), (REAL)(0.0f), tangent, cross3(n, tangent)};
   return points;
-}
-
-static inline float3 corner_of(__global const TriangleBlock* block, u32 corner, u32 lane) {
-  __global const float* at = block->v0_x + corner * 24u + lane;
-  return (float3)(at[0], at[8], at[16]);
 }
 
 // The hits of `lanes` on triangles of a mesh.

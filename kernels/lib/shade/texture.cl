@@ -108,8 +108,7 @@ static inline MappedPoints map_points(const Scene* scene, __global const Texture
     return map_uv(node, set.x, set.y, select(zero, 1.0f / nonzero(set.z), MASK_OF(set.z > 0.0f)));
   }
   const REAL3 q = rows_times(node, at->p);
-  if ((HAS_MAPPING(2) || HAS_MAPPING(3)) &&
-      (mapping == MAPPING_SPHERICAL || mapping == MAPPING_CYLINDRICAL)) {
+  if ((HAS_MAPPING(2) | HAS_MAPPING(3)) && (mapping == MAPPING_SPHERICAL || mapping == MAPPING_CYLINDRICAL)) {
     const REAL r = radius_about_y(q), u = turns(q.x, -q.z);
     const bool sphere = mapping == MAPPING_SPHERICAL;
     const REAL v = sphere ? 0.5f + 2.0f * copysign(turns(r, fabs(q.y)), q.y) : q.y;

@@ -1,7 +1,10 @@
 // Shafts to lights with an extent: what surfaces learn from them about shadows is what rays find.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "catch.h"
@@ -9,6 +12,8 @@
 #include "devices.h"
 #include "every_kind.h"
 #include "render/render.h"
+#include "scene/json/parse.h"
+#include "scene/read/scene_reader.h"
 #include "scenes.h"
 
 using namespace sundog;
@@ -142,5 +147,25 @@ TEST_CASE("a rectangle that stands in the horizon lights a floor by what is abov
   const double irradiance = std::abs(side(a, b) + side(d, c)) / 2;
   on_picture_devices([&](const DeviceInfo& device) {
     CHECK(scenes::pixel_on(device, scene).x == Approx(irradiance / 3.14159265358979).epsilon(1e-5));
+  });
+}
+
+TEST_CASE("a lamp that is seen stands not before itself") {
+  // As scene files have it: the lamp is an object too, in the picture's upper half.
+  const auto scene_with = [](bool visible) {
+    const nlohmann::json document = parse_json(
+        fmt::format(
+            R"({{"camera": {{"position": [0, 4, 7], "target": [0, 2, 0]}}, "image": {{"width": 32, "height": 24}},
+          "materials": {{"white": {{"color": [0.8, 0.8, 0.8]}}}}, "objects": [{{"type": "plane", "material": "white"}}],
+          "lights": [{{"type": "rectangle", "position": [0, 5, 0], "direction": [0, -1, 0], "size": [1, 1],
+            "visible": {}}}]}})",
+            visible),
+        "test.json");
+    const JsonContext context{"test.json"};
+    return compile(read_scene(JsonValue(document, context)));
+  };
+  on_picture_devices([&](const DeviceInfo& device) {
+    CHECK(render(scene_with(true), {device}).counts[COUNT_SHADOW] == 0);
+    CHECK(render(scene_with(false), {device}).counts[COUNT_SHADOW] == 0);
   });
 }
