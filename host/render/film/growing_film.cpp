@@ -51,6 +51,27 @@ void note_movement(GrowingFilm& film, std::size_t p) {
   film.moved[p] = std::isfinite(before) ? (square + before) / 2 : square;
 }
 
+/// Of a pixel with one sample, which tells nothing of its error: how much the colours of the 3x3 pixels
+/// around vary. Infinite where no other pixel is known.
+void write_variance_around(const GrowingFilm& film, std::size_t p, float* variance) {
+  const Film& whole = film.film;
+  const int width = whole.width, x = static_cast<int>(p) % width, y = static_cast<int>(p) / width;
+  float count = 0, sums[3] = {0, 0, 0}, squares[3] = {0, 0, 0};
+  for (int v = std::max(0, y - 1); v <= std::min(whole.height - 1, y + 1); ++v)
+    for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u) {
+      const auto q =
+          static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u);
+      if (!(whole.weights[q] > 0)) continue;
+      const float4& sum = whole.sums[q];
+      const float color[3] = {sum.x / whole.weights[q], sum.y / whole.weights[q], sum.z / whole.weights[q]};
+      for (int c = 0; c < 3; ++c) sums[c] += color[c], squares[c] += color[c] * color[c];
+      ++count;
+    }
+  for (int c = 0; c < 3; ++c)
+    variance[c] = count > 1 ? std::max(0.0f, (squares[c] - sums[c] * sums[c] / count) / (count - 1))
+                            : std::numeric_limits<float>::infinity();
+}
+
 }  // namespace
 
 Pass list_pass(std::vector<u32> indices, int image_width, u32 first_sample, u32 sample_count) {
@@ -133,12 +154,13 @@ Image develop_variance(const GrowingFilm& film) {
     if (film.states[p] != PixelState::sampled) continue;
     const float4 &sum = film.film.sums[p], &before = film.earlier[p];
     const float weight = film.film.weights[p];
-    const bool known = weight > 0 && before.w > 0;
+    if (!(weight > 0 && before.w > 0)) {
+      write_variance_around(film, p, &image.data[3 * p]);
+      continue;
+    }
     const float now[3] = {sum.x / weight, sum.y / weight, sum.z / weight};
     const float then[3] = {before.x / before.w, before.y / before.w, before.z / before.w};
-    for (std::size_t c = 0; c < 3; ++c)
-      image.data[3 * p + c] =
-          known ? (now[c] - then[c]) * (now[c] - then[c]) : std::numeric_limits<float>::infinity();
+    for (std::size_t c = 0; c < 3; ++c) image.data[3 * p + c] = (now[c] - then[c]) * (now[c] - then[c]);
   }
   return image;
 }

@@ -60,8 +60,9 @@ std::vector<float> pixel_errors(const GrowingFilm& film);
 /// under a Sobol sequence, by trial. Earlier doublings speak of a pixel's `moved` in this measure.
 constexpr float squares_of_doubling = 0.27f;
 
-/// The variance of each pixel's colour, by the same difference: unbiased, of each channel. 0 where no sample
-/// is, infinite where nothing is known.
+/// The variance of each pixel's colour, by the same difference: unbiased, of each channel. Of a pixel with
+/// one sample, that of the colours of the 3x3 pixels around. 0 where no sample is, infinite where nothing is
+/// known.
 Image develop_variance(const GrowingFilm& film);
 
 /// The samples of each pixel: `taken`, or those that count in a frame without passes.

@@ -275,3 +275,15 @@ TEST_CASE("a frame in passes continues from its checkpoint, and takes no other's
   std::filesystem::resize_file(file, 500);
   CHECK_THROWS_AS(read_growing_checkpoint(file, back, same, part, 42), SceneError);
 }
+
+TEST_CASE("the variance of pixels with one sample is that of the colours around") {
+  const auto step = [](int x, int, u32) { return MadeUpPixel{x < 10 ? 0.25f : 0.75f, 1}; };
+  GrowingFilm film(width, height, false);
+  SamplingPlan plan = adaptive_plan(100, 64);
+  run(film, plan, step);
+  const Image variance = develop_variance(film);
+  CHECK(film.taken[at(10, 4)] == 1);
+  CHECK(variance.pixel(3, 4)[0] == 0);
+  CHECK(variance.pixel(10, 4)[0] == Approx(0.5 * 0.5 * 3 * 6 / 9.0 / 8));  // three of nine on the other side
+  CHECK(variance.pixel(10, 0)[2] == Approx(0.5 * 0.5 * 2 * 4 / 6.0 / 5));
+}
