@@ -71,13 +71,13 @@ void for_each_3x3(const std::vector<Value>& values, std::size_t width, const Wan
     std::vector<Value> columns(width);
     for (std::size_t row = top; row <= bottom; row += width)
       for (std::size_t x = 0; x < width; ++x) columns[x] += values[row + x];
-    const auto rows = static_cast<float>((bottom - top) / width + 1);
+    const std::size_t rows = (bottom - top) / width + 1;
     for (std::size_t x = 0; x < width; ++x) {
       if (!wants(first + x)) continue;
       const std::size_t left = x - (x > 0), right = std::min(x + 1, width - 1);
       Value sum = columns[left];
       for (std::size_t u = left + 1; u <= right; ++u) sum += columns[u];
-      visit(first + x, sum, rows * static_cast<float>(right - left + 1));
+      visit(first + x, sum, static_cast<float>(rows * (right - left + 1)));
     }
   });
 }
