@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/memory.h"
 #include "base/arguments.h"
 #include "base/environment.h"
 #include "base/error.h"
@@ -72,7 +73,7 @@ std::string set(const std::string& pointer, double value) { return fmt::format("
 /// Thresholds of adaptive frames from coarse to fine, each with `common`.
 OurWays adaptive(std::vector<std::string> common) {
   OurWays ways{"adaptive", {}};
-  for (double threshold = 0.64; threshold > 5e-4; threshold /= std::sqrt(2.0)) {
+  for (double threshold = 0.64; threshold > 5e-4; threshold /= std::pow(2.0, 0.25)) {
     ways.overrides.push_back(common);
     ways.overrides.back().push_back(set("/render/adaptive/threshold", threshold));
   }
@@ -258,6 +259,7 @@ int main(int argc, char** argv) {
   app.add_option("--folder", options.folder, "for the pictures and POV-Ray's files");
   app.add_flag("--wall", options.wall, "wall clock; without it processor time over threads");
   parse_or_exit(app, argc, argv);
+  sundog::keep_freed_memory();  // as the command line does
   try {
     return sundog::run(options);
   } catch (const std::exception& error) {

@@ -17,6 +17,7 @@
 #include "app/process/exit_status.h"
 #include "app/process/interrupt.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include "device/driver_folder.h"
 
 namespace sundog {
@@ -85,6 +86,7 @@ void bound_the_end(int status) {
 }  // namespace sundog
 
 int main(int argc, char** argv) {
+  sundog::keep_freed_memory();
   const int status = sundog::exit_status_of([&] { return sundog::run_command_line(argc, argv); });
   if (sundog::driver_threads()->count() > 0) sundog::end_beside_drivers(status);
   sundog::bound_the_end(status);

@@ -1,5 +1,8 @@
 #include "base/memory.h"
 
+#if __has_include(<malloc.h>)
+#include <malloc.h>
+#endif
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -107,6 +110,14 @@ void prefer_large_pages(void* at, std::size_t bytes) {
   ::madvise(static_cast<char*>(at) + skip, (bytes - skip) / page * page, MADV_HUGEPAGE);
 #else
   (void)at, (void)bytes;
+#endif
+}
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int largest_piece = 32 << 20, most = 256 << 20;  // glibc takes no greater piece for one to keep
+  ::mallopt(M_MMAP_THRESHOLD, largest_piece);
+  ::mallopt(M_TRIM_THRESHOLD, most);
 #endif
 }
 

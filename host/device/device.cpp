@@ -248,14 +248,22 @@ cl::Buffer Device::allocate(std::size_t bytes, const void* data) {
   return buffer;
 }
 
-void Device::write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset) {
+void Device::write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset,
+                         cl_bool waits) {
   if (bytes == 0) return;
-  check_cl(queue_.enqueueWriteBuffer(buffer, CL_TRUE, offset, bytes, data), info_, "clEnqueueWriteBuffer");
+  check_cl(queue_.enqueueWriteBuffer(buffer, waits, offset, bytes, data), info_, "clEnqueueWriteBuffer");
 }
 
-void Device::read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset) {
+void Device::read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset,
+                        cl_bool waits) {
   if (bytes == 0) return;
-  check_cl(queue_.enqueueReadBuffer(buffer, CL_TRUE, offset, bytes, data), info_, "clEnqueueReadBuffer");
+  check_cl(queue_.enqueueReadBuffer(buffer, waits, offset, bytes, data), info_, "clEnqueueReadBuffer");
+}
+
+// Not clFinish: rusticl's returns early. The queue is in order, so a read comes after all that was asked.
+void Device::settle() noexcept {
+  char ignored[4];
+  queue_.enqueueReadBuffer(fence_, CL_TRUE, 0, sizeof ignored, ignored);
 }
 
 cl::Event Device::enqueue(cl::Kernel& kernel, const std::string& name, ProgramRecord* program,
@@ -291,8 +299,7 @@ void Device::finish() {
   if (pending_.empty()) return;
   const std::vector<Pending> batch = std::exchange(pending_, {});
   char ignored[4];
-  // Not clFinish: rusticl's returns early. The queue is in order, so this read comes after every launch.
-  read_bytes(fence_, ignored, sizeof ignored, 0);
+  read_bytes(fence_, ignored, sizeof ignored, 0, CL_TRUE);  // as settle(), with its errors
   const double host_ms = milliseconds(Clock::now() - batch_start_);
   std::vector<double> device_ms;
   double total_ms = 0;

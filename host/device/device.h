@@ -135,13 +135,25 @@ class Device {
   }
   template <class T>
   void write(Buffer<T>& buffer, std::span<const T> values, std::size_t first = 0) {
-    write_bytes(buffer.memory, values.data(), values.size_bytes(), first * sizeof(T));
+    write_bytes(buffer.memory, values.data(), values.size_bytes(), first * sizeof(T), CL_TRUE);
   }
   /// Blocking; also the only reliable way to wait on every driver.
   template <class T>
   void read(const Buffer<T>& buffer, std::span<T> values, std::size_t first = 0) {
-    read_bytes(buffer.memory, values.data(), values.size_bytes(), first * sizeof(T));
+    read_bytes(buffer.memory, values.data(), values.size_bytes(), first * sizeof(T), CL_TRUE);
   }
+  /// The same without waiting, of the whole buffer: the values stay where they are until a write() or read()
+  /// that follows has returned, or thrown and settle() has returned.
+  template <class T>
+  void begin_write(Buffer<T>& buffer, std::span<const T> values) {
+    write_bytes(buffer.memory, values.data(), values.size_bytes(), 0, CL_FALSE);
+  }
+  template <class T>
+  void begin_read(const Buffer<T>& buffer, std::span<T> values) {
+    read_bytes(buffer.memory, values.data(), values.size_bytes(), 0, CL_FALSE);
+  }
+  /// Waits until nothing is on its way, whatever has failed.
+  void settle() noexcept;
 
   /// Enqueues a launch. Throws DeviceError with the OpenCL status.
   template <class... Args>
@@ -182,8 +194,10 @@ class Device {
   KernelLimits limits_of(const cl::Kernel& kernel) const;
   void check_argument(cl_int status, const std::string& name, cl_uint index) const;
   cl::Buffer allocate(std::size_t bytes, const void* data);
-  void write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset);
-  void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset);
+  void write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset,
+                   cl_bool waits);
+  void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset,
+                  cl_bool waits);
   cl::Event enqueue(cl::Kernel& kernel, const std::string& name, ProgramRecord* program,
                     const LaunchSize& size);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 
 #include "base/clock.h"
 #include "base/environment.h"
@@ -18,6 +19,21 @@ namespace {
 /// The driver ended a kernel's loops before their end: smaller launches may be within its limit.
 struct LoopsCutShort : DeviceError {
   using DeviceError::DeviceError;
+};
+
+/// Where an exception ends a tile, its arrays may be on their way still.
+class SettledAtEnd {
+ public:
+  explicit SettledAtEnd(Device& device) : device_(device), before_(std::uncaught_exceptions()) {}
+  ~SettledAtEnd() {
+    if (std::uncaught_exceptions() > before_) device_.settle();
+  }
+  SettledAtEnd(const SettledAtEnd&) = delete;
+  SettledAtEnd& operator=(const SettledAtEnd&) = delete;
+
+ private:
+  Device& device_;
+  int before_;
 };
 
 Tuning tuning_of(const RenderOptions& options, const DeviceInfo& device) {
@@ -205,28 +221,42 @@ void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   }
   if (pixels_.count < std::max<std::size_t>(1, request.pixels.size()))
     pixels_ = device_.make<u32>(std::max<std::size_t>(1, request.pixels.size()));
-  if (!request.pixels.empty()) device_.write(pixels_, std::span<const u32>(request.pixels));
+  if (!request.pixels.empty()) device_.begin_write(pixels_, std::span<const u32>(request.pixels));
   result.sums = request.sums;
   result.weights = request.weights;
   result.sums.resize(pixels);
   result.weights.resize(pixels);
-  device_.write(film_, std::span<const float4>(result.sums));
-  device_.write(weights_, std::span<const float>(result.weights));
+  device_.begin_write(film_, std::span<const float4>(result.sums));
+  device_.begin_write(weights_, std::span<const float>(result.weights));
   const std::size_t counted = kernels_.counts_rays ? pixels : 0;
   if (rays_.count < std::max<std::size_t>(1, counted))
     rays_ = device_.make<u32>(std::max<std::size_t>(1, counted));
   result.rays = request.rays;
   result.rays.resize(counted);
-  if (counted > 0) device_.write(rays_, std::span<const u32>(result.rays));
+  if (counted > 0) device_.begin_write(rays_, std::span<const u32>(result.rays));
+  constexpr std::array<u32, COUNTERS> none{};
+  if (counters_.count == 0) counters_ = device_.make<u32>(COUNTERS);
+  device_.write(counters_, std::span<const u32>(none));
+}
+
+// All arrays with one wait, which costs about as much as a small array.
+void TileRenderer::read_result(TileResult& result) {
+  const Stopwatch reading;
+  std::array<u32, COUNTERS> counts{};
+  device_.begin_read(film_, std::span<float4>(result.sums));
+  device_.begin_read(weights_, std::span<float>(result.weights));
+  if (!result.rays.empty()) device_.begin_read(rays_, std::span<u32>(result.rays));
+  device_.read(counters_, std::span<u32>(counts));
+  std::copy(counts.begin(), counts.end(), result.counts.begin());
+  readback_seconds_ += reading.seconds();
 }
 
 // A failed launch may have added some of its samples, so a tile is always begun from what it was.
 TileResult TileRenderer::try_render(const TileRequest& request, const StopFlags& flags) {
   TileResult result;
   result.tile = request.tile;
-  std::array<u32, COUNTERS> counts{};
+  const SettledAtEnd settled(device_);
   write_start(request, result);
-  counters_ = device_.upload(std::span<const u32>(counts));
   const unsigned samples = samples_of(request);
   if (samples > 0) {
     sizer_.begin(request.tile, samples);
@@ -234,13 +264,7 @@ TileResult TileRenderer::try_render(const TileRequest& request, const StopFlags&
     result.tile.height = static_cast<int>(sizer_.finished_rows());
   }
   if (wants_aovs(request)) launch_aovs(request, result.tile, result.aovs);
-  const Stopwatch reading;
-  device_.read(film_, std::span<float4>(result.sums));
-  device_.read(weights_, std::span<float>(result.weights));
-  if (!result.rays.empty()) device_.read(rays_, std::span<u32>(result.rays));
-  device_.read(counters_, std::span<u32>(counts));
-  readback_seconds_ += reading.seconds();
-  std::copy(counts.begin(), counts.end(), result.counts.begin());
+  read_result(result);
   return result;
 }
 

@@ -57,6 +57,7 @@ class TileRenderer {
  private:
   TileResult try_render(const TileRequest& request, const StopFlags& flags);
   void write_start(const TileRequest& request, TileResult& result);
+  void read_result(TileResult& result);
   void launch_samples(const TileRequest& request, const StopFlags& flags);
   double launch_integrator(const Launch& launch, const SizedLaunch& sized);
   void launch_aovs(const TileRequest& request, const Tile& tile, std::vector<float4>& aovs);

@@ -22,6 +22,17 @@ struct Tile {
 /// float4 a pixel that hold AOVs: what passes ask for, and all that there are (kernels/entry/aov.cl).
 constexpr std::size_t few_aov_vectors = 3, all_aov_vectors = 9;
 
+struct Color {
+  float r = 0, g = 0, b = 0;
+};
+
+/// The mean of a pixel's samples, of which their sum and their weight are given; black without samples.
+inline Color mean_of(const float4& sum, float weight) {
+  const float share = weight > 0 ? 1 / weight : 1;
+  return {sum.x * share, sum.y * share, sum.z * share};
+}
+
+
 /// width * height pixels, row 0 at the top. `aovs` holds `vectors` float4 a pixel when the frame has AOVs,
 /// else nothing.
 struct Film {

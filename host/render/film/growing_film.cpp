@@ -1,54 +1,67 @@
 #include "render/film/growing_film.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 namespace sundog {
 namespace {
 
-// Pixels of a row of a pass over a list, in blocks of 4x4.
-constexpr int list_width = 256, block = 4;
-
-/// The bits of x and y in turn: neighbours in the order are neighbours in the image.
-u32 morton(u32 x, u32 y) {
-  const auto spread = [](u32 v) {
-    v = (v | v << 8) & 0x00ff00ffu;
-    v = (v | v << 4) & 0x0f0f0f0fu;
-    v = (v | v << 2) & 0x33333333u;
-    return (v | v << 1) & 0x55555555u;
-  };
-  return spread(x) | spread(y) << 1;
-}
-
-/// x + y * 65536 of a code of morton().
-u32 place_of(u32 code) {
-  const auto gather = [](u32 v) {
-    v &= 0x55555555u;
-    v = (v | v >> 1) & 0x33333333u;
-    v = (v | v >> 2) & 0x0f0f0f0fu;
-    v = (v | v >> 4) & 0x00ff00ffu;
-    return (v | v >> 8) & 0xffffu;
-  };
-  return gather(code) | gather(code >> 1) << 16;
-}
-
-/// The square of pixel_errors() of a pixel with samples.
-float squared_error(const GrowingFilm& film, std::size_t p) {
-  const float4 &sum = film.film.sums[p], &before = film.earlier[p];
-  const float weight = film.film.weights[p];
-  if (!(weight > 0) || !(before.w > 0)) return std::numeric_limits<float>::infinity();
-  const float now = 1 / weight, then = 1 / before.w;
-  const float moved = std::abs(sum.x * now - before.x * then) + std::abs(sum.y * now - before.y * then) +
-                      std::abs(sum.z * now - before.z * then);
+/// The square of pixel_errors() of a pixel whose colour was `then` before its last samples.
+float squared_error(const Color& now, const Color& then) {
+  const float moved = std::abs(now.r - then.r) + std::abs(now.g - then.g) + std::abs(now.b - then.b);
   constexpr float darkest = 0.01f;  // below it nobody sees a relative error
-  return moved * moved / std::sqrt(std::max((sum.x + sum.y + sum.z) * now, darkest));
+  return moved * moved / std::sqrt(std::max(now.r + now.g + now.b, darkest));
 }
 
-/// After a pass over the pixel: one doubling may move it little by chance, so earlier ones count too.
-void note_movement(GrowingFilm& film, std::size_t p) {
-  const float square = squared_error(film, p), before = squares_of_doubling * film.moved[p];
-  film.moved[p] = std::isfinite(before) ? (square + before) / 2 : square;
+float squared_error(const GrowingFilm& film, std::size_t p) {
+  const float weight = film.film.weights[p];
+  const float4& before = film.earlier[p];
+  if (!(weight > 0 && before.w > 0)) return std::numeric_limits<float>::infinity();
+  return squared_error(mean_of(film.film.sums[p], weight), mean_of(before, before.w));
+}
+
+Seen seen_of(const Color& color, float moved, u32 taken) {
+  return {color.r, color.g, color.b, color.r * color.r + color.g * color.g + color.b * color.b,
+          taken > 1 ? moved / share_of_squares(taken) : 0};
+}
+
+/// Puts the samples of pixel `i` of a pass into its place `p`.
+void add_samples(GrowingFilm& film, const Pass& pass, const Film& made, std::size_t i, std::size_t p) {
+  Film& whole = film.film;
+  const float4 sum = made.sums[i], before = whole.sums[p];
+  const float weight = made.weights[i], weight_before = whole.weights[p];
+  const u32 taken = pass.first_sample + pass.sample_count;
+  const Color color = mean_of(sum, weight);
+  if (weight > 0 && weight_before > 0) {
+    // One doubling may move it little by chance, so earlier ones count too.
+    const float square = squared_error(color, mean_of(before, weight_before));
+    const float earlier = squares_of_doubling * film.moved[p];
+    film.moved[p] = std::isfinite(earlier) ? (square + earlier) / 2 : square;
+  }
+  film.earlier[p] = {before.x, before.y, before.z, weight_before};
+  film.seen[p] = seen_of(color, film.moved[p], taken);
+  whole.sums[p] = sum;
+  whole.weights[p] = weight;
+  whole.done[p] = 1;
+  if (!whole.rays.empty()) whole.rays[p] = made.rays[i];
+  film.taken[p] = taken;
+  film.states[p] = PixelState::sampled;
+}
+
+/// Puts pixel `i` of a pass into its place `p`.
+void add_pixel(GrowingFilm& film, const Pass& pass, const Film& made, std::size_t i, std::size_t p) {
+  Film& whole = film.film;
+  if (pass.surfaces && !whole.aovs.empty())
+    std::copy_n(made.aovs.begin() + static_cast<std::ptrdiff_t>(made.vectors * i), made.vectors,
+                whole.aovs.begin() + static_cast<std::ptrdiff_t>(whole.vectors * p));
+  if (film.states[p] == PixelState::empty) film.states[p] = PixelState::looked_at;
+  if (pass.sample_count > 0) add_samples(film, pass, made, i, p);
 }
 
 /// Of a pixel with one sample, which tells nothing of its error: how much the colours of the 3x3 pixels
@@ -74,33 +87,13 @@ void write_variance_around(const GrowingFilm& film, std::size_t p, float* varian
 
 }  // namespace
 
-Pass list_pass(std::vector<u32> indices, int image_width, u32 first_sample, u32 sample_count) {
-  const auto width = static_cast<u32>(image_width);
-  for (u32& index : indices) index = morton(index % width, index / width);
-  std::ranges::sort(indices);
-  const int blocks = static_cast<int>((indices.size() + 15) / 16);
-  const int columns = std::clamp(blocks, 1, list_width / block);
-  Pass pass;
-  pass.width = columns * block;
-  pass.height = (blocks + columns - 1) / columns * block;
-  pass.pixels.assign(static_cast<std::size_t>(pass.width) * static_cast<std::size_t>(pass.height), NO_PIXEL);
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    const int at = static_cast<int>(i / 16), in = static_cast<int>(i % 16);
-    const int x = at % columns * block + in % block, y = at / columns * block + in / block;
-    pass.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(pass.width) +
-                static_cast<std::size_t>(x)] = place_of(indices[i]);
-  }
-  pass.first_sample = first_sample;
-  pass.sample_count = sample_count;
-  return pass;
-}
-
 GrowingFilm::GrowingFilm(int width, int height, bool with_aovs, std::size_t vectors)
     : film(width, height, with_aovs, vectors) {
   taken.resize(film.done.size());
   states.resize(film.done.size());
   earlier.resize(film.done.size());
   moved.assign(film.done.size(), std::numeric_limits<float>::infinity());
+  seen.resize(film.done.size());
 }
 
 Film film_of_pass(const GrowingFilm& film, const Pass& pass, bool surfaces) {
@@ -117,27 +110,31 @@ std::int64_t image_index(const GrowingFilm& film, const Pass& pass, std::size_t 
          static_cast<std::int64_t>(pixel & 0xffffu);
 }
 
+float share_of_squares(u32 samples) {
+  static const std::array<float, 32> powers = [] {
+    std::array<float, 32> list{};
+    for (std::size_t i = 0; i < list.size(); ++i)
+      list[i] = static_cast<float>(std::pow(squares_of_doubling, static_cast<double>(i)));
+    return list;
+  }();
+  return powers[static_cast<std::size_t>(std::bit_width(samples) - 1)];
+}
+
+Seen see(const GrowingFilm& film, std::size_t pixel) {
+  return seen_of(mean_of(film.film.sums[pixel], film.film.weights[pixel]), film.moved[pixel],
+                 film.taken[pixel]);
+}
+
 void add_pass(GrowingFilm& film, const Pass& pass, const Film& made, bool complete) {
-  Film& whole = film.film;
-  for (std::size_t i = 0; i < made.done.size(); ++i) {
-    const std::int64_t found = made.done[i] ? image_index(film, pass, i) : -1;
-    if (found < 0) continue;
-    const auto p = static_cast<std::size_t>(found);
-    if (pass.surfaces && !whole.aovs.empty())
-      std::copy_n(made.aovs.begin() + static_cast<std::ptrdiff_t>(made.vectors * i), made.vectors,
-                  whole.aovs.begin() + static_cast<std::ptrdiff_t>(whole.vectors * p));
-    film.surfaces_seen += pass.surfaces;
-    if (film.states[p] == PixelState::empty) film.states[p] = PixelState::looked_at;
-    if (pass.sample_count == 0) continue;
-    film.earlier[p] = {whole.sums[p].x, whole.sums[p].y, whole.sums[p].z, whole.weights[p]};
-    whole.sums[p] = made.sums[i];
-    whole.weights[p] = made.weights[i];
-    if (!whole.rays.empty()) whole.rays[p] = made.rays[i];
-    whole.done[p] = 1;
-    film.taken[p] = pass.first_sample + pass.sample_count;
-    film.states[p] = PixelState::sampled;
-    note_movement(film, p);
-  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, made.done.size(), pixels_at_once), [&](const auto& pixels) {
+    for (std::size_t i = pixels.begin(); i != pixels.end(); ++i) {
+      const std::int64_t found = made.done[i] ? image_index(film, pass, i) : -1;
+      if (found >= 0) add_pixel(film, pass, made, i, static_cast<std::size_t>(found));
+    }
+  });
+  if (pass.surfaces)
+    for (std::size_t i = 0; i < made.done.size(); ++i)
+      film.surfaces_seen += made.done[i] && image_index(film, pass, i) >= 0;
   film.stage += complete;
 }
 

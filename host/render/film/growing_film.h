@@ -19,9 +19,30 @@ struct Pass {
   bool surfaces = false;
 };
 
-/// A pass over a list of the image's pixels (y * image_width + x): neighbours stay together, and each run of
-/// 16 is a square of 4x4 in the pass, the pixels that a work-item takes together.
-Pass list_pass(std::vector<u32> indices, int image_width, u32 first_sample, u32 sample_count);
+/// The pixels of an image, x | y << 16, in an order in which neighbours stay together.
+std::vector<u32> all_pixels(int image_width, int image_height);
+
+/// A pass over some of all_pixels(), in their order: each run of 16 is a square of 4x4 in the pass, the pixels
+/// that a work-item takes together.
+Pass list_pass(const std::vector<u32>& pixels, u32 first_sample, u32 sample_count);
+
+/// The pixels of a pass in that order.
+std::vector<u32> pixels_of(const Pass& pass);
+
+/// What of a pixel counts for its neighbours: its colour, the sum of its channels' squares, and the square of
+/// how far doublings moved it, as if it had one sample.
+struct Seen {
+  float red = 0, green = 0, blue = 0, squares = 0, moved = 0;
+
+  Seen& operator+=(const Seen& other) {
+    red += other.red, green += other.green, blue += other.blue;
+    squares += other.squares, moved += other.moved;
+    return *this;
+  }
+};
+
+/// Pixels that a thread takes at once: below, waking another costs more than it saves.
+constexpr std::size_t pixels_at_once = 1 << 17;
 
 /// What has become of a pixel. The film's own weights say how many samples count.
 enum class PixelState : std::uint8_t { empty, looked_at, sampled, interpolated };
@@ -32,6 +53,7 @@ struct GrowingFilm {
   std::vector<PixelState> states;   // of each pixel
   std::vector<float4> earlier;      // the sums before a pixel's last pass; w = weight
   std::vector<float> moved;         // squares of how far doublings moved it, the last for half
+  std::vector<Seen> seen;           // follows from the others
   u32 stage = 0;                    // passes that are complete
   u32 step = 0;                     // of the planner
   std::uint64_t surfaces_seen = 0;  // pixels looked at by a ray of their own, for the surface alone
@@ -59,6 +81,12 @@ std::vector<float> pixel_errors(const GrowingFilm& film);
 /// The squared error of twice as many samples is this share of that of so many: edges and smooth surfaces
 /// under a Sobol sequence, by trial. Earlier doublings speak of a pixel's `moved` in this measure.
 constexpr float squares_of_doubling = 0.27f;
+
+/// By how many times that is smaller than with one sample; of 2^i + k samples as of 2^i.
+float share_of_squares(u32 samples);
+
+/// What sums and movement make of a pixel with samples.
+Seen see(const GrowingFilm& film, std::size_t pixel);
 
 /// The variance of each pixel's colour, by the same difference: unbiased, of each channel. Of a pixel with
 /// one sample, that of the colours of the 3x3 pixels around. 0 where no sample is, infinite where nothing is

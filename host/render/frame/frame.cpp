@@ -41,9 +41,11 @@ void report_progress(Frame& frame) {
 /// The pixels of a tile, one each.
 template <class Visit>
 void for_each_pixel(const Film& film, const Tile& tile, const Visit& visit) {
-  for (int y = tile.y; y < tile.y + tile.height; ++y)
-    for (int x = tile.x; x < tile.x + tile.width; ++x)
-      visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(x));
+  std::size_t at = 0;
+  for (int y = tile.y; y < tile.y + tile.height; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width);
+    for (int x = tile.x; x < tile.x + tile.width; ++x) visit(at++, row + static_cast<std::size_t>(x));
+  }
 }
 
 /// What a server is asked for.
@@ -57,14 +59,22 @@ TileRequest request_of(Frame& frame, const Tile& tile) {
   request.in_pass = true;
   request.first_sample = pass.first_sample, request.sample_count = pass.sample_count;
   request.surfaces = pass.surfaces;
-  for_each_pixel(frame.film, tile, [&](std::size_t i) {
-    if (!pass.pixels.empty()) request.pixels.push_back(pass.pixels[i]);
-    if (pass.first_sample == 0) return;
-    const std::int64_t p = image_index(film, pass, i);
-    request.sums.push_back(p < 0 ? float4{} : film.film.sums[static_cast<std::size_t>(p)]);
-    request.weights.push_back(p < 0 ? 0 : film.film.weights[static_cast<std::size_t>(p)]);
-    if (!film.film.rays.empty())
-      request.rays.push_back(p < 0 ? 0 : film.film.rays[static_cast<std::size_t>(p)]);
+  const std::size_t pixels = pixel_count(tile);
+  if (!pass.pixels.empty()) {
+    request.pixels.resize(pixels);
+    for_each_pixel(frame.film, tile, [&](std::size_t at, std::size_t i) { request.pixels[at] = pass.pixels[i]; });
+  }
+  if (pass.first_sample == 0) return request;
+  request.sums.resize(pixels);
+  request.weights.resize(pixels);
+  request.rays.resize(film.film.rays.empty() ? 0 : pixels);
+  for_each_pixel(frame.film, tile, [&](std::size_t at, std::size_t i) {
+    const std::int64_t found = image_index(film, pass, i);
+    if (found < 0) return;
+    const auto p = static_cast<std::size_t>(found);
+    request.sums[at] = film.film.sums[p];
+    request.weights[at] = film.film.weights[p];
+    if (!request.rays.empty()) request.rays[at] = film.film.rays[p];
   });
   return request;
 }

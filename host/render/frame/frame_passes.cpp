@@ -33,7 +33,7 @@ std::optional<Pass> following_pass(Frame& frame) {
     const Film& whole = passes.film.film;
     if (passes.coarse_block > 0) return coarse_pass(whole.width, whole.height, passes.coarse_block);
   }
-  return next_pass(passes.film, passes.plan);
+  return next_pass(passes.film, passes.plan, passes.pass);
 }
 
 }  // namespace

@@ -34,12 +34,13 @@ int next_block(int block, double pixel_seconds, std::size_t pixels) {
 }
 
 Pass coarse_pass(int width, int height, int block) {
-  std::vector<u32> middles;
-  for (int y = 0; y < height; y += block)
-    for (int x = 0; x < width; x += block)
-      middles.push_back(
-          static_cast<u32>(std::min(y + block / 2, height - 1) * width + std::min(x + block / 2, width - 1)));
-  return list_pass(std::move(middles), width, 0, 1);
+  // In the order of all_pixels(): the blocks are the pixels of a smaller image.
+  std::vector<u32> middles = all_pixels((width + block - 1) / block, (height + block - 1) / block);
+  const auto middle = [&](u32 at, int size) {
+    return static_cast<u32>(std::min(static_cast<int>(at) * block + block / 2, size - 1));
+  };
+  for (u32& pixel : middles) pixel = middle(pixel & 0xffffu, width) | middle(pixel >> 16, height) << 16;
+  return list_pass(middles, 0, 1);
 }
 
 void CoarsePicture::take(const Pass& pass, const Film& made, int image_width, int image_height, int edge) {

@@ -34,66 +34,69 @@ u32 first_level(const SamplingPlan& plan) {
   return std::min(static_cast<u32>(std::max(1, plan.settings.first_samples)), plan.samples);
 }
 
-/// Marks both of each pair of neighbours that differ.
-void mark_differences(const GrowingFilm& film, float threshold, std::vector<std::uint8_t>& marked) {
-  const auto width = static_cast<std::size_t>(film.film.width), all = film.taken.size();
-  const auto compare = [&](std::size_t a, std::size_t b) {
-    if (b < all && differ(film.film, a, b, threshold)) marked[a] = marked[b] = 1;
+/// Of the indices of pixels, leaves those of the greatest errors for which `more` samples each stay within the
+/// budget, samples a pixel of the frame.
+void keep_budget(const GrowingFilm& film, double budget, u32 more, const std::vector<float>& squares,
+                 std::vector<std::size_t>& kept) {
+  const double spent = std::accumulate(film.taken.begin(), film.taken.end(), 0.0);
+  const double left = budget * static_cast<double>(film.taken.size()) - spent;
+  const auto most = static_cast<std::size_t>(std::max(0.0, left / more));
+  if (kept.size() <= most) return;
+  const auto worse = [&](std::size_t a, std::size_t b) {
+    return squares[a] != squares[b] ? squares[a] > squares[b] : a < b;
   };
-  for (std::size_t p = 0; p < all; ++p) {
-    if (p % width + 1 < width) compare(p, p + 1);
-    compare(p, p + width);
-  }
+  std::ranges::nth_element(kept, kept.begin() + static_cast<std::ptrdiff_t>(most), worse);
+  kept.resize(most);
+  std::ranges::sort(kept);
 }
 
-/// The pixels with `level` samples that need more. Samples go where each lowers the picture's squared error
-/// most: for n samples the threshold is sqrt(n / 2) times as high.
-std::vector<u32> unconverged(const GrowingFilm& film, const SamplingPlan& plan, u32 level,
-                             const std::vector<float>& squares) {
+/// Whether a pixel differs from one beside it, above it or below it.
+bool differs_from_neighbors(const Film& film, u32 pixel, float threshold) {
+  const auto width = static_cast<std::size_t>(film.width), height = static_cast<std::size_t>(film.height);
+  const std::size_t x = pixel & 0xffffu, y = pixel >> 16, p = y * width + x;
+  return (x > 0 && differ(film, p - 1, p, threshold)) || (x + 1 < width && differ(film, p, p + 1, threshold)) ||
+         (y > 0 && differ(film, p - width, p, threshold)) ||
+         (y + 1 < height && differ(film, p, p + width, threshold));
+}
+
+/// Keeps those of the pixels, which have `level` samples, that need more. Samples go where each lowers the
+/// picture's squared error most: for n samples the threshold is sqrt(n / 2) times as high. With a budget
+/// those of the greatest errors, so that the frame's samples stay within it.
+void keep_unconverged(const GrowingFilm& film, const SamplingPlan& plan, u32 level, u32 more,
+                      std::vector<u32>& pixels) {
+  const std::vector<float> squares = expected_squares(film, pixels, level);
   const auto threshold = static_cast<float>(plan.settings.threshold);
   const float most = threshold * threshold * static_cast<float>(level) / 2;
-  std::vector<std::uint8_t> marked(film.taken.size());
-  for (std::size_t p = 0; p < squares.size(); ++p) marked[p] = !(squares[p] <= most);
-  if (level == first_level(plan) && plan.settings.surfaces)
-    mark_differences(film, static_cast<float>(plan.settings.contrast) * threshold, marked);
-  std::vector<u32> indices;
-  for (std::size_t p = 0; p < marked.size(); ++p)
-    if (marked[p] && film.taken[p] == level) indices.push_back(static_cast<u32>(p));
-  return indices;
+  const bool by_surfaces = level == first_level(plan) && plan.settings.surfaces;
+  const float contrast = static_cast<float>(plan.settings.contrast) * threshold;
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    if (squares[i] > most || (by_surfaces && differs_from_neighbors(film.film, pixels[i], contrast)))
+      kept.push_back(i);
+  if (plan.settings.budget > 0) keep_budget(film, plan.settings.budget, more, squares, kept);
+  for (std::size_t i = 0; i < kept.size(); ++i) pixels[i] = pixels[kept[i]];
+  pixels.resize(kept.size());
 }
 
-/// Those of the greatest errors, so that the frame's samples stay within the budget.
-void keep_budget(const GrowingFilm& film, const SamplingPlan& plan, u32 more,
-                 const std::vector<float>& squares, std::vector<u32>& indices) {
-  if (!(plan.settings.budget > 0)) return;
-  const double spent = std::accumulate(film.taken.begin(), film.taken.end(), 0.0);
-  const double left = plan.settings.budget * static_cast<double>(film.taken.size()) - spent;
-  const auto most = static_cast<std::size_t>(std::max(0.0, left / more));
-  if (indices.size() <= most) return;
-  const auto worse = [&](u32 a, u32 b) { return squares[a] != squares[b] ? squares[a] > squares[b] : a < b; };
-  std::ranges::nth_element(indices, indices.begin() + static_cast<std::ptrdiff_t>(most), worse);
-  indices.resize(most);
-}
-
-/// The next doubling of samples; each pixel has `level` of them or has stopped before.
-std::optional<Pass> double_samples(const GrowingFilm& film, const SamplingPlan& plan, u32 level) {
+/// The next doubling of samples; the pixels of the last pass have `level` of them, the others have stopped
+/// before.
+std::optional<Pass> double_samples(const GrowingFilm& film, const SamplingPlan& plan, const Pass& last) {
+  const u32 level = last.first_sample + last.sample_count;
   if (level >= plan.samples) return std::nullopt;
   u32 next = std::min(2 * level, plan.samples);
   const bool adaptive = plan.settings.threshold > 0;
   if (adaptive && level < first_level(plan)) next = std::min(next, first_level(plan));
   if (!adaptive || level < first_level(plan)) return whole_pass(film, level, next - level, false);
-  const std::vector<float> squares = expected_squares(film, level);
-  std::vector<u32> indices = unconverged(film, plan, level, squares);
-  keep_budget(film, plan, next - level, squares, indices);
-  if (indices.empty()) return std::nullopt;
-  return list_pass(std::move(indices), film.film.width, level, next - level);
+  std::vector<u32> pixels = pixels_of(last);
+  keep_unconverged(film, plan, level, next - level, pixels);
+  if (pixels.empty()) return std::nullopt;
+  return list_pass(pixels, level, next - level);
 }
 
-std::optional<Pass> more_samples(const GrowingFilm& film, const SamplingPlan& plan) {
+std::optional<Pass> more_samples(const GrowingFilm& film, const SamplingPlan& plan, const Pass& last) {
   if (film.stage == 0) return whole_pass(film, 0, 1, plan.surfaces || needs_surfaces(plan.settings));
-  const u32 level = *std::ranges::max_element(film.taken);
   if (plan.noise > 0 && mean_error(film) < plan.noise) return std::nullopt;
-  return double_samples(film, plan, level);
+  return double_samples(film, plan, last);
 }
 
 }  // namespace
@@ -111,9 +114,9 @@ double mean_error(const GrowingFilm& film) {
   return std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
 }
 
-std::optional<Pass> next_pass(GrowingFilm& film, const SamplingPlan& plan) {
+std::optional<Pass> next_pass(GrowingFilm& film, const SamplingPlan& plan, const Pass& last) {
   if (plan.settings.subsample) return next_subsampling_pass(film, plan);
-  return more_samples(film, plan);
+  return more_samples(film, plan, last);
 }
 
 }  // namespace sundog

@@ -21,9 +21,9 @@ bool in_passes(const Sampling& settings);
 /// Whether the passes ask for what the camera sees first.
 bool needs_surfaces(const Sampling& settings);
 
-/// The pass after those that `film` holds, none when the frame is finished; counts film.step. Its pixels are
-/// those of a whole image or of a list.
-std::optional<Pass> next_pass(GrowingFilm& film, const SamplingPlan& plan);
+/// The pass after those that `film` holds, of which `last` is the last if there are any; none when the frame
+/// is finished. Counts film.step. Its pixels are those of a whole image or of a list.
+std::optional<Pass> next_pass(GrowingFilm& film, const SamplingPlan& plan, const Pass& last = {});
 
 /// The mean of the pixels' estimated errors (pixel_errors()); infinite while nothing is known.
 double mean_error(const GrowingFilm& film);

@@ -7,9 +7,7 @@
 namespace sundog {
 
 Color color_at(const Film& film, std::size_t pixel) {
-  const float weight = film.weights[pixel] > 0 ? film.weights[pixel] : 1;
-  const float4& sum = film.sums[pixel];
-  return {sum.x / weight, sum.y / weight, sum.z / weight};
+  return mean_of(film.sums[pixel], film.weights[pixel]);
 }
 
 float seen_light(const Color& color) {

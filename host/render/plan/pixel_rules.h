@@ -4,10 +4,6 @@
 
 namespace sundog {
 
-struct Color {
-  float r = 0, g = 0, b = 0;
-};
-
 /// The mean of a pixel's samples.
 Color color_at(const Film& film, std::size_t pixel);
 

@@ -64,14 +64,20 @@ struct Grid {
   }
 };
 
-/// The pixels, no corners among them, that `wanted` is true of.
+/// The pixels that `wanted` is true of, in the order of a list.
+template <class Wanted>
+std::vector<u32> pick_any(const Grid& grid, const Wanted& wanted) {
+  std::vector<u32> pixels = all_pixels(grid.width, grid.height);
+  std::erase_if(pixels, [&](u32 pixel) {
+    return !wanted(static_cast<int>(pixel & 0xffffu), static_cast<int>(pixel >> 16));
+  });
+  return pixels;
+}
+
+/// The same of the pixels that are no corners.
 template <class Wanted>
 std::vector<u32> pick(const Grid& grid, const Wanted& wanted) {
-  std::vector<u32> indices;
-  for (int y = 0; y < grid.height; ++y)
-    for (int x = 0; x < grid.width; ++x)
-      if (!grid.is_corner(x, y) && wanted(x, y)) indices.push_back(static_cast<u32>(grid.at(x, y)));
-  return indices;
+  return pick_any(grid, [&](int x, int y) { return !grid.is_corner(x, y) && wanted(x, y); });
 }
 
 /// Whether a pixel's own surface is one with all its corners'.
@@ -125,11 +131,7 @@ void interpolate(GrowingFilm& film, const Grid& grid) {
 
 Pass corner_pass(const GrowingFilm& film, u32 samples) {
   const Grid grid{film, 0};
-  std::vector<u32> corners;
-  for (int y = 0; y < grid.height; ++y)
-    for (int x = 0; x < grid.width; ++x)
-      if (grid.is_corner(x, y)) corners.push_back(static_cast<u32>(grid.at(x, y)));
-  Pass pass = list_pass(std::move(corners), grid.width, 0, samples);
+  Pass pass = list_pass(pick_any(grid, [&](int x, int y) { return grid.is_corner(x, y); }), 0, samples);
   pass.surfaces = true;
   return pass;
 }
@@ -139,7 +141,6 @@ Pass corner_pass(const GrowingFilm& film, u32 samples) {
 void interpolate_rest(GrowingFilm& film) { interpolate(film, Grid{film, 0}); }
 
 std::optional<Pass> next_subsampling_pass(GrowingFilm& film, const SamplingPlan& plan) {
-  const int width = film.film.width;
   const Grid grid{film, static_cast<float>(plan.settings.subsample_contrast)};
   if (film.step == 0) {
     ++film.step;
@@ -148,25 +149,25 @@ std::optional<Pass> next_subsampling_pass(GrowingFilm& film, const SamplingPlan&
   const auto unseen = [&](std::size_t p) { return film.states[p] == PixelState::empty; };
   if (film.step == 1) {
     ++film.step;
-    std::vector<u32> look = pick(grid, [&](int x, int y) {
+    const std::vector<u32> look = pick(grid, [&](int x, int y) {
       return unseen(grid.at(x, y)) && (plan.surfaces || grid.between_alike(x, y));
     });
     if (!look.empty()) {
-      Pass pass = list_pass(std::move(look), width, 0, 0);
+      Pass pass = list_pass(look, 0, 0);
       pass.surfaces = true;
       return pass;
     }
   }
   if (film.step == 2) {
     ++film.step;
-    std::vector<u32> other = pick(grid, [&](int x, int y) {
+    const std::vector<u32> other = pick(grid, [&](int x, int y) {
       return !grid.between_alike(x, y) || (!unseen(grid.at(x, y)) && !fits_corners(grid, x, y));
     });
-    if (!other.empty()) return list_pass(std::move(other), width, 0, plan.samples);
+    if (!other.empty()) return list_pass(other, 0, plan.samples);
   }
   ++film.step;
-  std::vector<u32> more = near_surprises(grid);
-  if (!more.empty()) return list_pass(std::move(more), width, 0, plan.samples);
+  const std::vector<u32> more = near_surprises(grid);
+  if (!more.empty()) return list_pass(more, 0, plan.samples);
   interpolate(film, grid);
   return std::nullopt;
 }

@@ -156,7 +156,7 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   result.time_limited = frame.limited && !result.complete;
   keep_checkpoint(frame, result);
   if (frame.passes) {
-    GrowingFilm film = film_so_far(frame);
+    GrowingFilm film = result.complete ? std::move(frame.passes->film) : film_so_far(frame);
     if (std::ranges::count(frame.options.aovs, "variance") > 0)
       result.aovs["variance"] = develop_variance(film);
     result.film = std::move(film.film);

@@ -1,0 +1,68 @@
+// Passes over some of the image's pixels.
+#include <algorithm>
+#include <array>
+
+#include "render/film/growing_film.h"
+
+namespace sundog {
+namespace {
+
+// Pixels of a row of a pass over a list, in blocks of 4x4.
+constexpr std::size_t list_width = 256, block = 4, pixels_of_block = block * block;
+
+// The image is gone through in squares of so many pixels a side.
+constexpr std::size_t side = 16;
+
+/// The places of a square along a Z-curve (Morton 1966), x | y << 16: neighbours in the order are neighbours
+/// in the image.
+constexpr std::array<u32, side * side> z_curve = [] {
+  std::array<u32, side * side> places{};
+  for (u32 i = 0; i < side * side; ++i)
+    for (u32 bit = 0; bit < 4; ++bit)
+      places[i] |= (i >> (2 * bit) & 1u) << bit | (i >> (2 * bit + 1) & 1u) << (16 + bit);
+  return places;
+}();
+
+/// Where the i-th pixel of a list stands in its pass.
+std::size_t place_in_list(std::size_t i, std::size_t pass_width) {
+  const std::size_t columns = pass_width / block, at = i / pixels_of_block, in = i % pixels_of_block;
+  return (at / columns * block + in / block) * pass_width + at % columns * block + in % block;
+}
+
+}  // namespace
+
+std::vector<u32> all_pixels(int image_width, int image_height) {
+  const auto width = static_cast<u32>(image_width), height = static_cast<u32>(image_height);
+  std::vector<u32> pixels;
+  pixels.reserve(std::size_t{width} * height);
+  for (u32 top = 0; top < height; top += side)
+    for (u32 left = 0; left < width; left += side)
+      for (const u32 place : z_curve) {
+        const u32 x = left + (place & 0xffffu), y = top + (place >> 16);
+        if (x < width && y < height) pixels.push_back(x | y << 16);
+      }
+  return pixels;
+}
+
+Pass list_pass(const std::vector<u32>& pixels, u32 first_sample, u32 sample_count) {
+  const std::size_t blocks = (pixels.size() + pixels_of_block - 1) / pixels_of_block;
+  const std::size_t columns = std::clamp<std::size_t>(blocks, 1, list_width / block);
+  const std::size_t width = columns * block, height = (blocks + columns - 1) / columns * block;
+  Pass pass;
+  pass.width = static_cast<int>(width), pass.height = static_cast<int>(height);
+  pass.first_sample = first_sample, pass.sample_count = sample_count;
+  pass.pixels.assign(width * height, NO_PIXEL);
+  for (std::size_t i = 0; i < pixels.size(); ++i) pass.pixels[place_in_list(i, width)] = pixels[i];
+  return pass;
+}
+
+std::vector<u32> pixels_of(const Pass& pass) {
+  if (pass.pixels.empty()) return all_pixels(pass.width, pass.height);
+  std::vector<u32> pixels(pass.pixels.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    pixels[i] = pass.pixels[place_in_list(i, static_cast<std::size_t>(pass.width))];
+  while (!pixels.empty() && pixels.back() == NO_PIXEL) pixels.pop_back();
+  return pixels;
+}
+
+}  // namespace sundog
