@@ -196,8 +196,7 @@ class Device {
   cl::Buffer allocate(std::size_t bytes, const void* data);
   void write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset,
                    cl_bool waits);
-  void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset,
-                  cl_bool waits);
+  void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset, cl_bool waits);
   cl::Event enqueue(cl::Kernel& kernel, const std::string& name, ProgramRecord* program,
                     const LaunchSize& size);
 

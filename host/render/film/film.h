@@ -32,7 +32,6 @@ inline Color mean_of(const float4& sum, float weight) {
   return {sum.x * share, sum.y * share, sum.z * share};
 }
 
-
 /// width * height pixels, row 0 at the top. `aovs` holds `vectors` float4 a pixel when the frame has AOVs,
 /// else nothing.
 struct Film {

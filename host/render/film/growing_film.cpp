@@ -44,7 +44,7 @@ void add_samples(GrowingFilm& film, const Pass& pass, const Film& made, std::siz
     const float earlier = squares_of_doubling * film.moved[p];
     film.moved[p] = std::isfinite(earlier) ? (square + earlier) / 2 : square;
   }
-  film.earlier[p] = {before.x, before.y, before.z, weight_before};
+  if (weight_before != 0) film.earlier[p] = {before.x, before.y, before.z, weight_before};
   film.seen[p] = seen_of(color, film.moved[p], taken);
   whole.sums[p] = sum;
   whole.weights[p] = weight;
@@ -62,6 +62,27 @@ void add_pixel(GrowingFilm& film, const Pass& pass, const Film& made, std::size_
                 whole.aovs.begin() + static_cast<std::ptrdiff_t>(whole.vectors * p));
   if (film.states[p] == PixelState::empty) film.states[p] = PixelState::looked_at;
   if (pass.sample_count > 0) add_samples(film, pass, made, i, p);
+}
+
+/// Whether a film without samples gets some for each of its pixels.
+bool begins(const GrowingFilm& film, const Pass& pass) {
+  return film.stage == 0 && pass.pixels.empty() && pass.sample_count > 0;
+}
+
+/// The arrays of a complete pass become those of the film.
+void begin(GrowingFilm& film, const Pass& pass, Film made) {
+  const u32 taken = pass.first_sample + pass.sample_count;
+  Film& whole = film.film;
+  whole.sums = std::move(made.sums), whole.weights = std::move(made.weights);
+  whole.done = std::move(made.done);
+  if (!whole.rays.empty()) whole.rays = std::move(made.rays);
+  if (pass.surfaces && !whole.aovs.empty()) whole.aovs = std::move(made.aovs);
+  if (pass.surfaces) film.surfaces_seen += whole.done.size();
+  film.taken.assign(film.taken.size(), taken);
+  film.states.assign(film.states.size(), PixelState::sampled);
+  for (std::size_t p = 0; p < film.seen.size(); ++p)
+    film.seen[p] = seen_of(mean_of(whole.sums[p], whole.weights[p]), film.moved[p], taken);
+  ++film.stage;
 }
 
 /// Of a pixel with one sample, which tells nothing of its error: how much the colours of the 3x3 pixels
@@ -125,13 +146,15 @@ Seen see(const GrowingFilm& film, std::size_t pixel) {
                  film.taken[pixel]);
 }
 
-void add_pass(GrowingFilm& film, const Pass& pass, const Film& made, bool complete) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, made.done.size(), pixels_at_once), [&](const auto& pixels) {
-    for (std::size_t i = pixels.begin(); i != pixels.end(); ++i) {
-      const std::int64_t found = made.done[i] ? image_index(film, pass, i) : -1;
-      if (found >= 0) add_pixel(film, pass, made, i, static_cast<std::size_t>(found));
-    }
-  });
+void add_pass(GrowingFilm& film, const Pass& pass, Film made, bool complete) {
+  if (complete && begins(film, pass)) return begin(film, pass, std::move(made));
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, made.done.size(), pixels_at_once),
+                    [&](const auto& pixels) {
+                      for (std::size_t i = pixels.begin(); i != pixels.end(); ++i) {
+                        const std::int64_t found = made.done[i] ? image_index(film, pass, i) : -1;
+                        if (found >= 0) add_pixel(film, pass, made, i, static_cast<std::size_t>(found));
+                      }
+                    });
   if (pass.surfaces)
     for (std::size_t i = 0; i < made.done.size(); ++i)
       film.surfaces_seen += made.done[i] && image_index(film, pass, i) >= 0;

@@ -22,8 +22,8 @@ struct Pass {
 /// The pixels of an image, x | y << 16, in an order in which neighbours stay together.
 std::vector<u32> all_pixels(int image_width, int image_height);
 
-/// A pass over some of all_pixels(), in their order: each run of 16 is a square of 4x4 in the pass, the pixels
-/// that a work-item takes together.
+/// A pass over some of all_pixels(), in their order: each run of 16 is a square of 4x4 in the pass, the
+/// pixels that a work-item takes together.
 Pass list_pass(const std::vector<u32>& pixels, u32 first_sample, u32 sample_count);
 
 /// The pixels of a pass in that order.
@@ -70,7 +70,7 @@ std::int64_t image_index(const GrowingFilm& film, const Pass& pass, std::size_t 
 
 /// Puts the pixels of a pass that are done in their places. `complete`: all are, and the next pass may be
 /// planned; else the film is good to be looked at only.
-void add_pass(GrowingFilm& film, const Pass& pass, const Film& made, bool complete);
+void add_pass(GrowingFilm& film, const Pass& pass, Film made, bool complete);
 
 /// The estimated standard error of each pixel's colour: by how far a pass that doubled the samples moved it
 /// (Dammertz and others 2010). Summed over the channels and divided by the fourth root of their sum, which

@@ -62,7 +62,8 @@ TileRequest request_of(Frame& frame, const Tile& tile) {
   const std::size_t pixels = pixel_count(tile);
   if (!pass.pixels.empty()) {
     request.pixels.resize(pixels);
-    for_each_pixel(frame.film, tile, [&](std::size_t at, std::size_t i) { request.pixels[at] = pass.pixels[i]; });
+    for_each_pixel(frame.film, tile,
+                   [&](std::size_t at, std::size_t i) { request.pixels[at] = pass.pixels[i]; });
   }
   if (pass.first_sample == 0) return request;
   request.sums.resize(pixels);

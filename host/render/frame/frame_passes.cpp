@@ -27,7 +27,7 @@ std::optional<Pass> following_pass(Frame& frame) {
   if (passes.coarse_block == 0) {
     if (passes.film.stage == 0)
       passes.pixel_seconds = passes.since_pass.seconds() / static_cast<double>(pixels_of(frame));
-    add_pass(passes.film, passes.pass, frame.film, true);
+    add_pass(passes.film, passes.pass, std::move(frame.film), true);
   } else {
     passes.coarse_block = take_coarse(frame);
     const Film& whole = passes.film.film;

@@ -43,12 +43,13 @@ Around<Value> sum_3x3(const std::vector<Value>& values, std::size_t width, std::
 template <class Value, class Visit>
 void for_each_3x3(const std::vector<Value>& values, std::size_t width, const std::vector<u32>& pixels,
                   const Visit& visit) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), pixels_at_once), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const std::size_t x = pixels[i] & 0xffffu, y = pixels[i] >> 16;
-      visit(i, y * width + x, sum_3x3(values, width, x, y));
-    }
-  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), pixels_at_once),
+                    [&](const auto& range) {
+                      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                        const std::size_t x = pixels[i] & 0xffffu, y = pixels[i] >> 16;
+                        visit(i, y * width + x, sum_3x3(values, width, x, y));
+                      }
+                    });
 }
 
 /// Calls visit(p, around) for all pixels, row by row, which takes a third of the time.
@@ -79,8 +80,8 @@ void for_all_3x3(const std::vector<Value>& values, std::size_t width, const Visi
 /// How much the colours around a pixel vary: their variance in the units of squared pixel_errors().
 float color_variance(const Seen& pixel, const Around<Seen>& around) {
   const Seen& sum = around.sum;
-  const float of_means = (sum.red * sum.red + sum.green * sum.green + sum.blue * sum.blue) /
-                         (around.count * around.count);
+  const float of_means =
+      (sum.red * sum.red + sum.green * sum.green + sum.blue * sum.blue) / (around.count * around.count);
   constexpr float channels = 3;  // pixel_errors() adds up the channels' errors before they are squared
   return channels * std::max(0.0f, sum.squares / around.count - of_means) /
          std::sqrt(seen_light({pixel.red, pixel.green, pixel.blue}));
@@ -97,8 +98,9 @@ std::vector<float> expected_squares(const GrowingFilm& film, const std::vector<u
   std::vector<float> expected(pixels.size());
   if (level == 1) {
     std::vector<float> variances(seen.size()), squares(seen.size());
-    for_all_3x3(seen, width,
-                [&](std::size_t p, const Around<Seen>& around) { variances[p] = color_variance(seen[p], around); });
+    for_all_3x3(seen, width, [&](std::size_t p, const Around<Seen>& around) {
+      variances[p] = color_variance(seen[p], around);
+    });
     for_all_3x3(variances, width, [&](std::size_t p, const Around<float>& around) {
       squares[p] = known(variation_of_one * variances[p] + wider_of_one * around.sum / around.count);
     });

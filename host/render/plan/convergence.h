@@ -6,10 +6,10 @@
 
 namespace sundog {
 
-/// The expected squared errors of `pixels` (x | y << 16), those with `level` samples, which are one or a power
-/// of two. In the units of the square of pixel_errors(). Three things speak of it: how far doublings moved
-/// the pixel, how far they moved its neighbours (Dammertz and others 2010), and how much colours vary about
-/// it, since a pixel whose few samples fell on one side of an edge does not know of the edge.
+/// The expected squared errors of `pixels` (x | y << 16), those with `level` samples, which are one or a
+/// power of two. In the units of the square of pixel_errors(). Three things speak of it: how far doublings
+/// moved the pixel, how far they moved its neighbours (Dammertz and others 2010), and how much colours vary
+/// about it, since a pixel whose few samples fell on one side of an edge does not know of the edge.
 std::vector<float> expected_squares(const GrowingFilm& film, const std::vector<u32>& pixels, u32 level);
 
 }  // namespace sundog

@@ -34,8 +34,8 @@ u32 first_level(const SamplingPlan& plan) {
   return std::min(static_cast<u32>(std::max(1, plan.settings.first_samples)), plan.samples);
 }
 
-/// Of the indices of pixels, leaves those of the greatest errors for which `more` samples each stay within the
-/// budget, samples a pixel of the frame.
+/// Of the indices of pixels, leaves those of the greatest errors for which `more` samples each stay within
+/// the budget, samples a pixel of the frame.
 void keep_budget(const GrowingFilm& film, double budget, u32 more, const std::vector<float>& squares,
                  std::vector<std::size_t>& kept) {
   const double spent = std::accumulate(film.taken.begin(), film.taken.end(), 0.0);
@@ -54,7 +54,8 @@ void keep_budget(const GrowingFilm& film, double budget, u32 more, const std::ve
 bool differs_from_neighbors(const Film& film, u32 pixel, float threshold) {
   const auto width = static_cast<std::size_t>(film.width), height = static_cast<std::size_t>(film.height);
   const std::size_t x = pixel & 0xffffu, y = pixel >> 16, p = y * width + x;
-  return (x > 0 && differ(film, p - 1, p, threshold)) || (x + 1 < width && differ(film, p, p + 1, threshold)) ||
+  return (x > 0 && differ(film, p - 1, p, threshold)) ||
+         (x + 1 < width && differ(film, p, p + 1, threshold)) ||
          (y > 0 && differ(film, p - width, p, threshold)) ||
          (y + 1 < height && differ(film, p, p + width, threshold));
 }

@@ -6,9 +6,7 @@
 
 namespace sundog {
 
-Color color_at(const Film& film, std::size_t pixel) {
-  return mean_of(film.sums[pixel], film.weights[pixel]);
-}
+Color color_at(const Film& film, std::size_t pixel) { return mean_of(film.sums[pixel], film.weights[pixel]); }
 
 float seen_light(const Color& color) {
   constexpr float darkest = 0.01f;
