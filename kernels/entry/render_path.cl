@@ -41,6 +41,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
                               __global u32* restrict ray_counts) {
   u32 counts[ALL_COUNTS];
   for (u32 i = 0; i < ALL_COUNTS; ++i) counts[i] = 0;
+  begin_film(launch, item, film, weights, ray_counts);
   LaneWork work;
   for (u32 lane = 0; lane < BATCH; ++lane) work.next[lane] = launch->first_sample;
   const LaneSamples nowhere = {NO_LANES, NO_LANES, NO_LANES};

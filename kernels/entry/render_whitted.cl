@@ -26,6 +26,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
                               __global u32* restrict ray_counts) {
   u32 counts[ALL_COUNTS];
   for (u32 i = 0; i < ALL_COUNTS; ++i) counts[i] = 0;
+  begin_film(launch, item, film, weights, ray_counts);
   RayStack stack;
   for (u32 sample = launch->first_sample; sample < launch->first_sample + launch->sample_count; ++sample) {
     float4 radiance[BATCH];
@@ -52,7 +53,8 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
 // [first_item, last_item) of the rectangle (x0, y0, width, height), or of the image's pixels that it stands
 // for (`pixels`, where the launch is of a list), to film (rgb and coverage) and their
 // number to weights (a sample that is not finite counts for nothing, one in a filter's lobe below zero -1);
-// adds to counters, and where they are asked for the rays of each pixel to ray_counts.
+// adds to counters, and where they are asked for the rays of pixels to ray_counts (lib/path/ray_counts.cl).
+// Where first_sample is 0, film, weights and ray_counts may hold anything before.
 __kernel void render_whitted(SCENE_PARAMETERS, __global const u32* restrict camera_media,
                              __global const u32* restrict pixels, __global float4* restrict film,
                              __global float* restrict weights, __global u32* restrict counters,

@@ -15,8 +15,8 @@ typedef struct Launch {
   u32 row_items;  // work-items in a row of the launch
   u32 blocks;     // 1: items of one pixel go through blocks of 8x4; 0: row by row
   u32 first_sample, sample_count;
-  u32 listed;  // 1: each pixel of the rectangle stands for one of the image, by a list
-  u32 pad;
+  u32 listed;       // 1: each pixel of the rectangle stands for one of the image, by a list
+  u32 counts_rays;  // 1: ray_counts has room for the pixels of the rectangle
 } Launch;
 SUNDOG_SHARED_SIZE(Launch, 48)
 

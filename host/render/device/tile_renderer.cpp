@@ -127,6 +127,7 @@ void TileRenderer::launch_samples(const TileRequest& request, const StopFlags& f
     Launch launch = next->launch;
     launch.first_sample += first;
     launch.listed = !request.pixels.empty();
+    launch.counts_rays = kernels_.counts_rays || request.costs;
     sizer_.note_time(launch_integrator(launch, *next));
   }
 }
@@ -226,26 +227,30 @@ void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   result.weights = request.weights;
   result.sums.resize(pixels);
   result.weights.resize(pixels);
-  device_.begin_write(film_, std::span<const float4>(result.sums));
-  device_.begin_write(weights_, std::span<const float>(result.weights));
-  const std::size_t counted = kernels_.counts_rays ? pixels : 0;
+  const std::size_t counted = kernels_.counts_rays || request.costs ? pixels : 0;
   if (rays_.count < std::max<std::size_t>(1, counted))
     rays_ = device_.make<u32>(std::max<std::size_t>(1, counted));
   result.rays = request.rays;
   result.rays.resize(counted);
-  if (counted > 0) device_.begin_write(rays_, std::span<const u32>(result.rays));
-  constexpr std::array<u32, COUNTERS> none{};
+  if (request.first_sample > 0) {  // the kernels begin the others at 0
+    device_.begin_write(film_, std::span<const float4>(result.sums));
+    device_.begin_write(weights_, std::span<const float>(result.weights));
+    if (counted > 0) device_.begin_write(rays_, std::span<const u32>(result.rays));
+  }
+  static constexpr std::array<u32, COUNTERS> none{};
   if (counters_.count == 0) counters_ = device_.make<u32>(COUNTERS);
-  device_.write(counters_, std::span<const u32>(none));
+  device_.begin_write(counters_, std::span<const u32>(none));
 }
 
 // All arrays with one wait, which costs about as much as a small array.
-void TileRenderer::read_result(TileResult& result) {
+void TileRenderer::read_result(unsigned samples, TileResult& result) {
   const Stopwatch reading;
   std::array<u32, COUNTERS> counts{};
-  device_.begin_read(film_, std::span<float4>(result.sums));
-  device_.begin_read(weights_, std::span<float>(result.weights));
-  if (!result.rays.empty()) device_.begin_read(rays_, std::span<u32>(result.rays));
+  if (samples > 0) {
+    device_.begin_read(film_, std::span<float4>(result.sums));
+    device_.begin_read(weights_, std::span<float>(result.weights));
+    if (!result.rays.empty()) device_.begin_read(rays_, std::span<u32>(result.rays));
+  }
   device_.read(counters_, std::span<u32>(counts));
   std::copy(counts.begin(), counts.end(), result.counts.begin());
   readback_seconds_ += reading.seconds();
@@ -264,7 +269,7 @@ TileResult TileRenderer::try_render(const TileRequest& request, const StopFlags&
     result.tile.height = static_cast<int>(sizer_.finished_rows());
   }
   if (wants_aovs(request)) launch_aovs(request, result.tile, result.aovs);
-  read_result(result);
+  read_result(samples, result);
   return result;
 }
 

@@ -57,7 +57,7 @@ class TileRenderer {
  private:
   TileResult try_render(const TileRequest& request, const StopFlags& flags);
   void write_start(const TileRequest& request, TileResult& result);
-  void read_result(TileResult& result);
+  void read_result(unsigned samples, TileResult& result);
   void launch_samples(const TileRequest& request, const StopFlags& flags);
   double launch_integrator(const Launch& launch, const SizedLaunch& sized);
   void launch_aovs(const TileRequest& request, const Tile& tile, std::vector<float4>& aovs);
@@ -85,7 +85,7 @@ class TileRenderer {
   Buffer<float4> film_;
   Buffer<float> weights_;
   Buffer<float4> aovs_;
-  Buffer<u32> rays_;  // of each pixel, where they are counted; else of one
+  Buffer<u32> rays_;  // of each pixel, where they are asked for; else of one
   Buffer<u32> counters_;
   double readback_seconds_ = 0;
 };

@@ -12,13 +12,13 @@
 namespace sundog {
 namespace {
 
-constexpr char growing_magic[8] = {'S', 'U', 'N', 'D', 'O', 'G', 'P', '2'};
+constexpr char growing_magic[8] = {'S', 'U', 'N', 'D', 'O', 'G', 'P', '3'};
 
 struct GrowingHeader {
   char magic[8];
   std::uint64_t key;
   std::int32_t width, height, pass_width, pass_height;
-  std::uint32_t first_sample, sample_count, surfaces, has_aovs;
+  std::uint32_t first_sample, sample_count, surfaces, costs, has_aovs, has_block_rays;
   std::uint32_t stage, step;
   std::uint64_t surfaces_seen;
 };
@@ -28,7 +28,7 @@ template <class Growing, class Pixels, class Made, class Visit>
 void for_each_array(Growing& film, Pixels& pixels, Made& made, const Visit& visit) {
   visit(film.film.sums), visit(film.film.weights), visit(film.film.aovs), visit(film.film.rays),
       visit(film.film.done);
-  visit(film.taken), visit(film.states), visit(film.earlier), visit(film.moved);
+  visit(film.taken), visit(film.states), visit(film.earlier), visit(film.moved), visit(film.block_rays);
   visit(pixels);
   visit(made.sums), visit(made.weights), visit(made.aovs), visit(made.rays), visit(made.done);
 }
@@ -43,7 +43,8 @@ void write_growing_checkpoint(const std::filesystem::path& path, const GrowingFi
   header.width = film.film.width, header.height = film.film.height;
   header.pass_width = pass.width, header.pass_height = pass.height;
   header.first_sample = pass.first_sample, header.sample_count = pass.sample_count;
-  header.surfaces = pass.surfaces;
+  header.surfaces = pass.surfaces, header.costs = pass.costs;
+  header.has_block_rays = !film.block_rays.empty();
   header.has_aovs = !made.aovs.empty();
   header.stage = film.stage, header.step = film.step;
   header.surfaces_seen = film.surfaces_seen;
@@ -78,10 +79,11 @@ void read_growing_checkpoint(const std::filesystem::path& path, GrowingFilm& fil
   if (!is_frame_size(header.pass_width, header.pass_height)) throw damaged;
   pass.width = header.pass_width, pass.height = header.pass_height;
   pass.first_sample = header.first_sample, pass.sample_count = header.sample_count;
-  pass.surfaces = header.surfaces != 0;
+  pass.surfaces = header.surfaces != 0, pass.costs = header.costs != 0;
   made = film_of_pass(film, pass, header.has_aovs != 0);
   film.stage = header.stage, film.step = header.step;
   film.surfaces_seen = header.surfaces_seen;
+  film.block_rays.resize(header.has_block_rays ? cost_blocks(header.width, header.height) : 0);
   std::size_t at = sizeof header;
   const auto take = [&](auto& array) {
     std::uint64_t count = 0;

@@ -64,6 +64,19 @@ void add_pixel(GrowingFilm& film, const Pass& pass, const Film& made, std::size_
   if (pass.sample_count > 0) add_samples(film, pass, made, i, p);
 }
 
+/// The sums of the blocks of cost_block pixels a side.
+std::vector<u32> add_up_blocks(const std::vector<u32>& rays, int width, int height) {
+  const int columns = (width + cost_block - 1) / cost_block;
+  std::vector<u32> sums(cost_blocks(width, height));
+  const u32* pixel = rays.data();
+  for (int y = 0; y < height; ++y) {
+    u32* sum = &sums[static_cast<std::size_t>(y / cost_block * columns)];
+    for (int x = 0; x < width; x += cost_block, ++sum)
+      for (const u32* end = pixel + std::min(cost_block, width - x); pixel < end; ++pixel) *sum += *pixel;
+  }
+  return sums;
+}
+
 /// Whether a film without samples gets some for each of its pixels.
 bool begins(const GrowingFilm& film, const Pass& pass) {
   return film.stage == 0 && pass.pixels.empty() && pass.sample_count > 0;
@@ -75,6 +88,7 @@ void begin(GrowingFilm& film, const Pass& pass, Film made) {
   Film& whole = film.film;
   whole.sums = std::move(made.sums), whole.weights = std::move(made.weights);
   whole.done = std::move(made.done);
+  if (pass.costs) film.block_rays = add_up_blocks(made.rays, whole.width, whole.height);
   if (!whole.rays.empty()) whole.rays = std::move(made.rays);
   if (pass.surfaces && !whole.aovs.empty()) whole.aovs = std::move(made.aovs);
   if (pass.surfaces) film.surfaces_seen += whole.done.size();
@@ -119,7 +133,7 @@ GrowingFilm::GrowingFilm(int width, int height, bool with_aovs, std::size_t vect
 
 Film film_of_pass(const GrowingFilm& film, const Pass& pass, bool surfaces) {
   Film made(pass.width, pass.height, surfaces, film.film.vectors);
-  if (!film.film.rays.empty()) made.rays.resize(made.done.size());
+  if (!film.film.rays.empty() || pass.costs) made.rays.resize(made.done.size());
   return made;
 }
 

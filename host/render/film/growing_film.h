@@ -10,13 +10,14 @@
 
 namespace sundog {
 
-/// One pass: samples [first_sample, first_sample + sample_count) of its pixels, and with `surfaces` what the
-/// camera sees first there. It is rendered as a film of its own, of width x height pixels.
+/// One pass: samples [first_sample, first_sample + sample_count) of its pixels, with `surfaces` what the
+/// camera sees first there, with `costs` the rays that blocks of pixels take. It is rendered as a film of its
+/// own, of width x height pixels.
 struct Pass {
   int width = 0, height = 0;
   std::vector<u32> pixels;  // of the image, x | y << 16, or NO_PIXEL; empty: the image's own
   u32 first_sample = 0, sample_count = 0;
-  bool surfaces = false;
+  bool surfaces = false, costs = false;
 };
 
 /// The pixels of an image, x | y << 16, in an order in which neighbours stay together.
@@ -41,6 +42,14 @@ struct Seen {
   }
 };
 
+/// The edge of the blocks of pixels whose rays a pass with `costs` counts: no device takes pixels of two of
+/// them together.
+constexpr int cost_block = 4;
+inline std::size_t cost_blocks(int width, int height) {
+  const auto along = [](int size) { return static_cast<std::size_t>((size + cost_block - 1) / cost_block); };
+  return along(width) * along(height);
+}
+
 /// Pixels that a thread takes at once: below, waking another costs more than it saves.
 constexpr std::size_t pixels_at_once = 1 << 17;
 
@@ -53,7 +62,8 @@ struct GrowingFilm {
   std::vector<PixelState> states;   // of each pixel
   std::vector<float4> earlier;      // the sums before a pixel's last pass; w = weight
   std::vector<float> moved;         // squares of how far doublings moved it, the last for half
-  std::vector<Seen> seen;           // follows from the others
+  std::vector<Seen> seen;           // follows from sums, weights, taken and moved
+  std::vector<u32> block_rays;      // of each block of 4x4 pixels in a pass with `costs`; empty: not counted
   u32 stage = 0;                    // passes that are complete
   u32 step = 0;                     // of the planner
   std::uint64_t surfaces_seen = 0;  // pixels looked at by a ray of their own, for the surface alone

@@ -58,7 +58,7 @@ TileRequest request_of(Frame& frame, const Tile& tile) {
   const GrowingFilm& film = frame.passes->film;
   request.in_pass = true;
   request.first_sample = pass.first_sample, request.sample_count = pass.sample_count;
-  request.surfaces = pass.surfaces;
+  request.surfaces = pass.surfaces, request.costs = pass.costs;
   const std::size_t pixels = pixel_count(tile);
   if (!pass.pixels.empty()) {
     request.pixels.resize(pixels);

@@ -21,6 +21,7 @@ struct TileRequest {
   std::vector<u32> pixels;                 // each pixel's of the image (Pass::pixels); empty: its own
   u32 first_sample = 0, sample_count = 0;  // samples to add to what follows
   bool surfaces = false;                   // AOVs
+  bool costs = false;                      // rays, at least of each work-item's pixels together
   std::vector<float4> sums;                // of each pixel's earlier samples; empty: none
   std::vector<float> weights;
   std::vector<u32> rays;  // of each pixel so far, where they are counted
@@ -33,7 +34,7 @@ struct TileResult {
   std::vector<float4> sums;
   std::vector<float> weights;
   std::vector<float4> aovs;
-  std::vector<u32> rays;  // of each pixel, where they are counted
+  std::vector<u32> rays;  // of each pixel where they are counted, or with `costs` of groups at one of theirs
   RayCounts counts{};
 };
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "render/plan/pixel_rules.h"
 
@@ -115,6 +116,26 @@ std::vector<float> expected_squares(const GrowingFilm& film, const std::vector<u
     expected[i] = known(own * film.moved[p] + shrunk * others);
   });
   return expected;
+}
+
+void divide_by_costs(const GrowingFilm& film, const std::vector<u32>& pixels, std::vector<float>& squares) {
+  if (film.block_rays.empty()) return;
+  const auto width = static_cast<u32>(film.film.width), height = static_cast<u32>(film.film.height);
+  constexpr u32 edge = cost_block;
+  const u32 columns = (width + edge - 1) / edge;
+  const double rays = std::accumulate(film.block_rays.begin(), film.block_rays.end(), 0.0);
+  const auto mean = static_cast<float>(std::max(1.0, rays) / (static_cast<double>(width) * height));
+  std::vector<float> costs(film.block_rays.size());
+  for (u32 i = 0; i < costs.size(); ++i) {
+    const u32 across = std::min(edge, width - i % columns * edge);
+    const u32 down = std::min(edge, height - i / columns * edge);
+    costs[i] =
+        static_cast<float>(std::max(1u, film.block_rays[i])) / (static_cast<float>(across * down) * mean);
+  }
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const u32 x = pixels[i] & 0xffffu, y = pixels[i] >> 16;
+    squares[i] /= costs[y / edge * columns + x / edge];
+  }
 }
 
 }  // namespace sundog

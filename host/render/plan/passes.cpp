@@ -65,7 +65,8 @@ bool differs_from_neighbors(const Film& film, u32 pixel, float threshold) {
 /// those of the greatest errors, so that the frame's samples stay within it.
 void keep_unconverged(const GrowingFilm& film, const SamplingPlan& plan, u32 level, u32 more,
                       std::vector<u32>& pixels) {
-  const std::vector<float> squares = expected_squares(film, pixels, level);
+  std::vector<float> squares = expected_squares(film, pixels, level);
+  divide_by_costs(film, pixels, squares);
   const auto threshold = static_cast<float>(plan.settings.threshold);
   const float most = threshold * threshold * static_cast<float>(level) / 2;
   const bool by_surfaces = level == first_level(plan) && plan.settings.surfaces;
@@ -95,7 +96,11 @@ std::optional<Pass> double_samples(const GrowingFilm& film, const SamplingPlan& 
 }
 
 std::optional<Pass> more_samples(const GrowingFilm& film, const SamplingPlan& plan, const Pass& last) {
-  if (film.stage == 0) return whole_pass(film, 0, 1, plan.surfaces || needs_surfaces(plan.settings));
+  if (film.stage == 0) {
+    Pass pass = whole_pass(film, 0, 1, plan.surfaces || needs_surfaces(plan.settings));
+    pass.costs = plan.settings.threshold > 0;
+    return pass;
+  }
   if (plan.noise > 0 && mean_error(film) < plan.noise) return std::nullopt;
   return double_samples(film, plan, last);
 }

@@ -30,7 +30,8 @@ PackedTile pack_request(const TileRequest& request) {
   if (!request.in_pass) return packed;
   packed.values["pass"] = {{"pixels", request.pixels.size()}, {"sums", request.sums.size()},
                            {"rays", request.rays.size()},     {"first", request.first_sample},
-                           {"count", request.sample_count},   {"surfaces", request.surfaces}};
+                           {"count", request.sample_count},   {"surfaces", request.surfaces},
+                           {"costs", request.costs}};
   append(packed.data, request.pixels, request.pixels.size());
   append(packed.data, request.sums, request.sums.size());
   append(packed.data, request.weights, request.weights.size());
@@ -47,6 +48,7 @@ TileRequest unpack_request(const nlohmann::json& values, const std::string& data
   request.first_sample = pass.at("first").get<u32>();
   request.sample_count = pass.at("count").get<u32>();
   request.surfaces = pass.at("surfaces").get<bool>();
+  request.costs = pass.at("costs").get<bool>();
   const auto pixels = pass.at("pixels").get<std::size_t>(), sums = pass.at("sums").get<std::size_t>();
   const auto rays = pass.at("rays").get<std::size_t>();
   if (data.size() != (pixels + rays) * sizeof(u32) + sums * (sizeof(float4) + sizeof(float)))

@@ -1,5 +1,6 @@
-// Rays of each of a work-item's pixels, where the host asks for them: behind the counts of the launch.
-// Counted are those of the statistics: camera, reflected, refracted and shadow rays.
+// Camera, reflected, refracted and shadow rays of pixels, where the host asks for them: with HAS_RAY_COUNTS
+// of each of a work-item's pixels, behind the counts of the launch; else of all of them, as those of the
+// first.
 #ifndef SUNDOG_LIB_RAY_COUNTS_CL
 #define SUNDOG_LIB_RAY_COUNTS_CL
 #include "lib/core/lanes.h"
@@ -30,7 +31,13 @@ static inline void add_ray_counts(const Launch* launch, __global const u32* rest
 static inline void note_rays(MASK pixels, MASK lanes, u32* counts) {}
 static inline void note_own_rays(MASK lanes, u32* counts) {}
 static inline void add_ray_counts(const Launch* launch, __global const u32* restrict pixels, u32 item,
-                                  const u32* counts, __global u32* restrict rays) {}
+                                  const u32* counts, __global u32* restrict rays) {
+  const uint2 at = lane_pixel(launch, item, 0u);
+  uint2 pixel;
+  if (launch->counts_rays && image_pixel(launch, pixels, at, &pixel))
+    rays[at.y * launch->width + at.x] +=
+        counts[COUNT_PRIMARY] + counts[COUNT_REFLECTION] + counts[COUNT_REFRACTION] + counts[COUNT_SHADOW];
+}
 #endif
 
 #endif

@@ -30,6 +30,21 @@ static inline bool image_pixel(const Launch* launch, __global const u32* restric
   return listed != NO_PIXEL;
 }
 
+// Clears film, weights and, where they are asked for, rays of the work-item's pixels, if the launch makes
+// their first samples.
+static inline void begin_film(const Launch* launch, u32 item, __global float4* restrict film,
+                              __global float* restrict weights, __global u32* restrict rays) {
+  if (launch->first_sample > 0u) return;
+  for (u32 lane = 0; lane < BATCH; ++lane) {
+    const uint2 at = lane_pixel(launch, item, lane);
+    if (at.x >= launch->width || at.y >= launch->height) continue;
+    const u32 pixel = at.y * launch->width + at.x;
+    film[pixel] = (float4)(0.0f);
+    weights[pixel] = 0.0f;
+    if (launch->counts_rays) rays[pixel] = 0u;
+  }
+}
+
 // Adds the light of a sample to film and weights, of the pixel that lane `lane` stands for; `sign` is what
 // the sample counts.
 static inline void store_lane(const Launch* launch, u32 item, u32 lane, float4 radiance, float sign,

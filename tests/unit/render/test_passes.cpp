@@ -17,16 +17,17 @@ namespace {
 
 constexpr int width = 33, height = 18;
 
-/// What a pixel's sample is, and the object seen there.
+/// What a pixel's sample is, the object seen there, and the rays that it takes.
 struct MadeUpPixel {
   float value;
   int object;
+  u32 rays = 1;
 };
 
 /// Makes all pixels of a pass by `pixel(x, y, sample)`, as a device would.
 template <class Pixel>
 Film made(const GrowingFilm& film, const Pass& pass, const Pixel& pixel) {
-  Film result(pass.width, pass.height, pass.surfaces);
+  Film result = film_of_pass(film, pass, pass.surfaces);
   for (std::size_t i = 0; i < result.done.size(); ++i) {
     result.done[i] = 1;
     const std::int64_t p = image_index(film, pass, i);
@@ -38,6 +39,7 @@ Film made(const GrowingFilm& film, const Pass& pass, const Pixel& pixel) {
       const float value = pixel(x, y, s).value;
       result.sums[i].x += value, result.sums[i].y += value, result.sums[i].z += value;
       result.weights[i] += 1;
+      if (pass.costs) result.rays[i] += pixel(x, y, s).rays;
     }
     if (!pass.surfaces) continue;
     const auto object = static_cast<float>(pixel(x, y, 0).object);
@@ -168,6 +170,31 @@ TEST_CASE("the expected error is that of the doublings, the last counting half, 
   const std::vector<float> expected = expected_squares(film, all_pixels(width, height), 4);
   for (const float found : expected)
     CHECK(found == Approx((0.4 + 0.1) * (last + squares_of_doubling * first) / 2).epsilon(1e-4));
+}
+
+TEST_CASE("where blocks of pixels take more rays, more of the error must be at stake for each") {
+  const float noise = 0.1f;  // the same everywhere, so that only rays tell pixels apart
+  const auto dear_right = [&](int x, int y, u32 sample) {
+    return MadeUpPixel{1 + noise * float((x + y + int(sample)) % 2), 1, x < 16 ? 1u : 9u};
+  };
+  const auto samples = [&](double threshold, bool costs) {
+    GrowingFilm film(width, height, false);
+    const SamplingPlan plan = adaptive_plan(threshold, 64);
+    Pass first = *next_pass(film, plan);
+    CHECK(first.costs);
+    first.costs = costs;
+    add_pass(film, first, made(film, first, dear_right), true);
+    run(film, plan, dear_right, first);
+    return std::pair(film.taken[at(8, 8)], film.taken[at(24, 8)]);
+  };
+  for (const double threshold : {0.03, 0.01, 0.003}) {
+    const auto [left, right] = samples(threshold, false);
+    const auto [cheap, dear] = samples(threshold, true);
+    CHECK(left == right);
+    CHECK(cheap >= left);
+    CHECK(dear <= right);
+    CHECK(dear < cheap);
+  }
 }
 
 TEST_CASE("a budget is kept, and the pixels of the largest errors get it") {
