@@ -44,14 +44,15 @@ static inline REAL3 coat_tints(__global const Layers* m, REAL c) {
 }
 
 // What reflections between the coat and a base of the colours `base` leave of the light from it (OpenPBR 1.1,
-// "Coat", "Darkening"): (1 - K) / (1 - E K), where K is sent back and E the base's albedo straight on.
+// "Coat", "Darkening"): (1 - K) / (1 - E K), where K is sent back and E the base's albedo straight on, of
+// which what the base lets through is a part.
 static inline REAL3 coat_darkening(__global const Layers* m, REAL3 base) {
   const REAL3 one = all3((float3)(1.0f));
   if (m->darkening == 0.0f) return one;
   const float metal = m->specular.w, glassy = (1.0f - metal) * m->straight,
-              matte = (1.0f - metal) * (1.0f - m->straight) * (1.0f - m->glass);
-  const REAL3 back =
-      along3(scale3(base, (REAL)(fma(metal, m->metal, matte))), (REAL)(glassy), all3(m->specular.xyz));
+              below = (1.0f - metal) * (1.0f - m->straight), matte = below * (1.0f - m->glass);
+  const REAL3 clear = all3(m->specular.xyz * glassy + below * m->glass);
+  const REAL3 back = add3(scale3(base, (REAL)(fma(metal, m->metal, matte))), clear);
   const float inner = m->inner;
   const REAL3 left = real3((1.0f - inner) / (1.0f - inner * real_min(back.x, one.x)),
                            (1.0f - inner) / (1.0f - inner * real_min(back.y, one.y)),

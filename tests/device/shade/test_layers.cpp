@@ -177,3 +177,23 @@ TEST_CASE("a coat darkens a matte base as reflections within it do") {
           Approx(straight + (1 - straight) * albedo * factor).margin(0.005));
   }
 }
+
+TEST_CASE("a coat darkens clear glass by next to nothing: what the base lets through is not sent back") {
+  Tester tester(picture_devices().front(), true);
+  OpenPbr glass{.specular_roughness = 0, .transmission_weight = 1, .coat_weight = 1};
+  for (const double roughness : {0.0, 0.3}) {
+    glass.coat_roughness = roughness;
+    glass.specular_roughness = roughness;
+    const auto passed = [&](double darkening, double side) {
+      glass.coat_darkening = darkening;
+      tester.set_layers(glass);
+      const Layered made = layered(glass);
+      return mean_weight(tester.draw(made.material, made.index, side * at_cosine(1), 4 * count));
+    };
+    for (const double side : {1.0, -1.0}) {
+      INFO("roughness " << roughness << " from the side " << side);
+      CHECK(passed(1, side) == Approx(passed(0, side)).epsilon(0.05));
+      CHECK(passed(1, side) > 0.85);
+    }
+  }
+}
