@@ -119,12 +119,12 @@ std::vector<float> expected_squares(const GrowingFilm& film, const std::vector<u
 }
 
 void divide_by_costs(const GrowingFilm& film, const std::vector<u32>& pixels, std::vector<float>& squares) {
-  if (film.block_rays.empty()) return;
   const auto width = static_cast<u32>(film.film.width), height = static_cast<u32>(film.film.height);
   constexpr u32 edge = cost_block;
   const u32 columns = (width + edge - 1) / edge;
   const double rays = std::accumulate(film.block_rays.begin(), film.block_rays.end(), 0.0);
-  const auto mean = static_cast<float>(std::max(1.0, rays) / (static_cast<double>(width) * height));
+  if (rays == 0) return;  // not counted
+  const auto mean = static_cast<float>(rays / (static_cast<double>(width) * height));
   std::vector<float> costs(film.block_rays.size());
   for (u32 i = 0; i < costs.size(); ++i) {
     const u32 across = std::min(edge, width - i % columns * edge);
