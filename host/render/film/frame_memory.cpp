@@ -42,7 +42,7 @@ std::uint64_t encoder_bytes(const std::string& file, std::uint64_t aovs) {
 }
 
 // What a frame in passes holds besides: the film of all passes, with surfaces, what has become of pixels,
-// their colours, and between passes their expected errors and whether they get more samples.
+// their colours, and between passes their expected errors and the list of those that get more samples.
 constexpr std::uint64_t passes_bytes = own_bytes + film_aov_bytes + 4 + 1 + 16 + 4 + 20 + 8 + 8;
 
 // Tiles that are on their way, on the device and off it, and what the allocator keeps of them: measured where
