@@ -59,7 +59,7 @@ class TileRenderer {
   void write_start(const TileRequest& request, TileResult& result);
   void read_result(unsigned samples, TileResult& result);
   void launch_samples(const TileRequest& request, const StopFlags& flags);
-  double launch_integrator(const Launch& launch, const SizedLaunch& sized);
+  double launch_integrator(const Launch& whole, const SizedLaunch& sized);
   void launch_aovs(const TileRequest& request, const Tile& tile, std::vector<float4>& aovs);
   void check_finished(const TileRequest& asked, const TileResult& made);
   unsigned samples_of(const TileRequest& request) const {
