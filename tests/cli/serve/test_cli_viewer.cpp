@@ -1,6 +1,4 @@
 // The viewer's page in a real browser: what a person does, and the pixels that change by it.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -180,30 +178,6 @@ TEST_CASE("a wrong formula is marked at its place, and the picture stays; a righ
               "?.textContent") == "sise");
   CHECK(v.picture() == before);
   changes_picture([&] { v.type("Distance", "max(abs(p.x), max(abs(p.y), abs(p.z))) - size"); });
-}
-
-TEST_CASE("the page says that a kernel is being built, and when the picture is complete") {
-  Viewer& v = viewer();
-  v.tab("build");
-  v.picture();
-  v.run(R"(
-    const line = document.querySelector('.doing');
-    window.said = [];
-    window.listener = new MutationObserver(() => window.said.push(line.textContent));
-    window.listener.observe(line, {characterData: true, childList: true, subtree: true});
-    return '';)");
-  // Exponents are part of a kernel: those that earlier runs are unlikely to have had, so that no cache has
-  // it.
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  const auto any = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
-  const std::string distance =
-      fmt::format("length(p) - size * 0.9 + 0.001 * p.x^{} * p.y^{}", 2 + any % 30, 2 + any / 30 % 30);
-  changes_picture([&] { v.type("Distance", distance); });
-  const json said = v.run("window.listener.disconnect(); return window.said");
-  INFO(said.dump());
-  CHECK(std::ranges::any_of(said,
-                            [](const std::string& text) { return text.starts_with("building a kernel"); }));
-  CHECK(said.back().get<std::string>().starts_with("finished in"));
 }
 
 TEST_CASE("a surface of the list takes the place of another") {
