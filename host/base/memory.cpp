@@ -115,7 +115,7 @@ void prefer_large_pages(void* at, std::size_t bytes) {
 
 void keep_freed_memory() {
 #ifdef __GLIBC__
-  constexpr int largest_piece = 32 << 20, most = 256 << 20;  // glibc takes no greater piece for one to keep
+  constexpr int largest_piece = 32 << 20, most = 256 << 20;  // larger pieces go back to the system when freed
   ::mallopt(M_MMAP_THRESHOLD, largest_piece);
   ::mallopt(M_TRIM_THRESHOLD, most);
 #endif

@@ -142,8 +142,8 @@ class Device {
   void read(const Buffer<T>& buffer, std::span<T> values, std::size_t first = 0) {
     read_bytes(buffer.memory, values.data(), values.size_bytes(), first * sizeof(T), CL_TRUE);
   }
-  /// The same without waiting, of the whole buffer: the values stay where they are until a write() or read()
-  /// that follows has returned, or thrown and settle() has returned.
+  /// The same from the buffer's beginning, without waiting: the values must stay in place until a later
+  /// write() or read() has returned. If that throws, until settle() has returned.
   template <class T>
   void begin_write(Buffer<T>& buffer, std::span<const T> values) {
     write_bytes(buffer.memory, values.data(), values.size_bytes(), 0, CL_FALSE);
@@ -152,7 +152,7 @@ class Device {
   void begin_read(const Buffer<T>& buffer, std::span<T> values) {
     read_bytes(buffer.memory, values.data(), values.size_bytes(), 0, CL_FALSE);
   }
-  /// Waits until nothing is on its way, whatever has failed.
+  /// Waits until all transfers have ended, and ignores errors.
   void settle() noexcept;
 
   /// Enqueues a launch. Throws DeviceError with the OpenCL status.

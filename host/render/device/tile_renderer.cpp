@@ -242,7 +242,7 @@ void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   device_.begin_write(counters_, std::span<const u32>(none));
 }
 
-// All arrays with one wait, which costs about as much as a small array.
+// Waits once for all arrays.
 void TileRenderer::read_result(unsigned samples, TileResult& result) {
   const Stopwatch reading;
   std::array<u32, COUNTERS> counts{};

@@ -1,5 +1,6 @@
 // Film: the sums of a frame's samples in linear RGBA, and which pixels are finished.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -30,6 +31,13 @@ struct Color {
 inline Color mean_of(const float4& sum, float weight) {
   const float share = weight > 0 ? 1 / weight : 1;
   return {sum.x * share, sum.y * share, sum.z * share};
+}
+
+/// A colour's light, by whose fourth root errors are divided; what is darker counts as nearly black, where
+/// nobody sees a relative error.
+inline float seen_light(const Color& color) {
+  constexpr float darkest = 0.01f;
+  return std::max(color.r + color.g + color.b, darkest);
 }
 
 /// width * height pixels, row 0 at the top. `aovs` holds `vectors` float4 a pixel when the frame has AOVs,

@@ -15,8 +15,7 @@ namespace {
 /// The square of pixel_errors() of a pixel whose colour was `then` before its last samples.
 float squared_error(const Color& now, const Color& then) {
   const float moved = std::abs(now.r - then.r) + std::abs(now.g - then.g) + std::abs(now.b - then.b);
-  constexpr float darkest = 0.01f;  // below it nobody sees a relative error
-  return moved * moved / std::sqrt(std::max(now.r + now.g + now.b, darkest));
+  return moved * moved / std::sqrt(seen_light(now));
 }
 
 float squared_error(const GrowingFilm& film, std::size_t p) {

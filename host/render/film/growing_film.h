@@ -30,8 +30,8 @@ Pass list_pass(const std::vector<u32>& pixels, u32 first_sample, u32 sample_coun
 /// The pixels of a pass in that order.
 std::vector<u32> pixels_of(const Pass& pass);
 
-/// What of a pixel counts for its neighbours: its colour, the sum of its channels' squares, and the square of
-/// how far doublings moved it, as if it had one sample.
+/// A pixel's part in its neighbours' expected errors: its colour, the sum of the squares of its channels, and
+/// the square of how far doublings moved it, scaled to one sample.
 struct Seen {
   float red = 0, green = 0, blue = 0, squares = 0, moved = 0;
 
@@ -95,7 +95,7 @@ constexpr float squares_of_doubling = 0.27f;
 /// By how many times that is smaller than with one sample; of 2^i + k samples as of 2^i.
 float share_of_squares(u32 samples);
 
-/// What sums and movement make of a pixel with samples.
+/// The pixel's `Seen` by its sums, weight, samples and movement.
 Seen see(const GrowingFilm& film, std::size_t pixel);
 
 /// The variance of each pixel's colour, by the same difference: unbiased, of each channel. Of a pixel with

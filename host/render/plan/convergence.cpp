@@ -53,7 +53,7 @@ void for_each_3x3(const std::vector<Value>& values, std::size_t width, const std
                     });
 }
 
-/// Calls visit(p, around) for all pixels, row by row, which takes a third of the time.
+/// Calls visit(p, around) for all pixels, row by row: each sum of three in a column serves three pixels.
 template <class Value, class Visit>
 void for_all_3x3(const std::vector<Value>& values, std::size_t width, const Visit& visit) {
   const std::size_t height = values.size() / width, rows_at_once = pixels_at_once / width + 1;

@@ -8,11 +8,6 @@ namespace sundog {
 
 Color color_at(const Film& film, std::size_t pixel) { return mean_of(film.sums[pixel], film.weights[pixel]); }
 
-float seen_light(const Color& color) {
-  constexpr float darkest = 0.01f;
-  return std::max(color.r + color.g + color.b, darkest);
-}
-
 float contrast(const Color& a, const Color& b) {
   const float light = std::max(seen_light(a), seen_light(b));
   return (std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b)) / std::sqrt(std::sqrt(light));

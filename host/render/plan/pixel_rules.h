@@ -7,10 +7,6 @@ namespace sundog {
 /// The mean of a pixel's samples.
 Color color_at(const Film& film, std::size_t pixel);
 
-/// A colour's light, by whose fourth root errors are divided; what is darker counts as nearly black, where
-/// nobody sees a relative error.
-float seen_light(const Color& color);
-
 /// How far two colours are apart, as pixel_errors() measures it.
 float contrast(const Color& a, const Color& b);
 

@@ -150,7 +150,7 @@ TEST_CASE("a rectangle that stands in the horizon lights a floor by what is abov
   });
 }
 
-TEST_CASE("a lamp that is seen stands not before itself") {
+TEST_CASE("a visible lamp does not block its own light") {
   // As scene files have it: the lamp is an object too, in the picture's upper half.
   const auto scene_with = [](bool visible) {
     const nlohmann::json document = parse_json(
