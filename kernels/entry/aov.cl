@@ -171,6 +171,6 @@ __kernel void first_surfaces(SCENE_PARAMETERS, __global const u32* restrict came
   const Scene scene = SCENE_OF_PARAMETERS;
   const u32 first = get_global_id(0) * BATCH;
   if (first >= pixel_count) return;
-  first_surfaces_item(&scene, camera_media, pixels, aovs, counters, x0, y0, width, pixel_count, listed,
-                      first);
+  first_surfaces_item(&scene, camera_media, pixels, aovs, counters_of(counters, first / BATCH), x0, y0, width,
+                      pixel_count, listed, first);
 }

@@ -84,5 +84,5 @@ __kernel void render_path(SCENE_PARAMETERS, __global const u32* restrict camera_
   const u32 item = launch.first_item + get_global_id(1) * launch.row_items + get_global_id(0);
   if (get_global_id(0) >= launch.row_items || item >= launch.last_item) return;
   render_item(&scene, (MediaStack)camera_media[1] << 32 | camera_media[0], &launch, item, pixels, film,
-              weights, counters, ray_counts);
+              weights, counters_of(counters, item), ray_counts);
 }

@@ -11,9 +11,10 @@
 static inline MASK start_rays(const Scene* scene, const Launch* launch, __global const u32* restrict pixels,
                               u32 item, u32 sample, MediaStack around, SceneRays* rays, float* signs,
                               TileSamples* tile) {
-  BegunSamples begun = no_samples();
+  BegunSamples begun;
   tile->sample = sample;
-  for (u32 lane = 0; lane < BATCH; ++lane) begin_sample(launch, pixels, item, lane, sample, &begun);
+  begun.lanes = item_pixels(launch, pixels, item, &begun.at.x, &begun.at.y);
+  begun.at.sample = (MASK)((int)sample) & begun.lanes;
   set_tile_pixels(tile, &begun.at);
   *rays = begun_rays(scene, &begun, around, signs);
   return begun.lanes;
@@ -39,9 +40,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     counts[COUNT_PRIMARY] += lane_count(lanes);
     note_own_rays(lanes, counts);
     trace_whitted(scene, &tile, &rays, lanes, &stack, radiance, counts);
-    for (u32 lane = 0; lane < BATCH; ++lane)
-      if (MASK_LANE(lanes, lane))
-        store_lane(launch, item, lane, radiance[lane], signs[lane], film, weights, counts);
+    store_lanes(launch, item, lanes, radiance, signs, film, weights, counts);
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);
@@ -64,5 +63,5 @@ __kernel void render_whitted(SCENE_PARAMETERS, __global const u32* restrict came
   const u32 item = launch.first_item + get_global_id(1) * launch.row_items + get_global_id(0);
   if (get_global_id(0) >= launch.row_items || item >= launch.last_item) return;
   render_item(&scene, (MediaStack)camera_media[1] << 32 | camera_media[0], &launch, item, pixels, film,
-              weights, counters, ray_counts);
+              weights, counters_of(counters, item), ray_counts);
 }

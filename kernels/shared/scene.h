@@ -138,6 +138,11 @@ SUNDOG_SHARED_SIZE(SceneInfo, 384)
 #define COUNT_MARCH_LEFT 16    // no count: what the marches of a sample may still cost (lib/path/fields.cl)
 #define COUNT_FINISHED 17      // twice the camera rays of work-items that ended (lib/core/counters.cl)
 #define COUNTERS 18
+// A launch counts in several blocks, whose sums are its counts: those of COUNTER_ITEMS work-items in a row go
+// to one, so that processors seldom write to the same cache line.
+#define COUNTER_BLOCKS 16
+#define COUNTER_BLOCK 32  // u32 from one to the next
+#define COUNTER_ITEMS 32
 
 SUNDOG_SHARED_END
 #endif

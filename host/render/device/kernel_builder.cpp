@@ -31,7 +31,8 @@ void build(const DeviceInfo& info, const KernelOrder& order) {
       scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>(
           program, order.kernel);
   const DeviceScene nothing = upload_scene(device, CompiledScene{});
-  const auto pixels = device.make<u32>(1), counters = device.make<u32>(COUNTERS), rays = device.make<u32>(1);
+  const auto pixels = device.make<u32>(1), rays = device.make<u32>(1);
+  const auto counters = device.make<u32>(COUNTER_BLOCKS * COUNTER_BLOCK);
   const auto film = device.make<float4>(1);
   const auto weights = device.make<float>(1);
   Launch launch{};

@@ -21,6 +21,9 @@ struct LoopsCutShort : DeviceError {
   using DeviceError::DeviceError;
 };
 
+/// The counts of a tile's launches, in blocks.
+using LaunchCounts = std::array<u32, COUNTER_BLOCKS * COUNTER_BLOCK>;
+
 /// Where an exception ends a tile, its arrays may be on their way still.
 class SettledAtEnd {
  public:
@@ -223,36 +226,34 @@ void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   if (pixels_.count < std::max<std::size_t>(1, request.pixels.size()))
     pixels_ = device_.make<u32>(std::max<std::size_t>(1, request.pixels.size()));
   if (!request.pixels.empty()) device_.begin_write(pixels_, std::span<const u32>(request.pixels));
-  result.sums = request.sums;
-  result.weights = request.weights;
   result.sums.resize(pixels);
   result.weights.resize(pixels);
   const std::size_t counted = kernels_.counts_rays || request.costs ? pixels : 0;
   if (rays_.count < std::max<std::size_t>(1, counted))
     rays_ = device_.make<u32>(std::max<std::size_t>(1, counted));
-  result.rays = request.rays;
   result.rays.resize(counted);
   if (request.first_sample > 0) {  // the kernels begin the others at 0
-    device_.begin_write(film_, std::span<const float4>(result.sums));
-    device_.begin_write(weights_, std::span<const float>(result.weights));
-    if (counted > 0) device_.begin_write(rays_, std::span<const u32>(result.rays));
+    device_.begin_write(film_, std::span<const float4>(request.sums));
+    device_.begin_write(weights_, std::span<const float>(request.weights));
+    if (counted > 0) device_.begin_write(rays_, std::span<const u32>(request.rays));
   }
-  static constexpr std::array<u32, COUNTERS> none{};
-  if (counters_.count == 0) counters_ = device_.make<u32>(COUNTERS);
+  static constexpr LaunchCounts none{};
+  if (counters_.count == 0) counters_ = device_.make<u32>(none.size());
   device_.begin_write(counters_, std::span<const u32>(none));
 }
 
 // Waits once for all arrays.
 void TileRenderer::read_result(unsigned samples, TileResult& result) {
   const Stopwatch reading;
-  std::array<u32, COUNTERS> counts{};
+  LaunchCounts counts;
   if (samples > 0) {
     device_.begin_read(film_, std::span<float4>(result.sums));
     device_.begin_read(weights_, std::span<float>(result.weights));
     if (!result.rays.empty()) device_.begin_read(rays_, std::span<u32>(result.rays));
   }
   device_.read(counters_, std::span<u32>(counts));
-  std::copy(counts.begin(), counts.end(), result.counts.begin());
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (i % COUNTER_BLOCK < COUNTERS) result.counts[i % COUNTER_BLOCK] += counts[i];
   readback_seconds_ += reading.seconds();
 }
 

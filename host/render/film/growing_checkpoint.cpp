@@ -100,7 +100,7 @@ void read_growing_checkpoint(const std::filesystem::path& path, GrowingFilm& fil
   for_each_array(film, pass.pixels, made, take);
   if (at != end || (pass.pixels.empty() && made.done.size() != film.taken.size())) throw damaged;
   for (std::size_t p = 0; p < film.seen.size(); ++p)
-    if (film.states[p] == PixelState::sampled) film.seen[p] = see(film, p);
+    if (film.states[p] == PixelState::sampled) see(film, p);
 }
 
 }  // namespace sundog

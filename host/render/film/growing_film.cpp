@@ -25,10 +25,11 @@ float squared_error(const GrowingFilm& film, std::size_t p) {
   return squared_error(mean_of(film.film.sums[p], weight), mean_of(before, before.w));
 }
 
-Seen seen_of(const Color& color, float moved, u32 taken) {
-  return {color.r, color.g, color.b, color.r * color.r + color.g * color.g + color.b * color.b,
-          taken > 1 ? moved / share_of_squares(taken) : 0};
+Seen seen_of(const Color& color) {
+  return Seen{color.r, color.g, color.b, color.r * color.r + color.g * color.g + color.b * color.b};
 }
+
+float moved_by_one(float moved, u32 taken) { return taken > 1 ? moved / share_of_squares(taken) : 0; }
 
 /// Puts the samples of pixel `i` of a pass into its place `p`.
 void add_samples(GrowingFilm& film, const Pass& pass, const Film& made, std::size_t i, std::size_t p) {
@@ -39,12 +40,15 @@ void add_samples(GrowingFilm& film, const Pass& pass, const Film& made, std::siz
   const Color color = mean_of(sum, weight);
   if (weight > 0 && weight_before > 0) {
     // One doubling may move it little by chance, so earlier ones count too.
-    const float square = squared_error(color, mean_of(before, weight_before));
+    const Seen& then = film.seen[p];
+    const float square = squared_error(color, {then[0], then[1], then[2]});
     const float earlier = squares_of_doubling * film.moved[p];
     film.moved[p] = std::isfinite(earlier) ? (square + earlier) / 2 : square;
   }
-  if (weight_before != 0) film.earlier[p] = {before.x, before.y, before.z, weight_before};
-  film.seen[p] = seen_of(color, film.moved[p], taken);
+  if (weight_before != 0 && !film.earlier.empty())
+    film.earlier[p] = {before.x, before.y, before.z, weight_before};
+  film.seen[p] = seen_of(color);
+  film.moved_by_one[p] = moved_by_one(film.moved[p], taken);
   whole.sums[p] = sum;
   whole.weights[p] = weight;
   whole.done[p] = 1;
@@ -94,7 +98,9 @@ void begin(GrowingFilm& film, const Pass& pass, Film made) {
   film.taken.assign(film.taken.size(), taken);
   film.states.assign(film.states.size(), PixelState::sampled);
   for (std::size_t p = 0; p < film.seen.size(); ++p)
-    film.seen[p] = seen_of(mean_of(whole.sums[p], whole.weights[p]), film.moved[p], taken);
+    film.seen[p] = seen_of(mean_of(whole.sums[p], whole.weights[p]));
+  std::ranges::transform(film.moved, film.moved_by_one.begin(),
+                         [&](float moved) { return moved_by_one(moved, taken); });
   ++film.stage;
 }
 
@@ -121,13 +127,14 @@ void write_variance_around(const GrowingFilm& film, std::size_t p, float* varian
 
 }  // namespace
 
-GrowingFilm::GrowingFilm(int width, int height, bool with_aovs, std::size_t vectors)
+GrowingFilm::GrowingFilm(int width, int height, bool with_aovs, std::size_t vectors, bool with_earlier)
     : film(width, height, with_aovs, vectors) {
   taken.resize(film.done.size());
   states.resize(film.done.size());
-  earlier.resize(film.done.size());
+  earlier.resize(with_earlier ? film.done.size() : 0);
   moved.assign(film.done.size(), std::numeric_limits<float>::infinity());
   seen.resize(film.done.size());
+  moved_by_one.resize(film.done.size());
 }
 
 Film film_of_pass(const GrowingFilm& film, const Pass& pass, bool surfaces) {
@@ -154,9 +161,9 @@ float share_of_squares(u32 samples) {
   return powers[static_cast<std::size_t>(std::bit_width(samples) - 1)];
 }
 
-Seen see(const GrowingFilm& film, std::size_t pixel) {
-  return seen_of(mean_of(film.film.sums[pixel], film.film.weights[pixel]), film.moved[pixel],
-                 film.taken[pixel]);
+void see(GrowingFilm& film, std::size_t pixel) {
+  film.seen[pixel] = seen_of(mean_of(film.film.sums[pixel], film.film.weights[pixel]));
+  film.moved_by_one[pixel] = moved_by_one(film.moved[pixel], film.taken[pixel]);
 }
 
 void add_pass(GrowingFilm& film, const Pass& pass, Film made, bool complete) {

@@ -30,17 +30,9 @@ Pass list_pass(const std::vector<u32>& pixels, u32 first_sample, u32 sample_coun
 /// The pixels of a pass in that order.
 std::vector<u32> pixels_of(const Pass& pass);
 
-/// A pixel's part in its neighbours' expected errors: its colour, the sum of the squares of its channels, and
-/// the square of how far doublings moved it, scaled to one sample.
-struct Seen {
-  float red = 0, green = 0, blue = 0, squares = 0, moved = 0;
-
-  Seen& operator+=(const Seen& other) {
-    red += other.red, green += other.green, blue += other.blue;
-    squares += other.squares, moved += other.moved;
-    return *this;
-  }
-};
+/// What a pixel shows, for its neighbours' expected errors: red, green, blue and the sum of their squares.
+/// They are added up at once.
+using Seen [[gnu::vector_size(16)]] = float;
 
 /// The edge of the blocks of pixels whose rays a pass with `costs` counts: no device takes pixels of two of
 /// them together.
@@ -57,19 +49,23 @@ constexpr std::size_t pixels_at_once = 1 << 17;
 enum class PixelState : std::uint8_t { empty, looked_at, sampled, interpolated };
 
 struct GrowingFilm {
-  Film film;                        // done: a sample or more
-  std::vector<u32> taken;           // samples of each pixel
-  std::vector<PixelState> states;   // of each pixel
-  std::vector<float4> earlier;      // the sums before a pixel's last pass; w = weight
-  std::vector<float> moved;         // squares of how far doublings moved it, the last for half
-  std::vector<Seen> seen;           // follows from sums, weights, taken and moved
-  std::vector<u32> block_rays;      // of each block of 4x4 pixels in a pass with `costs`; empty: not counted
+  Film film;                       // done: a sample or more
+  std::vector<u32> taken;          // samples of each pixel
+  std::vector<PixelState> states;  // of each pixel
+  std::vector<float4> earlier;     // the sums before a pixel's last pass; w = weight; empty: not wanted
+  std::vector<float> moved;        // squares of how far doublings moved it, the last for half
+  std::vector<u32> block_rays;     // of each block of 4x4 pixels in a pass with `costs`; empty: not counted
+  // Follow from sums, weights, taken and moved:
+  std::vector<Seen> seen;
+  std::vector<float> moved_by_one;  // `moved`, scaled to one sample; 0 with one
   u32 stage = 0;                    // passes that are complete
   u32 step = 0;                     // of the planner
   std::uint64_t surfaces_seen = 0;  // pixels looked at by a ray of their own, for the surface alone
 
   GrowingFilm() = default;
-  GrowingFilm(int width, int height, bool with_aovs, std::size_t vectors = few_aov_vectors);
+  /// `with_earlier`: for pixel_errors(), develop_variance() and checkpoints.
+  GrowingFilm(int width, int height, bool with_aovs, std::size_t vectors = few_aov_vectors,
+              bool with_earlier = true);
 };
 
 /// An empty film of the pass's size, which holds what the frame's does.
@@ -95,8 +91,8 @@ constexpr float squares_of_doubling = 0.27f;
 /// By how many times that is smaller than with one sample; of 2^i + k samples as of 2^i.
 float share_of_squares(u32 samples);
 
-/// The pixel's `Seen` by its sums, weight, samples and movement.
-Seen see(const GrowingFilm& film, std::size_t pixel);
+/// Sets the pixel's `seen` and `moved_by_one` by its sums, weight, samples and movement.
+void see(GrowingFilm& film, std::size_t pixel);
 
 /// The variance of each pixel's colour, by the same difference: unbiased, of each channel. Of a pixel with
 /// one sample, that of the colours of the 3x3 pixels around. 0 where no sample is, infinite where nothing is

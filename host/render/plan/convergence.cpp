@@ -26,31 +26,29 @@ struct Around {
   float count;
 };
 
-template <class Value>
-Around<Value> sum_3x3(const std::vector<Value>& values, std::size_t width, std::size_t x, std::size_t y) {
-  const std::size_t height = values.size() / width;
+/// The same of a film's `seen` and `moved_by_one`.
+struct SeenAround {
+  Around<Seen> seen;
+  float moved;
+};
+
+SeenAround sum_3x3(const GrowingFilm& film, std::size_t x, std::size_t y) {
+  const auto width = static_cast<std::size_t>(film.film.width);
+  const auto height = static_cast<std::size_t>(film.film.height);
   const std::size_t left = x - (x > 0), right = std::min(x + 1, width - 1);
   const std::size_t top = y - (y > 0), bottom = std::min(y + 1, height - 1);
-  Around<Value> around{{}, static_cast<float>((right - left + 1) * (bottom - top + 1))};
+  SeenAround around{{{}, static_cast<float>((right - left + 1) * (bottom - top + 1))}, 0};
   for (std::size_t u = left; u <= right; ++u) {
-    Value column{};
-    for (std::size_t v = top; v <= bottom; ++v) column += values[v * width + u];
-    around.sum += column;
+    Seen column{};
+    float moved = 0;
+    for (std::size_t v = top; v <= bottom; ++v) {
+      column += film.seen[v * width + u];
+      moved += film.moved_by_one[v * width + u];
+    }
+    around.seen.sum += column;
+    around.moved += moved;
   }
   return around;
-}
-
-/// Calls visit(i, p, around) for the i-th of `pixels`, which is p = y * width + x, and the values around it.
-template <class Value, class Visit>
-void for_each_3x3(const std::vector<Value>& values, std::size_t width, const std::vector<u32>& pixels,
-                  const Visit& visit) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), pixels_at_once),
-                    [&](const auto& range) {
-                      for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                        const std::size_t x = pixels[i] & 0xffffu, y = pixels[i] >> 16;
-                        visit(i, y * width + x, sum_3x3(values, width, x, y));
-                      }
-                    });
 }
 
 /// Calls visit(p, around) for all pixels, row by row: each sum of three in a column serves three pixels.
@@ -62,11 +60,12 @@ void for_all_3x3(const std::vector<Value>& values, std::size_t width, const Visi
     for (std::size_t y = rows.begin(); y != rows.end(); ++y) {
       const Value *above = &values[(y - (y > 0)) * width], *row = &values[y * width];
       const Value* below = &values[std::min(y + 1, height - 1) * width];
-      std::copy_n(above, width, columns.begin());
-      if (row != above)
-        for (std::size_t x = 0; x < width; ++x) columns[x] += row[x];
-      if (below != row)
-        for (std::size_t x = 0; x < width; ++x) columns[x] += below[x];
+      for (std::size_t x = 0; x < width; ++x) {
+        Value column = above[x];
+        if (row != above) column += row[x];
+        if (below != row) column += below[x];
+        columns[x] = column;
+      }
       const std::size_t high = 1 + (y > 0) + (y + 1 < height);
       for (std::size_t x = 0; x < width; ++x) {
         Value sum = x > 0 ? columns[x - 1] : Value{};
@@ -82,10 +81,10 @@ void for_all_3x3(const std::vector<Value>& values, std::size_t width, const Visi
 float color_variance(const Seen& pixel, const Around<Seen>& around) {
   const Seen& sum = around.sum;
   const float of_means =
-      (sum.red * sum.red + sum.green * sum.green + sum.blue * sum.blue) / (around.count * around.count);
+      (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / (around.count * around.count);
   constexpr float channels = 3;  // pixel_errors() adds up the channels' errors before they are squared
-  return channels * std::max(0.0f, sum.squares / around.count - of_means) /
-         std::sqrt(seen_light({pixel.red, pixel.green, pixel.blue}));
+  return channels * std::max(0.0f, sum[3] / around.count - of_means) /
+         std::sqrt(seen_light({pixel[0], pixel[1], pixel[2]}));
 }
 
 /// Of infinite pixels nothing is known, and what orders errors needs numbers.
@@ -110,11 +109,16 @@ std::vector<float> expected_squares(const GrowingFilm& film, const std::vector<u
     return expected;
   }
   const float shrunk = share_of_squares(level);
-  for_each_3x3(seen, width, pixels, [&](std::size_t i, std::size_t p, const Around<Seen>& around) {
-    const float others =
-        neighbors * around.sum.moved / around.count + variation * color_variance(seen[p], around);
-    expected[i] = known(own * film.moved[p] + shrunk * others);
-  });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, pixels.size(), pixels_at_once), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+          const std::size_t x = pixels[i] & 0xffffu, y = pixels[i] >> 16, p = y * width + x;
+          const SeenAround around = sum_3x3(film, x, y);
+          const float others =
+              neighbors * around.moved / around.seen.count + variation * color_variance(seen[p], around.seen);
+          expected[i] = known(own * film.moved[p] + shrunk * others);
+        }
+      });
   return expected;
 }
 

@@ -3,6 +3,11 @@
 #define SUNDOG_LIB_COUNTERS_CL
 #include "shared/scene.h"
 
+// The block that the item counts in.
+static inline __global u32* counters_of(__global u32* counters, u32 item) {
+  return counters + item / COUNTER_ITEMS % COUNTER_BLOCKS * COUNTER_BLOCK;
+}
+
 static inline void add_counts(__global u32* restrict counters, const u32* counts) {
   for (u32 i = 0; i < COUNTERS; ++i)
     if (counts[i]) atomic_add(counters + i, counts[i]);

@@ -21,6 +21,7 @@ typedef int MASK;
 #define TO_MASK(x) convert_int_rtz(x)
 #define TO_REAL(x) convert_float(x)
 #define LANE_BITS (MASK)(1)
+#define LANE_NUMBERS (MASK)(0)
 #elif LANES == 4
 typedef float4 REAL;
 typedef int4 MASK;
@@ -30,6 +31,7 @@ typedef int4 MASK;
 #define TO_MASK(x) convert_int4_rtz(x)
 #define TO_REAL(x) convert_float4(x)
 #define LANE_BITS (MASK)(1, 2, 4, 8)
+#define LANE_NUMBERS (MASK)(0, 1, 2, 3)
 #elif LANES == 8
 typedef float8 REAL;
 typedef int8 MASK;
@@ -39,6 +41,7 @@ typedef int8 MASK;
 #define TO_MASK(x) convert_int8_rtz(x)
 #define TO_REAL(x) convert_float8(x)
 #define LANE_BITS (MASK)(1, 2, 4, 8, 16, 32, 64, 128)
+#define LANE_NUMBERS (MASK)(0, 1, 2, 3, 4, 5, 6, 7)
 #elif LANES == 16
 typedef float16 REAL;
 typedef int16 MASK;
@@ -48,6 +51,7 @@ typedef int16 MASK;
 #define TO_MASK(x) convert_int16_rtz(x)
 #define TO_REAL(x) convert_float16(x)
 #define LANE_BITS (MASK)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768)
+#define LANE_NUMBERS (MASK)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
 #else
 #error "LANES must be 1, 4, 8 or 16"
 #endif

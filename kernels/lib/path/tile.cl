@@ -1,7 +1,7 @@
 // The pixels of a work-item's lanes, and where their samples go.
 #ifndef SUNDOG_LIB_TILE_CL
 #define SUNDOG_LIB_TILE_CL
-#include "lib/core/config.h"
+#include "lib/core/lanes.h"
 #include "shared/launch.h"
 #include "shared/scene.h"
 
@@ -19,6 +19,17 @@ static inline uint2 lane_pixel(const Launch* launch, u32 item, u32 lane) {
   return (uint2)(item % columns * TILE_W + lane % TILE_W, item / columns * TILE_H + lane / TILE_W);
 }
 
+// Whether the tile of the item lies whole in the rectangle, at `corner`.
+static inline bool is_whole_tile(const Launch* launch, u32 item, uint2* corner) {
+  *corner = lane_pixel(launch, item, 0u);
+  return corner->x + TILE_W <= launch->width && corner->y + TILE_H <= launch->height;
+}
+
+// Where lane `lane` of a whole tile stands in the rectangle's arrays.
+static inline u32 pixel_of_tile(const Launch* launch, uint2 corner, u32 lane) {
+  return (corner.y + lane / TILE_W) * launch->width + corner.x + lane % TILE_W;
+}
+
 // The pixel of the image that the pixel `at` of the rectangle stands for. False: there is none.
 static inline bool image_pixel(const Launch* launch, __global const u32* restrict pixels, uint2 at,
                                uint2* pixel) {
@@ -30,11 +41,53 @@ static inline bool image_pixel(const Launch* launch, __global const u32* restric
   return listed != NO_PIXEL;
 }
 
+// The pixels of the image that the lanes of a work-item stand for. Returns the lanes that have one.
+static inline MASK item_pixels(const Launch* launch, __global const u32* restrict pixels, u32 item, MASK* x,
+                               MASK* y) {
+  uint2 corner;
+  if (is_whole_tile(launch, item, &corner)) {
+    if (!launch->listed) {
+      *x = (int)(launch->x0 + corner.x) + LANE_NUMBERS % TILE_W;
+      *y = (int)(launch->y0 + corner.y) + LANE_NUMBERS / TILE_W;
+      return ALL_LANES;
+    }
+    MASK listed;
+#pragma unroll
+    for (u32 lane = 0; lane < BATCH; ++lane)
+      MASK_LANE(listed, lane) = (int)pixels[pixel_of_tile(launch, corner, lane)];
+    const MASK lanes = MASK_OF(listed != (int)NO_PIXEL);
+    *x = listed & 0xffff & lanes;
+    *y = (listed >> 16) & 0xffff & lanes;
+    return lanes;
+  }
+  MASK lanes = NO_LANES;
+  *x = *y = NO_LANES;
+  for (u32 lane = 0; lane < BATCH; ++lane) {
+    uint2 pixel;
+    if (!image_pixel(launch, pixels, lane_pixel(launch, item, lane), &pixel)) continue;
+    MASK_LANE(*x, lane) = (int)pixel.x;
+    MASK_LANE(*y, lane) = (int)pixel.y;
+    MASK_LANE(lanes, lane) = -1;
+  }
+  return lanes;
+}
+
 // Clears film, weights and, where they are asked for, rays of the work-item's pixels, if the launch makes
 // their first samples.
 static inline void begin_film(const Launch* launch, u32 item, __global float4* restrict film,
                               __global float* restrict weights, __global u32* restrict rays) {
   if (launch->first_sample > 0u) return;
+  uint2 corner;
+  if (is_whole_tile(launch, item, &corner)) {
+#pragma unroll
+    for (u32 lane = 0; lane < BATCH; ++lane) {
+      const u32 pixel = pixel_of_tile(launch, corner, lane);
+      film[pixel] = (float4)(0.0f);
+      weights[pixel] = 0.0f;
+      if (launch->counts_rays) rays[pixel] = 0u;
+    }
+    return;
+  }
   for (u32 lane = 0; lane < BATCH; ++lane) {
     const uint2 at = lane_pixel(launch, item, lane);
     if (at.x >= launch->width || at.y >= launch->height) continue;
@@ -58,6 +111,29 @@ static inline void store_lane(const Launch* launch, u32 item, u32 lane, float4 r
   const u32 pixel = at.y * launch->width + at.x;
   film[pixel] += HAS_FILTER ? sign * radiance : radiance;
   weights[pixel] += HAS_FILTER ? sign : 1.0f;
+}
+
+// The same for all lanes of `lanes`; arrays by lane.
+static inline void store_lanes(const Launch* launch, u32 item, MASK lanes, const float4* radiance,
+                               const float* signs, __global float4* restrict film,
+                               __global float* restrict weights, u32* counts) {
+  float4 zero = (float4)(0.0f);  // NaN where one is not finite
+#pragma unroll
+  for (u32 lane = 0; lane < BATCH; ++lane) zero += radiance[lane] * 0.0f;
+  uint2 corner;
+  if (HAS_FILTER || zero.x + zero.y + zero.z != 0.0f || !is_whole_tile(launch, item, &corner)) {
+    for (u32 lane = 0; lane < BATCH; ++lane)
+      if (MASK_LANE(lanes, lane))
+        store_lane(launch, item, lane, radiance[lane], signs[lane], film, weights, counts);
+    return;
+  }
+  const REAL share = TO_REAL(-lanes);
+#pragma unroll
+  for (u32 lane = 0; lane < BATCH; ++lane) {
+    const u32 pixel = pixel_of_tile(launch, corner, lane);
+    film[pixel] += radiance[lane];
+    weights[pixel] += REAL_LANE(share, lane);
+  }
 }
 
 #endif

@@ -77,10 +77,11 @@ static inline void closest_in_box(float4 parameters, REAL3 o, REAL3 d, REAL t_mi
   const BoxSlabs ray = make_box_ray(o, d);
   MASK axis_in, axis_out;
   const Span span = box_span(&ray, (float3)(1.0f), &axis_in, &axis_out);
+  active &= span.crosses;
+  if (!any_lane(active)) return;
   const MASK enters = MASK_OF(span.enter > t_min);
   const REAL3 ng = select3(axis_normals(axis_out, d, 1.0f), axis_normals(axis_in, d, -1.0f), enters);
-  offer(select(span.leave, span.enter, enters), ng, select(axis_out, axis_in, enters), active & span.crosses,
-        t_min, hits);
+  offer(select(span.leave, span.enter, enters), ng, select(axis_out, axis_in, enters), active, t_min, hits);
 }
 
 static inline SurfacePoints points_on_box(float4 parameters, REAL3 p, MASK part) {

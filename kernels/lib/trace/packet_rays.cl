@@ -126,9 +126,9 @@ ALWAYS_INLINE void make_beam(PacketRays* rays, float4 slopes, float4 o_spread) {
   rays->spread_sy = turn.y;
 }
 
-// Prepares the rays for the tests, given o and d. Returns false when they cannot go as one: directions of
-// different signs or of different largest components.
-NEVER_INLINE bool aim_packet(PacketRays* rays) {
+// Prepares the rays for the tests of triangles, all but the beam, whose slopes go to `ends`. Returns false
+// where they cannot go as one: directions of different largest components.
+ALWAYS_INLINE bool shear_packet(PacketRays* rays, float16* ends) {
   const float16 x = fabs(rays->d[0]), y = fabs(rays->d[1]), z = fabs(rays->d[2]);
   const int16 along_x = (x >= y) & (x >= z);
   const u32 xs = lane_bits(along_x), ys = lane_bits(~along_x & (y >= z));
@@ -140,7 +140,19 @@ NEVER_INLINE bool aim_packet(PacketRays* rays) {
   rays->sx = rays->d[rays->axis[0]] * along;
   rays->sy = rays->d[rays->axis[1]] * along;
   rays->sz = -along;
+  ends[3] = rays->sx;
+  ends[7] = -rays->sx;
+  ends[11] = rays->sy;
+  ends[15] = -rays->sy;
+  return true;
+}
+
+// Prepares the rays for the tests, given o and d. Returns false when they cannot go as one: directions of
+// different signs, or, where there are triangles, of different largest components.
+NEVER_INLINE bool aim_packet(PacketRays* rays) {
   float16 ends[16];
+  ends[3] = ends[7] = ends[11] = ends[15] = (float16)(0.0f);
+  if (HAS_MESH && !shear_packet(rays, ends)) return false;
 #pragma unroll
   for (u32 axis = 0; axis < 3u; ++axis) {
     const float16 o = rays->o[axis];
@@ -151,16 +163,12 @@ NEVER_INLINE bool aim_packet(PacketRays* rays) {
     ends[8u + axis] = rcp;
     ends[12u + axis] = -rcp;
   }
-  ends[3] = rays->sx;
-  ends[7] = -rays->sx;
-  ends[11] = rays->sy;
-  ends[15] = -rays->sy;
   const float16 least = least_of_each(ends);
   const float4 least_rcp = least.s89ab, most_rcp = -least.scdef;
   const int4 negative = most_rcp < 0.0f, apart = ~negative & (least_rcp <= 0.0f);
   if (apart.x | apart.y | apart.z) return false;
   span_packet(rays, least.s0123, -least.s4567, least_rcp, most_rcp, negative);
-  make_beam(rays, least.s3b7f, -least.s4567 - least.s0123);
+  if (HAS_MESH) make_beam(rays, least.s3b7f, -least.s4567 - least.s0123);
   return true;
 }
 
