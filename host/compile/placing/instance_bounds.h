@@ -12,6 +12,10 @@ namespace sundog {
 Bounds world_bounds(const UnitShape& unit, std::span<const Bounds> boxes, const dmat4& world_from_unit,
                     bool exact);
 
+/// Boxes that hold an exact solid between them, `whole` being its world_bounds(): more than one where a cut
+/// across its longest side leaves much less of `whole`, as of a thin solid that stands askew.
+std::vector<Bounds> part_bounds(const UnitShape& unit, const dmat4& world_from_unit, const Bounds& whole);
+
 /// The box's centre, and in w half its diagonal, rounded up.
 float4 sphere_around(const Bounds& box);
 

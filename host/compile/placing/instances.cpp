@@ -22,6 +22,7 @@ namespace {
 struct Placed {
   Instance instance{};
   Bounds box = Bounds::none();  // wherever it is while the shutter is open
+  std::vector<Bounds> parts;    // smaller boxes that hold it between them; empty: there are none
   double cost = 1;
   float4 moves{};
   bool bounded() const { return instance.shape != SHAPE_PLANE; }
@@ -134,6 +135,8 @@ class Placer {
     placed.box = object.moves() ? moving_bounds(object, unit, boxes, world_from_unit, out_.origin)
                                 : world_bounds(unit, boxes, world_from_unit, exact);
     placed.instance.world_center = sphere_around(placed.box);
+    const bool solid = unit.shape != SHAPE_MESH && unit.shape != SHAPE_SDF;
+    if (solid && !exact && !object.moves()) placed.parts = part_bounds(unit, world_from_unit, placed.box);
   }
 
   void set_motion(const Object& object, Placed& placed) {
@@ -190,15 +193,43 @@ bool may_contain(const Instance& instance, const Bounds& box, const dvec3& camer
   return true;
 }
 
+/// Refs of the instances' boxes, or of their parts': an instance is then in several leaves.
+std::vector<Ref> refs_of(const std::vector<Placed>& bounded) {
+  constexpr std::size_t most_in_parts = 1000;  // the leaves of a CompactNode lie near each other
+  std::vector<Ref> refs;
+  for (std::size_t i = 0; i < bounded.size(); ++i) {
+    const Placed& placed = bounded[i];
+    const bool in_parts = !placed.parts.empty() && bounded.size() <= most_in_parts;
+    for (const Bounds& box : in_parts ? std::span<const Bounds>(placed.parts) : std::span(&placed.box, 1))
+      refs.push_back(Ref::of(box, static_cast<u32>(i)));
+  }
+  return refs;
+}
+
 /// The scene BVH over the bounded instances, which are put in its leaf order.
 void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_stack) {
-  const auto fill = [&](std::span<Ref> refs) {
-    for (std::size_t i = 0; i < refs.size(); ++i) refs[i] = Ref::of(bounded[i].box, static_cast<u32>(i));
-  };
+  const std::vector<Ref> refs = refs_of(bounded);
   WideBvhSettings settings;
   settings.block_width = 1;
-  settings.block_cost = 3;  // an instance costs more than a node
-  const WideBvh tree = build_wide_bvh(bounded.size(), fill, settings);
+  settings.block_cost = 3;                                         // an instance costs more than a node
+  if (refs.size() > bounded.size()) settings.max_leaf_blocks = 1;  // those of a leaf follow each other
+  WideBvh tree =
+      build_wide_bvh(refs.size(), [&](std::span<Ref> to) { std::ranges::copy(refs, to.begin()); }, settings);
+  std::vector<Placed> sorted;
+  std::vector<u32> places(bounded.size(), NO_INSTANCE), place_of_block;
+  for (const WideBvh::Block& block : tree.blocks) {
+    u32& place = places[tree.members[block.first]];
+    if (place == NO_INSTANCE) {
+      place = static_cast<u32>(sorted.size());
+      sorted.push_back(bounded[tree.members[block.first]]);
+    }
+    place_of_block.push_back(place);
+  }
+  bounded = std::move(sorted);
+  for (Bvh8Node& node : tree.nodes)
+    for (u32 slot = 0; slot < BVH_WIDTH && (node.valid >> slot & 1u); ++slot)
+      if (u32& child = node.child[slot]; child & BVH_LEAF)
+        child = (child & ~BVH_FIRST_MASK) | place_of_block[child & BVH_FIRST_MASK];
 
   const auto root = static_cast<u32>(out.nodes.size());
   std::vector<Bvh8Node>& nodes = out.nodes.edit();
@@ -207,9 +238,6 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
       if (!(child & BVH_LEAF)) child += root;
     nodes.push_back(node);
   }
-  std::vector<Placed> sorted;
-  for (const WideBvh::Block& block : tree.blocks) sorted.push_back(bounded[tree.members[block.first]]);
-  bounded = std::move(sorted);
 
   out.info.tlas_root = root;
   out.info.bounded_count = static_cast<u32>(bounded.size());

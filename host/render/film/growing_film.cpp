@@ -57,6 +57,20 @@ void add_samples(GrowingFilm& film, const Pass& pass, const Film& made, std::siz
   film.states[p] = PixelState::sampled;
 }
 
+/// The memory of the pixels of a list lies about: that of one which comes later is asked for in time.
+constexpr std::size_t ahead = 24;
+
+void prefetch(const GrowingFilm& film, std::int64_t pixel) {
+  if (pixel < 0) return;
+  const auto p = static_cast<std::size_t>(pixel);
+  __builtin_prefetch(&film.film.sums[p], 1);
+  __builtin_prefetch(&film.film.weights[p], 1);
+  __builtin_prefetch(&film.seen[p], 1);
+  __builtin_prefetch(&film.moved[p], 1);
+  __builtin_prefetch(&film.moved_by_one[p], 1);
+  __builtin_prefetch(&film.taken[p], 1);
+}
+
 /// Puts pixel `i` of a pass into its place `p`.
 void add_pixel(GrowingFilm& film, const Pass& pass, const Film& made, std::size_t i, std::size_t p) {
   Film& whole = film.film;
@@ -171,6 +185,7 @@ void add_pass(GrowingFilm& film, const Pass& pass, Film made, bool complete) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, made.done.size(), pixels_at_once),
                     [&](const auto& pixels) {
                       for (std::size_t i = pixels.begin(); i != pixels.end(); ++i) {
+                        if (i + ahead < pixels.end()) prefetch(film, image_index(film, pass, i + ahead));
                         const std::int64_t found = made.done[i] ? image_index(film, pass, i) : -1;
                         if (found >= 0) add_pixel(film, pass, made, i, static_cast<std::size_t>(found));
                       }

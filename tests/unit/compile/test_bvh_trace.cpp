@@ -1,5 +1,6 @@
 // Rays through the flattened tables find what a search without the BVH finds.
 #include <random>
+#include <set>
 
 #include "bench/rays/exact_tracer.h"
 #include "catch.h"
@@ -97,4 +98,36 @@ TEST_CASE("the scene BVH finds the nearest of many instances") {
   plane.world_from_object[3].y = -1;
   scene.objects.insert(scene.objects.begin(), plane);
   CHECK(check_agreement(scene, 400) > 250);
+}
+
+TEST_CASE("a thin solid that stands askew is in several leaves of the scene BVH, and found as before") {
+  const auto rods = [](bool askew) {
+    SceneDescription scene = scene_of(bumpy_sphere(3));
+    scene.meshes.clear();
+    scene.objects.clear();
+    for (unsigned i = 0; i < 40; ++i) {
+      Object object;
+      if (i % 2)
+        object.shape = CylinderShape{0.02, 1.5, true};
+      else
+        object.shape = BoxShape{{1.0, 0.03, 0.02}};
+      object.material = 0;
+      if (askew)
+        object.world_from_object = some_transform(i);
+      else
+        object.world_from_object[3] = some_transform(i)[3];
+      scene.objects.push_back(object);
+    }
+    return scene;
+  };
+  const auto leaves = [](const SceneDescription& description) {
+    const CompiledScene scene = compile(description);
+    CHECK(scene.instances.size() == 40);
+    const std::vector<u32> items = leaf_items(scene, scene.info.tlas_root);
+    CHECK(std::set<u32>(items.begin(), items.end()).size() == 40);
+    return items.size();
+  };
+  CHECK(leaves(rods(false)) == 40);
+  CHECK(leaves(rods(true)) > 80);
+  CHECK(check_agreement(rods(true), 20000) > 100);
 }
