@@ -29,8 +29,8 @@ struct FramePasses {
   int coarse_block = 0;        // the pass in hand is of such blocks; 0: it is one of the frame's own
   unsigned coarse_passes = 0;  // that are complete
   Stopwatch since_pass;        // the one in hand began
-  double pixel_seconds =
-      0;  // a sample's of a pixel, by the last pass over coarse or all pixels; 0: not known
+  // A sample's of a pixel, by the last pass over coarse or all pixels or the frame before; 0: not known.
+  double pixel_seconds = 0;
 };
 
 /// What the threads share. It lives until the last of them is gone, which may be after the frame's end.

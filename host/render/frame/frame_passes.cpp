@@ -17,7 +17,7 @@ int take_coarse(Frame& frame) {
   passes.coarse.take(passes.pass, frame.film, whole.width, whole.height, passes.coarse_block);
   ++passes.coarse_passes;
   const double blocks = static_cast<double>(passes.coarse.colors.size());
-  passes.pixel_seconds = passes.since_pass.seconds() / blocks;
+  passes.pixel_seconds = expected_pixel_seconds(passes.since_pass.seconds() / blocks, passes.pixel_seconds);
   return next_block(passes.coarse_block, passes.pixel_seconds, pixels_of(frame));
 }
 

@@ -8,7 +8,9 @@ namespace {
 // Seconds: what the first picture may take; a frame that takes less needs no coarse one.
 constexpr double first_seconds = 0.05, soon = 0.12;
 // Frames that take longer have blocks of 4, and of 2.
-constexpr double long_frame = 0.3, very_long_frame = 2.0;
+constexpr double long_frame = 1.2, very_long_frame = 2.0;
+// A coarse pass's pixels take up to so many times as long as neighbours do together.
+constexpr double coarse_cost = 4;
 constexpr int unknown_block = 8, greatest_block = 32;
 
 double seconds_of(int block, double pixel_seconds, std::size_t pixels) {
@@ -31,6 +33,10 @@ int next_block(int block, double pixel_seconds, std::size_t pixels) {
   if (next >= 8) return frame > soon ? next : 0;
   if (next == 4) return frame > long_frame ? next : 0;
   return next == 2 && frame > very_long_frame ? next : 0;
+}
+
+double expected_pixel_seconds(double coarse, double before) {
+  return before > 0 && coarse >= before && coarse < coarse_cost * before ? before : coarse;
 }
 
 Pass coarse_pass(int width, int height, int block) {

@@ -16,6 +16,10 @@ int first_block(double pixel_seconds, std::size_t pixels);
 /// longer than what is added to it by this.
 int next_block(int block, double pixel_seconds, std::size_t pixels);
 
+/// The seconds that a pixel of a whole image takes, by what it took in a coarse pass and in the frame before
+/// (0: not known).
+double expected_pixel_seconds(double coarse, double before);
+
 /// The pass over the middle pixel of each block.
 Pass coarse_pass(int width, int height, int block);
 

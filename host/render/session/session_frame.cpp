@@ -102,6 +102,7 @@ std::shared_ptr<Frame> make_session_frame(const FrameOrder& order,
     frame->servers.push_back(std::move(entry));
   }
   frame->live = true;
+  passes.pixel_seconds = order.pixel_seconds;
   frame->passes = std::move(passes);
   begin_coarse(*frame, order.settings.coarse ? first_block(order.pixel_seconds, pixels) : 0);
   frame->queue.expect_more();

@@ -300,10 +300,18 @@ TEST_CASE("coarse pictures come while a frame would take longer") {
   CHECK(first_block(100.0 / pixels, pixels) == 32);
   CHECK(next_block(32, 10.0 / pixels, pixels) == 16);
   CHECK(next_block(8, 0.2 / pixels, pixels) == 0);
-  CHECK(next_block(8, 1.0 / pixels, pixels) == 4);
+  CHECK(next_block(8, 1.0 / pixels, pixels) == 0);
+  CHECK(next_block(8, 1.5 / pixels, pixels) == 4);
   CHECK(next_block(4, 1.0 / pixels, pixels) == 0);
   CHECK(next_block(4, 9.0 / pixels, pixels) == 2);
   CHECK(next_block(2, 9.0 / pixels, pixels) == 0);
+}
+
+TEST_CASE("a coarse pass's time is that of the frame before, unless it has changed by much") {
+  CHECK(expected_pixel_seconds(2, 0) == 2);
+  CHECK(expected_pixel_seconds(2, 1) == 1);
+  CHECK(expected_pixel_seconds(5, 1) == 5);
+  CHECK(expected_pixel_seconds(0.5, 1) == 0.5);
 }
 
 TEST_CASE("a coarse pass has the middle of each block, at the edges too") {
