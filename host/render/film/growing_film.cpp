@@ -51,24 +51,11 @@ void add_samples(GrowingFilm& film, const Pass& pass, const Film& made, std::siz
   film.moved_by_one[p] = moved_by_one(film.moved[p], taken);
   whole.sums[p] = sum;
   whole.weights[p] = weight;
-  whole.done[p] = 1;
   if (!whole.rays.empty()) whole.rays[p] = made.rays[i];
   film.taken[p] = taken;
+  if (pass.first_sample > 0) return;
+  whole.done[p] = 1;
   film.states[p] = PixelState::sampled;
-}
-
-/// The memory of the pixels of a list lies about: that of one which comes later is asked for in time.
-constexpr std::size_t ahead = 24;
-
-void prefetch(const GrowingFilm& film, std::int64_t pixel) {
-  if (pixel < 0) return;
-  const auto p = static_cast<std::size_t>(pixel);
-  __builtin_prefetch(&film.film.sums[p], 1);
-  __builtin_prefetch(&film.film.weights[p], 1);
-  __builtin_prefetch(&film.seen[p], 1);
-  __builtin_prefetch(&film.moved[p], 1);
-  __builtin_prefetch(&film.moved_by_one[p], 1);
-  __builtin_prefetch(&film.taken[p], 1);
 }
 
 /// Puts pixel `i` of a pass into its place `p`.
@@ -77,8 +64,20 @@ void add_pixel(GrowingFilm& film, const Pass& pass, const Film& made, std::size_
   if (pass.surfaces && !whole.aovs.empty())
     std::copy_n(made.aovs.begin() + static_cast<std::ptrdiff_t>(made.vectors * i), made.vectors,
                 whole.aovs.begin() + static_cast<std::ptrdiff_t>(whole.vectors * p));
-  if (film.states[p] == PixelState::empty) film.states[p] = PixelState::looked_at;
-  if (pass.sample_count > 0) add_samples(film, pass, made, i, p);
+  if (pass.sample_count > 0)
+    add_samples(film, pass, made, i, p);
+  else if (film.states[p] == PixelState::empty)
+    film.states[p] = PixelState::looked_at;
+}
+
+void prefetch(const GrowingFilm& film, const Pass& pass, std::size_t i) {
+  if (pass.pixels.empty() || i >= pass.pixels.size() || pass.pixels[i] == NO_PIXEL) return;
+  prefetch_sums(film, pass, i);
+  const auto p = static_cast<std::size_t>(image_index(film, pass, i));
+  __builtin_prefetch(&film.seen[p], 1);
+  __builtin_prefetch(&film.moved[p], 1);
+  __builtin_prefetch(&film.moved_by_one[p], 1);
+  __builtin_prefetch(&film.taken[p], 1);
 }
 
 /// The sums of the blocks of cost_block pixels a side.
@@ -157,6 +156,14 @@ Film film_of_pass(const GrowingFilm& film, const Pass& pass, bool surfaces) {
   return made;
 }
 
+void prefetch_sums(const GrowingFilm& film, const Pass& pass, std::size_t i) {
+  if (pass.pixels.empty() || i >= pass.pixels.size()) return;  // the rows of an image lie in order
+  const std::int64_t p = image_index(film, pass, i);
+  if (p < 0) return;
+  __builtin_prefetch(&film.film.sums[static_cast<std::size_t>(p)], 1);
+  __builtin_prefetch(&film.film.weights[static_cast<std::size_t>(p)], 1);
+}
+
 std::int64_t image_index(const GrowingFilm& film, const Pass& pass, std::size_t i) {
   if (pass.pixels.empty()) return static_cast<std::int64_t>(i);
   const u32 pixel = pass.pixels[i];
@@ -185,7 +192,7 @@ void add_pass(GrowingFilm& film, const Pass& pass, Film made, bool complete) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, made.done.size(), pixels_at_once),
                     [&](const auto& pixels) {
                       for (std::size_t i = pixels.begin(); i != pixels.end(); ++i) {
-                        if (i + ahead < pixels.end()) prefetch(film, image_index(film, pass, i + ahead));
+                        prefetch(film, pass, i + pixels_ahead);
                         const std::int64_t found = made.done[i] ? image_index(film, pass, i) : -1;
                         if (found >= 0) add_pixel(film, pass, made, i, static_cast<std::size_t>(found));
                       }

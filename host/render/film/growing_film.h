@@ -23,6 +23,10 @@ struct Pass {
 /// The pixels of an image, x | y << 16, in an order in which neighbours stay together.
 std::vector<u32> all_pixels(int image_width, int image_height);
 
+/// Those of all_pixels() whose value, of values row by row, is above that of their block of 4x4.
+std::vector<u32> pixels_above(const std::vector<float>& limits, const std::vector<float>& values,
+                              int image_width, int image_height);
+
 /// A pass over some of all_pixels(), in their order: each run of 16 is a square of 4x4 in the pass, the
 /// pixels that a work-item takes together.
 Pass list_pass(const std::vector<u32>& pixels, u32 first_sample, u32 sample_count);
@@ -37,9 +41,9 @@ using Seen [[gnu::vector_size(16)]] = float;
 /// The edge of the blocks of pixels whose rays a pass with `costs` counts: no device takes pixels of two of
 /// them together.
 constexpr int cost_block = 4;
+inline u32 cost_blocks_along(int size) { return static_cast<u32>((size + cost_block - 1) / cost_block); }
 inline std::size_t cost_blocks(int width, int height) {
-  const auto along = [](int size) { return static_cast<std::size_t>((size + cost_block - 1) / cost_block); };
-  return along(width) * along(height);
+  return std::size_t{cost_blocks_along(width)} * cost_blocks_along(height);
 }
 
 /// Pixels that a thread takes at once: below, waking another costs more than it saves.
@@ -73,6 +77,12 @@ Film film_of_pass(const GrowingFilm& film, const Pass& pass, bool surfaces);
 
 /// The image's pixel (y * width + x) that pixel `i` of the pass stands for; -1: none.
 std::int64_t image_index(const GrowingFilm& film, const Pass& pass, std::size_t i);
+
+/// The memory of a list's pixels lies about: that of one so many later is asked for in time.
+constexpr std::size_t pixels_ahead = 24;
+
+/// Asks for sums and weights of pixel `i` of the pass, if there is one.
+void prefetch_sums(const GrowingFilm& film, const Pass& pass, std::size_t i);
 
 /// Puts the pixels of a pass that are done in their places. `complete`: all are, and the next pass may be
 /// planned; else the film is good to be looked at only.

@@ -23,6 +23,23 @@ constexpr std::array<u32, side * side> z_curve = [] {
   return places;
 }();
 
+/// Whether a value of the block is above the limit. The compiler makes vectors of it.
+bool any_above(float limit, const float* corner, std::size_t width) {
+  unsigned above = 0;
+  for (std::size_t y = 0; y < block; ++y)
+    for (std::size_t x = 0; x < block; ++x) above |= corner[y * width + x] > limit;
+  return above;
+}
+
+/// Calls visit(x, y) for the upper left corners of the image's blocks of 4x4, in the order of all_pixels().
+template <class Visit>
+void for_all_blocks(u32 width, u32 height, const Visit& visit) {
+  for (u32 top = 0; top < height; top += side)
+    for (u32 left = 0; left < width; left += side)
+      for (std::size_t i = 0; i < z_curve.size(); i += pixels_of_block)
+        visit(left + (z_curve[i] & 0xffffu), top + (z_curve[i] >> 16));
+}
+
 /// Where the i-th pixel of a list stands in its pass.
 std::size_t place_in_list(std::size_t i, std::size_t pass_width) {
   const std::size_t columns = pass_width / block, at = i / pixels_of_block, in = i % pixels_of_block;
@@ -35,12 +52,31 @@ std::vector<u32> all_pixels(int image_width, int image_height) {
   const auto width = static_cast<u32>(image_width), height = static_cast<u32>(image_height);
   std::vector<u32> pixels;
   pixels.reserve(std::size_t{width} * height);
-  for (u32 top = 0; top < height; top += side)
-    for (u32 left = 0; left < width; left += side)
-      for (const u32 place : z_curve) {
-        const u32 x = left + (place & 0xffffu), y = top + (place >> 16);
-        if (x < width && y < height) pixels.push_back(x | y << 16);
-      }
+  for_all_blocks(width, height, [&](u32 left, u32 top) {
+    for (std::size_t i = 0; i < pixels_of_block; ++i) {
+      const u32 x = left + (z_curve[i] & 0xffffu), y = top + (z_curve[i] >> 16);
+      if (x < width && y < height) pixels.push_back(x | y << 16);
+    }
+  });
+  return pixels;
+}
+
+std::vector<u32> pixels_above(const std::vector<float>& limits, const std::vector<float>& values,
+                              int image_width, int image_height) {
+  const auto width = static_cast<u32>(image_width), height = static_cast<u32>(image_height);
+  const u32 columns = cost_blocks_along(image_width);
+  std::vector<u32> pixels;
+  for_all_blocks(width, height, [&](u32 left, u32 top) {
+    if (left >= width || top >= height) return;
+    const float limit = limits[top / block * columns + left / block];
+    const float* corner = &values[std::size_t{top} * width + left];
+    if (left + block <= width && top + block <= height && !any_above(limit, corner, width)) return;
+    for (std::size_t i = 0; i < pixels_of_block; ++i) {
+      const u32 x = z_curve[i] & 0xffffu, y = z_curve[i] >> 16;
+      if (left + x < width && top + y < height && corner[std::size_t{y} * width + x] > limit)
+        pixels.push_back((left + x) | (top + y) << 16);
+    }
+  });
   return pixels;
 }
 

@@ -70,6 +70,7 @@ TileRequest request_of(Frame& frame, const Tile& tile) {
   request.weights.resize(pixels);
   request.rays.resize(film.film.rays.empty() ? 0 : pixels);
   for_each_pixel(frame.film, tile, [&](std::size_t at, std::size_t i) {
+    prefetch_sums(film, pass, i + pixels_ahead);
     const std::int64_t found = image_index(film, pass, i);
     if (found < 0) return;
     const auto p = static_cast<std::size_t>(found);

@@ -51,6 +51,16 @@ SeenAround sum_3x3(const GrowingFilm& film, std::size_t x, std::size_t y) {
   return around;
 }
 
+void prefetch_3x3(const GrowingFilm& film, u32 pixel) {
+  const auto width = static_cast<std::size_t>(film.film.width);
+  const std::size_t x = pixel & 0xffffu, y = pixel >> 16;
+  for (std::size_t v = y - (y > 0); v <= std::min(y + 1, static_cast<std::size_t>(film.film.height) - 1);
+       ++v) {
+    __builtin_prefetch(&film.seen[v * width + x]);
+    __builtin_prefetch(&film.moved_by_one[v * width + x]);
+  }
+}
+
 /// Calls visit(p, around) for all pixels, row by row: each sum of three in a column serves three pixels.
 template <class Value, class Visit>
 void for_all_3x3(const std::vector<Value>& values, std::size_t width, const Visit& visit) {
@@ -92,18 +102,25 @@ float known(float square) { return std::isnan(square) ? std::numeric_limits<floa
 
 }  // namespace
 
+std::vector<float> expected_squares_of_one(const GrowingFilm& film) {
+  const auto width = static_cast<std::size_t>(film.film.width);
+  const std::vector<Seen>& seen = film.seen;
+  std::vector<float> variances(seen.size()), squares(seen.size());
+  for_all_3x3(seen, width, [&](std::size_t p, const Around<Seen>& around) {
+    variances[p] = color_variance(seen[p], around);
+  });
+  for_all_3x3(variances, width, [&](std::size_t p, const Around<float>& around) {
+    squares[p] = known(variation_of_one * variances[p] + wider_of_one * around.sum / around.count);
+  });
+  return squares;
+}
+
 std::vector<float> expected_squares(const GrowingFilm& film, const std::vector<u32>& pixels, u32 level) {
   const auto width = static_cast<std::size_t>(film.film.width);
   const std::vector<Seen>& seen = film.seen;
   std::vector<float> expected(pixels.size());
   if (level == 1) {
-    std::vector<float> variances(seen.size()), squares(seen.size());
-    for_all_3x3(seen, width, [&](std::size_t p, const Around<Seen>& around) {
-      variances[p] = color_variance(seen[p], around);
-    });
-    for_all_3x3(variances, width, [&](std::size_t p, const Around<float>& around) {
-      squares[p] = known(variation_of_one * variances[p] + wider_of_one * around.sum / around.count);
-    });
+    const std::vector<float> squares = expected_squares_of_one(film);
     for (std::size_t i = 0; i < pixels.size(); ++i)
       expected[i] = squares[(pixels[i] >> 16) * width + (pixels[i] & 0xffffu)];
     return expected;
@@ -112,6 +129,7 @@ std::vector<float> expected_squares(const GrowingFilm& film, const std::vector<u
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, pixels.size(), pixels_at_once), [&](const auto& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
+          if (i + pixels_ahead < range.end()) prefetch_3x3(film, pixels[i + pixels_ahead]);
           const std::size_t x = pixels[i] & 0xffffu, y = pixels[i] >> 16, p = y * width + x;
           const SeenAround around = sum_3x3(film, x, y);
           const float others =
@@ -122,24 +140,21 @@ std::vector<float> expected_squares(const GrowingFilm& film, const std::vector<u
   return expected;
 }
 
-void divide_by_costs(const GrowingFilm& film, const std::vector<u32>& pixels, std::vector<float>& squares) {
+std::vector<float> block_costs(const GrowingFilm& film) {
   const auto width = static_cast<u32>(film.film.width), height = static_cast<u32>(film.film.height);
   constexpr u32 edge = cost_block;
-  const u32 columns = (width + edge - 1) / edge;
+  std::vector<float> costs(cost_blocks(film.film.width, film.film.height), 1.0f);
   const double rays = std::accumulate(film.block_rays.begin(), film.block_rays.end(), 0.0);
-  if (rays == 0) return;  // not counted
+  if (rays == 0) return costs;  // not counted
+  const u32 columns = (width + edge - 1) / edge;
   const auto mean = static_cast<float>(rays / (static_cast<double>(width) * height));
-  std::vector<float> costs(film.block_rays.size());
   for (u32 i = 0; i < costs.size(); ++i) {
     const u32 across = std::min(edge, width - i % columns * edge);
     const u32 down = std::min(edge, height - i / columns * edge);
     costs[i] =
         static_cast<float>(std::max(1u, film.block_rays[i])) / (static_cast<float>(across * down) * mean);
   }
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const u32 x = pixels[i] & 0xffffu, y = pixels[i] >> 16;
-    squares[i] /= costs[y / edge * columns + x / edge];
-  }
+  return costs;
 }
 
 }  // namespace sundog

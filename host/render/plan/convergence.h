@@ -12,8 +12,11 @@ namespace sundog {
 /// about it, since a pixel whose few samples fell on one side of an edge does not know of the edge.
 std::vector<float> expected_squares(const GrowingFilm& film, const std::vector<u32>& pixels, u32 level);
 
-/// Divides the squares of `pixels` by how many rays the samples around take, in the mean 1, where those were
-/// counted: where samples are dear, each must take away more error.
-void divide_by_costs(const GrowingFilm& film, const std::vector<u32>& pixels, std::vector<float>& squares);
+/// The same of all pixels, row by row, where each has one sample.
+std::vector<float> expected_squares_of_one(const GrowingFilm& film);
+
+/// How many rays the samples in each block of pixels take, in the mean 1, where those were counted; else 1
+/// each. Where samples are dear, each must take away more error.
+std::vector<float> block_costs(const GrowingFilm& film);
 
 }  // namespace sundog

@@ -60,24 +60,34 @@ bool differs_from_neighbors(const Film& film, u32 pixel, float threshold) {
          (y + 1 < height && differ(film, p, p + width, threshold));
 }
 
-/// Keeps those of the pixels, which have `level` samples, that need more. Samples go where each lowers the
-/// picture's squared error most: for n samples the threshold is sqrt(n / 2) times as high. With a budget
-/// those of the greatest errors, so that the frame's samples stay within it.
-void keep_unconverged(const GrowingFilm& film, const SamplingPlan& plan, u32 level, u32 more,
-                      std::vector<u32>& pixels) {
-  std::vector<float> squares = expected_squares(film, pixels, level);
-  divide_by_costs(film, pixels, squares);
+/// Those of the last pass's pixels, which have `level` samples, that need `more`. Samples go where each
+/// lowers the picture's squared error most: for n samples the threshold is sqrt(n / 2) times as high. With a
+/// budget those of the greatest errors, so that the frame's samples stay within it.
+std::vector<u32> unconverged(const GrowingFilm& film, const SamplingPlan& plan, const Pass& last, u32 level,
+                             u32 more) {
   const auto threshold = static_cast<float>(plan.settings.threshold);
-  const float most = threshold * threshold * static_cast<float>(level) / 2;
   const bool by_surfaces = level == first_level(plan) && plan.settings.surfaces;
+  std::vector<float> limits = block_costs(film);
+  for (float& limit : limits) limit *= threshold * threshold * static_cast<float>(level) / 2;
+  if (level == 1 && last.pixels.empty() && !by_surfaces && plan.settings.budget == 0)
+    return pixels_above(limits, expected_squares_of_one(film), film.film.width, film.film.height);
+  std::vector<u32> pixels = pixels_of(last);
+  std::vector<float> squares = expected_squares(film, pixels, level);
   const float contrast = static_cast<float>(plan.settings.contrast) * threshold;
+  const u32 columns = cost_blocks_along(film.film.width);
   std::vector<std::size_t> kept;
-  for (std::size_t i = 0; i < pixels.size(); ++i)
-    if (squares[i] > most || (by_surfaces && differs_from_neighbors(film.film, pixels[i], contrast)))
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const u32 x = pixels[i] & 0xffffu, y = pixels[i] >> 16;
+    const float limit = limits[y / cost_block * columns + x / cost_block];
+    const bool is_above = squares[i] > limit;
+    squares[i] /= limit;
+    if (is_above || (by_surfaces && differs_from_neighbors(film.film, pixels[i], contrast)))
       kept.push_back(i);
+  }
   if (plan.settings.budget > 0) keep_budget(film, plan.settings.budget, more, squares, kept);
   for (std::size_t i = 0; i < kept.size(); ++i) pixels[i] = pixels[kept[i]];
   pixels.resize(kept.size());
+  return pixels;
 }
 
 /// The next doubling of samples; the pixels of the last pass have `level` of them, the others have stopped
@@ -89,8 +99,7 @@ std::optional<Pass> double_samples(const GrowingFilm& film, const SamplingPlan& 
   const bool adaptive = plan.settings.threshold > 0;
   if (adaptive && level < first_level(plan)) next = std::min(next, first_level(plan));
   if (!adaptive || level < first_level(plan)) return whole_pass(film, level, next - level, false);
-  std::vector<u32> pixels = pixels_of(last);
-  keep_unconverged(film, plan, level, next - level, pixels);
+  const std::vector<u32> pixels = unconverged(film, plan, last, level, next - level);
   if (pixels.empty()) return std::nullopt;
   return list_pass(pixels, level, next - level);
 }
