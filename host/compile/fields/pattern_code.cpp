@@ -8,20 +8,23 @@
 namespace sundog {
 namespace {
 
-std::string input_text(int index) {
-  if (index >= formula_input::parameter)
-    return fmt::format("(REAL)(q[{}])", index - formula_input::parameter);
-  if (index == formula_input::iteration) return "width";
-  return fmt::format("p.{}", "xyz"[index - formula_input::p]);
-}
-
 std::string function_of(const PatternFormula& formula, std::size_t number) {
   const LoweredPattern lowered = lower_pattern(formula);
-  GraphPrinter printer(lowered.graph, lowered.values, "f", input_text);
+  FieldCode code;
+  const Operand width = code.argument("width", FieldType::real);
+  GraphWriter write(code, lowered.graph, lowered.values, "f", [&](int index) {
+    if (index >= formula_input::parameter)
+      return Operand::table(static_cast<std::size_t>(index - formula_input::parameter));
+    return index == formula_input::iteration ? width
+                                             : FieldCode::point().coordinate(index - formula_input::p);
+  });
+  write.write_rest();
   std::string out = fmt::format(
       "static inline REAL4 pattern_{}(REAL3 p, REAL width, __global const float* restrict q) {{\n", number);
-  out += printer.remaining_statements();
-  const auto value = [&](std::size_t i) { return "finite_value(" + printer.text(lowered.values[i]) + ")"; };
+  out += code.statements_text();
+  const auto value = [&](std::size_t i) {
+    return "finite_value(" + code.text(write.value(lowered.values[i])) + ")";
+  };
   if (lowered.values.size() == 1)
     return out + fmt::format("    const REAL t = {};\n    return real4(t, t, t, t);\n}}\n\n", value(0));
   return out +

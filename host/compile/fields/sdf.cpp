@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
 #include <map>
 
+#include "compile/fields/field_program.h"
 #include "compile/fields/sdf_deep.h"
 #include "compile/fields/sdf_leaf.h"
 #include "compile/fields/sdf_scale.h"
@@ -24,6 +27,7 @@ constexpr const char* compose_head = "#include \"lib/sdf/compose.cl\"\n\n";
 class FieldsEmitter {
  public:
   CompiledFields run(std::span<const SdfDescription> fields) {
+    if (!fields.empty()) table({0});  // where the programs stand
     for (const SdfDescription& field : fields) {
       SdfDescription leveled = field;
       level_scales(leveled.root);
@@ -33,10 +37,12 @@ class FieldsEmitter {
     const std::string code = compose_head + leaves_ + fields_;
     if (!fields.empty())
       out_.source = file_head + code + dispatch("sdf_", "__global const float* restrict") + "#endif\n";
+    add_programs();
     return std::move(out_);
   }
 
   CompiledFields run_deep(std::span<const DeepField> fields) {
+    table({0});  // there are no programs in double precision
     for (const DeepField& deep : fields) {
       SdfDescription field = deep.field;
       level_scales(field.root);
@@ -65,12 +71,25 @@ class FieldsEmitter {
 
  private:
   struct Kind {
-    const char *type, *suffix, *join;
+    FieldType type;
+    const char* suffix;
   };
-  static constexpr Kind kinds[4] = {{"REAL", "distance", ""},
-                                    {"REAL", "signed", ""},
-                                    {"SdfSample", "sample", "_samples"},
-                                    {"REAL", "near", ""}};
+  static constexpr Kind kinds[4] = {{FieldType::real, "distance"},
+                                    {FieldType::real, "signed"},
+                                    {FieldType::sample, "sample"},
+                                    {FieldType::real, "near"}};
+  struct Leaf {
+    std::string name;
+    std::array<std::shared_ptr<const FieldCode>, 3> functions;
+  };
+
+  /// The same functions for the kernels' interpreter, behind all other numbers.
+  void add_programs() {
+    const std::vector<u32> words = field_programs(codes_);
+    if (words.empty()) return;
+    out_.parameters[0] = std::bit_cast<float>(static_cast<u32>(out_.parameters.size()));
+    for (const u32 word : words) out_.parameters.push_back(std::bit_cast<float>(word));
+  }
 
   std::size_t table(const std::vector<double>& values) {
     const std::size_t first = out_.parameters.size();
@@ -134,16 +153,20 @@ class FieldsEmitter {
     if (++leaf_count_ > SdfNode::max_formulas)
       throw FormulaError(0, 0, fmt::format("a scene may have {} formulas", SdfNode::max_formulas));
     LeafCode code = leaf_code(formula);
-    const auto [found, is_new] =
-        leaf_names_.try_emplace(code.functions, fmt::format("leaf{}", leaf_names_.size()));
+    std::string key;
+    for (const auto& function : code.functions) key += function->text();
+    auto [found, is_new] = leaf_names_.try_emplace(key, Leaf{fmt::format("leaf{}", leaf_names_.size()), {}});
     if (is_new) {
-      std::string text = code.functions;
-      for (std::size_t at = 0; (at = text.find("NAME", at)) != std::string::npos;)
-        text.replace(at, 4, found->second);
-      leaves_ += text;
+      found->second.functions = code.functions;
+      for (std::size_t i = 0; i < code.functions.size(); ++i)
+        leaves_ += function_text(kinds[i], found->second.name + "_", *code.functions[i]);
     }
     leaf_of_place_.push_back(found->second);
     return table(code.parameters);
+  }
+  static std::string function_text(const Kind& kind, const std::string& name, const FieldCode& code) {
+    return fmt::format("static inline {} {}{}(REAL3 p, MASK active, SDF_TABLE q) {{\n{}}}\n\n",
+                       type_name(kind.type), name, kind.suffix, code.text());
   }
 
   std::size_t place_transform(const SdfNode& node) {
@@ -161,95 +184,86 @@ class FieldsEmitter {
     place(field.root);
     const std::size_t index = out_.fields.size();
     uneven_.push_back(is_uneven(field.root));
+    codes_.emplace_back();
     for (int kind = 0; kind < (uneven_.back() ? 4 : 3); ++kind) {
       kind_ = kind;
-      next_place_ = next_leaf_ = next_name_ = 0;
+      next_place_ = next_leaf_ = 0;
       next_native_ = first_native;
-      body_.clear();
-      const std::string value = visit(field.root, "p", kind == 1);
-      fields_ += fmt::format(
-          "static inline {} field{}_{}(REAL3 p, MASK active, SDF_TABLE q) {{\n{}    "
-          "return {};\n}}\n\n",
-          kinds[kind].type, index, kinds[kind].suffix, body_, value);
+      code_ = {};
+      code_.set_result(visit(field.root, FieldCode::point(), kind == 1));
+      fields_ += function_text(kinds[kind], fmt::format("field{}_", index), code_);
+      codes_.back().push_back(std::move(code_));
     }
   }
 
-  std::string fresh() { return fmt::format("v{}", next_name_++); }
-  void line(const std::string& text) { body_ += "    " + text + "\n"; }
-  std::string define(const std::string& value) {
-    const std::string name = fresh();
-    line(fmt::format("const {} {} = {};", kinds[kind_].type, name, value));
-    return name;
+  bool samples() const { return kind_ == 2; }
+  Operand define(FieldOp op, Operands operands, std::size_t number = 0) {
+    return code_.define("v", op, std::move(operands), number);
   }
 
-  /// Emits a node at point `p` and returns its variable. `two_sided`: depths inside are wanted.
-  std::string visit(const SdfNode& node, const std::string& p, bool two_sided) {
+  /// Writes a node at point `p` and returns its value. `two_sided`: depths inside are wanted.
+  Operand visit(const SdfNode& node, const Operand& p, bool two_sided) {
     if (kind_ == 3 && is_smooth(node)) {
       kind_ = 2;
-      const std::string sample = visit(node, p, two_sided);
+      const Operand sample = visit(node, p, two_sided);
       kind_ = 3;
-      return define("near_distance(" + sample + ")");
+      return define(FIELD_NEAR_DISTANCE, {sample});
     }
-    const std::string q = fmt::format("q + {}", places_[next_place_++]);
-    const std::string first_value = q.substr(4);
+    const std::size_t q = places_[next_place_++];
     switch (node.kind) {
       case SdfNode::Kind::formula: {
-        const char* suffix = kind_ == 3 || (kind_ == 0 && two_sided) ? "signed" : kinds[kind_].suffix;
-        return define(fmt::format("{}_{}({}, active, {})", leaf_of_place_[next_leaf_++], suffix, p, q));
+        const std::size_t variant = samples() ? 2 : kind_ != 0 || two_sided ? 1 : 0;
+        const Leaf& leaf = leaf_of_place_[next_leaf_++];
+        return code_.call(fmt::format("{}_{}", leaf.name, kinds[variant].suffix), kinds[variant].type, p, q,
+                          leaf.functions[variant]);
       }
       case SdfNode::Kind::native:
-        return define(fmt::format("native{}{}({})", next_native_++, kind_ == 2 ? "_sample" : "", p));
-      case SdfNode::Kind::transform:
-        return visit_transform(node, p, q, two_sided);
+        return code_.call(fmt::format("native{}{}", next_native_++, samples() ? "_sample" : ""),
+                          kinds[kind_].type, p, q, nullptr);
+      case SdfNode::Kind::transform: {
+        const Operand local = define(FIELD_INTO_CHILD, {p}, q);
+        const Operand child = visit(node.children[0], local, two_sided);
+        return define(samples() ? FIELD_OUT_OF_CHILD_SAMPLE : FIELD_OUT_OF_CHILD, {child}, q);
+      }
       case SdfNode::Kind::repeat:
         return visit_repeat(node, p, q, two_sided);
-      case SdfNode::Kind::thicken:
+      case SdfNode::Kind::thicken: {
+        const Operand child = visit(node.children[0], p, two_sided);
+        return define(samples() ? FIELD_THICKEN_SAMPLE : FIELD_THICKEN, {child}, q);
+      }
       case SdfNode::Kind::shell: {
-        const bool shell = node.kind == SdfNode::Kind::shell;
-        const std::string child = visit(node.children[0], p, two_sided || shell);
-        return define(fmt::format("{}{}({}, q[{}])", shell ? "shell" : "thicken", kind_ == 2 ? "_sample" : "",
-                                  child, first_value));
+        const Operand child = visit(node.children[0], p, true);
+        return define(samples() ? FIELD_SHELL_SAMPLE : FIELD_SHELL, {child}, q);
       }
       default:
-        return visit_joint(node, p, first_value, two_sided);
+        return visit_joint(node, p, q, two_sided);
     }
   }
 
-  std::string visit_joint(const SdfNode& node, const std::string& p, const std::string& smooth,
-                          bool two_sided) {
+  Operand visit_joint(const SdfNode& node, const Operand& p, std::size_t q, bool two_sided) {
     const bool subtract = node.kind == SdfNode::Kind::subtract;
-    const char* name = node.kind == SdfNode::Kind::unite ? "unite"
-                       : subtract                        ? (kind_ == 2 ? "subtract" : "subtract_from")
-                                                         : "intersect";
+    const FieldOp op = node.kind == SdfNode::Kind::unite ? (samples() ? FIELD_UNITE_SAMPLES : FIELD_UNITE)
+                       : subtract ? (samples() ? FIELD_SUBTRACT_SAMPLES : FIELD_SUBTRACT_FROM)
+                                  : (samples() ? FIELD_INTERSECT_SAMPLES : FIELD_INTERSECT);
     const bool rounded = node.smooth > 0;  // a rounded joint needs depths beside its seam
-    std::string value = visit(node.children[0], p, two_sided || rounded);
+    Operand value = visit(node.children[0], p, two_sided || rounded);
     for (std::size_t i = 1; i < node.children.size(); ++i) {
-      const std::string other = visit(node.children[i], p, two_sided || subtract || rounded);
-      value = define(fmt::format("{}{}({}, {}, q[{}])", name, kinds[kind_].join, value, other, smooth));
+      const Operand other = visit(node.children[i], p, two_sided || subtract || rounded);
+      value = define(op, {value, other}, q);
     }
     return value;
   }
 
-  std::string visit_transform(const SdfNode& node, const std::string& p, const std::string& q,
-                              bool two_sided) {
-    const std::string local = fresh();
-    line(fmt::format("const REAL3 {} = into_child({}, {});", local, p, q));
-    const std::string child = visit(node.children[0], local, two_sided);
-    return define(
-        fmt::format("{}({}, {})", kind_ == 2 ? "out_of_child_sample" : "out_of_child_distance", child, q));
-  }
-
-  std::string visit_repeat(const SdfNode& node, const std::string& p, const std::string& q, bool two_sided) {
-    u32 axes = 0;
-    for (int i = 0; i < 3; ++i) axes |= node.period[i] > 0 ? 1u << i : 0u;
-    const std::string result = fresh(), at = fresh(), n = fresh();
-    line(fmt::format("{} {} = {};", kinds[kind_].type, result, kind_ == 2 ? "no_sample()" : "(REAL)(1e20f)"));
-    line(fmt::format("for (u32 {0} = 0; {0} < 8u; ++{0}) {{", n));
-    line(fmt::format("if ({} & {}u) continue;", n, ~axes & 7u));
-    line(fmt::format("const REAL3 {} = repeat_cell({}, {}, {});", at, p, q, n));
-    const std::string child = visit(node.children[0], at, two_sided);
-    line(fmt::format("{0} = unite{1}({0}, {2}, 0.0f);", result, kinds[kind_].join, child));
-    line("}");
+  Operand visit_repeat(const SdfNode& node, const Operand& p, std::size_t q, bool two_sided) {
+    std::size_t axes = 0;
+    for (int i = 0; i < 3; ++i) axes |= node.period[i] > 0 ? std::size_t{1} << i : 0;
+    const Operand result = samples() ? code_.declare("v", FIELD_NO_SAMPLE, {})
+                                     : code_.declare("v", FIELD_COPY, {Operand::literal(1e20f)});
+    code_.begin_cells(axes);
+    const Operand at = define(FIELD_REPEAT_CELL, {p}, q);
+    const Operand child = visit(node.children[0], at, two_sided);
+    code_.assign(result, samples() ? FIELD_UNITE_CELLS_SAMPLES : FIELD_UNITE_CELLS, {result, child});
+    code_.end();
     return result;
   }
 
@@ -260,7 +274,8 @@ class FieldsEmitter {
     if (near) out += uneven_fields();
     for (int kind = 0; kind < (near ? 4 : 3); ++kind) {
       out += fmt::format("static inline {} {}{}(u32 field, REAL3 p, {}{} q) {{\n  switch (field) {{\n",
-                         kinds[kind].type, prefix, kinds[kind].suffix, kind == 2 ? "" : "MASK active, ", q);
+                         type_name(kinds[kind].type), prefix, kinds[kind].suffix,
+                         kind == 2 ? "" : "MASK active, ", q);
       for (std::size_t i = 0; i + 1 < out_.fields.size(); ++i)
         out += fmt::format("    case {}u: return field{}_{}(p, {}, q);\n", i, i, suffix_of(i, kind),
                            kind == 2 ? "ALL_LANES" : "active");
@@ -281,7 +296,7 @@ class FieldsEmitter {
       out += fmt::format(
           "static inline {0} sdf_{1}(u32 field, REAL3 p, {2}__global const float* restrict q) {{\n  return "
           "{3}(deep_{1}(field, deep_place(p, q, SDF_ORIGINS + 3u * field), {4}DEEP_TABLE(q)));\n}}\n\n",
-          kinds[kind].type, kinds[kind].suffix, kind == 2 ? "" : "MASK active, ",
+          type_name(kinds[kind].type), kinds[kind].suffix, kind == 2 ? "" : "MASK active, ",
           kind == 2 ? "shallow_sample" : "DEEP_TO", kind == 2 ? "" : "DEEP_FROM_MASK(active), ");
     }
     return out;
@@ -289,7 +304,9 @@ class FieldsEmitter {
 
   /// The question that marching asks of a field, and SDF_HAS_NEAR, without which it asks none.
   std::string uneven_fields() const {
-    std::string out = "#define SDF_HAS_NEAR 1\nstatic inline bool sdf_uneven(u32 field) {\n  return false";
+    std::string out =
+        "#define SDF_HAS_NEAR 1\nstatic inline bool sdf_uneven(u32 field, __global const float* restrict q) "
+        "{\n  return false";
     for (std::size_t i = 0; i < uneven_.size(); ++i)
       if (uneven_[i]) out += fmt::format(" || field == {}u", i);
     return out + ";\n}\n\n";
@@ -343,17 +360,23 @@ class FieldsEmitter {
   }
 
   CompiledFields out_;
-  std::vector<double> exact_;  // the parameters in double precision
-  std::map<std::string, std::string> leaf_names_;
-  std::string leaves_, fields_, body_;
+  std::vector<double> exact_;               // the parameters in double precision
+  std::map<std::string, Leaf> leaf_names_;  // by their code
+  std::string leaves_, fields_;
+  FieldCode code_;                             // of the function that is being written
+  std::vector<std::vector<FieldCode>> codes_;  // a field's functions
   std::vector<std::size_t> places_;
-  std::vector<std::string> leaf_of_place_;
+  std::vector<Leaf> leaf_of_place_;
   std::vector<bool> uneven_;  // a field each
-  std::size_t next_place_ = 0, next_leaf_ = 0, next_name_ = 0, next_native_ = 0, native_count_ = 0;
+  std::size_t next_place_ = 0, next_leaf_ = 0, next_native_ = 0, native_count_ = 0;
   int leaf_count_ = 0, kind_ = 0;
 };
 
 }  // namespace
+
+bool have_programs(std::span<const float> parameters) {
+  return !parameters.empty() && std::bit_cast<u32>(parameters[0]) != 0;
+}
 
 CompiledFields compile_fields(std::span<const SdfDescription> fields) { return FieldsEmitter().run(fields); }
 

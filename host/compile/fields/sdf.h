@@ -11,12 +11,16 @@
 namespace sundog {
 
 /// `source` depends on the formulas, their whole exponents and how the fields are put together; every other
-/// number is in `parameters`, so that changing it builds no kernel anew.
+/// number is in `parameters`, so that changing it builds no kernel anew. Behind the numbers stand the same
+/// fields as programs.
 struct CompiledFields {
   std::string source;  // text of generated/sdf.cl; empty when there are no fields
   std::vector<float> parameters;
   std::vector<SdfField> fields;  // as many as there were descriptions
 };
+
+/// Whether the parameters hold the fields as programs too, which kernels/lib/sdf/interpret.cl runs.
+bool have_programs(std::span<const float> parameters);
 
 /// Pure. Throws FormulaError.
 CompiledFields compile_fields(std::span<const SdfDescription> fields);

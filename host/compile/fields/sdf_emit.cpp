@@ -2,37 +2,76 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <utility>
 
 namespace sundog {
 namespace {
 
-bool is_condition(Op op) {
-  return op == Op::less || op == Op::less_equal || op == Op::both || op == Op::either || op == Op::opposite;
+/// All but sums, choices and powers of roots, whose operands stand in another order.
+FieldOp field_op(Op op) {
+  switch (op) {
+    case Op::multiply:
+      return FIELD_MULTIPLY;
+    case Op::divide:
+      return FIELD_DIVIDE;
+    case Op::negate:
+      return FIELD_NEGATE;
+    case Op::absolute:
+      return FIELD_ABSOLUTE;
+    case Op::minimum:
+      return FIELD_MINIMUM;
+    case Op::maximum:
+      return FIELD_MAXIMUM;
+    case Op::round_down:
+      return FIELD_ROUND_DOWN;
+    case Op::square_root:
+      return FIELD_SQUARE_ROOT;
+    case Op::rough_inverse_root:
+      return FIELD_ROUGH_INVERSE_ROOT;
+    case Op::sine:
+      return FIELD_SINE;
+    case Op::cosine:
+      return FIELD_COSINE;
+    case Op::arc_cosine:
+      return FIELD_ARC_COSINE;
+    case Op::arc_tangent:
+      return FIELD_ARC_TANGENT;
+    case Op::exponential:
+      return FIELD_EXPONENTIAL;
+    case Op::logarithm:
+      return FIELD_LOGARITHM;
+    case Op::power:
+      return FIELD_POWER;
+    case Op::less:
+      return FIELD_LESS;
+    case Op::less_equal:
+      return FIELD_LESS_EQUAL;
+    case Op::both:
+      return FIELD_BOTH;
+    case Op::either:
+      return FIELD_EITHER;
+    case Op::opposite:
+      return FIELD_OPPOSITE;
+    default:
+      return FIELD_COPY;
+  }
 }
 
 }  // namespace
 
-std::string literal(double value) {
-  if (value != static_cast<float>(value)) return fmt::format("(REAL)(LITERAL({:#.17g}))", value);
-  std::string text = fmt::format("{:.9g}", static_cast<float>(value));
-  if (text.find_first_of(".en") == std::string::npos) text += ".0";
-  return "(REAL)(" + text + "f)";
-}
-
-GraphPrinter::GraphPrinter(const Graph& graph, std::vector<NodeId> outputs, std::string prefix,
-                           std::function<std::string(int)> input)
-    : graph_(graph),
+GraphWriter::GraphWriter(FieldCode& code, const Graph& graph, std::vector<NodeId> outputs, std::string prefix,
+                         std::function<Operand(int)> input)
+    : code_(code),
+      graph_(graph),
       outputs_(std::move(outputs)),
       prefix_(std::move(prefix)),
       input_(std::move(input)),
       uses_(graph.size(), 0),
-      is_fused_(graph.size(), false),
-      is_printed_(graph.size(), false) {
+      is_fused_(graph.size(), false) {
   count_uses();
 }
 
-void GraphPrinter::count_uses() {
+void GraphWriter::count_uses() {
   for (const NodeId id : outputs_) uses_[id] += 2;  // an output keeps its own name
   for (NodeId id = static_cast<NodeId>(graph_.size()); id-- > 0;) {
     if (uses_[id] == 0) continue;
@@ -52,101 +91,52 @@ void GraphPrinter::count_uses() {
   }
 }
 
-std::string GraphPrinter::text(NodeId id) const {
+Operand GraphWriter::value(NodeId id) {
   const Node& node = graph_[id];
-  if (node.op == Op::constant) return literal(node.value);
-  if (node.op == Op::input) return input_(static_cast<int>(node.value));
-  return prefix_ + std::to_string(id);
+  if (node.op == Op::constant) return Operand::literal(node.value);
+  if (const auto found = values_.find(id); found != values_.end()) return found->second;
+  return values_[id] = input_(static_cast<int>(node.value));
 }
 
-std::string GraphPrinter::sum(const Node& node) const {
+void GraphWriter::define(NodeId id, FieldOp op, Operands operands, std::size_t number) {
+  values_[id] = code_.define(prefix_ + std::to_string(id), op, std::move(operands), number);
+}
+
+void GraphWriter::write_sum(NodeId id) {
+  const Node& node = graph_[id];
   const bool minus = node.op == Op::subtract;
   const bool fused_a = fused(node.a), fused_b = fused(node.b);
   if (fused_b && !(minus && fused_a)) {
     const Node& m = graph_[node.b];
-    return fmt::format("fma({}{}, {}, {})", minus ? "-" : "", text(m.a), text(m.b), text(node.a));
-  }
-  if (fused_a) {
+    define(id, minus ? FIELD_FMA_LESS_A : FIELD_FMA, {value(m.a), value(m.b), value(node.a)});
+  } else if (fused_a) {
     const Node& m = graph_[node.a];
-    return fmt::format("fma({}, {}, {}{})", text(m.a), text(m.b), minus ? "-" : "", text(node.b));
+    define(id, minus ? FIELD_FMA_LESS_C : FIELD_FMA, {value(m.a), value(m.b), value(node.b)});
+  } else {
+    define(id, minus ? FIELD_SUBTRACT : FIELD_ADD, {value(node.a), value(node.b)});
   }
-  return fmt::format("{} {} {}", text(node.a), minus ? "-" : "+", text(node.b));
 }
 
-std::string GraphPrinter::value(NodeId id) const {
+void GraphWriter::write(NodeId id) {
   const Node& node = graph_[id];
-  const auto call = [&](const char* name) {
-    return node.b == no_node ? fmt::format("{}({})", name, text(node.a))
-                             : fmt::format("{}({}, {})", name, text(node.a), text(node.b));
-  };
-  const auto infix = [&](const char* sign) {
-    return fmt::format("{} {} {}", text(node.a), sign, text(node.b));
-  };
   switch (node.op) {
-    case Op::constant:
-    case Op::input:
-      return text(id);
     case Op::add:
     case Op::subtract:
-      return sum(node);
-    case Op::multiply:
-      return infix("*");
-    case Op::divide:
-      return infix("/");
-    case Op::negate:
-      return fmt::format("-{}", text(node.a));
-    case Op::absolute:
-      return call("fabs");
-    case Op::minimum:
-      return call("real_min");
-    case Op::maximum:
-      return call("real_max");
-    case Op::round_down:
-      return call("floor");
-    case Op::square_root:
-      return call("real_sqrt");
+      return write_sum(id);
     case Op::inverse_root:
-      return fmt::format("inverse_root_power({}, {})", text(node.a), graph_[node.b].value);
-    case Op::rough_inverse_root:
-      return call("rough_rsqrt");
-    case Op::sine:
-      return call("sin");
-    case Op::cosine:
-      return call("cos");
-    case Op::arc_cosine:
-      return call("acos");
-    case Op::arc_tangent:
-      return call("atan2");
-    case Op::exponential:
-      return call("exp");
-    case Op::logarithm:
-      return call("real_log");
-    case Op::power:
-      return call("pow");
-    case Op::less:
-      return "MASK_OF(" + infix("<") + ")";
-    case Op::less_equal:
-      return "MASK_OF(" + infix("<=") + ")";
-    case Op::both:
-      return infix("&");
-    case Op::either:
-      return infix("|");
-    case Op::opposite:
-      return fmt::format("~{}", text(node.a));
+      return define(id, FIELD_INVERSE_ROOT, {value(node.a)}, static_cast<std::size_t>(graph_[node.b].value));
     case Op::choose:
-      return fmt::format("select({}, {}, {})", text(node.c), text(node.b), text(node.a));
+      return define(id, FIELD_CHOOSE, {value(node.c), value(node.b), value(node.a)});
+    default:
+      break;
   }
-  return "";
+  Operands operands{value(node.a)};
+  if (node.b != no_node) operands.push_back(value(node.b));
+  define(id, field_op(node.op), std::move(operands));
 }
 
-std::string GraphPrinter::statement(NodeId id) const {
-  return fmt::format("    const {} {} = {};\n", is_condition(graph_[id].op) ? "MASK" : "REAL", text(id),
-                     value(id));
-}
-
-std::string GraphPrinter::invariant_statements(const std::function<bool(int)>& changes) {
+void GraphWriter::write_invariants(const std::function<bool(int)>& changes) {
   std::vector<bool> varies(graph_.size(), false);
-  std::string out;
   for (NodeId id = 0; id < graph_.size(); ++id) {
     const Node& node = graph_[id];
     if (node.op == Op::constant) continue;
@@ -156,21 +146,17 @@ std::string GraphPrinter::invariant_statements(const std::function<bool(int)>& c
     }
     for (const NodeId operand : {node.a, node.b, node.c})
       if (operand != no_node && varies[operand]) varies[id] = true;
-    if (varies[id] || uses_[id] == 0 || fused(id)) continue;
-    out += statement(id);
-    is_printed_[id] = true;
+    if (!varies[id] && uses_[id] > 0 && !fused(id)) write(id);
   }
-  return out;
 }
 
-std::string GraphPrinter::remaining_statements() {
-  std::string out;
+void GraphWriter::write_rest() {
   for (NodeId id = 0; id < graph_.size(); ++id) {
     const Op op = graph_[id].op;
-    if (uses_[id] == 0 || fused(id) || is_printed_[id] || op == Op::constant || op == Op::input) continue;
-    out += statement(id);
+    if (uses_[id] == 0 || fused(id) || values_.contains(id) || op == Op::constant || op == Op::input)
+      continue;
+    write(id);
   }
-  return out;
 }
 
 }  // namespace sundog

@@ -1,8 +1,6 @@
 // A leaf's functions: what its orbit's end, or its direct formula, says of the distance. See sdf_leaf.h.
 #include "compile/fields/sdf_leaf.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -27,92 +25,103 @@ void check(const FormulaField& field) {
 
 }  // namespace
 
-std::string LeafEmitter::function() {
-  static const char* const names[] = {"distance", "signed", "sample"};
-  const bool sample = variant_ == Variant::sample;
-  std::string out = fmt::format("static inline {} NAME_{}(REAL3 p, MASK active, SDF_TABLE q) {{\n",
-                                sample ? "SdfSample" : "REAL", names[static_cast<int>(variant_)]);
-  out += last_->kind == FormulaKind::direct ? direct() : iterated();
-  return out + "}\n\n";
+FieldCode LeafEmitter::function() {
+  if (last_->kind == FormulaKind::direct)
+    direct();
+  else
+    iterated();
+  return std::move(code_);
 }
 
-std::string LeafEmitter::direct() {
+void LeafEmitter::direct() {
   const Section& s = lowered_[0].finish;
   std::vector<NodeId> outputs{s.distance};
-  const bool sample = variant_ == Variant::sample;
-  if (sample) outputs.insert(outputs.end(), s.gradient.begin(), s.gradient.end());
-  GraphPrinter print = printer(0, s, outputs, "f");
-  std::string out = print.remaining_statements();
-  const std::string distance = fmt::format("{} * q[{}]", print.text(s.distance), leaf_slot::safety);
-  if (!sample) return out + "    return finite_distance(" + distance + ");\n";
+  if (is_sample()) outputs.insert(outputs.end(), s.gradient.begin(), s.gradient.end());
+  GraphWriter write = writer(0, s, outputs, "f");
+  write.write_rest();
+  const Operand scaled =
+      code_.define("scaled", FIELD_MULTIPLY, {write.value(s.distance), slot(leaf_slot::safety)});
+  const Operand distance = code_.define("distance", FIELD_FINITE, {scaled});
+  if (!is_sample()) return code_.set_result(distance);
   // Of the distance that is returned; where it is divided by its gradient, to first order about the
   // surface.
-  const std::string gradient = fmt::format("real3({}, {}, {})", print.text(s.gradient[0]),
-                                           print.text(s.gradient[1]), print.text(s.gradient[2]));
-  out += fmt::format(
-      "    const REAL r2 = square_length3(p.x, p.y, p.z);\n    SdfSample s = {{finite_distance({}), "
-      "scale3({}, (REAL)(q[{}])),\n"
-      "        r2, real_min(fabs(p.x), real_min(fabs(p.y), fabs(p.z))), r2, (REAL)(0.0f)}};\n"
-      "    s.point = real_sqrt(r2);\n    s.axis = axis_distance(p.x, p.y, p.z);\n    return s;\n",
-      distance, last_->normalize ? "unit3(" + gradient + ")" : gradient, leaf_slot::safety);
-  return out;
+  Operands parts;
+  for (const NodeId id : s.gradient) parts.push_back(write.value(id));
+  Operand gradient = code_.assemble("gradient", FieldType::point, parts);
+  if (last_->normalize) gradient = code_.define("unit", FIELD_UNIT, {gradient});
+  gradient = code_.define("slopes", FIELD_SCALE, {gradient, slot(leaf_slot::safety)});
+  const Operand p = FieldCode::point();
+  const Operands xyz{p.coordinate(0), p.coordinate(1), p.coordinate(2)};
+  const Operand r2 = code_.define("r2", FIELD_SQUARE_LENGTH3, xyz);
+  Operands sizes;
+  for (const Operand& x : xyz) sizes.push_back(code_.define("size", FIELD_ABSOLUTE, {x}));
+  const Operand of_yz = code_.define("least", FIELD_MINIMUM, {sizes[1], sizes[2]});
+  const Operand plane = code_.define("plane", FIELD_MINIMUM, {sizes[0], of_yz});
+  const Operand point = code_.define("point", FIELD_SQUARE_ROOT, {r2});
+  const Operand axis = code_.define("axis", FIELD_AXIS_DISTANCE, xyz);
+  code_.set_result(code_.assemble("s", FieldType::sample,
+                                  {distance, gradient.coordinate(0), gradient.coordinate(1),
+                                   gradient.coordinate(2), point, plane, axis, Operand::literal(0)}));
 }
 
-std::string LeafEmitter::gradient_of_length() const {
-  std::string out;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::string sum = fmt::format("{} * t{}", z_names[size_ - 1], (size_ - 1) * 3 + axis);
-    for (int i = size_ - 2; i >= 0; --i) sum = fmt::format("fma({}, t{}, {})", z_names[i], i * 3 + axis, sum);
-    out += fmt::format("    const REAL g{} = {};\n", axis, sum);
+std::array<Operand, 3> LeafEmitter::gradient_of_length() {
+  std::array<Operand, 3> gradient;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t last = components() - 1;
+    Operand sum = code_.define("part", FIELD_MULTIPLY, {z_[last], t_[last * 3 + axis]});
+    for (std::size_t i = last; i-- > 0;)
+      sum = code_.define("part", FIELD_FMA, {z_[i], t_[i * 3 + axis], sum});
+    gradient[axis] = sum;
   }
-  return out;
+  return gradient;
 }
 
-std::string LeafEmitter::escape_distance() const {
-  const char* form = last_->estimate == EscapeEstimate::logarithmic ? "logarithmic" : "linear";
-  const char* square = latched() ? "escaped_r2" : "r2";
-  std::string out = fmt::format(
-      "    const REAL level = select((REAL)(0.0f), (REAL)(q[{}]), late);\n    const REAL outer = "
-      "{}_distance({}, dr, "
-      "level);\n",
-      leaf_slot::level, form, square);
-  if (variant_ != Variant::two_sided) return out + "    const REAL found = outer;\n";
-  return out +
-         fmt::format("    const REAL found = select(outer, -real_max(inner, (REAL)(0.0f)) * q[{}], alive);\n",
-                     leaf_slot::inside_safety);
+Operand LeafEmitter::escape_distance() {
+  const Operand zero = Operand::literal(0);
+  const Operand level = code_.define("level", FIELD_CHOOSE, {zero, slot(leaf_slot::level), late_});
+  const FieldOp form = last_->estimate == EscapeEstimate::logarithmic ? FIELD_LOGARITHMIC : FIELD_LINEAR;
+  const Operand outer = code_.define("outer", form, {latched() ? escaped_r2_ : r2_, dr_, level});
+  if (variant_ != Variant::two_sided) return outer;
+  const Operand room = code_.define("room", FIELD_MAXIMUM, {inner_, zero});
+  const Operand below = code_.define("depth", FIELD_NEGATE, {room});
+  const Operand depth = code_.define("depth", FIELD_MULTIPLY, {below, slot(leaf_slot::inside_safety)});
+  return code_.define("found", FIELD_CHOOSE, {outer, depth, alive_});
 }
 
-std::string LeafEmitter::folded_distance(std::string* gradient) {
+Operand LeafEmitter::folded_distance(std::array<Operand, 3>* gradient) {
   const Section& s = lowered_.back().finish;
   std::vector<NodeId> outputs{s.distance};
-  if (variant_ == Variant::sample) outputs.insert(outputs.end(), s.gradient.begin(), s.gradient.end());
-  GraphPrinter print = printer(lowered_.size() - 1, s, outputs, "f");
-  std::string out = print.remaining_statements();
-  if (variant_ == Variant::sample)
-    *gradient = fmt::format("real3({}, {}, {})", print.text(s.gradient[0]), print.text(s.gradient[1]),
-                            print.text(s.gradient[2]));
-  return out +
-         fmt::format("    const REAL found = {} / real_max(dr, (REAL)(1e-30f));\n", print.text(s.distance));
+  if (is_sample()) outputs.insert(outputs.end(), s.gradient.begin(), s.gradient.end());
+  GraphWriter write = writer(lowered_.size() - 1, s, outputs, "f");
+  write.write_rest();
+  if (is_sample())
+    for (std::size_t axis = 0; axis < 3; ++axis) (*gradient)[axis] = write.value(s.gradient[axis]);
+  const Operand slope = code_.define("slope", FIELD_MAXIMUM, {dr_, Operand::literal(1e-30f)});
+  return code_.define("found", FIELD_DIVIDE, {write.value(s.distance), slope});
 }
 
-std::string LeafEmitter::iterated() {
-  std::string out = start() + loop();
-  std::string gradient = "real3(g0, g1, g2)";
-  if (jacobian_) out += derivative_from_jacobian();
-  if (variant_ == Variant::sample && escapes()) out += gradient_of_length();
-  out += escapes() ? escape_distance() : folded_distance(&gradient);
-  const std::string distance = fmt::format("finite_distance(found * q[{}])", leaf_slot::safety);
-  if (variant_ != Variant::sample) return out + "    return " + distance + ";\n";
-  const std::string rest =
-      bails_out()
-          ? fmt::format(
-                " + real_sqrt(clamp(q[{}] / real_max(r2, (REAL)(1e-30f)), (REAL)(0.0f), (REAL)(1.0f)))",
-                leaf_slot::bailout)
-          : "";
-  return out +
-         fmt::format(
-             "    const SdfSample s = {{{}, {}, real_sqrt(point), plane, axis, count{}}};\n    return s;\n",
-             distance, gradient, rest);
+void LeafEmitter::iterated() {
+  start();
+  loop();
+  std::array<Operand, 3> gradient;
+  if (jacobian_) dr_ = derivative_from_jacobian();
+  if (is_sample() && escapes()) gradient = gradient_of_length();
+  const Operand found = escapes() ? escape_distance() : folded_distance(&gradient);
+  const Operand scaled = code_.define("scaled", FIELD_MULTIPLY, {found, slot(leaf_slot::safety)});
+  const Operand distance = code_.define("distance", FIELD_FINITE, {scaled});
+  if (!is_sample()) return code_.set_result(distance);
+  Operand count = count_;
+  if (bails_out()) {
+    const Operand square = code_.define("square", FIELD_MAXIMUM, {r2_, Operand::literal(1e-30f)});
+    const Operand share = code_.define("share", FIELD_DIVIDE, {slot(leaf_slot::bailout), square});
+    const Operand within = code_.define("within", FIELD_CLAMPED, {share});
+    const Operand rest = code_.define("rest", FIELD_SQUARE_ROOT, {within});
+    count = code_.define("iterations_to_escape", FIELD_ADD, {count_, rest});
+  }
+  const Operand point = code_.define("nearest", FIELD_SQUARE_ROOT, {point_});
+  code_.set_result(
+      code_.assemble("s", FieldType::sample,
+                     {distance, gradient[0], gradient[1], gradient[2], point, plane_, axis_, count}));
 }
 
 LeafCode leaf_code(const FormulaField& field) {
@@ -120,7 +129,8 @@ LeafCode leaf_code(const FormulaField& field) {
   LeafCode code;
   using Variant = LeafEmitter::Variant;
   for (const Variant variant : {Variant::distance, Variant::two_sided, Variant::sample})
-    code.functions += LeafEmitter(field, variant).function();
+    code.functions[static_cast<std::size_t>(variant)] =
+        std::make_shared<const FieldCode>(LeafEmitter(field, variant).function());
   const double inside = std::min(field.bailout, field.steps.back().definition.inside_radius);
   const FormulaDefinition& last = field.steps.back().definition;
   const double level = last.estimate == EscapeEstimate::logarithmic

@@ -1,15 +1,17 @@
-// One formula, or hybrid of formulas, as three OpenCL C functions: distance, two-sided distance, and sample
-// (distance, gradient, orbit traps).
+// One formula, or hybrid of formulas, as three functions: distance, two-sided distance, and sample (distance,
+// gradient, orbit traps).
 #pragma once
-#include <string>
+#include <array>
+#include <memory>
 #include <vector>
 
+#include "compile/fields/field_code.h"
 #include "scene/formula/sdf.h"
 
 namespace sundog {
 
 struct LeafCode {
-  std::string functions;  // <name>_distance, <name>_signed, <name>_sample; NAME stands for the name
+  std::array<std::shared_ptr<const FieldCode>, 3> functions;  // distance, signed, sample
   std::vector<double> parameters;
 };
 

@@ -1,9 +1,11 @@
 // Writes one function of a leaf: what is shared by its parts. Internal to leaf_code().
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
 #include "compile/fields/sdf_emit.h"
+#include "compile/fields/sdf_leaf.h"
 #include "scene/formula/lower.h"
 #include "scene/formula/sdf.h"
 
@@ -15,9 +17,6 @@ constexpr int iterations = 0, bailout = 1, inside = 2, safety = 3, inside_safety
               first_parameter = 6;
 }
 
-/// The names of z's components in the code.
-inline constexpr const char* z_names[4] = {"zx", "zy", "zz", "zw"};
-
 class LeafEmitter {
  public:
   enum class Variant { distance, two_sided, sample };
@@ -25,44 +24,49 @@ class LeafEmitter {
   /// `field` must outlive it.
   LeafEmitter(const FormulaField& field, Variant variant);
 
-  std::string function();
+  FieldCode function();
 
  private:
   bool escapes() const { return last_->kind == FormulaKind::escape; }
   bool bails_out() const { return escapes() || field_.bailout > 0; }
   bool running() const { return !jacobian_; }
+  bool is_sample() const { return variant_ == Variant::sample; }
   /// Only |z| and its derivative at the escape are wanted: z itself may run on.
   bool latched() const { return variant_ == Variant::distance && escapes() && running(); }
+  std::size_t components() const { return static_cast<std::size_t>(size_); }
 
-  std::string input(std::size_t step, int index) const;
-  GraphPrinter printer(std::size_t step, const Section& section, std::vector<NodeId> outputs,
-                       const char* prefix) const;
-  std::string square() const;
+  Operand input(std::size_t step, int index);
+  GraphWriter writer(std::size_t step, const Section& section, std::vector<NodeId> outputs,
+                     const char* prefix);
+  static Operand slot(int index) { return Operand::table(static_cast<std::size_t>(index)); }
 
   // The orbit (sdf_leaf_orbit.cpp): z, c and derivatives before the first iteration; one iteration; all.
-  struct MapCode {
-    std::string before, inside;
-  };
-  std::string start();
-  std::string assign(const std::string& name, const std::string& value) const;
-  MapCode map(std::size_t step);
+  void start();
+  void square(const Operand& r2);
+  Operand below_bailout();
+  void assign(const Operand& variable, const Operand& value);
+  GraphWriter map_writer(std::size_t step);
+  void map(std::size_t step, GraphWriter& write);
+  /// What stays the same in all iterations, a step each.
+  std::vector<GraphWriter> begin_maps();
   /// One iteration: the only step, or the step whose turn it is.
-  MapCode iteration();
+  void iteration(std::vector<GraphWriter>& maps);
   /// dr from the Jacobian: the most that lengths grow in any direction.
-  std::string derivative_from_jacobian() const;
-  std::string inner_distance() const;
-  std::string traps() const;
-  std::string latched_loop();
-  std::string loop();
+  Operand derivative_from_jacobian();
+  void inner_distance();
+  void traps();
+  void latched_look();
+  void latched_loop();
+  void loop();
 
   // What comes of it (sdf_leaf.cpp).
-  std::string direct();
+  void direct();
   /// The gradient of |z| times |z|: J^T z.
-  std::string gradient_of_length() const;
+  std::array<Operand, 3> gradient_of_length();
   /// Distance of an orbit that escaped or was ended; one that stays is inside, as deep as `inner`.
-  std::string escape_distance() const;
-  std::string folded_distance(std::string* gradient);
-  std::string iterated();
+  Operand escape_distance();
+  Operand folded_distance(std::array<Operand, 3>* gradient);
+  void iterated();
 
   const FormulaField& field_;
   Variant variant_;
@@ -71,6 +75,12 @@ class LeafEmitter {
   const FormulaDefinition* last_ = nullptr;
   int size_ = 3;
   bool jacobian_ = false, tangents_ = false;
+
+  FieldCode code_;
+  std::array<Operand, 4> z_, c_;
+  std::array<Operand, 12> t_, c_t_;  // tangents
+  Operand dr_, c_slope_, r2_, escaped_r2_, alive_, entered_, late_, inner_;
+  Operand point_, plane_, axis_, count_;
 };
 
 }  // namespace sundog

@@ -7,6 +7,17 @@ namespace sundog {
 
 namespace in = formula_input;
 
+namespace {
+
+constexpr const char* z_names[4] = {"zx", "zy", "zz", "zw"};
+
+bool changes_in_orbit(int index) {
+  return (index >= in::z && index < in::z + 4) || index == in::derivative || index == in::iteration ||
+         index == in::square || (index >= in::tangent_z && index < in::tangent_c);
+}
+
+}  // namespace
+
 LeafEmitter::LeafEmitter(const FormulaField& field, Variant variant) : field_(field), variant_(variant) {
   int slot = leaf_slot::first_parameter;
   for (const FormulaStep& step : field.steps) {
@@ -20,37 +31,47 @@ LeafEmitter::LeafEmitter(const FormulaField& field, Variant variant) : field_(fi
   tangents_ = jacobian_ || variant == Variant::sample;
 }
 
-std::string LeafEmitter::input(std::size_t step, int index) const {
-  if (index >= in::parameter) return fmt::format("(REAL)(q[{}])", slots_[step] + index - in::parameter);
-  if (index >= in::tangent_c) return fmt::format("c_t{}", index - in::tangent_c);
-  if (index >= in::tangent_z) return fmt::format("t{}", index - in::tangent_z);
-  if (index >= in::c && index < in::c + 4) return fmt::format("c{}", "xyzw"[index - in::c]);
-  if (index >= in::z && index < in::z + 4) return z_names[index - in::z];
+Operand LeafEmitter::input(std::size_t step, int index) {
+  const auto from = [index](const auto& values, int first) {
+    return values[static_cast<std::size_t>(index - first)];
+  };
+  if (index >= in::parameter) return slot(slots_[step] + index - in::parameter);
+  if (index >= in::tangent_c) return from(c_t_, in::tangent_c);
+  if (index >= in::tangent_z) return from(t_, in::tangent_z);
+  if (index >= in::c && index < in::c + 4) return from(c_, in::c);
+  if (index >= in::z && index < in::z + 4) return from(z_, in::z);
   switch (index) {
     case in::derivative:
-      return "dr";
+      return dr_;
     case in::c_slope:
-      return "c_slope";
+      return c_slope_;
     case in::iteration:
-      return "(REAL)((float)i)";
+      return code_.define("iteration", FIELD_ITERATION, {});
     case in::square:
-      return "r2";
+      return r2_;
     default:
-      return fmt::format("p.{}", "xyz"[index]);
+      return FieldCode::point().coordinate(index);
   }
 }
 
-GraphPrinter LeafEmitter::printer(std::size_t step, const Section& section, std::vector<NodeId> outputs,
-                                  const char* prefix) const {
-  return {section.graph, std::move(outputs), fmt::format("{}{}_", prefix, step),
+GraphWriter LeafEmitter::writer(std::size_t step, const Section& section, std::vector<NodeId> outputs,
+                                const char* prefix) {
+  return {code_, section.graph, std::move(outputs), fmt::format("{}{}_", prefix, step),
           [this, step](int index) { return input(step, index); }};
 }
 
-std::string LeafEmitter::square() const {
-  return size_ == 4 ? "square_length4(zx, zy, zz, zw)" : "square_length3(zx, zy, zz)";
+void LeafEmitter::square(const Operand& r2) {
+  if (size_ == 4)
+    code_.assign(r2, FIELD_SQUARE_LENGTH4, {z_[0], z_[1], z_[2], z_[3]});
+  else
+    code_.assign(r2, FIELD_SQUARE_LENGTH3, {z_[0], z_[1], z_[2]});
 }
 
-std::string LeafEmitter::start() {
+Operand LeafEmitter::below_bailout() {
+  return code_.define("below", FIELD_LESS, {r2_, slot(leaf_slot::bailout)});
+}
+
+void LeafEmitter::start() {
   const Section& s = lowered_[0].start;
   std::vector<NodeId> outputs = s.z;
   outputs.insert(outputs.end(), s.c.begin(), s.c.end());
@@ -60,139 +81,180 @@ std::string LeafEmitter::start() {
   if (tangents_)
     for (const auto* rows : {&s.z_tangents, &s.c_tangents})
       for (const auto& row : *rows) outputs.insert(outputs.end(), row.begin(), row.end());
-  GraphPrinter print = printer(0, s, outputs, "s");
-  std::string out = print.remaining_statements();
+  GraphWriter write = writer(0, s, outputs, "s");
+  write.write_rest();
   for (std::size_t i = 0; i < s.z.size(); ++i) {
-    out += fmt::format("    REAL {} = {};\n", z_names[i], print.text(s.z[i]));
-    out += fmt::format("    const REAL c{} = {};\n", "xyzw"[i], print.text(s.c[i]));
+    z_[i] = code_.declare(z_names[i], FIELD_COPY, {write.value(s.z[i])});
+    c_[i] = write.value(s.c[i]);
   }
-  if (running()) out += fmt::format("    REAL dr = {};\n", print.text(s.derivative));
-  if (c_slope) out += fmt::format("    const REAL c_slope = {};\n", print.text(s.c_slope));
-  if (!tangents_) return out;
+  if (running()) dr_ = code_.declare("dr", FIELD_COPY, {write.value(s.derivative)});
+  if (c_slope) c_slope_ = write.value(s.c_slope);
+  if (!tangents_) return;
   for (std::size_t i = 0; i < s.z.size(); ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      out += fmt::format("    REAL t{} = {};\n", i * 3 + axis, print.text(s.z_tangents[i][axis]));
-      if (!s.graph.is_constant(s.c_tangents[i][axis]))
-        out += fmt::format("    const REAL c_t{} = {};\n", i * 3 + axis, print.text(s.c_tangents[i][axis]));
+      const std::size_t at = i * 3 + axis;
+      t_[at] = code_.declare(fmt::format("t{}", at), FIELD_COPY, {write.value(s.z_tangents[i][axis])});
+      c_t_[at] = write.value(s.c_tangents[i][axis]);
     }
-  return out;
 }
 
-std::string LeafEmitter::assign(const std::string& name, const std::string& value) const {
-  if (!bails_out()) return fmt::format("    {} = {};\n", name, value);
-  return fmt::format("    {0} = select({0}, {1}, alive);\n", name, value);
+void LeafEmitter::assign(const Operand& variable, const Operand& value) {
+  if (bails_out())
+    code_.assign(variable, FIELD_CHOOSE, {variable, value, alive_});
+  else
+    code_.assign(variable, FIELD_COPY, {value});
 }
 
-LeafEmitter::MapCode LeafEmitter::map(std::size_t step) {
+GraphWriter LeafEmitter::map_writer(std::size_t step) {
   const Section& s = lowered_[step].map;
   std::vector<NodeId> outputs = s.z;
   if (running()) outputs.push_back(s.derivative);
   if (tangents_)
     for (const auto& row : s.z_tangents) outputs.insert(outputs.end(), row.begin(), row.end());
-  GraphPrinter print = printer(step, s, outputs, "m");
-  MapCode code;
-  code.before = print.invariant_statements([](int index) {
-    return (index >= in::z && index < in::z + 4) || index == in::derivative || index == in::iteration ||
-           index == in::square || (index >= in::tangent_z && index < in::tangent_c);
-  });
-  code.inside = print.remaining_statements();
-  if (tangents_)  // all new values are known before the first is set
+  return writer(step, s, outputs, "m");
+}
+
+void LeafEmitter::map(std::size_t step, GraphWriter& write) {
+  const Section& s = lowered_[step].map;
+  write.write_rest();
+  // All new values are known before the first is set: what is itself a variable is kept.
+  const auto kept = [&](const std::string& name, NodeId id) {
+    const Operand value = write.value(id);
+    return s.graph[id].op == Op::input ? code_.define(name, FIELD_COPY, {value}) : value;
+  };
+  std::vector<Operand> tangents, z;
+  if (tangents_)
     for (std::size_t i = 0; i < s.z.size(); ++i)
       for (std::size_t axis = 0; axis < 3; ++axis)
-        code.inside += fmt::format("    const REAL n{}_{} = {};\n", step, i * 3 + axis,
-                                   print.text(s.z_tangents[i][axis]));
+        tangents.push_back(kept(fmt::format("n{}_{}", step, i * 3 + axis), s.z_tangents[i][axis]));
   for (std::size_t i = 0; i < s.z.size(); ++i)
-    code.inside += fmt::format("    const REAL new{}_{} = {};\n", step, z_names[i], print.text(s.z[i]));
-  if (running()) code.inside += assign("dr", print.text(s.derivative));
-  for (std::size_t i = 0; i < s.z.size(); ++i) {
-    const std::string value = fmt::format("new{}_{}", step, z_names[i]);
-    code.inside += latched() ? fmt::format("    {} = {};\n", z_names[i], value) : assign(z_names[i], value);
+    z.push_back(kept(fmt::format("new{}_{}", step, z_names[i]), s.z[i]));
+  if (running()) assign(dr_, write.value(s.derivative));
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    if (latched())
+      code_.assign(z_[i], FIELD_COPY, {z[i]});
+    else
+      assign(z_[i], z[i]);
   }
-  if (tangents_)
-    for (std::size_t i = 0; i < s.z.size() * 3; ++i)
-      code.inside += assign(fmt::format("t{}", i), fmt::format("n{}_{}", step, i));
-  return code;
+  for (std::size_t i = 0; i < tangents.size(); ++i) assign(t_[i], tangents[i]);
 }
 
-LeafEmitter::MapCode LeafEmitter::iteration() {
-  if (lowered_.size() == 1) return map(0);
-  MapCode code;
-  int total = 0;
-  for (const FormulaStep& step : field_.steps) total += step.times;
-  code.inside = fmt::format("    const u32 turn = i % {}u;\n", total);
-  int end = 0;
+std::vector<GraphWriter> LeafEmitter::begin_maps() {
+  std::vector<GraphWriter> maps;
   for (std::size_t step = 0; step < lowered_.size(); ++step) {
-    const MapCode part = map(step);
-    end += field_.steps[step].times;
-    code.before += part.before;
-    const bool last = step + 1 == lowered_.size();
-    code.inside += (last ? "    {\n" : fmt::format("    if (turn < {}u) {{\n", end)) + part.inside + "    }";
-    code.inside += last ? "\n" : " else\n";
+    maps.push_back(map_writer(step));
+    maps.back().write_invariants(changes_in_orbit);
   }
-  return code;
+  return maps;
 }
 
-std::string LeafEmitter::derivative_from_jacobian() const {
-  std::string rows;
-  for (int i = 0; i < 4; ++i)
-    rows += fmt::format("{}real3({})", i ? ", " : "",
-                        i < size_ ? fmt::format("t{}, t{}, t{}", i * 3, i * 3 + 1, i * 3 + 2)
-                                  : "(REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f)");
-  return fmt::format("    const REAL dr = stretch_of({});\n", rows);
+void LeafEmitter::iteration(std::vector<GraphWriter>& maps) {
+  if (lowered_.size() == 1) return map(0, maps[0]);
+  std::size_t total = 0, end = 0;
+  for (const FormulaStep& step : field_.steps) total += static_cast<std::size_t>(step.times);
+  for (std::size_t step = 0; step < lowered_.size(); ++step) {
+    end += static_cast<std::size_t>(field_.steps[step].times);
+    if (step == 0)
+      code_.begin_turn(total, end);
+    else
+      code_.next_turn(step + 1 == lowered_.size() ? 0 : end);
+    map(step, maps[step]);
+  }
+  code_.end();
 }
 
-std::string LeafEmitter::inner_distance() const {
-  std::string out = jacobian_ ? "    {\n" + derivative_from_jacobian() : "    {\n";
-  return out + fmt::format(
-                   "    const REAL room = (q[{}] - real_sqrt(r2)) / real_max(dr, (REAL)(1e-30f));\n"
-                   "    inner = select(inner, real_min(room, inner), alive);\n    }}\n",
-                   leaf_slot::inside);
+Operand LeafEmitter::derivative_from_jacobian() {
+  Operands rows;
+  const Operand zero = Operand::literal(0);
+  for (std::size_t i = 0; i < 4; ++i)
+    rows.push_back(code_.assemble(
+        "row", FieldType::point,
+        i < components() ? Operands{t_[i * 3], t_[i * 3 + 1], t_[i * 3 + 2]} : Operands{zero, zero, zero}));
+  return code_.define("dr", FIELD_STRETCH, rows);
 }
 
-std::string LeafEmitter::traps() const {
-  std::string out = "    point = select(point, real_min(r2, point), alive);\n";
-  out +=
-      "    plane = select(plane, real_min(real_min(fabs(zx), real_min(fabs(zy), fabs(zz))), plane), "
-      "alive);\n";
-  out += "    axis = select(axis, real_min(axis_distance(zx, zy, zz), axis), alive);\n";
-  return out + "    count = select(count, count + 1.0f, alive);\n";
+void LeafEmitter::inner_distance() {
+  const Operand dr = jacobian_ ? derivative_from_jacobian() : dr_;
+  const Operand root = code_.define("root", FIELD_SQUARE_ROOT, {r2_});
+  const Operand apart = code_.define("apart", FIELD_SUBTRACT, {slot(leaf_slot::inside), root});
+  const Operand slope = code_.define("slope", FIELD_MAXIMUM, {dr, Operand::literal(1e-30f)});
+  const Operand room = code_.define("room", FIELD_DIVIDE, {apart, slope});
+  const Operand least = code_.define("least", FIELD_MINIMUM, {room, inner_});
+  code_.assign(inner_, FIELD_CHOOSE, {inner_, least, alive_});
 }
 
-std::string LeafEmitter::latched_loop() {
-  const std::string look = fmt::format(
-      "r2 = {};\n    escaped_r2 = select(escaped_r2, r2, alive);\n    alive &= MASK_OF(r2 < q[{}]);\n",
-      square(), leaf_slot::bailout);
-  const MapCode code = iteration();
-  return fmt::format(
-      "    REAL r2 = (REAL)(0.0f), escaped_r2 = r2;\n    MASK alive = active;\n{}"
-      "    const u32 iterations = (u32)q[{}];\n    for (u32 i = 0; i < iterations; ++i) {{\n    {}"
-      "    if (!any_lane(alive)) break;\n{}    }}\n    const MASK late = alive;\n    {}",
-      code.before, leaf_slot::iterations, look, code.inside, look);
+void LeafEmitter::traps() {
+  const auto keep = [&](const Operand& trap, const Operand& value) {
+    code_.assign(trap, FIELD_CHOOSE, {trap, value, alive_});
+  };
+  const auto least = [&](const Operand& a, const Operand& b) {
+    return code_.define("least", FIELD_MINIMUM, {a, b});
+  };
+  keep(point_, least(r2_, point_));
+  Operands sizes;
+  for (std::size_t i = 0; i < 3; ++i) sizes.push_back(code_.define("size", FIELD_ABSOLUTE, {z_[i]}));
+  const Operand of_yz = least(sizes[1], sizes[2]), of_all = least(sizes[0], of_yz);
+  keep(plane_, least(of_all, plane_));
+  const Operand axis = code_.define("to_axis", FIELD_AXIS_DISTANCE, {z_[0], z_[1], z_[2]});
+  keep(axis_, least(axis, axis_));
+  keep(count_, code_.define("more", FIELD_ADD, {count_, Operand::literal(1)}));
 }
 
-std::string LeafEmitter::loop() {
+void LeafEmitter::latched_look() {
+  square(r2_);
+  code_.assign(escaped_r2_, FIELD_CHOOSE, {escaped_r2_, r2_, alive_});
+  const Operand below = below_bailout();
+  code_.assign(alive_, FIELD_BOTH, {alive_, below});
+}
+
+void LeafEmitter::latched_loop() {
+  r2_ = code_.declare("r2", FIELD_COPY, {Operand::literal(0)});
+  escaped_r2_ = code_.declare("escaped_r2", FIELD_COPY, {Operand::literal(0)});
+  alive_ = code_.declare("alive", FIELD_COPY_MASK, {FieldCode::active()});
+  std::vector<GraphWriter> maps = begin_maps();
+  code_.begin_iterations(leaf_slot::iterations);
+  latched_look();
+  code_.leave_if_none(alive_);
+  iteration(maps);
+  code_.end();
+  late_ = code_.define("late", FIELD_COPY_MASK, {alive_});
+  latched_look();
+}
+
+void LeafEmitter::loop() {
   if (latched()) return latched_loop();
-  const MapCode code = iteration();
-  std::string out = "    REAL r2 = " + square() + ";\n";
-  out += bails_out() ? fmt::format("    MASK alive = active & MASK_OF(r2 < q[{}]);\n", leaf_slot::bailout)
-                     : "    const MASK alive = active;\n";
-  if (variant_ == Variant::two_sided && escapes())
-    out += "    REAL inner = (REAL)(1e30f);\n" + inner_distance();
-  if (variant_ == Variant::sample)
-    out += "    REAL point = (REAL)(1e30f), plane = point, axis = point, count = (REAL)(0.0f);\n";
-  out += code.before;
-  if (escapes()) out += "    MASK entered = alive;  // the last iteration\n";
-  out += fmt::format(
-      "    const u32 iterations = (u32)q[{}];\n    u32 i = 0;\n    for (; i < iterations; ++i) {{\n",
-      leaf_slot::iterations);
-  if (bails_out()) out += "    if (!any_lane(alive)) break;\n";
-  out += code.inside + "    r2 = " + square() + ";\n";
-  if (variant_ == Variant::sample) out += traps();
-  if (variant_ == Variant::two_sided && escapes()) out += inner_distance();
-  if (escapes()) out += "    entered = alive;\n";
-  if (bails_out()) out += fmt::format("    alive &= MASK_OF(r2 < q[{}]);\n", leaf_slot::bailout);
-  out += "    }\n";
-  return escapes() ? out + "    const MASK late = i == iterations ? entered : NO_LANES;\n" : out;
+  r2_ = code_.declare("r2", FIELD_COPY, {Operand::literal(0)});
+  square(r2_);
+  alive_ = code_.declare("alive", FIELD_COPY_MASK, {FieldCode::active()});
+  if (bails_out()) {
+    const Operand below = below_bailout();
+    code_.assign(alive_, FIELD_BOTH, {alive_, below});
+  }
+  const bool has_inner = variant_ == Variant::two_sided && escapes();
+  if (has_inner) {
+    inner_ = code_.declare("inner", FIELD_COPY, {Operand::literal(1e30f)});
+    inner_distance();
+  }
+  if (is_sample()) {
+    for (auto [trap, name] : {std::pair{&point_, "point"}, {&plane_, "plane"}, {&axis_, "axis"}})
+      *trap = code_.declare(name, FIELD_COPY, {Operand::literal(1e30f)});
+    count_ = code_.declare("count", FIELD_COPY, {Operand::literal(0)});
+  }
+  std::vector<GraphWriter> maps = begin_maps();
+  if (escapes()) entered_ = code_.declare("entered", FIELD_COPY_MASK, {alive_});  // the last iteration
+  code_.begin_iterations(leaf_slot::iterations);
+  if (bails_out()) code_.leave_if_none(alive_);
+  iteration(maps);
+  square(r2_);
+  if (is_sample()) traps();
+  if (has_inner) inner_distance();
+  if (escapes()) code_.assign(entered_, FIELD_COPY_MASK, {alive_});
+  if (bails_out()) {
+    const Operand below = below_bailout();
+    code_.assign(alive_, FIELD_BOTH, {alive_, below});
+  }
+  code_.end();
+  if (escapes()) late_ = code_.define("late", FIELD_LATE, {entered_}, leaf_slot::iterations);
 }
 
 }  // namespace sundog

@@ -14,7 +14,7 @@ namespace {
 
 using glm::dmat3;
 
-double greatest(const dvec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
+double farthest(const dvec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
 /// The cross product with the axis, in the world. Of `frame`s that are no rotations the turn is no rotation
 /// there either.
@@ -87,7 +87,7 @@ void widen(double by, Bounds& box) {
 double greatest_pivot(const Object& object, const dvec3& origin) {
   double most = 0;
   for (const TurnDescription& turn : object.turns)
-    most = std::max(most, greatest(turn.about - origin) + greatest(turn.moves_by));
+    most = std::max(most, farthest(turn.about - origin) + farthest(turn.moves_by));
   return most;
 }
 

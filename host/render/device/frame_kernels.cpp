@@ -86,6 +86,7 @@ KernelConfig choose_config(const Device& device, const Integrator& integrator, K
   std::vector<KernelConfig> candidates = kernels.builder->built();
   candidates.insert(candidates.end(), kernels.known.rbegin(), kernels.known.rend());
   candidates.insert(candidates.end(), kernels.general.begin(), kernels.general.end());
+  std::ranges::stable_partition(candidates, [](const KernelConfig& one) { return !interprets(one); });
   for (const KernelConfig& general : candidates)
     if (stands_in(general, wanted) && device.has(integrator.entry, general.defines, general.generated)) {
       kernels.builder->want({integrator.entry, integrator.kernel, std::move(wanted)});

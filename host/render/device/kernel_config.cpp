@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "compile/fields/sdf.h"
 #include "device/choice.h"
 #include "scene/integrators.h"
 
@@ -14,6 +15,13 @@ namespace {
 // A CPU's driver keeps the private memory of a whole group on a thread's stack, 8 MiB by default, and crashes
 // when that is full. What a work-item holds is its ray stack and its batch.
 constexpr std::size_t group_memory = std::size_t{6} << 20, ray_bytes = 80, batch_bytes = 640;
+
+// The file of the fields' code, and what stands there where their programs are run.
+constexpr const char* fields_file = "generated/sdf.cl";
+constexpr const char* interpreter = "#include \"lib/sdf/interpret.cl\"\n";
+
+// A field's own flags decide within those of the kernel.
+const std::string all_field_flags = std::to_string(SDF_SMOOTH | SDF_CUT_SPHERE);
 
 // General kernels have room for the rays of so many levels.
 constexpr unsigned general_depth = 12;
@@ -61,11 +69,22 @@ bool harmless(const std::string& definition, const KernelDefines& defines) {
 
 }  // namespace
 
+bool interprets(const KernelConfig& config) {
+  const auto fields = config.generated.find(fields_file);
+  return fields != config.generated.end() && fields->second == interpreter;
+}
+
 bool stands_in(const KernelConfig& general, const KernelConfig& wanted) {
-  if (general.generated != wanted.generated || general.defines.size() != wanted.defines.size()) return false;
+  const bool any_fields = interprets(general) && wanted.has_programs;
+  const bool same_files =
+      std::ranges::equal(general.generated, wanted.generated, [&](const auto& has, const auto& wants) {
+        return has == wants || (any_fields && has.first == fields_file && wants.first == fields_file);
+      });
+  if (!same_files || general.defines.size() != wanted.defines.size()) return false;
   return std::ranges::equal(general.defines, wanted.defines, [&](const auto& has, const auto& wants) {
     if (has == wants) return true;
     if (has.first != wants.first) return false;
+    if (has.first == "SDF_FLAGS") return has.second == all_field_flags;
     const bool room = has.first == "RAY_STACK" || has.first == "BVH_STACK";
     return (room || harmless(has.first, wanted.defines)) &&
            std::stoul(has.second) >= std::stoul(wants.second);
@@ -81,9 +100,10 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
   deep.integrator = scene.integrator;
   deep.tracer = scene.tracer;
   deep.field_source = scene.field_source;
+  deep.sdf_parameters = scene.sdf_parameters;
   deep.pattern_source = scene.pattern_source;
   KernelConfig config = make_kernel_config(deep, device, tuning);
-  const bool fields = config.generated.contains("generated/sdf.cl");
+  const bool fields = config.generated.contains(fields_file);
   for (auto& [name, value] : config.defines) {
     const bool of_fields = name == "HAS_OCCLUSION" || name == "HAS_SOFT_SHADOWS" || name == "SDF_TWO_SIDED";
     if (harmless(name, config.defines) && (fields || !of_fields)) value = "1";
@@ -91,9 +111,17 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
   return config;
 }
 
+KernelConfig interpreting_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
+  KernelConfig config = general_config(scene, device, tuning);
+  config.generated[fields_file] = interpreter;
+  config.defines["SDF_FLAGS"] = all_field_flags;
+  return config;
+}
+
 std::vector<KernelConfig> general_configs(const CompiledScene& scene, const DeviceInfo& device,
                                           const Tuning& tuning) {
   std::vector<KernelConfig> all{general_config(scene, device, tuning)};
+  if (all.front().has_programs) all.push_back(interpreting_config(scene, device, tuning));
   for (const char* name : {"HAS_FOG", "HAS_LENS"}) {
     KernelConfig other = all.front();
     std::string& value = other.defines.at(name);
@@ -149,7 +177,10 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   const unsigned without_tree = vectors && batch == 16 ? 6 : few_solids;
   define("HAS_BVH", scene.features.shapes[SHAPE_MESH] || scene.info.bounded_count > without_tree);
   define("LANES", lanes);
-  if (!scene.field_source.empty()) config.generated["generated/sdf.cl"] = scene.field_source;
+  if (!scene.field_source.empty()) {
+    config.generated[fields_file] = scene.field_source;
+    config.has_programs = have_programs(scene.sdf_parameters);
+  }
   if (!scene.pattern_source.empty()) config.generated["generated/patterns.cl"] = scene.pattern_source;
   return config;
 }

@@ -12,8 +12,12 @@ struct KernelConfig {
   unsigned tile_w = 4, tile_h = 4;  // pixels a work-item
   unsigned ray_stack = 0;           // rays that may wait in a work-item
   KernelDefines defines;
-  GeneratedFiles generated;  // the scene's formulas as kernel code
+  GeneratedFiles generated;   // the scene's formulas as kernel code
+  bool has_programs = false;  // the scene has its fields as programs too
 };
+
+/// Whether the kernels run the programs of any scene's fields, slowly, instead of code made for one scene's.
+bool interprets(const KernelConfig& config);
 
 /// Whether the device runs one ray a lane over compact nodes: by its class, unless the scene says which.
 bool traces_compact(const CompiledScene& scene, const DeviceInfo& device);
@@ -30,8 +34,12 @@ bool stands_in(const KernelConfig& general, const KernelConfig& wanted);
 /// of the same formulas. A path tracer's are its own. Pure.
 KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning = {});
 
-/// Those, and the same with and without what else an edit switches on or off by a number: fog, a lens. The
-/// most general ones of the scene itself come first. Pure.
+/// The same for scenes of any other formulas. Only where the scene's fields are programs too. Pure.
+KernelConfig interpreting_config(const CompiledScene& scene, const DeviceInfo& device,
+                                 const Tuning& tuning = {});
+
+/// Those, where there are fields those that interpret them, and the first with and without what else an edit
+/// switches on or off by a number: fog, a lens. Those come first that most edits want. Pure.
 std::vector<KernelConfig> general_configs(const CompiledScene& scene, const DeviceInfo& device,
                                           const Tuning& tuning = {});
 

@@ -6,7 +6,8 @@
 
 // Distance of p from the surface, as light sees it.
 static inline REAL open_distance(const Scene* scene, u32 index, REAL3 p, MASK active) {
-  if (sdf_uneven(index)) return called_near(index, p, active, NO_LANES, scene->sdf_parameters);
+  if (sdf_uneven(index, scene->sdf_parameters))
+    return called_near(index, p, active, NO_LANES, scene->sdf_parameters);
   return sdf_distance(index, p, active, scene->sdf_parameters) * scene->sdf_fields[index].safety;
 }
 
@@ -40,7 +41,8 @@ static inline REAL sdf_soft_shadow(const Scene* scene, u32 index, REAL3 p, REAL3
     *steps_left -= 1u;
     const REAL d = sdf_distance(index, along3(p, t, wi), active, scene->sdf_parameters) * field->safety;
     REAL beside = d;
-    if (sdf_uneven(index)) beside = open_distance(scene, index, along3(p, t, wi), active);
+    if (sdf_uneven(index, scene->sdf_parameters))
+      beside = open_distance(scene, index, along3(p, t, wi), active);
     open = select(open, real_min(open, hardness * beside * rough_inverse(t)), active);
     t += real_max(d, 0.02f * t);  // a penumbra is not looked at more closely than this
     active &= MASK_OF(open > 0.002f) & MASK_OF(t < leave);

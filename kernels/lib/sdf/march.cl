@@ -59,7 +59,8 @@ __attribute__((noinline)) static REAL called_near(u32 field, REAL3 p, MASK activ
   return select(d, -d, inside);
 }
 static inline REAL surface_distance(const Scene* scene, u32 field, REAL3 p, MASK active, MASK inside) {
-  if (sdf_uneven(field)) return called_near(field, p, active, inside, scene->sdf_parameters);
+  if (sdf_uneven(field, scene->sdf_parameters))
+    return called_near(field, p, active, inside, scene->sdf_parameters);
   return called_estimate(field, p, active, inside, scene->sdf_parameters);
 }
 
@@ -141,7 +142,7 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
   const MASK to_crossing = smooth ? NO_LANES : rays->inside;
   MASK overshot = NO_LANES;
   REAL clear_at = first;  // the last point on the side that the ray travels on
-  const bool uneven = sdf_uneven(index);
+  const bool uneven = sdf_uneven(index, scene->sdf_parameters);
   const REAL spread = rays->spread * speed * field->detail,
              footprint = rays->footprint * speed * field->detail;
   const REAL least = (REAL)(field->lower.w), greatest = (REAL)(field->upper.w);
