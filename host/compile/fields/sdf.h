@@ -19,6 +19,9 @@ struct CompiledFields {
   std::vector<SdfField> fields;  // as many as there were descriptions
 };
 
+/// What stands for a scene's own `source` where kernels run the fields' programs, whatever the fields.
+inline constexpr const char* interpreting_source = "#include \"lib/sdf/interpret.cl\"\n";
+
 /// Whether the parameters hold the fields as programs too, which kernels/lib/sdf/interpret.cl runs.
 bool have_programs(std::span<const float> parameters);
 

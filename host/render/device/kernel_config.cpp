@@ -16,9 +16,8 @@ namespace {
 // when that is full. What a work-item holds is its ray stack and its batch.
 constexpr std::size_t group_memory = std::size_t{6} << 20, ray_bytes = 80, batch_bytes = 640;
 
-// The file of the fields' code, and what stands there where their programs are run.
+// The file of the fields' code.
 constexpr const char* fields_file = "generated/sdf.cl";
-constexpr const char* interpreter = "#include \"lib/sdf/interpret.cl\"\n";
 
 // A field's own flags decide within those of the kernel.
 const std::string all_field_flags = std::to_string(SDF_SMOOTH | SDF_CUT_SPHERE);
@@ -71,7 +70,7 @@ bool harmless(const std::string& definition, const KernelDefines& defines) {
 
 bool interprets(const KernelConfig& config) {
   const auto fields = config.generated.find(fields_file);
-  return fields != config.generated.end() && fields->second == interpreter;
+  return fields != config.generated.end() && fields->second == interpreting_source;
 }
 
 bool stands_in(const KernelConfig& general, const KernelConfig& wanted) {
@@ -113,7 +112,7 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
 
 KernelConfig interpreting_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
   KernelConfig config = general_config(scene, device, tuning);
-  config.generated[fields_file] = interpreter;
+  config.generated[fields_file] = interpreting_source;
   config.defines["SDF_FLAGS"] = all_field_flags;
   return config;
 }
