@@ -43,6 +43,31 @@ void wait_until_prepared(RenderSession& session) {
   REQUIRE(session.snapshot(false).prepared);
 }
 
+/// A scene of one formula, and of a number that no run before had, so that its kernel is in no cache.
+SceneDescription new_formula(const std::string& distance) {
+  const auto now = std::chrono::system_clock::now().time_since_epoch().count() % 1000000007;
+  const nlohmann::json document = {{"image", {{"width", 37}, {"height", 26}}},
+                                   {"lights", {{{"type", "ambient"}}}},
+                                   {"materials", {{"grey", {{"color", {0.5, 0.5, 0.5}}}}}},
+                                   {"objects",
+                                    {{{"type", "formula"},
+                                      {"material", "grey"},
+                                      {"distance", fmt::format("{} + {}e-12", distance, now)}}}}};
+  return load_scene_document(document, "new.json");
+}
+
+/// The field less a part of itself.
+SdfNode with_hole(const SdfNode& field) {
+  SdfNode moved, whole;
+  moved.kind = SdfNode::Kind::transform;
+  moved.offset = dvec3(0.4);
+  moved.children = {field};
+  whole.kind = SdfNode::Kind::subtract;
+  whole.smooth = 0.1;
+  whole.children = {field, moved};
+  return whole;
+}
+
 SceneDescription mesh_scene() {
   SceneDescription scene = scene_of(bumpy_sphere(8));
   scene.image.width = 30;
@@ -187,6 +212,11 @@ TEST_CASE(
     check_settled(session, other, device, true);
     CHECK(session.snapshot().work.kernels_built == 0);
   }
+  // Other formulas are interpreted.
+  scene.fields[0] = new_formula("length(p) - 1 + 0.1 * sin(5 * p.x)").fields[0];
+  scene.fields[0].root = with_hole(scene.fields[0].root);
+  check_settled(session, scene, device, true);
+  CHECK(session.snapshot().work.kernels_built == 0);
 }
 
 TEST_CASE("general kernels of paths draw the same bits as a scene's own, after most edits at once") {
@@ -223,6 +253,16 @@ TEST_CASE("kernels stand in for others that leave harmless features out") {
   CHECK(std::ranges::count_if(general_configs(scene, device),
                               [&](const KernelConfig& one) { return stands_in(one, fog); }) == 1);
   CHECK_FALSE(stands_in(general_config(compile(scenes::shipped_small("mandelbulb")), device), own));
+  const CompiledScene bulb = compile(scenes::shipped_small("mandelbulb"));
+  const KernelConfig interpreting = interpreting_config(bulb, device);
+  CompiledScene sphere = bulb;
+  sphere.field_source = "another";
+  sphere.features.field_flags = SDF_SMOOTH;
+  CHECK(stands_in(interpreting, make_kernel_config(sphere, device)));
+  CHECK_FALSE(stands_in(general_config(bulb, device), make_kernel_config(sphere, device)));
+  sphere.sdf_parameters.edit()[0] = 0;
+  CHECK_FALSE(stands_in(interpreting, make_kernel_config(sphere, device)));
+  CHECK_FALSE(stands_in(interpreting, own));
   const CompiledScene patterns = compile(scenes::shipped_small("patterns"));
   CHECK(stands_in(general_config(patterns, device), make_kernel_config(patterns, device)));
   // Surface coordinates turn the frame in which layers are sampled: other noise.
@@ -266,16 +306,7 @@ TEST_CASE("while the kernel of a new formula is built, other edits are drawn; th
   RenderSession session(std::vector<DeviceInfo>{device});
   const SceneDescription usual = scenes::shipped_small("spheres");
   check_settled(session, usual, device, true);
-  // A number that no run before had, so that its kernel is in no cache.
-  const auto now = std::chrono::system_clock::now().time_since_epoch().count() % 1000000007;
-  const nlohmann::json document = {{"image", {{"width", 37}, {"height", 26}}},
-                                   {"lights", {{{"type", "ambient"}}}},
-                                   {"materials", {{"grey", {{"color", {0.5, 0.5, 0.5}}}}}},
-                                   {"objects",
-                                    {{{"type", "formula"},
-                                      {"material", "grey"},
-                                      {"distance", fmt::format("length(p) - 1 + {}e-12", now)}}}}};
-  const SceneDescription field = load_scene_document(document, "new.json");
+  const SceneDescription field = new_formula("length(p) - 1");
   session.start(std::make_shared<const SceneDescription>(field));
   while (session.snapshot(false).kernels_waiting == 0) session.wait_for_change(0, 0.01);
   SceneDescription turned = usual;
