@@ -67,11 +67,13 @@ static inline void put_sample(REAL* r, SdfSample s) {
     break;
 
 // Runs the function that begins at word `start` of the table over the registers; returns where its result is.
+// One way out: llvmpipe mixes up registers of lanes that leave the loop by a return while others stay.
 NEVER_INLINE u32 run_program(__global const float* restrict q, u32 start, REAL* r) {
   __global const u32* program = (__global const u32*)q + start;
   u32 counters[FIELD_COUNTERS];
-  for (u32 at = 0;; ++at) {
-    const u32 w = program[2u * at], x = program[2u * at + 1u];
+  u32 at = 0, w = program[0];
+  while ((w & 255u) != FIELD_END) {
+    const u32 x = program[2u * at + 1u];
     switch (w & 255u) {
       FIELD_OPS(REAL_CASE, MASK_CASE, POINT_CASE, SAMPLE_CASE)
       case FIELD_LITERAL:
@@ -105,10 +107,11 @@ NEVER_INLINE u32 run_program(__global const float* restrict q, u32 start, REAL* 
       case FIELD_LEAVE:
         if (!any_lane(MA)) at = x - 1u;
         break;
-      default:
-        return w >> 16 & 255u;
     }
+    ++at;
+    w = program[2u * at];
   }
+  return w >> 16 & 255u;
 }
 #undef A
 #undef B
