@@ -47,11 +47,15 @@ void find_camera_media(Device& device, FrameKernels& kernels) {
   device.finish();
 }
 
+auto integrator_kernel(const Program& program, const std::string& name) {
+  return scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>,
+                      Launch>(program, name);
+}
+
 void build_integrator(Device& device, const Integrator& integrator, FrameKernels& kernels, RenderTimes& times,
                       KernelUpdate& update) {
-  kernels.integrator =
-      scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>(
-          build(device, integrator.entry, kernels.config, kernels, times, &update.built), integrator.kernel);
+  kernels.integrator = integrator_kernel(
+      build(device, integrator.entry, kernels.config, kernels, times, &update.built), integrator.kernel);
   kernels.entry = integrator.entry;
   kernels.first_surfaces = {};
   kernels.trace_photons = {};
@@ -81,7 +85,7 @@ unsigned wait_for_kernels(const Device& device, KernelBuilder& builder, const Ke
 
 /// What to draw with: the wanted kernels where they are there or nothing stands in for them.
 KernelConfig choose_config(const Device& device, const Integrator& integrator, KernelConfig wanted,
-                           const FrameKernels& kernels, KernelUpdate& update) {
+                           FrameKernels& kernels, KernelUpdate& update) {
   if (!kernels.builder || device.has(integrator.entry, wanted.defines, wanted.generated)) return wanted;
   std::vector<KernelConfig> candidates = kernels.builder->built();
   candidates.insert(candidates.end(), kernels.known.rbegin(), kernels.known.rend());
@@ -89,6 +93,7 @@ KernelConfig choose_config(const Device& device, const Integrator& integrator, K
   std::ranges::stable_partition(candidates, [](const KernelConfig& one) { return !interprets(one); });
   for (const KernelConfig& general : candidates)
     if (stands_in(general, wanted) && device.has(integrator.entry, general.defines, general.generated)) {
+      kernels.wanted = wanted;
       kernels.builder->want({integrator.entry, integrator.kernel, std::move(wanted)});
       return general;
     }
@@ -102,6 +107,7 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
   const Integrator& integrator = *find_integrator(scene.integrator);
   KernelConfig config = make_kernel_config(scene, device.info(), tuning);
   if (kernels.counts_rays) config.defines["HAS_RAY_COUNTS"] = "1";
+  kernels.wanted.reset();
   if (kernels.builder) kernels.general = general_configs(scene, device.info(), tuning);
   const auto is_there = [&] {
     return kernels.integrator.kernel() && kernels.entry == integrator.entry &&
@@ -140,6 +146,19 @@ void build_general_kernels(const Device& device, FrameKernels& kernels) {
     if (!device.has(kernels.entry, general.defines, general.generated))
       orders.push_back({kernels.entry, kernels.integrator.name, general});
   if (!orders.empty()) kernels.builder->want_later(std::move(orders));
+}
+
+bool take_wanted_kernel(Device& device, FrameKernels& kernels) {
+  if (!kernels.builder || !kernels.wanted || !keeps_programs(device)) return false;
+  if (!kernels.builder->has_built({kernels.entry, kernels.integrator.name, *kernels.wanted})) return false;
+  kernels.config = std::move(*kernels.wanted);
+  kernels.wanted.reset();
+  RenderTimes times;
+  kernels.integrator = integrator_kernel(build(device, kernels.entry, kernels.config, kernels, times),
+                                         kernels.integrator.name);
+  limit_group(device.limits(kernels.integrator).work_group, kernels.most_group);
+  kernels.known.push_back(kernels.config);
+  return true;
 }
 
 void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& times) {

@@ -1,5 +1,6 @@
 // The kernels of a frame on one device, built for its scene, and the scene's tables there.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ struct FrameKernels {
   std::vector<std::string> notes;                     // why a cache could not be used
   KernelBuilder* builder = nullptr;                   // builds while other kernels draw; may be null
   std::vector<KernelConfig> known;                    // that this device has built
+  std::optional<KernelConfig> wanted;                 // being built, while others stand in
   std::vector<KernelConfig> general;                  // with a builder: those that stand in for the scene's
 };
 
@@ -60,6 +62,10 @@ KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, co
 /// Queues the general kernels (general_configs()), which draw while an edit's own kernels are built. Without
 /// a builder it does nothing.
 void build_general_kernels(const Device& device, FrameKernels& kernels);
+
+/// Takes the integrator's kernel that others stand in for, if it has been built meanwhile: no bit changes.
+/// Returns whether it did.
+bool take_wanted_kernel(Device& device, FrameKernels& kernels);
 
 /// Builds the kernel of photons where it is missing.
 void add_photon_tracer(Device& device, FrameKernels& kernels, RenderTimes& times);

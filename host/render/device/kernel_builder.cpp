@@ -175,6 +175,11 @@ std::vector<KernelConfig> KernelBuilder::built() const {
   return configs;
 }
 
+bool KernelBuilder::has_built(const KernelOrder& order) const {
+  const std::lock_guard lock(state_->mutex);
+  return is_among(state_->done, order);
+}
+
 std::size_t KernelBuilder::waiting() const {
   const std::lock_guard lock(state_->mutex);
   return state_->waiting.size() + state_->later.size() + (state_->in_hand ? 1 : 0) +

@@ -40,6 +40,7 @@ class KernelBuilder {
   bool is_waited_for() const;
   /// What was built so far, the latest first.
   std::vector<KernelConfig> built() const;
+  bool has_built(const KernelOrder& order) const;
   /// How many wait or are in hand. Any thread.
   std::size_t waiting() const;
 

@@ -120,7 +120,8 @@ KernelConfig interpreting_config(const CompiledScene& scene, const DeviceInfo& d
 std::vector<KernelConfig> general_configs(const CompiledScene& scene, const DeviceInfo& device,
                                           const Tuning& tuning) {
   std::vector<KernelConfig> all{general_config(scene, device, tuning)};
-  if (all.front().has_programs) all.push_back(interpreting_config(scene, device, tuning));
+  if (all.front().has_programs && calls_functions(device))
+    all.push_back(interpreting_config(scene, device, tuning));
   for (const char* name : {"HAS_FOG", "HAS_LENS"}) {
     KernelConfig other = all.front();
     std::string& value = other.defines.at(name);

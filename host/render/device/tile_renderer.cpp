@@ -75,6 +75,7 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
     : device_(device),
       options_(&options),
       builder_(builder),
+      marches_(!scene.sdf_fields.empty()),
       samples_(scene.info.samples),
       tuning_(tuning_of(options, device.info())),
       asked_(options.work_group),
@@ -82,7 +83,7 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
       update_(
           update_frame_kernels(device, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times)),
       photons_(scene),
-      sizer_(limits_of(device.info(), kernels_), asked_, tuning_, !scene.sdf_fields.empty()),
+      sizer_(limits_of(device.info(), kernels_), asked_, tuning_, marches_),
       watch_(watch) {}
 
 void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions& options,
@@ -90,6 +91,7 @@ void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions&
   const Tuning tuning = tuning_of(options, device_.info());
   const bool same_tuning = tuning == tuning_, same_group = options.work_group == asked_;
   options_ = &options;
+  marches_ = !scene.sdf_fields.empty();
   tuning_ = tuning;
   asked_ = options.work_group;
   samples_ = scene.info.samples;
@@ -102,7 +104,7 @@ void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions&
       update_frame_kernels(device_, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times);
   const bool same_scene = update_.uploads.bytes == 0 && !update_.uploads.numbers;
   if (update_.changed || !same_tuning || !(same_group || same_scene))
-    sizer_ = LaunchSizer(limits_of(device_.info(), kernels_), asked_, tuning_, !scene.sdf_fields.empty());
+    sizer_ = LaunchSizer(limits_of(device_.info(), kernels_), asked_, tuning_, marches_);
   else if (!same_group)
     sizer_.ask_for(asked_);
   else if (!same_scene)
@@ -196,6 +198,8 @@ void TileRenderer::check_finished(const TileRequest& asked, const TileResult& ma
 }
 
 TileResult TileRenderer::render(const TileRequest& request, const StopFlags& flags) {
+  if (take_wanted_kernel(device_, kernels_))
+    sizer_ = LaunchSizer(limits_of(device_.info(), kernels_), asked_, tuning_, marches_);
   while (true) {
     try {
       TileResult made = try_render(request, flags);

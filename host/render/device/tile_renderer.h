@@ -48,6 +48,8 @@ class TileRenderer {
 
   /// What the constructor or the last change_scene() has built and uploaded.
   const KernelUpdate& update() const { return update_; }
+  /// What its kernels are specialised to: it changes before a tile, when better ones have been built.
+  const KernelConfig& config() const { return kernels_.config; }
   /// The largest work-group that its kernels allow; 0: unknown.
   std::size_t greatest_group() const { return sizer_.most_group(); }
   double readback_seconds() const { return readback_seconds_; }
@@ -72,6 +74,7 @@ class TileRenderer {
   Device& device_;
   const RenderOptions* options_;
   KernelBuilder* builder_;
+  bool marches_;  // the scene has fields
   unsigned samples_;
   Tuning tuning_;
   WorkGroup asked_;
