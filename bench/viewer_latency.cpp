@@ -1,8 +1,8 @@
 // How long the viewer takes from a change of its document to the first picture of the whole frame, coarse or
 // not, to one with a sample of each pixel, and to the settled one; of a camera's, a material's, a light's, a
-// parameter's and a formula's edits. The document is read as `sundog serve` reads it, and a session
-// (render/session) draws it. Prints medians and 95th percentiles in milliseconds, and what the pictures cost
-// that are sent.
+// parameter's and a formula's edits, the first after the session has rested. The document is read as `sundog
+// serve` reads it, and a session (render/session) draws it. Prints medians and 95th percentiles in
+// milliseconds, and what the pictures cost that are sent.
 #include <fmt/format.h>
 #include <time.h>
 
@@ -11,6 +11,7 @@
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "base/arguments.h"
 #include "base/clock.h"
@@ -140,6 +141,13 @@ void time_edit(RenderSession& session, Shown& shown, json after, Times& times) {
   shown.scene = std::move(scene);
 }
 
+/// As long as somebody looks at the picture: until the kernels for edits to come are built.
+void rest(const RenderSession& session) {
+  const Stopwatch clock;
+  while (!session.snapshot(false).prepared && clock.seconds() < 120)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+}
+
 /// Processor seconds of this thread: what else runs beside it does not count.
 double thread_seconds() {
   timespec now{};
@@ -208,6 +216,7 @@ json measure(const Options& options) {
     Times start;
     time_edit(session, shown, document, start);
     rows.push_back(figures(name, "(start)", start));
+    rest(session);
     rows.back()["pictures"] = time_pictures(*session.snapshot().picture);
     for (const Edit& edit : edits()) {
       Times times;

@@ -93,8 +93,7 @@ KernelConfig choose_config(const Device& device, const Integrator& integrator, K
   std::ranges::stable_partition(candidates, [](const KernelConfig& one) { return !interprets(one); });
   for (const KernelConfig& general : candidates)
     if (stands_in(general, wanted) && device.has(integrator.entry, general.defines, general.generated)) {
-      kernels.wanted = wanted;
-      kernels.builder->want({integrator.entry, integrator.kernel, std::move(wanted)});
+      kernels.wanted = std::move(wanted);
       return general;
     }
   update.built += wait_for_kernels(device, *kernels.builder, {integrator.entry, integrator.kernel, wanted});
@@ -121,6 +120,8 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
     build_integrator(device, integrator, kernels, times, update);
     if (kernels.builder) kernels.known.push_back(kernels.config);
   }
+  // Last: while some drivers compile, they neither load nor begin other kernels.
+  if (kernels.wanted) kernels.builder->want({integrator.entry, integrator.kernel, *kernels.wanted});
   if (aovs) add_first_surfaces(device, kernels, times);
   if (scene.features.caustics) add_photon_tracer(device, kernels, times);
   check_work_group(device.info(), kernels.most_group, asked);
