@@ -143,9 +143,14 @@ void renew_camera_media(Device& device, const CompiledScene& scene, FrameKernels
 void build_general_kernels(const Device& device, FrameKernels& kernels) {
   if (!kernels.builder || !kernels.integrator.kernel()) return;
   std::vector<KernelOrder> orders;
+  std::vector<KernelConfig> built;  // looked up once: the cache is read and its checksums computed
   for (const KernelConfig& general : kernels.general)
-    if (!device.has(kernels.entry, general.defines, general.generated))
+    if (std::ranges::find(kernels.built_general, general) != kernels.built_general.end() ||
+        device.has(kernels.entry, general.defines, general.generated))
+      built.push_back(general);
+    else
       orders.push_back({kernels.entry, kernels.integrator.name, general});
+  kernels.built_general = std::move(built);
   if (!orders.empty()) kernels.builder->want_later(std::move(orders));
 }
 

@@ -38,6 +38,7 @@ struct FrameKernels {
   std::vector<KernelConfig> known;                    // that this device has built
   std::optional<KernelConfig> wanted;                 // being built, while others stand in
   std::vector<KernelConfig> general;                  // with a builder: those that stand in for the scene's
+  std::vector<KernelConfig> built_general;            // those of them that are known to be built
 };
 
 /// Builds the integrator's kernel, with `aovs` that of the AOVs too, uploads the scene and finds out which

@@ -14,6 +14,7 @@ struct KernelConfig {
   KernelDefines defines;
   GeneratedFiles generated;   // the scene's formulas as kernel code
   bool has_programs = false;  // the scene has its fields as programs too
+  friend bool operator==(const KernelConfig&, const KernelConfig&) = default;
 };
 
 /// Whether the kernels run the programs of any scene's fields, slowly, instead of code made for one scene's.
