@@ -22,6 +22,7 @@ struct SceneFeatures {
   bool camera_inside = false;
   bool unbounded = false;  // there are planes
   u32 bvh_stack = 1;       // entries a traversal stack needs at most (scene BVH and the mesh BVH below it)
+  friend bool operator==(const SceneFeatures&, const SceneFeatures&) = default;
 };
 
 struct BvhFigures {

@@ -33,7 +33,9 @@ void DeviceServer::show(std::shared_ptr<const CompiledScene> scene, const Render
   scene_ = std::move(scene);
   options_ = &options;
   other_scene_ = true;
+  draws_draft_ = false;
   builder_.may_wait();
+  builder_.forget_later();  // until it rests again
   closed_ = {};
   readback_before_ = renderer_ ? renderer_->readback_seconds() : 0;
   if (device_) device_->forget_times();
@@ -60,6 +62,7 @@ RenderTimes DeviceServer::open() {
     renderer_.emplace(*device_, *scene_, *options_, times, watch_, &builder_);
   }
   works_ = true;
+  draws_draft_ = renderer_->draws_draft();
   return times;
 }
 
@@ -73,6 +76,8 @@ TileResult DeviceServer::render(const TileRequest& request, const StopFlags& fla
   works_ = true;
   return result;
 }
+
+bool DeviceServer::may_end_draft() const { return draws_draft_ && renderer_ && renderer_->may_end_draft(); }
 
 void DeviceServer::rest() {
   if (works_) renderer_->rest();

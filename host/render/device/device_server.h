@@ -1,5 +1,6 @@
 // A device of this process as a TileServer.
 #pragma once
+#include <atomic>
 #include <memory>
 #include <optional>
 
@@ -18,6 +19,8 @@ class DeviceServer : public SceneServer {
   void prepare_surfaces() override { renderer_->prepare_surfaces(); }
   bool is_open() const override { return works_ && !other_scene_; }
   void hurry() override { builder_.wants_no_more(); }
+  bool draws_draft() const override { return draws_draft_; }
+  bool may_end_draft() const override;
   void rest() override;
   void keep_programs() override;
   /// The largest work-group that its kernels allow; 0: unknown, or the server is not open.
@@ -44,6 +47,7 @@ class DeviceServer : public SceneServer {
   KernelBuilder builder_;
   std::unique_ptr<Device> device_;
   std::optional<TileRenderer> renderer_;
+  std::atomic<bool> draws_draft_{false};
   bool works_ = false;          // nothing has failed since it was opened: fit for another scene
   bool other_scene_ = false;    // open() may keep what suits it
   double readback_before_ = 0;  // of scenes before

@@ -83,7 +83,8 @@ unsigned wait_for_kernels(const Device& device, KernelBuilder& builder, const Ke
   return 0;  // the build failed: the caller repeats it and reports the error
 }
 
-/// What to draw with: the wanted kernels where they are there or nothing stands in for them.
+/// What to draw with: the wanted kernels where they are there or nothing stands in for them, not even a
+/// draft.
 KernelConfig choose_config(const Device& device, const Integrator& integrator, KernelConfig wanted,
                            FrameKernels& kernels, KernelUpdate& update) {
   if (!kernels.builder || device.has(integrator.entry, wanted.defines, wanted.generated)) return wanted;
@@ -96,7 +97,15 @@ KernelConfig choose_config(const Device& device, const Integrator& integrator, K
       kernels.wanted = std::move(wanted);
       return general;
     }
-  update.built += wait_for_kernels(device, *kernels.builder, {integrator.entry, integrator.kernel, wanted});
+  const KernelOrder order{integrator.entry, integrator.kernel, wanted};
+  for (const KernelConfig& draft : candidates)
+    if (drafts(draft, wanted) && !kernels.builder->has_tried(order) &&
+        device.has(integrator.entry, draft.defines, draft.generated)) {
+      kernels.wanted = std::move(wanted);
+      kernels.is_draft = true;
+      return draft;
+    }
+  update.built += wait_for_kernels(device, *kernels.builder, order);
   return wanted;
 }
 
@@ -107,6 +116,7 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
   KernelConfig config = make_kernel_config(scene, device.info(), tuning);
   if (kernels.counts_rays) config.defines["HAS_RAY_COUNTS"] = "1";
   kernels.wanted.reset();
+  kernels.is_draft = false;
   if (kernels.builder) kernels.general = general_configs(scene, device.info(), tuning);
   const auto is_there = [&] {
     return kernels.integrator.kernel() && kernels.entry == integrator.entry &&
@@ -155,7 +165,7 @@ void build_general_kernels(const Device& device, FrameKernels& kernels) {
 }
 
 bool take_wanted_kernel(Device& device, FrameKernels& kernels) {
-  if (!kernels.builder || !kernels.wanted || !keeps_programs(device)) return false;
+  if (!kernels.builder || !kernels.wanted || kernels.is_draft || !keeps_programs(device)) return false;
   if (!kernels.builder->has_built({kernels.entry, kernels.integrator.name, *kernels.wanted})) return false;
   kernels.config = std::move(*kernels.wanted);
   kernels.wanted.reset();
@@ -165,6 +175,11 @@ bool take_wanted_kernel(Device& device, FrameKernels& kernels) {
   limit_group(device.limits(kernels.integrator).work_group, kernels.most_group);
   kernels.known.push_back(kernels.config);
   return true;
+}
+
+bool may_end_draft(const FrameKernels& kernels) {
+  return kernels.is_draft &&
+         kernels.builder->has_tried({kernels.entry, kernels.integrator.name, *kernels.wanted});
 }
 
 void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& times) {

@@ -37,6 +37,7 @@ struct FrameKernels {
   KernelBuilder* builder = nullptr;                   // builds while other kernels draw; may be null
   std::vector<KernelConfig> known;                    // that this device has built
   std::optional<KernelConfig> wanted;                 // being built, while others stand in
+  bool is_draft = false;                              // those that stand in round otherwise
   std::vector<KernelConfig> general;                  // with a builder: those that stand in for the scene's
   std::vector<KernelConfig> built_general;            // those of them that are known to be built
 };
@@ -64,9 +65,12 @@ KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, co
 /// a builder it does nothing.
 void build_general_kernels(const Device& device, FrameKernels& kernels);
 
-/// Takes the integrator's kernel that others stand in for, if it has been built meanwhile: no bit changes.
-/// Returns whether it did.
+/// Takes the integrator's kernel that others stand in for to the bit, if it has been built meanwhile. Returns
+/// whether it did.
 bool take_wanted_kernel(Device& device, FrameKernels& kernels);
+
+/// Whether the kernels that are wanted in place of a draft's have been built, or failed to.
+bool may_end_draft(const FrameKernels& kernels);
 
 /// Builds the kernel of photons where it is missing.
 void add_photon_tracer(Device& device, FrameKernels& kernels, RenderTimes& times);

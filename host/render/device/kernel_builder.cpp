@@ -134,6 +134,11 @@ void KernelBuilder::want_later(std::vector<KernelOrder> orders) {
   state_->note_wish();
 }
 
+void KernelBuilder::forget_later() {
+  const std::lock_guard lock(state_->mutex);
+  state_->later.clear();
+}
+
 bool KernelBuilder::wait_for(KernelOrder order) {
   std::unique_lock lock(state_->mutex);
   if (!state_->is_known(order)) {
@@ -178,6 +183,11 @@ std::vector<KernelConfig> KernelBuilder::built() const {
 bool KernelBuilder::has_built(const KernelOrder& order) const {
   const std::lock_guard lock(state_->mutex);
   return is_among(state_->done, order);
+}
+
+bool KernelBuilder::has_tried(const KernelOrder& order) const {
+  const std::lock_guard lock(state_->mutex);
+  return is_among(state_->done, order) || is_among(state_->failed, order);
 }
 
 std::size_t KernelBuilder::waiting() const {

@@ -30,6 +30,8 @@ class KernelBuilder {
   /// Builds them in turn once nothing else was wanted for a second. They replace the earlier orders of this
   /// kind.
   void want_later(std::vector<KernelOrder> orders);
+  /// Builds none of them.
+  void forget_later();
   /// Builds it next and waits for it. Returns false if the build fails, or if wants_no_more() ends the wait;
   /// the build then continues.
   bool wait_for(KernelOrder order);
@@ -41,6 +43,8 @@ class KernelBuilder {
   /// What was built so far, the latest first.
   std::vector<KernelConfig> built() const;
   bool has_built(const KernelOrder& order) const;
+  /// Whether it was built, or could not be.
+  bool has_tried(const KernelOrder& order) const;
   /// How many wait or are in hand. Any thread.
   std::size_t waiting() const;
 

@@ -8,6 +8,7 @@
 #include "compile/fields/sdf.h"
 #include "device/choice.h"
 #include "scene/integrators.h"
+#include "shared/textures.h"
 
 namespace sundog {
 namespace {
@@ -22,8 +23,9 @@ constexpr const char* fields_file = "generated/sdf.cl";
 // A field's own flags decide within those of the kernel.
 const std::string all_field_flags = std::to_string(SDF_SMOOTH | SDF_CUT_SPHERE);
 
-// General kernels have room for the rays of so many levels.
-constexpr unsigned general_depth = 12;
+// General kernels have room for the rays of so many levels; drafts for all that a kernel can have, and for
+// any BVH.
+constexpr unsigned general_depth = 12, draft_depth = 32, draft_bvh_stack = 128;
 
 /// Shadow rays of one surface that wait at a time: a light each, as far as that is a moderate number, and
 /// rounded up, so that similar scenes share their kernels.
@@ -66,6 +68,53 @@ bool harmless(const std::string& definition, const KernelDefines& defines) {
   return always.contains(definition);
 }
 
+/// Whether a definition changes rounding at most in a scene that does without, because what it is about is
+/// asked of materials, objects and the camera.
+bool has_no_use(const std::string& definition, const KernelDefines& defines) {
+  static const std::set<std::string> more{
+#define SUNDOG_SOLID_DEFINITION(constant, type, name) "HAS_" #constant,
+      SOLIDS(SUNDOG_SOLID_DEFINITION)
+#undef SUNDOG_SOLID_DEFINITION
+          "HAS_CAMERA_MOTION",
+      "HAS_LAYERS",
+      "HAS_MAPS",
+      "HAS_MESH",
+      "HAS_PARALLAX",
+      "HAS_RELIEF",
+      "HAS_ROUGH_GLASS",
+      "HAS_SDF",
+      "HAS_TEXEL_PAGES",
+      "HAS_UV"};
+  return more.contains(definition) || harmless(definition, defines);
+}
+
+/// Kinds that a kernel knows, a bit each.
+bool is_mask(const std::string& definition) {
+  static const std::set<std::string> masks{"SDF_FLAGS", "TEXEL_FORMATS", "TEXTURE_KINDS", "TEXTURE_MAPPINGS"};
+  return masks.contains(definition);
+}
+
+bool is_room(const std::string& definition) {
+  static const std::set<std::string> rooms{"BVH_STACK", "LIGHT_ROOM", "RAY_STACK", "TEXTURE_STACK"};
+  return rooms.contains(definition);
+}
+
+/// The kernels of the scene's features with secondary rays, of `depth` levels at least.
+KernelConfig deep_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning,
+                         unsigned depth) {
+  CompiledScene deep;
+  deep.features = scene.features;
+  deep.features.secondary_rays = true;
+  deep.info = scene.info;
+  deep.info.max_depth = std::max(scene.info.max_depth, depth);
+  deep.integrator = scene.integrator;
+  deep.tracer = scene.tracer;
+  deep.field_source = scene.field_source;
+  deep.sdf_parameters = scene.sdf_parameters;
+  deep.pattern_source = scene.pattern_source;
+  return make_kernel_config(deep, device, tuning);
+}
+
 }  // namespace
 
 bool interprets(const KernelConfig& config) {
@@ -84,29 +133,54 @@ bool stands_in(const KernelConfig& general, const KernelConfig& wanted) {
     if (has == wants) return true;
     if (has.first != wants.first) return false;
     if (has.first == "SDF_FLAGS") return has.second == all_field_flags;
-    const bool room = has.first == "RAY_STACK" || has.first == "BVH_STACK";
-    return (room || harmless(has.first, wanted.defines)) &&
+    return (is_room(has.first) || harmless(has.first, wanted.defines)) &&
            std::stoul(has.second) >= std::stoul(wants.second);
   });
 }
 
+bool drafts(const KernelConfig& draft, const KernelConfig& wanted) {
+  const auto draws = [&](const std::string& file, const std::string& text) {
+    const auto found = draft.generated.find(file);
+    return (file == fields_file && wanted.has_programs) ||
+           (found != draft.generated.end() && found->second == text);
+  };
+  if (!interprets(draft) || draft.defines.size() != wanted.defines.size() ||
+      !std::ranges::all_of(wanted.generated, [&](const auto& one) { return draws(one.first, one.second); }))
+    return false;
+  return std::ranges::equal(draft.defines, wanted.defines, [&](const auto& has, const auto& wants) {
+    if (has == wants) return true;
+    if (has.first != wants.first) return false;
+    const unsigned long there = std::stoul(has.second), asked = std::stoul(wants.second);
+    if (is_mask(has.first)) return (asked & ~there) == 0;
+    return (is_room(has.first) || has_no_use(has.first, wanted.defines)) && there >= asked;
+  });
+}
+
 KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
-  CompiledScene deep;
-  deep.features = scene.features;
-  deep.features.secondary_rays = true;
-  deep.info = scene.info;
-  deep.info.max_depth = std::max(scene.info.max_depth, general_depth);
-  deep.integrator = scene.integrator;
-  deep.tracer = scene.tracer;
-  deep.field_source = scene.field_source;
-  deep.sdf_parameters = scene.sdf_parameters;
-  deep.pattern_source = scene.pattern_source;
-  KernelConfig config = make_kernel_config(deep, device, tuning);
+  KernelConfig config = deep_config(scene, device, tuning, general_depth);
   const bool fields = config.generated.contains(fields_file);
   for (auto& [name, value] : config.defines) {
     const bool of_fields = name == "HAS_OCCLUSION" || name == "HAS_SOFT_SHADOWS" || name == "SDF_TWO_SIDED";
     if (harmless(name, config.defines) && (fields || !of_fields)) value = "1";
   }
+  return config;
+}
+
+KernelConfig draft_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
+  KernelConfig config = deep_config(scene, device, tuning, draft_depth);
+  for (auto& [name, value] : config.defines) {
+    if (has_no_use(name, config.defines)) value = "1";
+    if (is_mask(name)) value = "65535";
+  }
+  const auto widen = [&](const char* name, unsigned least) {
+    std::string& value = config.defines.at(name);
+    if (std::stoul(value) < least) value = std::to_string(least);
+  };
+  widen("BVH_STACK", draft_bvh_stack);
+  widen("TEXTURE_STACK", MOST_TEXTURE_STACK);
+  config.defines["SDF_FLAGS"] = all_field_flags;
+  config.generated[fields_file] = interpreting_source;
+  config.has_programs = true;
   return config;
 }
 
@@ -128,6 +202,7 @@ std::vector<KernelConfig> general_configs(const CompiledScene& scene, const Devi
     value = value == "0" ? "1" : "0";
     all.push_back(std::move(other));
   }
+  if (calls_functions(device)) all.push_back(draft_config(scene, device, tuning));
   return all;
 }
 

@@ -39,8 +39,16 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
 KernelConfig interpreting_config(const CompiledScene& scene, const DeviceInfo& device,
                                  const Tuning& tuning = {});
 
-/// Those, where there are fields those that interpret them, and the first with and without what else an edit
-/// switches on or off by a number: fog, a lens. Those come first that most edits want. Pure.
+/// Whether kernels of `draft` draw what those of `wanted` draw but for rounding: they have all its features.
+bool drafts(const KernelConfig& draft, const KernelConfig& wanted);
+
+/// Those of all features but fog, lens, filter and what moves, which are the scene's: slow, and of other
+/// rounding, so their picture is replaced. Only where interpreting_config() may be built. Pure.
+KernelConfig draft_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning = {});
+
+/// Those of general_config(), where there are fields those that interpret them, the first with and without
+/// what else an edit switches on or off by a number (fog, a lens), and drafts. Those come first that most
+/// edits want. Pure.
 std::vector<KernelConfig> general_configs(const CompiledScene& scene, const DeviceInfo& device,
                                           const Tuning& tuning = {});
 

@@ -50,6 +50,9 @@ class TileRenderer {
   const KernelUpdate& update() const { return update_; }
   /// What its kernels are specialised to: it changes before a tile, when better ones have been built.
   const KernelConfig& config() const { return kernels_.config; }
+  /// It draws what other kernels have to draw anew, and whether those are there.
+  bool draws_draft() const { return kernels_.is_draft; }
+  bool may_end_draft() const { return sundog::may_end_draft(kernels_); }
   /// The largest work-group that its kernels allow; 0: unknown.
   std::size_t greatest_group() const { return sizer_.most_group(); }
   double readback_seconds() const { return readback_seconds_; }

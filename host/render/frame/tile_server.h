@@ -94,6 +94,11 @@ class SceneServer : public TileServer {
   /// Makes open() throw DeviceError instead of waiting for a compiler, until the next show(). Any thread may
   /// call it.
   virtual void hurry() {}
+  /// Whether the open scene is a draft, which rounds otherwise than its picture and must be drawn anew, and
+  /// whether the kernels for that are there (or cannot be built, which the next open() reports). Any thread may ask
+  /// the first.
+  virtual bool draws_draft() const { return false; }
+  virtual bool may_end_draft() const { return false; }
   /// Nothing has to be drawn now. The server may prepare for later work, as long as it delays none.
   virtual void rest() {}
   /// Kernels that are being built beside the work. Any thread.

@@ -19,7 +19,7 @@ struct SessionFrame {
   bool closes = false;  // so is the session: servers are closed behind it
   Stopwatch clock;      // since start()
   Stopwatch begun;      // since it can be drawn
-  double patience = 0;
+  SessionSettings settings;
   SessionTimes times;
   CompileWork compiled;  // for this generation
 };

@@ -19,6 +19,8 @@ using TileServers = std::vector<std::shared_ptr<TileServer>>;
 
 // How often a frame in hand is looked at for drivers that hang.
 inline constexpr std::chrono::milliseconds look_again{50};
+// How often a draft is looked at for whether it can end.
+inline constexpr std::chrono::milliseconds look_for_kernels{10};
 
 inline bool is_at_rest(SessionState state) {
   return state == SessionState::settled || state == SessionState::stopped || state == SessionState::failed;
@@ -30,6 +32,7 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
     std::shared_ptr<const SceneDescription> scene;
     SessionSettings settings;
     Stopwatch clock;
+    std::shared_ptr<const SessionFrame> draft{};  // whose picture it draws anew
   };
   struct Worker {
     std::shared_ptr<TileServer> server;
@@ -88,7 +91,8 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
   void run(const std::shared_ptr<SessionFrame>& mine, bool wait);
   void run_control();
   void take_order(std::unique_lock<std::mutex>& lock);
-  std::shared_ptr<SessionFrame> prepare(const Order& order, Servers servers, double speed);
+  std::shared_ptr<SessionFrame> prepare(const Order& order, Servers servers,
+                                        const std::shared_ptr<const CompiledScene>& before, double speed);
   void look_at(std::unique_lock<std::mutex>& lock);
   void run_worker(Worker& worker);
   void serve(std::unique_lock<std::mutex>& lock, Worker& worker, std::size_t index);
@@ -98,10 +102,13 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
   }
   std::optional<std::size_t> index_of(const Worker& worker) const;
   void note_progress(const std::shared_ptr<SessionFrame>& mine);
+  bool is_draft(const std::shared_ptr<SessionFrame>& frame) const;
+  void end_draft(std::unique_lock<std::mutex>& lock, const Worker& worker,
+                 const std::shared_ptr<SessionFrame>& mine);
   /// The frame in hand may bring its first picture before a newer one takes its place.
   bool is_awaited() const {
     return current && !current->final && !current->frame->stop && current->times.first < 0 &&
-           current->times.settled < 0 && current->begun.seconds() < current->patience;
+           current->times.settled < 0 && current->begun.seconds() < current->settings.patience;
   }
   /// A frame that is rendered to its end is let go of by its caller.
   bool is_held() const { return current && current->final; }

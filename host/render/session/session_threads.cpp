@@ -33,6 +33,14 @@ Picked pick_on(SceneServer& server, int x, int y) {
   return picked_from(server.render(request, {}));
 }
 
+/// Ends a frame that has to be drawn anew, as soon as it can be.
+void leave_draft(Frame& frame, std::size_t index) {
+  const auto* server = dynamic_cast<const SceneServer*>(frame.servers[index].server.get());
+  if (!server || !server->may_end_draft()) return;
+  frame.stop = true;
+  frame.queue.close();
+}
+
 }  // namespace
 
 void RenderSession::State::add_worker(std::shared_ptr<TileServer> server) {
@@ -95,11 +103,12 @@ void RenderSession::State::take_order(std::unique_lock<std::mutex>& lock) {
   Servers servers;
   for (const auto& worker : workers) servers.push_back(worker->of_scenes);
   const double speed = pixel_seconds;
+  const std::shared_ptr<const CompiledScene> before = current ? current->flat : nullptr;
   lock.unlock();
   std::shared_ptr<SessionFrame> made;
   std::string failure;
   try {
-    made = prepare(order, std::move(servers), speed);
+    made = prepare(order, std::move(servers), before, speed);
   } catch (const std::exception& thrown) {
     failure = thrown.what();
   }
@@ -112,23 +121,33 @@ void RenderSession::State::take_order(std::unique_lock<std::mutex>& lock) {
     return;
   }
   current = std::move(made);
+  if (order.draft) return note();
   current->times.compiled = order.clock.seconds();
   set_state(SessionState::preparing);
 }
 
-std::shared_ptr<SessionFrame> RenderSession::State::prepare(const Order& order, Servers servers,
-                                                            double speed) {
+std::shared_ptr<SessionFrame> RenderSession::State::prepare(
+    const Order& order, Servers servers, const std::shared_ptr<const CompiledScene>& before, double speed) {
   auto made = std::make_shared<SessionFrame>();
   made->generation = order.generation;
   made->scene = order.scene;
   made->clock = order.clock;
-  made->patience = order.settings.patience;
-  const CompileWork before = compiler.work();
+  made->settings = order.settings;
+  const CompileWork work = compiler.work();
   made->flat = std::make_shared<const CompiledScene>(compiler.compile(*order.scene));
-  made->compiled = difference(compiler.work(), before);
+  made->compiled = difference(compiler.work(), work);
+  SessionSettings settings = order.settings;
+  if (order.draft) {
+    made->compiled = order.draft->compiled;
+    made->times = order.draft->times;
+    settings.coarse = settings.coarse && made->times.full < 0;
+  }
   const std::weak_ptr<State> session = weak_from_this();
   const std::weak_ptr<SessionFrame> frame = made;
-  made->frame = make_session_frame({made->flat, order.settings, std::move(servers), speed},
+  // Other kernels may be slower by far.
+  const bool known =
+      before && before->features == made->flat->features && before->field_source == made->flat->field_source;
+  made->frame = make_session_frame({made->flat, settings, std::move(servers), known ? speed : 0},
                                    [session, frame](const RenderProgress&) {
                                      const auto self = session.lock();
                                      const auto mine = frame.lock();
@@ -137,7 +156,9 @@ std::shared_ptr<SessionFrame> RenderSession::State::prepare(const Order& order, 
   made->frame->between_tiles = [session, frame](std::size_t i) {
     const auto self = session.lock();
     const auto mine = frame.lock();
-    if (self && mine) self->answer_picks(mine->frame->servers[i].server);
+    if (!self || !mine) return;
+    self->answer_picks(mine->frame->servers[i].server);
+    leave_draft(*mine->frame, i);
   };
   return made;
 }
@@ -218,21 +239,43 @@ void RenderSession::State::serve(std::unique_lock<std::mutex>& lock, Worker& wor
   serve_frame(frame, index);
   if (mine->final) leave_frame(frame, index, mine->closes);
   double speed = 0;
+  const bool draft = !mine->final && worker.of_scenes->draws_draft();
   if (!mine->final) {
     const std::lock_guard frame_lock(frame.mutex);
-    speed = frame.passes->pixel_seconds;
+    if (!draft) speed = frame.passes->pixel_seconds;
+    if (progress_of(frame).settled) note_progress(mine);
   }
   lock.lock();
   worker.opening = false;
   worker.closed = mine->closes;
   if (speed > 0) pixel_seconds = speed;
   note();
+  if (draft) return end_draft(lock, worker, mine);
   if (mine != current || mine->final || state != SessionState::settled || !worker.of_scenes->is_open())
     return;
   lock.unlock();
   worker.of_scenes->rest();
   lock.lock();
   rested = mine->generation;
+  note();
+}
+
+/// Whether a server has drawn some of the frame as a draft. The caller holds the mutex.
+bool RenderSession::State::is_draft(const std::shared_ptr<SessionFrame>& frame) const {
+  return std::ranges::any_of(workers, [&](const auto& worker) {
+    return worker->seen == frame && worker->of_scenes && worker->of_scenes->draws_draft();
+  });
+}
+
+/// Waits for the kernels that draw the frame for good, and starts it anew unless something else happens.
+void RenderSession::State::end_draft(std::unique_lock<std::mutex>& lock, const Worker& worker,
+                                     const std::shared_ptr<SessionFrame>& mine) {
+  const auto over = [&] {
+    return closing || worker.leave || pending || mine != current || is_at_rest(state);
+  };
+  while (!over() && !worker.of_scenes->may_end_draft()) changed.wait_for(lock, look_for_kernels, over);
+  if (over()) return;
+  pending = Order{mine->generation, mine->scene, mine->settings, mine->clock, mine};
   note();
 }
 
@@ -261,10 +304,11 @@ void RenderSession::State::note_progress(const std::shared_ptr<SessionFrame>& mi
   reached(true, times.ready);
   reached(progress.whole, times.first);
   reached(progress.full, times.full);
-  reached(progress.settled, times.settled);
+  const bool settled = progress.settled && !is_draft(mine);
+  reached(settled, times.settled);
   if (progress.whole) shown = mine;
   if (mine->generation != newest) return note();
-  set_state(progress.settled ? SessionState::settled : SessionState::drawing);
+  set_state(settled ? SessionState::settled : SessionState::drawing);
 }
 
 /// The caller holds the frame's mutex. Developed once, however many ask.

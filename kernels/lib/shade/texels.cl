@@ -22,8 +22,8 @@ static inline REAL4 select4(REAL4 a, REAL4 b, MASK m) {
 }
 
 #if TEXEL_FORMATS
-#define HAS_FORMAT(format) (TEXEL_FORMATS & (1u << (format)))
-#define HAS_WIDE_TEXELS (HAS_FORMAT(TEXEL_RGBA16) || HAS_FORMAT(TEXEL_RGBA_HALF))  // of 8 bytes
+#define HAS_FORMAT(format) (TEXEL_FORMATS >> (format) & 1u)
+#define HAS_WIDE_TEXELS (HAS_FORMAT(TEXEL_RGBA16) | HAS_FORMAT(TEXEL_RGBA_HALF))  // of 8 bytes
 
 #if HAS_TEXEL_PAGES
 // Word `word` of the texels that begin at `unit`, the same of all lanes.
@@ -122,7 +122,7 @@ static inline REAL4 decode_texels(const Scene* scene, const StoredTexels* texels
     const REAL grey = floats_of_bytes(scene, words >> ((texels->byte & 3) * 8) & 0xFF, srgb, lanes);
     return real4(grey, grey, grey, one);
   }
-  if ((HAS_FORMAT(TEXEL_GREY16) || HAS_FORMAT(TEXEL_GREY_HALF)) && (format & TEXEL_SIZE_MASK) == 1u) {
+  if ((HAS_FORMAT(TEXEL_GREY16) | HAS_FORMAT(TEXEL_GREY_HALF)) && (format & TEXEL_SIZE_MASK) == 1u) {
     const REAL grey = floats_of_words(words >> ((texels->byte & 2) * 8), format);
     return real4(grey, grey, grey, one);
   }

@@ -1,6 +1,5 @@
 // A kernel that interprets a new formula draws until the formula's own is built; both draw the same bits.
 #include <algorithm>
-#include <thread>
 
 #include "catch.h"
 #include "compile/compiled_scene.h"
@@ -9,18 +8,9 @@
 #include "render/device/tile_renderer.h"
 #include "scene/integrators.h"
 #include "scenes.h"
+#include "wait_for_builder.h"
 
 using namespace sundog;
-
-namespace {
-
-void wait_for(const KernelBuilder& builder) {
-  for (int i = 0; i < 8000 && builder.waiting() > 0; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(25));
-  REQUIRE(builder.waiting() == 0);
-}
-
-}  // namespace
 
 TEST_CASE("a formula's own kernel takes over from the interpreter between tiles, and no bit changes") {
   const DeviceInfo& info = test_devices().front();
