@@ -95,8 +95,8 @@ class SceneServer : public TileServer {
   /// call it.
   virtual void hurry() {}
   /// Whether the open scene is a draft, which rounds otherwise than its picture and must be drawn anew, and
-  /// whether the kernels for that are there (or cannot be built, which the next open() reports). Any thread may ask
-  /// the first.
+  /// whether the kernels for that are there (or cannot be built, which the next open() reports). Any thread
+  /// may ask the first.
   virtual bool draws_draft() const { return false; }
   virtual bool may_end_draft() const { return false; }
   /// Nothing has to be drawn now. The server may prepare for later work, as long as it delays none.

@@ -46,7 +46,7 @@ double share_of_others(const std::vector<float4>& a, const std::vector<float4>& 
 
 }  // namespace
 
-TEST_CASE("a draft's kernels draw the shipped scenes as the scenes' own do, but for rounding") {
+TEST_CASE("drafts draw the shipped scenes but for rounding, and give way to the scenes' own kernels") {
   const TemporaryFolder folder;
   const DeviceInfo& own_info = test_devices().front();
   if (!calls_functions(own_info)) return;  // there are no drafts
@@ -76,16 +76,11 @@ TEST_CASE("a draft's kernels draw the shipped scenes as the scenes' own do, but 
     own.change_scene(scene, own_options, times);
     CHECK(share_of_others(draft.sums, own.render(request, {}).sums) < 0.01);
   }
-}
 
-TEST_CASE("an edit that no other kernel draws is drawn by a draft's, and then by its own to the bit") {
-  const DeviceInfo& info = test_devices().front();
-  if (!calls_functions(info)) return;
+  // A session shows one and then, to the bit, what the scene's own kernels draw.
   RenderSession session(std::vector<DeviceInfo>{info});
   session.start(std::make_shared<const SceneDescription>(scenes::shipped_small("spheres")));
   session.wait();
-  for (int i = 0; i < 8000 && !session.snapshot(false).prepared; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(25));
   // Textures, and a formula that is in no cache.
   const std::string file = SUNDOG_SOURCE_DIR "/scenes/textures.json";
   nlohmann::json document = read_scene_document(file);
@@ -109,7 +104,7 @@ TEST_CASE("an edit that no other kernel draws is drawn by a draft's, and then by
   session.wait();
   now = session.snapshot();
   CHECK(now.state == SessionState::settled);
-  const Image cold = scenes::render_on(info, *scene).image;
+  const Image cold = scenes::render_on(own_info, *scene).image;
   CHECK(same_bits(*now.picture, cold));
   std::size_t others = 0;
   for (std::size_t i = 0; i < cold.data.size(); ++i)
