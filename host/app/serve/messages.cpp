@@ -138,7 +138,7 @@ json status_message(const Snapshot& now) {
           {"generation", now.generation},
           {"shown", now.shown},
           {"state", static_cast<int>(now.state)},
-          {"text", state_text(now.state)},
+          {"text", state_text(now)},
           {"settled", now.state == SessionState::settled},
           {"failed", now.state == SessionState::failed},
           {"error", now.error},

@@ -41,6 +41,11 @@ std::string state_text(SessionState state) {
   return "";
 }
 
+std::string state_text(const Snapshot& now) {
+  const bool waits = now.state == SessionState::drawing && now.draft && now.fraction >= 1;
+  return state_text(waits ? SessionState::preparing : now.state);
+}
+
 RenderSession::RenderSession(const std::vector<DeviceInfo>& devices) : RenderSession(make_servers(devices)) {}
 
 RenderSession::RenderSession(std::vector<std::shared_ptr<SceneServer>> servers)
@@ -109,6 +114,7 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
     for (const auto& worker : s.workers) servers.push_back(worker->of_scenes);
     current = s.current;
     shown = s.shown;
+    snapshot.draft = current && s.is_draft(current);
     const std::shared_ptr<SessionFrame>& times = current && current->generation == s.newest ? current : shown;
     if (times) snapshot.times = times->times;
   }

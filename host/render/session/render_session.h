@@ -101,6 +101,7 @@ struct Snapshot {
   EditWork work;
   std::size_t kernels_waiting = 0;  // that are built beside the drawing, for edits to come
   bool prepared = false;            // settled, and none of these is left to build
+  bool draft = false;               // what is drawn will be drawn anew, by kernels that are being built
   std::vector<DeviceActivity> devices;
 };
 
@@ -111,6 +112,9 @@ struct Picked {
   dvec3 position{0}, normal{0};  // in the world
   double depth = 0;              // along the view; infinite where nothing is
 };
+
+/// The same words, but that a draft that is complete waits for a kernel.
+std::string state_text(const Snapshot& now);
 
 class SceneServer;
 struct Frame;

@@ -98,12 +98,15 @@ TEST_CASE("drafts draw the shipped scenes but for rounding, and give way to the 
   }
   INFO(now.error);
   CHECK(now.state == SessionState::drawing);  // not complete, though each pixel is there
+  CHECK(now.draft);
+  CHECK(state_text(now) == "building a kernel");
   CHECK(now.kernels_waiting > 0);
   CHECK(now.work.kernels_built == 0);
   const std::shared_ptr<const Image> draft = now.picture;
   session.wait();
   now = session.snapshot();
   CHECK(now.state == SessionState::settled);
+  CHECK_FALSE(now.draft);
   const Image cold = scenes::render_on(own_info, *scene).image;
   CHECK(same_bits(*now.picture, cold));
   std::size_t others = 0;
