@@ -1,5 +1,6 @@
 // The file: magic and format version, the checksum of all that follows, three sizes, then key, variants and
-// binary. The key stands in it whole, so that two keys with one hash stay apart.
+// binary as one zlib stream. The key, which holds the kernel's source, stands in it whole, so that two keys
+// with one hash stay apart; packed, a file is a quarter as large.
 #include "device/program_cache.h"
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "base/cache_folder.h"
+#include "base/deflate.h"
 #include "base/environment.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -22,7 +24,7 @@ namespace sundog {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::string_view magic = "sundog kernel 2\n";
+constexpr std::string_view magic = "sundog kernel 3\n";
 constexpr std::uintmax_t most_bytes = std::uintmax_t{256} << 20;
 constexpr std::size_t checksum_size = 32, size_size = 20;
 
@@ -118,9 +120,14 @@ std::optional<CachedProgram> load_program(const fs::path& file, const std::strin
   if (!known || !reader.good || checksum != hash128(reader.rest)) return std::nullopt;
   const std::size_t key_size = reader.take_size(), variants_size = reader.take_size(),
                     binary_size = reader.take_size();
-  const std::string_view stored_key = reader.take(key_size);
-  const std::string_view variants = reader.take(variants_size), binary = reader.take(binary_size);
-  if (!reader.good || !reader.rest.empty() || stored_key != key || binary.empty()) return std::nullopt;
+  if (!reader.good || key_size != key.size() || variants_size > most_bytes || binary_size > most_bytes)
+    return std::nullopt;
+  const std::optional<std::string> body = inflated(reader.rest, key_size + variants_size + binary_size);
+  if (!body) return std::nullopt;
+  Reader fields{*body};
+  const std::string_view stored_key = fields.take(key_size);
+  const std::string_view variants = fields.take(variants_size), binary = fields.take(binary_size);
+  if (!fields.good || !fields.rest.empty() || stored_key != key || binary.empty()) return std::nullopt;
   std::error_code ignored;  // the time of last use, for prune()
   fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
   return CachedProgram{std::string(binary), split(std::string(variants))};
@@ -142,8 +149,8 @@ void store_program(const fs::path& file, const std::string& key, const CachedPro
                    std::uintmax_t folder_bytes) {
   make_cache_folder(file.parent_path());
   const std::string variants = joined(program.variants);
-  const std::string body = fmt::format("{:020}{:020}{:020}{}{}{}", key.size(), variants.size(),
-                                       program.binary.size(), key, variants, program.binary);
+  const std::string body = fmt::format("{:020}{:020}{:020}{}", key.size(), variants.size(),
+                                       program.binary.size(), deflated(key + variants + program.binary));
   write_file(file, fmt::format("{}{}{}", magic, hash128(body), body));
   prune(file.parent_path(), folder_bytes, file);
 }

@@ -1,6 +1,6 @@
 // See quick_png.h. Each row is stored as its difference to the one above (filter 2), which keeps smooth
-// pictures small and needs no trial, and deflated by libdeflate at its fastest level. Portable Network
-// Graphics (PNG) Specification, third edition, sections 5, 9 and 10.
+// pictures small and needs no trial, and deflated. Portable Network Graphics (PNG) Specification, third
+// edition, sections 5, 9 and 10.
 #include "base/pixels/quick_png.h"
 
 #include <libdeflate.h>
@@ -8,19 +8,17 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <memory>
-#include <new>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
+#include "base/deflate.h"
 #include "base/image_io.h"
 
 namespace sundog {
 namespace {
 
 constexpr std::size_t most_quick_bytes = std::size_t{1} << 30;
-constexpr int fastest = 1;
 constexpr char filter_up = 2;
 
 /// Floats from 2^-13 to 1 by their exponent and the first bits of their fraction.
@@ -95,17 +93,6 @@ void append_chunk(std::string& bytes, std::string_view type, std::string_view co
   const std::size_t begin = bytes.size();
   bytes.append(type).append(content);
   append_word(bytes, libdeflate_crc32(0, bytes.data() + begin, bytes.size() - begin));
-}
-
-std::string deflated(const std::string& rows) {
-  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
-      libdeflate_alloc_compressor(fastest), libdeflate_free_compressor);
-  if (!compressor) throw std::bad_alloc();
-  std::string packed;
-  packed.resize(libdeflate_zlib_compress_bound(compressor.get(), rows.size()));
-  packed.resize(
-      libdeflate_zlib_compress(compressor.get(), rows.data(), rows.size(), packed.data(), packed.size()));
-  return packed;
 }
 
 }  // namespace

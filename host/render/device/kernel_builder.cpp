@@ -23,7 +23,8 @@ bool is_among(const std::vector<KernelOrder>& list, const KernelOrder& order) {
   return std::ranges::any_of(list, [&](const KernelOrder& other) { return same(order, other); });
 }
 
-/// Launches of no pixel: some drivers compile a kernel at its first launch of each local size.
+/// Builds a kernel, and launches it for no pixel: some drivers compile it at its first launch of a local
+/// size.
 void build(const DeviceInfo& info, const KernelOrder& order) {
   Device device(info);
   const Program program = device.build(order.entry, order.config.defines, nullptr, order.config.generated);
@@ -38,12 +39,10 @@ void build(const DeviceInfo& info, const KernelOrder& order) {
   Launch launch{};
   launch.row_items = 1;
   const bool many_pixels = order.config.tile_w * order.config.tile_h > 1;
-  const std::vector<std::size_t> groups =
-      many_pixels ? std::vector<std::size_t>{4, 1} : std::vector<std::size_t>{64};
-  for (const std::size_t group : groups)
-    run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>,
-                     Launch>(device, kernel, {group, 1, group, 1}, nothing, nothing.camera_media, pixels,
-                             film, weights, counters, rays, launch);
+  const std::size_t group = many_pixels ? 1 : 64;
+  run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>(
+      device, kernel, {group, 1, group, 1}, nothing, nothing.camera_media, pixels, film, weights, counters,
+      rays, launch);
   device.finish();
   device.save_programs();
 }

@@ -57,13 +57,12 @@ LaunchSize LaunchSizer::group_items(std::size_t columns, std::size_t rows) const
                                      : LaunchSize{items, 1, group.x, 1});
   if (alone_) return {items, 1, 1, 1};
   // One ray a lane wants a full group, if only to fill the driver's vectors. With many pixels a work-item,
-  // small groups leave no unit idle at a launch's end, as PoCL hands them out 32 at a time; of two sizes, as
-  // it compiles for each.
-  const std::size_t share = items / (std::size_t{4} * std::max(1u, limits_.compute_units));
+  // PoCL's groups of one cost nothing: it hands them out 32 at a time, and compiles for one size alone.
   std::size_t wanted = 64;
   if (limits_.device_class == DeviceClass::cpu) {
     const bool many_pixels = limits_.tile_w * limits_.tile_h > 1;
-    wanted = many_pixels ? (share < 4 ? 1 : 4) : std::clamp<std::size_t>(share, 8, 64);
+    const std::size_t share = items / (std::size_t{4} * std::max(1u, limits_.compute_units));
+    wanted = many_pixels ? 1 : std::clamp<std::size_t>(share, 8, 64);
   }
   return within_limits({items, 1, wanted, 1});
 }
@@ -172,7 +171,7 @@ std::optional<std::string> LaunchSizer::fewer_samples(const std::string& why) {
     most_samples_ = last_samples_ / 2;
     return fmt::format("{}; launches of at most {} samples a pixel from here on", why, most_samples_);
   }
-  if (alone_ || asked_.kind != WorkGroup::Kind::automatic) return std::nullopt;
+  if (alone_ || last_group_ == 1 || asked_.kind != WorkGroup::Kind::automatic) return std::nullopt;
   alone_ = true;
   tuning_.work_group = {};
   return why + "; work-groups of one from here on";

@@ -121,7 +121,8 @@ TEST_CASE("failures are answered by less, until there is nothing less") {
     CHECK(asked > 3);
   }
   SECTION("loops that are cut short make fewer samples at a time, at last groups of one") {
-    const Tile small{0, 0, 64, 64};
+    LaunchSizer sizer(cpu(1), {}, {}, false);
+    const Tile small{0, 0, 16, 16};
     run(sizer, small, 64, 1e-8);  // launches have grown to many samples
     sizer.begin(small, 64);
     REQUIRE(sizer.next()->launch.sample_count > 2);
@@ -134,6 +135,15 @@ TEST_CASE("failures are answered by less, until there is nothing less") {
     }
     REQUIRE(sizer.ask_less(LaunchFailure::loops_cut_short, "why"));
     sizer.begin(small, 64);
+    CHECK(sizer.next()->size.local_x == 1);
+    CHECK_FALSE(sizer.ask_less(LaunchFailure::loops_cut_short, "why"));
+  }
+}
+
+TEST_CASE("with many pixels a work-item, a processor's kernels are launched in groups of one size") {
+  for (const int side : {1, 16, 100, 4096}) {
+    LaunchSizer sizer(cpu(), {}, {}, false);
+    sizer.begin({0, 0, side, side}, 1);
     CHECK(sizer.next()->size.local_x == 1);
     CHECK_FALSE(sizer.ask_less(LaunchFailure::loops_cut_short, "why"));
   }

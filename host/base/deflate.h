@@ -1,0 +1,15 @@
+// Bytes packed as a zlib stream (RFC 1950), at libdeflate's fastest level.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace sundog {
+
+std::string deflated(std::string_view bytes);
+
+/// The `size` bytes that `packed` holds; nothing when it is damaged or holds another number of bytes.
+std::optional<std::string> inflated(std::string_view packed, std::size_t size);
+
+}  // namespace sundog
