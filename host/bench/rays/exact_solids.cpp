@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace sundog {
 namespace {
@@ -11,7 +10,8 @@ namespace {
 using glm::dvec3;
 using Roots = std::vector<double>;
 
-double bisect(const std::function<double(double)>& f, double a, double b) {
+template <class Function>
+double bisect(const Function& f, double a, double b) {
   const bool rising = f(a) < f(b);
   for (int i = 0; i < 200; ++i) {
     const double middle = 0.5 * (a + b);

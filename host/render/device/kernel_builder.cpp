@@ -33,7 +33,7 @@ void build(const DeviceInfo& info, const KernelOrder& order) {
           program, order.kernel);
   const DeviceScene nothing = upload_scene(device, CompiledScene{});
   const auto pixels = device.make<u32>(1), rays = device.make<u32>(1);
-  const auto counters = device.make<u32>(COUNTER_BLOCKS * COUNTER_BLOCK);
+  const auto counters = device.make<u32>(std::size_t{COUNTER_BLOCKS} * COUNTER_BLOCK);
   const auto film = device.make<float4>(1);
   const auto weights = device.make<float>(1);
   Launch launch{};
