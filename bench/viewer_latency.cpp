@@ -170,7 +170,7 @@ json time_pictures(const Image& image) {
       bytes = encode().size();
       times.push_back(1e3 * (thread_seconds() - begun));
     }
-    const double ms = quantile(times, 0.5), speed = 3e-3 * static_cast<double>(image.data.size() / 4) / ms;
+    const double ms = quantile(times, 0.5), speed = 3e-3 * static_cast<double>(image.data.size()) / 4 / ms;
     row[name] = {{"median_ms", ms}, {"bytes", bytes}, {"megabytes_a_second", speed}};
     fmt::print("  {} {:.1f} ms of a core ({:.0f} MB/s, {} KB)", name, ms, speed, bytes / 1000);
   };

@@ -71,7 +71,7 @@ struct OurFrame {
 std::string set(const std::string& pointer, double value) { return fmt::format("{}={:g}", pointer, value); }
 
 /// Thresholds of adaptive frames from coarse to fine, each with `common`.
-OurWays adaptive(std::vector<std::string> common) {
+OurWays adaptive(const std::vector<std::string>& common) {
   OurWays ways{"adaptive", {}};
   for (double threshold = 0.64; threshold > 5e-4; threshold /= std::pow(2.0, 0.25)) {
     ways.overrides.push_back(common);
@@ -81,7 +81,7 @@ OurWays adaptive(std::vector<std::string> common) {
 }
 
 /// Numbers of samples at `pointer`, each with `common`.
-OurWays even(const std::string& pointer, std::vector<std::string> common) {
+OurWays even(const std::string& pointer, const std::vector<std::string>& common) {
   OurWays ways{"even", {}};
   for (const int samples : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128}) {
     ways.overrides.push_back(common);

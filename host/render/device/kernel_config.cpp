@@ -71,20 +71,20 @@ bool harmless(const std::string& definition, const KernelDefines& defines) {
 /// Whether a definition changes rounding at most in a scene that does without, because what it is about is
 /// asked of materials, objects and the camera.
 bool has_no_use(const std::string& definition, const KernelDefines& defines) {
-  static const std::set<std::string> more{
+  static const std::set<std::string> more{"HAS_CAMERA_MOTION",
+                                          "HAS_LAYERS",
+                                          "HAS_MAPS",
+                                          "HAS_MESH",
+                                          "HAS_PARALLAX",
+                                          "HAS_RELIEF",
+                                          "HAS_ROUGH_GLASS",
+                                          "HAS_SDF",
+                                          "HAS_TEXEL_PAGES",
+                                          "HAS_UV",
 #define SUNDOG_SOLID_DEFINITION(constant, type, name) "HAS_" #constant,
-      SOLIDS(SUNDOG_SOLID_DEFINITION)
+                                          SOLIDS(SUNDOG_SOLID_DEFINITION)
 #undef SUNDOG_SOLID_DEFINITION
-          "HAS_CAMERA_MOTION",
-      "HAS_LAYERS",
-      "HAS_MAPS",
-      "HAS_MESH",
-      "HAS_PARALLAX",
-      "HAS_RELIEF",
-      "HAS_ROUGH_GLASS",
-      "HAS_SDF",
-      "HAS_TEXEL_PAGES",
-      "HAS_UV"};
+  };
   return more.contains(definition) || harmless(definition, defines);
 }
 

@@ -22,7 +22,7 @@ struct LoopsCutShort : DeviceError {
 };
 
 /// The counts of a tile's launches, in blocks.
-using LaunchCounts = std::array<u32, COUNTER_BLOCKS * COUNTER_BLOCK>;
+using LaunchCounts = std::array<u32, std::size_t{COUNTER_BLOCKS} * COUNTER_BLOCK>;
 
 /// Where an exception ends a tile, its arrays may be on their way still.
 class SettledAtEnd {
