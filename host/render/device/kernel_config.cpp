@@ -71,21 +71,15 @@ bool harmless(const std::string& definition, const KernelDefines& defines) {
 /// Whether a definition changes rounding at most in a scene that does without, because what it is about is
 /// asked of materials, objects and the camera.
 bool has_no_use(const std::string& definition, const KernelDefines& defines) {
-  static const std::set<std::string> more{"HAS_CAMERA_MOTION",
-                                          "HAS_LAYERS",
-                                          "HAS_MAPS",
-                                          "HAS_MESH",
-                                          "HAS_PARALLAX",
-                                          "HAS_RELIEF",
-                                          "HAS_ROUGH_GLASS",
-                                          "HAS_SDF",
-                                          "HAS_TEXEL_PAGES",
-                                          "HAS_UV",
+  static const std::set<std::string> solids{
 #define SUNDOG_SOLID_DEFINITION(constant, type, name) "HAS_" #constant,
-                                          SOLIDS(SUNDOG_SOLID_DEFINITION)
+      SOLIDS(SUNDOG_SOLID_DEFINITION)
 #undef SUNDOG_SOLID_DEFINITION
   };
-  return more.contains(definition) || harmless(definition, defines);
+  static const std::set<std::string> others{"HAS_CAMERA_MOTION", "HAS_LAYERS", "HAS_MAPS",        "HAS_MESH",
+                                            "HAS_PARALLAX",      "HAS_RELIEF", "HAS_ROUGH_GLASS", "HAS_SDF",
+                                            "HAS_TEXEL_PAGES",   "HAS_UV"};
+  return solids.contains(definition) || others.contains(definition) || harmless(definition, defines);
 }
 
 /// Kinds that a kernel knows, a bit each.
