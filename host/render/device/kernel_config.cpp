@@ -72,7 +72,7 @@ bool harmless(const std::string& definition, const KernelDefines& defines) {
 /// asked of materials, objects and the camera.
 bool has_no_use(const std::string& definition, const KernelDefines& defines) {
   static const std::set<std::string> solids{
-#define SUNDOG_SOLID_DEFINITION(constant, type, name) "HAS_" #constant,
+#define SUNDOG_SOLID_DEFINITION(constant, type, name) std::string("HAS_") + #constant,
       SOLIDS(SUNDOG_SOLID_DEFINITION)
 #undef SUNDOG_SOLID_DEFINITION
   };
