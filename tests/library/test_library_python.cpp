@@ -38,9 +38,11 @@ TEST_CASE("pip installs the Python package, which renders, stops for Ctrl-C and 
   const fs::path prefix = install_library(folder.path());
   const std::string config = fs::path(find_below(prefix, "sundogConfig.cmake")).parent_path().string();
   const CommandResult built =
-      run_command({python, "-m", "pip", "install", "--quiet", "--no-build-isolation", SUNDOG_SOURCE_DIR, "-C",
-                   "cmake.define.sundog_DIR=" + config, "-C", "cmake.define.CMAKE_CXX_FLAGS_RELEASE=-O0",
-                   "-C", "build-dir=" + (folder / "build").string()},
+      // pip 23.0, Debian 12's, knows the long name of -C alone.
+      run_command({python, "-m", "pip", "install", "--quiet", "--no-build-isolation", SUNDOG_SOURCE_DIR,
+                   "--config-settings=cmake.define.sundog_DIR=" + config,
+                   "--config-settings=cmake.define.CMAKE_CXX_FLAGS_RELEASE=-O0",
+                   "--config-settings=build-dir=" + (folder / "build").string()},
                   patient);
   CAPTURE(built.out, built.err);
   REQUIRE(built.status == 0);

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "base/cache_folder.h"
+#include "base/deflate.h"
 #include "base/environment.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -43,6 +44,16 @@ std::vector<fs::path> files_of(const fs::path& folder) {
   if (fs::exists(folder))
     for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
   return files;
+}
+
+/// The key of a cache file: after magic and checksum stand the sizes of key, variants and binary, 20 digits
+/// each, then the three as one zlib stream.
+std::string key_of(const fs::path& file) {
+  const std::string stored = read_file(file);
+  const std::size_t sizes = stored.find('\n') + 1 + 32;
+  const auto size = [&](std::size_t field) { return std::stoul(stored.substr(sizes + field * 20, 20)); };
+  const std::string body = value_of(inflated(stored.substr(sizes + 60), size(0) + size(1) + size(2)));
+  return body.substr(0, size(0));
 }
 
 /// The device, with another environment.
@@ -111,12 +122,9 @@ TEST_CASE("a binary that the driver refuses is compiled anew, and the report say
       add_on(info);
       const auto files = files_of(cache.kernels());
       REQUIRE(files.size() == 1);
-      // A file that is sound in itself, of the right key, with a binary that is none. The key is in the file
-      // as it stands.
-      const std::string stored = read_file(files[0]);
-      const std::size_t sizes = stored.find('\n') + 1 + 32;
-      const std::string key = stored.substr(sizes + 60, std::stoul(stored.substr(sizes, 20)));
+      const std::string key = key_of(files[0]);
       REQUIRE(load_program(files[0], key));
+      // A file that is sound in itself, of the right key, with a binary that is none.
       store_program(files[0], key, {"this is no binary", {}});
       const BuildReport report = add_on(info);
       CHECK(!report.cached);
