@@ -3,6 +3,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -56,6 +57,30 @@ TEST_CASE("pages come back when the server is started anew, and give it their sc
   // The old server's picture has the same version: a new one is waited for.
   v.wait("return Number(canvas.dataset.frame) > " + frames.dump());
   CHECK(v.picture() == changed);
+  v.browser.use_tab(0);
+}
+
+TEST_CASE("the page says that a kernel is being built, and when the picture is complete") {
+  TemporaryFolder folder;
+  folder.write("scene.json", viewer_scene);
+  BackgroundProgram server({SUNDOG_BINARY, "serve", "scene.json"}, folder.path(),
+                           {{"XDG_CACHE_HOME", (folder / "cache").string()}});  // without any kernel
+  Viewer& v = viewer();
+  v.browser.open_tab(server.line_with("http://"));
+  v.settle();
+  v.run(R"(
+    const line = document.querySelector('.doing');
+    window.said = [];
+    window.listener = new MutationObserver(() => window.said.push(line.textContent));
+    window.listener.observe(line, {characterData: true, childList: true, subtree: true});)");
+  // Other samplers have kernels of their own.
+  v.run("store.set('/render/sampler', 'stratified')");
+  v.picture();
+  v.wait("return window.said.at(-1)?.startsWith('finished in')");
+  const json said = v.run("window.listener.disconnect(); return window.said");
+  INFO(said.dump());
+  CHECK(std::ranges::any_of(said,
+                            [](const std::string& text) { return text.starts_with("building a kernel"); }));
   v.browser.use_tab(0);
 }
 
