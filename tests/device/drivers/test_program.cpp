@@ -52,7 +52,7 @@ std::string key_of(const fs::path& file) {
   const std::string stored = read_file(file);
   const std::size_t sizes = stored.find('\n') + 1 + 32;
   const auto size = [&](std::size_t field) { return std::stoul(stored.substr(sizes + field * 20, 20)); };
-  const std::string body = value_of(inflated(stored.substr(sizes + 60), size(0) + size(1) + size(2)));
+  const std::string body = inflated(stored.substr(sizes + 60), size(0) + size(1) + size(2)).value();
   return body.substr(0, size(0));
 }
 
