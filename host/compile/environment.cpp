@@ -163,23 +163,52 @@ u32 pixels_a_cell(u32 pixels, u32 most) {
   return each;
 }
 
-void add_shares(const Picture& picture, Environment& e, std::vector<float>& shares) {
+/// The last step of running sums that begins at or before u.
+std::size_t step_of(std::span<const float> sums, double u) {
+  const auto after = std::upper_bound(sums.begin() + 1, sums.end() - 1, u);
+  return static_cast<std::size_t>(after - sums.begin()) - 1;
+}
+
+/// For n steps n words, as shared/environment.h has them. A device's product of a number and n may round over
+/// the border of a word: the words reach a little further.
+void append_cutpoints(std::span<const float> sums, std::vector<u32>& cutpoints) {
+  const double count = static_cast<double>(sums.size() - 1), slack = 1e-6, below_one = 1 - 0x1p-24;
+  for (double k = 0; k < count; ++k) {
+    const std::size_t first = step_of(sums, k / count * (1 - slack)),
+                      last = step_of(sums, std::min((k + 1) / count * (1 + slack), below_one));
+    cutpoints.push_back(static_cast<u32>(first | last << CUTPOINT_SHIFT));
+  }
+}
+
+void add_shares(const Picture& picture, Environment& e, CompiledScene& out) {
   const u32 across = pixels_a_cell(picture.width, most_columns),
             down = pixels_a_cell(picture.height, most_rows);
   e.columns = picture.width / across;
   e.rows = picture.height / down;
   std::vector<double> rows(e.rows);
-  std::vector<float> cells;
+  std::vector<float> sums, cells;
+  std::vector<u32> words;
   for (u32 row = 0; row < e.rows; ++row) {
     std::vector<double> light(e.columns);
     for (u32 y = row * down; y < (row + 1) * down; ++y) {
       const double angle = std::cos(pi * y / picture.height) - std::cos(pi * (y + 1) / picture.height);
       for (u32 x = 0; x < picture.width; ++x) light[x / across] += angle * light_of_pixel(picture, x, y);
     }
-    rows[row] = append_shares(light, cells);
+    sums.clear();
+    rows[row] = append_shares(light, sums);
+    append_cutpoints(sums, words);
+    cells.insert(cells.end(), sums.begin(), sums.end());
   }
-  append_shares(rows, shares);
+  sums.clear();
+  append_shares(rows, sums);
+  std::vector<float>& shares = out.environment_shares.edit();
+  for (u32 row = 0; row <= e.rows; ++row)
+    shares.push_back(static_cast<float>(std::cos(pi * double(row) / double(e.rows))));
+  shares.insert(shares.end(), sums.begin(), sums.end());
   shares.insert(shares.end(), cells.begin(), cells.end());
+  std::vector<u32>& cutpoints = out.environment_cutpoints.edit();
+  append_cutpoints(sums, cutpoints);
+  cutpoints.insert(cutpoints.end(), words.begin(), words.end());
 }
 
 void add_sun(const SceneDescription& scene, const glm::dmat3& axes, CompiledScene& out) {
@@ -212,7 +241,7 @@ void add_environment(const SceneDescription& scene, CompiledScene& out, const Ha
   packed.ahead = pack(axes[2]);
   packed.width = picture.width;
   packed.height = picture.height;
-  add_shares(picture, packed, out.environment_shares.edit());
+  add_shares(picture, packed, out);
   out.environments.push_back(packed);
   out.environment = std::move(picture.pixels);
   out.info.sees_environment = e.visible;

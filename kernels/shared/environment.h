@@ -6,14 +6,19 @@ SUNDOG_SHARED_BEGIN
 
 // 64 bytes. The picture's rows go from the top (`up`) to the bottom, its columns about the axis: the middle
 // is seen along `ahead`, what is right of it along `right`. The table `environment` holds its pixels (rgb),
-// row by row; `environment_shares` first the running sums of the light of the rows of cells, from 0 to 1,
-// then for each row those of its cells. A cell covers whole pixels.
+// row by row. A cell covers whole pixels. `environment_shares` has first the cosines to `up` of the borders
+// of the rows of cells, then the running sums of the rows' light, from 0 to 1, then for each row those of its
+// cells. `environment_cutpoints` has first for the rows, then for the cells of each row, n words for n sums'
+// steps: word k has the first and, above CUTPOINT_SHIFT, the last step that a number in [k, k + 1) / n may
+// lie in.
 typedef struct Environment {
   float4 right, up, ahead;  // unit, at right angles
   u32 width, height;        // in pixels
   u32 columns, rows;        // in cells
 } Environment;
 SUNDOG_SHARED_SIZE(Environment, 64)
+
+#define CUTPOINT_SHIFT 16u
 
 SUNDOG_SHARED_END
 #endif

@@ -43,6 +43,7 @@
   TABLE(Environment, Environment, environments, "environments")          \
   TABLE(float4, float4, environment, "environment's pixels")             \
   TABLE(float, float, environment_shares, "environment's shares")        \
+  TABLE(u32, u32, environment_cutpoints, "environment's cutpoints")      \
   TABLE(SdfField, SdfField, sdf_fields, "fields")                        \
   TABLE(float, float, sdf_parameters, "field parameters")                \
   TABLE(float, float, filter, "filter")                                  \

@@ -16,94 +16,122 @@ static inline void environment_place(__global const Environment* e, REAL3 d, REA
 }
 
 // The picture there, blended between the middles of its pixels and round its seam.
-static inline float3 environment_texel(const Scene* scene, float x, float y) {
-  const u32 width = scene->environments->width, height = scene->environments->height;
-  const float across = x * (float)width - 0.5f, down = y * (float)height - 0.5f;
-  const float left = floor(across), top = floor(down), a = across - left, b = down - top;
-  const u32 x0 = (u32)((int)left + (int)width) % width, x1 = x0 + 1u < width ? x0 + 1u : 0u;
-  const u32 y0 = (u32)max((int)top, 0), y1 = min((u32)((int)top + 1), height - 1u);
-  __global const float4 *upper = scene->environment + y0 * width, *lower = scene->environment + y1 * width;
-  const float3 above = upper[x0].xyz + a * (upper[x1].xyz - upper[x0].xyz);
-  const float3 below = lower[x0].xyz + a * (lower[x1].xyz - lower[x0].xyz);
-  return above + b * (below - above);
-}
-
-// What the environment sends along the directions of `lanes`.
-NEVER_INLINE REAL3 environment_along(const Scene* scene, REAL3 d, MASK lanes) {
-  REAL x, y;
-  environment_place(scene->environments, d, &x, &y);
+NEVER_INLINE REAL3 environment_at(const Scene* scene, REAL x, REAL y, MASK lanes) {
+  const int width = (int)scene->environments->width, height = (int)scene->environments->height;
+  const REAL across = x * (float)width - 0.5f, down = y * (float)height - 0.5f;
+  const REAL left = floor(across), top = floor(down), a = across - left, b = down - top;
+  const MASK column = TO_MASK(left), row = TO_MASK(top),
+             x0 = select(column, column + width, MASK_OF(column < 0));
+  const MASK x1 = select((MASK)(0), x0 + 1, MASK_OF(x0 + 1 < width));
+  const MASK y0 = max(row, (MASK)(0)) * width, y1 = min(row + 1, (MASK)(height - 1)) * width;
   REAL3 light = all3((float3)(0.0f));
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    set3(&light, i, environment_texel(scene, REAL_LANE(x, i), REAL_LANE(y, i)));
+    __global const float4 *upper = scene->environment + MASK_LANE(y0, i),
+                          *lower = scene->environment + MASK_LANE(y1, i);
+    const int p = MASK_LANE(x0, i), q = MASK_LANE(x1, i);
+    const float4 above = upper[p] + REAL_LANE(a, i) * (upper[q] - upper[p]);
+    const float4 below = lower[p] + REAL_LANE(a, i) * (lower[q] - lower[p]);
+    set3(&light, i, (above + REAL_LANE(b, i) * (below - above)).xyz);
   }
   return light;
 }
 
-// The last of `count` cells whose running sum begins at or before u: one that has light, for u below 1.
-static inline u32 cell_of(__global const float* sums, u32 count, float u) {
-  u32 low = 0, high = count - 1u;
-  while (low < high) {
-    const u32 middle = (low + high + 1u) / 2u;
-    if (sums[middle] <= u)
-      low = middle;
-    else
-      high = middle - 1u;
+// What the environment sends along the directions of `lanes`.
+static inline REAL3 environment_along(const Scene* scene, REAL3 d, MASK lanes) {
+  REAL x, y;
+  environment_place(scene->environments, d, &x, &y);
+  return environment_at(scene, x, y, lanes);
+}
+
+// Running sums: where they begin in environment_shares, where their cutpoints do, and how many steps they
+// have.
+typedef struct RunningSums {
+  MASK first, cutpoints;
+  u32 count;
+} RunningSums;
+
+static inline RunningSums sums_of_rows(__global const Environment* e) {
+  const RunningSums sums = {(MASK)((int)e->rows + 1), NO_LANES, e->rows};
+  return sums;
+}
+static inline RunningSums sums_of_cells(__global const Environment* e, MASK row) {
+  const int rows = (int)e->rows, columns = (int)e->columns;
+  const RunningSums sums = {row * (columns + 1) + 2 * (rows + 1), row * columns + rows, e->columns};
+  return sums;
+}
+
+// The last step that begins at or before u: one that has light, for u in [0, 1). Found between cutpoints
+// (Chen and Asau 1974, "On Generating Random Variates from an Empirical Distribution").
+static inline MASK step_of(const Scene* scene, const RunningSums* sums, REAL u, MASK lanes) {
+  const MASK bucket = min(TO_MASK(u * (float)sums->count), (MASK)((int)sums->count - 1));
+  const MASK word = gather_words(scene->environment_cutpoints, sums->cutpoints + bucket, lanes);
+  MASK low = word & (int)((1u << CUTPOINT_SHIFT) - 1u), high = word >> (int)CUTPOINT_SHIFT;
+  for (MASK open = lanes & MASK_OF(low < high); any_lane(open); open = lanes & MASK_OF(low < high)) {
+    const MASK middle = (low + high + 1) >> 1;
+    const REAL sum = gather_floats(scene->environment_shares, sums->first + middle, open);
+    const MASK before = MASK_OF(sum <= u);
+    low = select(low, middle, open & before);
+    high = select(high, middle - 1, open & ~before);
   }
   return low;
 }
 
-// The density, per steradian, of the directions of a cell, which are chosen uniformly in it.
-static inline float cell_density(const Scene* scene, u32 column, u32 row) {
-  __global const Environment* e = scene->environments;
-  __global const float* rows = scene->environment_shares;
-  __global const float* cells = rows + e->rows + 1u + row * (e->columns + 1u);
-  const float share = (rows[row + 1u] - rows[row]) * (cells[column + 1u] - cells[column]);
-  const float top = cospi((float)row / (float)e->rows), bottom = cospi((float)(row + 1u) / (float)e->rows);
-  return share * (float)e->columns / (2.0f * M_PI_F * (top - bottom));
+// Where a step of running sums begins, and how large it is.
+static inline REAL step_begin(const Scene* scene, const RunningSums* sums, MASK step, MASK lanes,
+                              REAL* size) {
+  const REAL from = gather_floats(scene->environment_shares, sums->first + step, lanes);
+  *size = gather_floats(scene->environment_shares, sums->first + step + 1, lanes) - from;
+  return from;
+}
+
+// The density, per steradian, of the directions of cells with the share `share`, which are chosen uniformly
+// in them; `height`: the difference of the cosines of their row's borders.
+static inline REAL cell_density(__global const Environment* e, REAL share, REAL height) {
+  return share * (float)e->columns / (2.0f * M_PI_F * height);
 }
 
 // The density with which sample_environment() chooses the directions.
 static inline REAL environment_density(const Scene* scene, REAL3 d, MASK lanes) {
   __global const Environment* e = scene->environments;
-  REAL x, y, density = (REAL)(0.0f);
+  REAL x, y, row_share, share;
   environment_place(e, d, &x, &y);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
-    const u32 column = min((u32)(REAL_LANE(x, i) * (float)e->columns), e->columns - 1u),
-              row = min((u32)(REAL_LANE(y, i) * (float)e->rows), e->rows - 1u);
-    REAL_LANE(density, i) = cell_density(scene, column, row);
-  }
-  return density;
+  const MASK column = min(TO_MASK(x * (float)e->columns), (MASK)((int)e->columns - 1)),
+             row = min(TO_MASK(y * (float)e->rows), (MASK)((int)e->rows - 1));
+  const RunningSums rows = sums_of_rows(e), cells = sums_of_cells(e, row);
+  step_begin(scene, &rows, row, lanes, &row_share);
+  step_begin(scene, &cells, column, lanes, &share);
+  const REAL height = gather_floats(scene->environment_shares, row, lanes) -
+                      gather_floats(scene->environment_shares, row + 1, lanes);
+  return select((REAL)(0.0f), cell_density(e, row_share * share, height), lanes);
 }
 
-// A direction by two numbers in [0, 1): a row of cells by its share of the light, a cell in it, uniformly in
-// the cell's solid angle. Returns its density.
-static inline float environment_direction(const Scene* scene, float u_x, float u_y, float3* d) {
-  __global const Environment* e = scene->environments;
-  __global const float* rows = scene->environment_shares;
-  const u32 row = cell_of(rows, e->rows, u_y);
-  __global const float* cells = rows + e->rows + 1u + row * (e->columns + 1u);
-  const u32 column = cell_of(cells, e->columns, u_x);
-  const float down = (u_y - rows[row]) / fmax(rows[row + 1u] - rows[row], 1e-37f);
-  const float across = (u_x - cells[column]) / fmax(cells[column + 1u] - cells[column], 1e-37f);
-  const float top = cospi((float)row / (float)e->rows), bottom = cospi((float)(row + 1u) / (float)e->rows);
-  const float up = top + clamp(down, 0.0f, 1.0f) * (bottom - top), side = sqrt(fmax(1.0f - up * up, 0.0f));
-  const float turn = 2.0f * ((float)column + clamp(across, 0.0f, 1.0f)) / (float)e->columns - 1.0f;
-  *d = up * e->up.xyz + side * (sinpi(turn) * e->right.xyz + cospi(turn) * e->ahead.xyz);
-  return cell_density(scene, column, row);
-}
-
+// Directions by two numbers in [0, 1): a row of cells by its share of the light, a cell in it, uniformly in
+// the cell's solid angle.
 static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL u_y) {
+  __global const Environment* e = scene->environments;
+  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), least = (REAL)(1e-37f);
+  const RunningSums rows = sums_of_rows(e);
+  const MASK row = step_of(scene, &rows, u_y, ALL_LANES);
+  const RunningSums cells = sums_of_cells(e, row);
+  const MASK column = step_of(scene, &cells, u_x, ALL_LANES);
+  REAL row_share, share;
+  const REAL row_from = step_begin(scene, &rows, row, ALL_LANES, &row_share),
+             from = step_begin(scene, &cells, column, ALL_LANES, &share);
+  const REAL down = real_clamp((u_y - row_from) / real_max(row_share, least), zero, one),
+             across = real_clamp((u_x - from) / real_max(share, least), zero, one);
+  const REAL top = gather_floats(scene->environment_shares, row, ALL_LANES),
+             height = top - gather_floats(scene->environment_shares, row + 1, ALL_LANES);
+  const REAL up = fma(-down, height, top), side = real_sqrt(real_max(fma(-up, up, one), zero));
+  const REAL x = (TO_REAL(column) + across) / (float)e->columns, turn = fma(x, (REAL)(2.0f), (REAL)(-1.0f));
   LightSamples sample;
-  for (u32 i = 0; i < LANES; ++i) {
-    float3 d;
-    REAL_LANE(sample.density, i) = environment_direction(scene, REAL_LANE(u_x, i), REAL_LANE(u_y, i), &d);
-    set3(&sample.wi, i, d);
-  }
+  sample.wi = along3(along3(scale3(all3(e->up.xyz), up), side * sinpi(turn), all3(e->right.xyz)),
+                     side * cospi(turn), all3(e->ahead.xyz));
   sample.distance = (REAL)(INFINITY);
   sample.delta = NO_LANES;
-  sample.radiance = environment_along(scene, sample.wi, ALL_LANES);
+  sample.density = cell_density(e, row_share * share, height);
+  const REAL y = acos(real_clamp(up, (REAL)(-1.0f), one)) * (1.0f / M_PI_F);
+  sample.radiance = environment_at(scene, x, y, ALL_LANES);
   return sample;
 }
 

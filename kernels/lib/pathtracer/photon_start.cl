@@ -20,7 +20,6 @@ typedef struct PhotonStarts {
   MASK lanes;   // those that carry light
   MASK light;   // index of the one that each comes from
   MASK dimmed;  // the light whose distance counts where the photon is first bent, or NOT_DIMMED
-  MASK sky;     // the flux is still to be multiplied by what the environment sends
 } PhotonStarts;
 
 // One photon, and the numbers in [0, 1) that it is made of: a and b choose the place in a ball, c and e that
@@ -29,7 +28,6 @@ typedef struct PhotonStart {
   float3 o, d, flux;
   u32 light;
   int dimmed;
-  bool sky;
 } PhotonStart;
 typedef struct PhotonNumbers {
   float light, ball, a, b, c, e;
@@ -141,7 +139,9 @@ static inline void start_on_light(const Scene* scene, u32 targets, float4 ball, 
   start->o = p + n * (OFF_LIGHT * fmax(fmax(size.x, size.y), fmax(size.z, light->edge_u.w)));
 }
 
-static inline PhotonStart start_photon(const Scene* scene, u32 targets, const PhotonNumbers* u) {
+// `sky`: the way to the environment of the photon's lane `lane`.
+static inline PhotonStart start_photon(const Scene* scene, u32 targets, const PhotonNumbers* u,
+                                       const LightSamples* sky, u32 lane) {
   float share;
   const u32 index = choose_photon_light(scene, u->light, &share);
   const float4 ball = scene->photon_targets[choose_ball(scene, targets, u->ball)].ball;
@@ -149,7 +149,6 @@ static inline PhotonStart start_photon(const Scene* scene, u32 targets, const Ph
   PhotonStart start;
   start.light = index;
   start.dimmed = NOT_DIMMED;
-  start.sky = false;
   if (light->kind == LIGHT_DIRECTIONAL) {
     start.d = light->direction.xyz;
     start_from_afar(scene, targets, ball, M_PI_F * light->color.xyz, u, &start);
@@ -157,10 +156,9 @@ static inline PhotonStart start_photon(const Scene* scene, u32 targets, const Ph
     start.d = direction_in_sun(light, u->c, u->e);
     start_from_afar(scene, targets, ball, light->color.xyz / sun_density(light, 1.0f), u, &start);
   } else if (HAS_ENVIRONMENT && light->kind == LIGHT_ENVIRONMENT) {
-    const float density = environment_direction(scene, u->c, u->e, &start.d);
-    start.d = -start.d;
-    start.sky = true;
-    start_from_afar(scene, targets, ball, (float3)(1.0f / fmax(density, 1e-30f)), u, &start);
+    start.d = -get3(&sky->wi, lane);
+    const float3 sent = get3(&sky->radiance, lane) / fmax(REAL_LANE(sky->density, lane), 1e-30f);
+    start_from_afar(scene, targets, ball, sent, u, &start);
   } else if (HAS_AREA_LIGHTS && light->kind >= LIGHT_RECTANGLE) {
     start_on_light(scene, targets, ball, light, u, &start);
   } else {
@@ -184,24 +182,20 @@ NEVER_INLINE PhotonStarts start_photons(const Scene* scene, const PhotonLaunch* 
   starts.d = all3((float3)(0.0f, 0.0f, 1.0f));
   starts.flux = all3((float3)(0.0f));
   starts.dimmed = (MASK)(NOT_DIMMED);
-  starts.sky = NO_LANES;
   starts.light = NO_LANES;
+  LightSamples sky;
+  if (HAS_ENVIRONMENT) sky = sample_environment(scene, v.z, v.w);
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     const PhotonNumbers mine = {REAL_LANE(u.w, i), REAL_LANE(u.z, i), REAL_LANE(u.x, i),
                                 REAL_LANE(u.y, i), REAL_LANE(v.z, i), REAL_LANE(v.w, i)};
-    const PhotonStart start = start_photon(scene, launch->targets, &mine);
+    const PhotonStart start = start_photon(scene, launch->targets, &mine, &sky, i);
     set3(&starts.o, i, start.o);
     set3(&starts.d, i, start.d);
     set3(&starts.flux, i, start.flux);
     MASK_LANE(starts.light, i) = (int)start.light;
     MASK_LANE(starts.dimmed, i) = start.dimmed;
-    MASK_LANE(starts.sky, i) = start.sky ? -1 : 0;
   }
-  if (HAS_ENVIRONMENT && any_lane(starts.sky))
-    starts.flux =
-        select3(starts.flux, multiply3(starts.flux, environment_along(scene, negate3(starts.d), starts.sky)),
-                starts.sky);
   starts.flux = scale3(starts.flux, 1.0f / (float)launch->count);
   starts.lanes = lanes & MASK_OF(greatest3(starts.flux) > 0.0f) & MASK_OF(greatest3(starts.flux) < INFINITY);
   return starts;

@@ -35,10 +35,11 @@ const char* const draw_kernel = R"(
 #include "lib/core/sampler_lanes.cl"
 #include "lib/light/environment.cl"
 __kernel void draw(__global const Environment* environments, __global const float4* pixels,
-                   __global const float* shares, __global float4* out, u32 count) {
+                   __global const float* shares, __global const u32* cutpoints, __global float4* out, u32 count) {
   const u32 i = get_global_id(0);
   if (i >= count) return;
-  const Scene scene = {.environments = environments, .environment = pixels, .environment_shares = shares};
+  const Scene scene = {.environments = environments, .environment = pixels, .environment_shares = shares,
+                       .environment_cutpoints = cutpoints};
   const LaneSamples at = {3, 5, (int)i};
   float2 u, v;
   pair_lanes(&at, 8, false, (REAL*)&u, (REAL*)&u + 1);
@@ -58,13 +59,16 @@ std::vector<float4> draw(const DeviceInfo& info, const EnvironmentDescription& e
   add_environment(scene, flat);
   Device device(info);
   const KernelDefines one_lane{{"TILE_W", "1"}, {"TILE_H", "1"}, {"LANES", "1"}, {"WIDE_VECTORS", "0"}};
-  auto kernel = build_text(device, draw_kernel, one_lane)
-                    .kernel<Buffer<Environment>, Buffer<float4>, Buffer<float>, Buffer<float4>, u32>("draw");
+  auto kernel =
+      build_text(device, draw_kernel, one_lane)
+          .kernel<Buffer<Environment>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<float4>, u32>(
+              "draw");
   const auto environments = device.upload<Environment>(flat.environments);
   const auto pixels = device.upload<float4>(flat.environment);
   const auto shares = device.upload<float>(flat.environment_shares);
+  const auto cutpoints = device.upload<u32>(flat.environment_cutpoints);
   const auto out = device.make<float4>(2 * count);
-  device.run(kernel, {.x = count}, environments, pixels, shares, out, count);
+  device.run(kernel, {.x = count}, environments, pixels, shares, cutpoints, out, count);
   std::vector<float4> values(2 * count);
   device.read(out, std::span<float4>(values));
   return values;
