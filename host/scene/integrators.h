@@ -12,11 +12,12 @@ struct Integrator {
   const char*
       kernel;  // of that file; it takes the scene, the camera's media, film, weights, counters and a Launch
   bool needs_camera_media;  // the media that the camera is in
+  unsigned most_run;  // items that a work-item of many pixels can take, so that no lane waits for others
 };
 
 inline constexpr std::array integrators{
-    Integrator{"whitted", "entry/render_whitted.cl", "render_whitted", true},
-    Integrator{"path", "entry/render_path.cl", "render_path", true}};
+    Integrator{"whitted", "entry/render_whitted.cl", "render_whitted", true, 1},
+    Integrator{"path", "entry/render_path.cl", "render_path", true, 8}};
 
 /// The names, in the table's order.
 inline constexpr auto integrator_names = [] {

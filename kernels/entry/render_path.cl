@@ -1,8 +1,10 @@
 // One stage: the path-traced image of a rectangle of pixels, by unidirectional paths (Kajiya 1986, "The
-// Rendering Equation"). A work-item takes TILE_W x TILE_H pixels, a pixel a lane; a lane whose path has ended
-// takes its pixel's next sample, so lanes are seldom idle, and a pixel's samples stay in their order.
-// Shadow rays see what paths that meet lights by chance would.
+// Rendering Equation"). A work-item takes TILE_W x TILE_H pixels of several items, a pixel a lane; a lane
+// whose path has ended takes its pixel's next sample, then the same place of the next item, so lanes are
+// seldom idle, and a pixel's samples stay in their order. Shadow rays see what paths that meet lights by
+// chance would.
 #define SHADOWS_AS_PATHS 1
+#define RAYS_BY_LANE 1
 #include "lib/core/counters.cl"
 #include "lib/path/camera_samples.cl"
 #include "lib/path/ray_counts.cl"
@@ -11,21 +13,37 @@
 
 // What a work-item's lanes are at.
 typedef struct LaneWork {
+  u32 end;            // of the items
+  u32 item[BATCH];    // where the lane's pixel is
   u32 next[BATCH];    // sample that the lane takes next
   float sign[BATCH];  // what the sample counts that it is at
 } LaneWork;
 
-// The lanes of `idle` whose pixels have samples left begin with them. Returns those lanes.
-NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
-                                  __global const u32* restrict pixels, u32 item, MediaStack around, MASK idle,
-                                  LaneWork* work, Walks* walks, SceneRays* rays) {
-  const u32 last = launch->first_sample + launch->sample_count;
-  BegunSamples begun = no_samples();
-  for (u32 bits = lane_bits(idle); bits; bits &= bits - 1u) {
-    const u32 lane = lowest_bit(bits), sample = work->next[lane];
-    if (sample >= last || !begin_sample(launch, pixels, item, lane, sample, &begun)) continue;
+// The lane takes its pixel's next sample, or the first one of the next pixel that is there.
+static inline void take_sample(const Launch* launch, __global const u32* restrict pixels, u32 lane,
+                               LaneWork* work, BegunSamples* begun, u32* counts,
+                               __global u32* restrict ray_counts) {
+  const u32 first = launch->first_sample, last = first + launch->sample_count;
+  for (; work->item[lane] < work->end; work->item[lane] += 1u, work->next[lane] = first) {
+    const u32 item = work->item[lane], sample = work->next[lane];
+    if (sample >= last) {
+      add_lane_rays(launch, lane_pixel(launch, item, lane), lane, counts, ray_counts);
+      continue;
+    }
+    if (!begin_sample(launch, pixels, item, lane, sample, begun)) continue;
     work->next[lane] = sample + 1u;
+    return;
   }
+}
+
+// The lanes of `idle` that have samples left begin with them. Returns those lanes.
+NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
+                                  __global const u32* restrict pixels, MediaStack around, MASK idle,
+                                  LaneWork* work, Walks* walks, SceneRays* rays, u32* counts,
+                                  __global u32* restrict ray_counts) {
+  BegunSamples begun = no_samples();
+  for (u32 bits = lane_bits(idle); bits; bits &= bits - 1u)
+    take_sample(launch, pixels, lowest_bit(bits), work, &begun, counts, ray_counts);
   if (!any_lane(begun.lanes)) return NO_LANES;
   const SceneRays first = begun_rays(scene, &begun, around, work->sign);
   const Walks fresh = start_walks(scene, &begun.at, begun.lanes);
@@ -34,23 +52,28 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
   return begun.lanes;
 }
 
-// One work-item of the kernel below.
-NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launch* launch, u32 item,
-                              __global const u32* restrict pixels, __global float4* restrict film,
-                              __global float* restrict weights, __global u32* restrict counters,
-                              __global u32* restrict ray_counts) {
+// One work-item of the kernel below: items [first, end).
+NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Launch* launch, u32 first,
+                               u32 end, __global const u32* restrict pixels, __global float4* restrict film,
+                               __global float* restrict weights, __global u32* restrict counters,
+                               __global u32* restrict ray_counts) {
   u32 counts[ALL_COUNTS];
   for (u32 i = 0; i < ALL_COUNTS; ++i) counts[i] = 0;
-  begin_film(launch, item, film, weights, ray_counts);
+  for (u32 item = first; item < end; ++item) begin_film(launch, item, film, weights, ray_counts);
   LaneWork work;
-  for (u32 lane = 0; lane < BATCH; ++lane) work.next[lane] = launch->first_sample;
+  work.end = end;
+  for (u32 lane = 0; lane < BATCH; ++lane) {
+    work.item[lane] = first;
+    work.next[lane] = launch->first_sample;
+  }
   const LaneSamples nowhere = {NO_LANES, NO_LANES, NO_LANES};
   const Rays none = camera_rays(scene->info, (REAL)(0.0f), (REAL)(0.0f));
   Walks walks = start_walks(scene, &nowhere, NO_LANES);
   SceneRays rays = scene_rays(&none, around);
   MASK lanes = NO_LANES;
   for (;;) {
-    const MASK begun = fill_idle_lanes(scene, launch, pixels, item, around, ~lanes, &work, &walks, &rays);
+    const MASK begun =
+        fill_idle_lanes(scene, launch, pixels, around, ~lanes, &work, &walks, &rays, counts, ray_counts);
     const MASK going = lanes | begun;
     if (!any_lane(going)) break;
     counts[COUNT_PRIMARY] += lane_count(begun);
@@ -63,16 +86,15 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     for (u32 bits = lane_bits(over); bits; bits &= bits - 1u) {
       const u32 lane = lowest_bit(bits);
       const float4 radiance = (float4)(get3(&seen, lane), MASK_LANE(walks.met, lane) ? 1.0f : 0.0f);
-      store_lane(launch, item, lane, radiance, work.sign[lane], film, weights, counts);
+      store_lane(launch, work.item[lane], lane, radiance, work.sign[lane], film, weights, counts);
     }
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);
-  add_ray_counts(launch, pixels, item, counts, ray_counts);
   add_finished(counters, counts[COUNT_PRIMARY], launch->sample_count);
 }
 
-// Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of work-items
+// Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of items
 // [first_item, last_item) of the rectangle (x0, y0, width, height), or of the image's pixels that it stands
 // for (`pixels`, where the launch is of a list), to film (rgb and coverage) and their number to weights, as
 // render_whitted does; adds to counters and ray_counts.
@@ -81,8 +103,10 @@ __kernel void render_path(SCENE_PARAMETERS, __global const u32* restrict camera_
                           __global float* restrict weights, __global u32* restrict counters,
                           __global u32* restrict ray_counts, const Launch launch) {
   const Scene scene = SCENE_OF_PARAMETERS;
-  const u32 item = launch.first_item + get_global_id(1) * launch.row_items + get_global_id(0);
-  if (get_global_id(0) >= launch.row_items || item >= launch.last_item) return;
-  render_item(&scene, (MediaStack)camera_media[1] << 32 | camera_media[0], &launch, item, pixels, film,
-              weights, counters_of(counters, item), ray_counts);
+  const u32 place = get_global_id(1) * launch.row_items + get_global_id(0),
+            first = launch.first_item + place * launch.run;
+  if (get_global_id(0) >= launch.row_items || first >= launch.last_item) return;
+  render_items(&scene, (MediaStack)camera_media[1] << 32 | camera_media[0], &launch, first,
+               min(first + launch.run, launch.last_item), pixels, film, weights, counters_of(counters, first),
+               ray_counts);
 }

@@ -57,6 +57,7 @@ void build_integrator(Device& device, const Integrator& integrator, FrameKernels
   kernels.integrator = integrator_kernel(
       build(device, integrator.entry, kernels.config, kernels, times, &update.built), integrator.kernel);
   kernels.entry = integrator.entry;
+  kernels.most_run = integrator.most_run;
   kernels.first_surfaces = {};
   kernels.trace_photons = {};
   kernels.find_media = {};

@@ -32,6 +32,7 @@ struct FrameKernels {
   SceneKernel<Buffer<u32>> find_media;                // only where the camera has been inside a solid
   std::string entry;                                  // of the integrator
   bool camera_inside = false;                         // tables.camera_media are not those of the outside
+  unsigned most_run = 1;                              // items that a work-item of the integrator can take
   std::size_t most_group = 0;                         // the largest work-group that they allow; 0: unknown
   std::vector<std::string> notes;                     // why a cache could not be used
   KernelBuilder* builder = nullptr;                   // builds while other kernels draw; may be null

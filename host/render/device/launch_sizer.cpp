@@ -11,6 +11,8 @@ namespace {
 
 // A launch is short enough for a watchdog and for Ctrl-C, and long against its overhead of some microseconds.
 constexpr double launch_seconds = 0.05;
+// A unit gets at least so many work-items of a launch, so that units end together.
+constexpr unsigned unit_work_items = 16;
 // Pixel-samples before anything is known of the device; a field's may take a thousand times as long.
 constexpr std::size_t first_launch_size = 4096, first_launch_size_of_fields = 512;
 
@@ -109,7 +111,9 @@ std::optional<SizedLaunch> LaunchSizer::next() {
   const unsigned most = std::min(samples_ - sample_, most_samples_);
   const unsigned count = static_cast<unsigned>(std::clamp<std::size_t>(next_size_ / pixels, 1, most));
   SizedLaunch sized;
-  sized.size = grid_ ? group_items(columns_, items_ / columns_) : group_items(items_, 1);
+  const unsigned share = items_ / (unit_work_items * std::max(1u, limits_.compute_units));
+  const unsigned run = grid_ ? 1 : std::clamp(share, 1u, limits_.most_run);
+  sized.size = grid_ ? group_items(columns_, items_ / columns_) : group_items(divide_up(items_, run), 1);
   sized.samples = pixels * count;
   sized.expected_seconds = sample_seconds_ * static_cast<double>(sized.samples);
   sized.launch = {static_cast<u32>(tile_.x),
@@ -123,7 +127,8 @@ std::optional<SizedLaunch> LaunchSizer::next() {
                   sample_,
                   count,
                   0,
-                  0};
+                  0,
+                  run};
   sample_ += count;
   last_size_ = sized.samples;
   last_group_ = sized.size.local_x * sized.size.local_y;

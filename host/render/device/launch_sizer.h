@@ -17,6 +17,7 @@ struct LaunchLimits {
   unsigned compute_units = 1;
   unsigned tile_w = 4, tile_h = 4;  // pixels a work-item
   std::size_t most_group = 0;       // work-items of a group; 0: not known
+  unsigned most_run = 1;            // items that a work-item can take, one after another
 };
 
 /// How a launch failed.

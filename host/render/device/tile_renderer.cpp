@@ -44,8 +44,10 @@ Tuning tuning_of(const RenderOptions& options, const DeviceInfo& device) {
 }
 
 LaunchLimits limits_of(const DeviceInfo& device, const FrameKernels& kernels) {
-  return {device.device_class, device.compute_units, kernels.config.tile_w, kernels.config.tile_h,
-          kernels.most_group};
+  const KernelConfig& config = kernels.config;
+  return {device.device_class, device.compute_units,
+          config.tile_w,       config.tile_h,
+          kernels.most_group,  config.tile_w * config.tile_h > 1 ? kernels.most_run : 1};
 }
 
 bool makes_aovs(const CompiledScene& scene, const RenderOptions& options) {

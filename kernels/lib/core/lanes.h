@@ -140,6 +140,18 @@ static inline REAL read_lanes(const float* from) {
 #endif
 }
 
+static inline void write_lanes(float* to, REAL v) {
+#if LANES == 1
+  *to = v;
+#elif LANES == 4
+  vstore4(v, 0, to);
+#elif LANES == 8
+  vstore8(v, 0, to);
+#else
+  vstore16(v, 0, to);
+#endif
+}
+
 typedef struct REAL3 {
   REAL x, y, z;
 } REAL3;

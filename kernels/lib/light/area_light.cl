@@ -64,8 +64,8 @@ static inline SphericalRectangles see_rectangle(__global const Light* light, REA
              n2 = r.y1 * real_rsqrt(real_max(fma(r.y1, r.y1, zz), (REAL)(1e-37f))),
              n3 = -r.x0 * real_rsqrt(real_max(fma(r.x0, r.x0, zz), (REAL)(1e-37f)));
   const REAL one = (REAL)(1.0f);
-  const REAL g0 = acos(real_clamp(-n0 * n1, -one, one)), g1 = acos(real_clamp(-n1 * n2, -one, one)),
-             g2 = acos(real_clamp(-n2 * n3, -one, one)), g3 = acos(real_clamp(-n3 * n0, -one, one));
+  const REAL g0 = real_acos(real_clamp(-n0 * n1, -one, one)), g1 = real_acos(real_clamp(-n1 * n2, -one, one)),
+             g2 = real_acos(real_clamp(-n2 * n3, -one, one)), g3 = real_acos(real_clamp(-n3 * n0, -one, one));
   r.b0 = n0;
   r.b1 = n2;
   r.k = 2.0f * M_PI_F - g2 - g3;
@@ -75,8 +75,9 @@ static inline SphericalRectangles see_rectangle(__global const Light* light, REA
 
 // The place on the rectangle, in its axes, that the numbers u stand for.
 static inline void place_in_rectangle(const SphericalRectangles* r, REAL u_x, REAL u_y, REAL* x, REAL* y) {
-  const REAL angle = fma(u_x, r->solid_angle, r->k), sine = nonzero(sin(angle));
-  const REAL f = (cos(angle) * r->b0 - r->b1) / sine;
+  REAL sine, cosine;
+  sincos_of_turn(fma(u_x, r->solid_angle, r->k) * (0.5f / M_PI_F), &sine, &cosine);
+  const REAL f = (cosine * r->b0 - r->b1) / nonzero(sine);
   const REAL cu = real_clamp(copysign(real_rsqrt(real_max(fma(f, f, r->b0 * r->b0), (REAL)(1e-37f))), f),
                              (REAL)(-0.9999999f), (REAL)(0.9999999f));
   *x = real_clamp(-cu * r->z * real_rsqrt((1.0f - cu) * (1.0f + cu)), r->x0, r->x1);

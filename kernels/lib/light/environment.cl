@@ -12,7 +12,7 @@ static inline void environment_place(__global const Environment* e, REAL3 d, REA
   const REAL up = real_clamp(dot3(d, all3(e->up.xyz)), (REAL)(-1.0f), (REAL)(1.0f));
   const REAL turn = fma(atan2(right, ahead), (REAL)(0.5f / M_PI_F), (REAL)(0.5f));
   *x = real_clamp(turn, (REAL)(0.0f), (REAL)(1.0f));
-  *y = acos(up) * (1.0f / M_PI_F);
+  *y = real_acos(up) * (1.0f / M_PI_F);
 }
 
 // The picture there, blended between the middles of its pixels and round its seam.
@@ -123,14 +123,16 @@ static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL
   const REAL top = gather_floats(scene->environment_shares, row, ALL_LANES),
              height = top - gather_floats(scene->environment_shares, row + 1, ALL_LANES);
   const REAL up = fma(-down, height, top), side = real_sqrt(real_max(fma(-up, up, one), zero));
-  const REAL x = (TO_REAL(column) + across) / (float)e->columns, turn = fma(x, (REAL)(2.0f), (REAL)(-1.0f));
+  const REAL x = (TO_REAL(column) + across) / (float)e->columns;
+  REAL sine, cosine;
+  sincos_of_turn(x - 0.5f, &sine, &cosine);
   LightSamples sample;
-  sample.wi = along3(along3(scale3(all3(e->up.xyz), up), side * sinpi(turn), all3(e->right.xyz)),
-                     side * cospi(turn), all3(e->ahead.xyz));
+  sample.wi = along3(along3(scale3(all3(e->up.xyz), up), side * sine, all3(e->right.xyz)), side * cosine,
+                     all3(e->ahead.xyz));
   sample.distance = (REAL)(INFINITY);
   sample.delta = NO_LANES;
   sample.density = cell_density(e, row_share * share, height);
-  const REAL y = acos(real_clamp(up, (REAL)(-1.0f), one)) * (1.0f / M_PI_F);
+  const REAL y = real_acos(real_clamp(up, (REAL)(-1.0f), one)) * (1.0f / M_PI_F);
   sample.radiance = environment_at(scene, x, y, ALL_LANES);
   return sample;
 }

@@ -1,12 +1,17 @@
-// Camera, reflected, refracted and shadow rays of pixels, where the host asks for them: with HAS_RAY_COUNTS
-// of each of a work-item's pixels, behind the counts of the launch; else of all of them, as those of the
-// first.
+// Camera, reflected, refracted and shadow rays of pixels, where the host asks for them. With RAYS_BY_LANE
+// they are counted for each of a work-item's pixels, behind the counts of the launch; else for all of them,
+// as those of the first.
 #ifndef SUNDOG_LIB_RAY_COUNTS_CL
 #define SUNDOG_LIB_RAY_COUNTS_CL
 #include "lib/core/lanes.h"
 #include "lib/path/tile.cl"
 
-#if HAS_RAY_COUNTS
+// An integrator whose lanes have a pixel each may define it for all its kernels.
+#ifndef RAYS_BY_LANE
+#define RAYS_BY_LANE HAS_RAY_COUNTS
+#endif
+
+#if RAYS_BY_LANE
 #define ALL_COUNTS (COUNTERS + BATCH)
 
 // A ray in each lane of `lanes`, of the work-item's pixels `pixels`.
@@ -16,22 +21,28 @@ static inline void note_rays(MASK pixels, MASK lanes, u32* counts) {
 }
 // The same where lane i is of pixel i.
 static inline void note_own_rays(MASK lanes, u32* counts) {
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) counts[COUNTERS + lowest_bit(bits)] += 1u;
+  float* own = (float*)(counts + COUNTERS);
+  write_lanes(own, AS_REAL(AS_MASK(read_lanes(own)) - lanes));
+}
+// Adds the rays of a lane, whose pixel of the rectangle is `at`, and forgets them.
+static inline void add_lane_rays(const Launch* launch, uint2 at, u32 lane, u32* counts,
+                                 __global u32* restrict rays) {
+  if (launch->counts_rays) rays[at.y * launch->width + at.x] += counts[COUNTERS + lane];
+  counts[COUNTERS + lane] = 0u;
 }
 static inline void add_ray_counts(const Launch* launch, __global const u32* restrict pixels, u32 item,
-                                  const u32* counts, __global u32* restrict rays) {
+                                  u32* counts, __global u32* restrict rays) {
   for (u32 lane = 0; lane < BATCH; ++lane) {
     const uint2 at = lane_pixel(launch, item, lane);
     uint2 pixel;
-    if (image_pixel(launch, pixels, at, &pixel)) rays[at.y * launch->width + at.x] += counts[COUNTERS + lane];
+    if (image_pixel(launch, pixels, at, &pixel)) add_lane_rays(launch, at, lane, counts, rays);
   }
 }
 #else
 #define ALL_COUNTS COUNTERS
 static inline void note_rays(MASK pixels, MASK lanes, u32* counts) {}
-static inline void note_own_rays(MASK lanes, u32* counts) {}
 static inline void add_ray_counts(const Launch* launch, __global const u32* restrict pixels, u32 item,
-                                  const u32* counts, __global u32* restrict rays) {
+                                  u32* counts, __global u32* restrict rays) {
   const uint2 at = lane_pixel(launch, item, 0u);
   uint2 pixel;
   if (launch->counts_rays && image_pixel(launch, pixels, at, &pixel))

@@ -179,6 +179,41 @@ ALWAYS_INLINE void list_walk(Walk* walk, Walk** at_node, u32* node_words, u32* n
 }
 #define LIST_WALK(walk) list_walk(walk, at_node, node_words, &node_count, at_leaf, &leaf_count)
 
+// A root of so few children is tried for all rays of a batch at once, which most need no walk then: a lamp,
+// or a mesh that is far from where the rays go.
+#define FEW_CHILDREN 2
+
+// The lanes whose rays cross a child's box, as slab_distances() finds it.
+static inline MASK crossing_child(__global const BvhNode* node, u32 slot, const PreparedRays* rays,
+                                  const REAL* t_min, const REAL* t_max) {
+  const MASK back_x = MASK_OF(rays->near_x != 0), back_y = MASK_OF(rays->near_y != 8),
+             back_z = MASK_OF(rays->near_z != 16);
+  const REAL x = (REAL)(node->lower_x[slot]), y = (REAL)(node->lower_y[slot]),
+             z = (REAL)(node->lower_z[slot]), far_x = (REAL)(node->upper_x[slot]),
+             far_y = (REAL)(node->upper_y[slot]), far_z = (REAL)(node->upper_z[slot]);
+  const MASK in_x = AS_MASK(fma(select(x, far_x, back_x), rays->rcp_near.x, rays->shift_near.x)),
+             in_y = AS_MASK(fma(select(y, far_y, back_y), rays->rcp_near.y, rays->shift_near.y)),
+             in_z = AS_MASK(fma(select(z, far_z, back_z), rays->rcp_near.z, rays->shift_near.z)),
+             out_x = AS_MASK(fma(select(far_x, x, back_x), rays->rcp_far.x, rays->shift_far.x)),
+             out_y = AS_MASK(fma(select(far_y, y, back_y), rays->rcp_far.y, rays->shift_far.y)),
+             out_z = AS_MASK(fma(select(far_z, z, back_z), rays->rcp_far.z, rays->shift_far.z));
+  return MASK_OF(max(max(in_x, in_y), max(in_z, AS_MASK(*t_min))) <=
+                 min(min(out_x, out_y), min(out_z, AS_MASK(*t_max))));
+}
+
+// The lanes of `bits` that cross a child of the node `word`, where it has few; else all of them.
+static inline u32 crossing_few(const Scene* scene, u32 word, const WalkRays* walkers,
+                               const PreparedRays* rays, u32 bits) {
+  if (word & BVH_LEAF) return bits;
+  __global const BvhNode* node = node_at(scene->nodes, word);
+  const u32 count = popcount(node->valid);
+  if (count > FEW_CHILDREN) return bits;
+  MASK crossing = NO_LANES;
+  for (u32 slot = 0; slot < count; ++slot)
+    crossing |= crossing_child(node, slot, rays, walkers->t_min, &walkers->hits->t);
+  return bits & lane_bits(crossing);
+}
+
 // The nearest hits, or with `any` whichever come first, of the lanes of `bits`, which is not 0, from `word`
 // of the scene BVH on; or, rays in object space, of the mesh BVH of `instance`.
 NEVER_INLINE void walk_rays(const Scene* scene, const WalkRays* rays, u32 bits, u32 word, u32 instance,
@@ -187,6 +222,8 @@ NEVER_INLINE void walk_rays(const Scene* scene, const WalkRays* rays, u32 bits, 
   Hits* hits = rays->hits;
   PreparedRays world, turned;
   aim_rays(&world, rays->o, rays->d, bits);
+  if (bits & (bits - 1u)) bits = crossing_few(scene, word, rays, &world, bits);
+  if (!bits) return;
   Walk walks[LANES];
   Walk *at_node[LANES + 1], *at_leaf[LANES + 1];
   u32 node_words[LANES + 1], node_count = 0, leaf_count = 0;
