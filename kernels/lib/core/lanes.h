@@ -100,20 +100,26 @@ static inline u32 lane_bits(MASK m) {
   return lane_mask(m.lo) | lane_mask(m.hi) << 8;
 #endif
 }
-static inline MASK lanes_of(u32 bits) { return MASK_OF(((MASK)((int)bits) & LANE_BITS) != 0); }
+static inline MASK lanes_of(u32 bits) {
+#if LANES == 16 && defined(__AVX512DQ__) && !defined(SUNDOG_PORTABLE)
+  return __builtin_ia32_cvtmask2d512((ushort)bits);
+#else
+  return MASK_OF(((MASK)((int)bits) & LANE_BITS) != 0);
+#endif
+}
 static inline u32 lane_count(MASK m) { return popcount(lane_bits(m)); }
 
 // Lane i of a private REAL or MASK variable, to read or to write.
 #define REAL_LANE(variable, i) (((float*)&(variable))[i])
 #define MASK_LANE(variable, i) (((int*)&(variable))[i])
 
-// Takes the lanes that have the same index as the first one out of `left`, which holds some: a table's entry
-// is then read once for all of them.
-static inline MASK take_alike(MASK index, MASK* left, u32* value) {
-  *value = (u32)MASK_LANE(index, lowest_bit(lane_bits(*left)));
-  const MASK alike = *left & MASK_OF(index == (MASK)((int)*value));
+// Takes the lanes that have the same index as the first one out of `left`, bits of lanes, which holds some: a
+// table's entry is then read once for all of them.
+static inline MASK take_alike(MASK index, u32* left, u32* value) {
+  *value = (u32)MASK_LANE(index, lowest_bit(*left));
+  const u32 alike = *left & lane_bits(MASK_OF(index == (MASK)((int)*value)));
   *left &= ~alike;
-  return alike;
+  return lanes_of(alike);
 }
 
 // Writes the lanes of the mask one after another. Up to LANES - 1 values behind them may be overwritten.

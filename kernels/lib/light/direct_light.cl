@@ -18,8 +18,8 @@ static inline MASK with_highlights(const Scene* scene, const Bsdfs* bsdf, MASK l
 static inline MASK with_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
   MASK shine = NO_LANES;
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(bsdf->material, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
     const float4 specular = scene->materials[index].specular;
     if (specular.x != 0.0f || specular.y != 0.0f || specular.z != 0.0f) shine |= mine;
   }

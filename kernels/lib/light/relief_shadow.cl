@@ -16,7 +16,7 @@ NEVER_INLINE REAL relief_visibility(const Scene* scene, const SurfaceInteraction
   TexturePoints at;
   texture_points(scene, s, deep, &at);
   u32 index;
-  for (MASK left = deep; any_lane(left);) {
+  for (u32 left = lane_bits(deep); left;) {
     const MASK mine = take_alike(s->material, &left, &index);
     __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
     REAL3 along;

@@ -44,8 +44,8 @@ NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, con
   TexturePoints at;
   texture_points(scene, &s, lanes, &at);
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(s.material, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(s.material, &left, &index);
     __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
     SlotValues values;
     read_slots(scene, maps, 1u << MAP_TRANSMISSION | 1u << MAP_OPACITY, &at, mine, &values);
@@ -73,7 +73,7 @@ static inline void filter_light(const Scene* scene, const SceneRays* rays, const
   u32 index;
   REAL3 passed = all3((float3)(1.0f));
   MASK mapped = NO_LANES;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(faces->material, &left, &index);
     passed = select3(passed, all3(scene->materials[index].transmission.xyz), mine);
     if (scene->materials[index].kind == MATERIAL_DIELECTRIC) dielectric |= mine;

@@ -47,7 +47,7 @@ NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, 
   light.density = (REAL)(1.0f);
   light.delta = NO_LANES;
   u32 index;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(chosen, &left, &index);
     const LightSamples one = sample_light(scene, index, p, u_x, u_y);
     light.wi = select3(light.wi, one.wi, mine);

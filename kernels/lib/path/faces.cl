@@ -23,7 +23,7 @@ static inline Faces hit_faces(const Scene* scene, REAL3 d, const Hits* hits, MAS
   faces.flags = NO_LANES;
   faces.medium = NO_LANES;
   u32 index;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(hits->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
     if (!(instance->flags & INSTANCE_IDENTITY))
@@ -38,7 +38,7 @@ static inline Faces hit_faces(const Scene* scene, REAL3 d, const Hits* hits, MAS
         MASK_LANE(faces.material, i) = (int)scene->triangles[MASK_LANE(hits->prim, i)].material;
       }
   }
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(faces.material, &left, &index);
     faces.flags = select(faces.flags, (MASK)((int)scene->materials[index].flags), mine);
     faces.medium = select(faces.medium, (MASK)((int)scene->materials[index].medium), mine);

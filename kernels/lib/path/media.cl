@@ -46,8 +46,8 @@ static inline bool cross_boundary(MediaStack* stack, u32 medium, bool entering) 
 static inline REAL3 absorb(__global const Medium* restrict media, MASK medium, REAL distance, MASK lanes) {
   REAL3 kept = all3((float3)(1.0f));
   u32 index;
-  while (HAS_ABSORPTION && any_lane(lanes)) {
-    const MASK mine = take_alike(medium, &lanes, &index);
+  for (u32 left = HAS_ABSORPTION ? lane_bits(lanes) : 0u; left;) {
+    const MASK mine = take_alike(medium, &left, &index);
     const float3 a = media[index].absorption.xyz;
     // A colour that is not absorbed keeps its bits, over infinite distances too.
     if (a.x != 0.0f) kept.x = select(kept.x, real_exp(-a.x * distance), mine);
@@ -67,8 +67,8 @@ static inline bool same_index(__global const Medium* a, __global const Medium* b
 static inline REAL refraction_index(__global const Medium* restrict media, MASK medium, MASK lanes) {
   REAL index = (REAL)(1.0f);
   u32 at;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(medium, &lanes, &at);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(medium, &left, &at);
     index = select(index, (REAL)(media[at].absorption.w), mine);
   }
   return index;

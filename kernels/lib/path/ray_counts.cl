@@ -41,6 +41,7 @@ static inline void add_ray_counts(const Launch* launch, __global const u32* rest
 #else
 #define ALL_COUNTS COUNTERS
 static inline void note_rays(MASK pixels, MASK lanes, u32* counts) {}
+static inline void note_own_rays(MASK lanes, u32* counts) {}
 static inline void add_ray_counts(const Launch* launch, __global const u32* restrict pixels, u32 item,
                                   u32* counts, __global u32* restrict rays) {
   const uint2 at = lane_pixel(launch, item, 0u);

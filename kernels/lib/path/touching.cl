@@ -290,8 +290,8 @@ NEVER_INLINE float meet_touching(const Scene* scene, const SceneRays* rays, u32 
 static inline MASK may_touch(__global const Instance* restrict instances, const Hits* hits, MASK lanes) {
   MASK found = NO_LANES;
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(hits->instance, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(hits->instance, &left, &index);
     if (instances[index].touch > 0.0f) found |= mine;
   }
   return found;

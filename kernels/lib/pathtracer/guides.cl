@@ -65,7 +65,7 @@ static inline BsdfSamples sample_guided(const Scene* scene, const Bsdfs* bsdf, c
     const REAL count = (REAL)((float)scene->info->guide_count);
     const MASK chosen = TO_MASK(real_min(floor(rest * count), count - 1.0f));
     u32 index;
-    for (MASK left = aims; any_lane(left);) {
+    for (u32 left = lane_bits(aims); left;) {
       const MASK mine = take_alike(chosen, &left, &index);
       REAL3 axis;
       const REAL down = u_x * cone_to_guide(scene->guides[index], p, &axis);

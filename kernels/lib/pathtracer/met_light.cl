@@ -32,7 +32,7 @@ NEVER_INLINE REAL chosen_density(const Scene* scene, const Walks* walks, REAL3 d
   const REAL distance = length3(way);
   REAL density = (REAL)(0.0f);
   u32 index;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(light, &left, &index);
     __global const Light* lamp = scene->lights + index;
     if (lamp->position.w != 0.0f) continue;
@@ -55,7 +55,7 @@ static inline REAL3 weighed_emission(const Scene* scene, const Walks* walks, REA
                                      const Shading* at, REAL3 light, MASK lanes) {
   MASK lamp = NO_LANES;
   u32 index;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(at->s.instance, &left, &index);
     lamp = select(lamp, light_of_instance(scene, index, hits->prim), mine);
   }
@@ -79,7 +79,7 @@ static inline REAL3 met_surface(const Scene* scene, const Walks* walks, const Sc
   if (!HAS_EMISSION) return light;
   MASK shining = NO_LANES;
   u32 index;
-  for (MASK left = lanes & at->s.entering; any_lane(left);) {
+  for (u32 left = lane_bits(lanes & at->s.entering); left;) {
     const MASK mine = take_alike(at->s.material, &left, &index);
     const float3 emission = scene->materials[index].emission.xyz;
     light = select3(light, all3(emission), mine);

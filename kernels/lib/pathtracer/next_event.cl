@@ -29,10 +29,11 @@ static inline void choose_in_tree(const Scene* scene, REAL3 p, REAL u, MASK lane
 static inline MASK choose_index(const Scene* scene, REAL3 p, REAL u, MASK lanes, REAL* chance) {
   const REAL count = (REAL)((float)scene->info->light_count), turn = u * count;
   const REAL slot = real_min(floor(turn), count - 1.0f);
+  const MASK slots = TO_MASK(slot);
   MASK chosen = NO_LANES;
   *chance = 1.0f / count;
   u32 index;
-  for (MASK left = lanes, slots = TO_MASK(slot); any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(slots, &left, &index);
     chosen = select(chosen, (MASK)((int)scene->light_rays[index].light), mine);
   }
@@ -51,7 +52,7 @@ static inline LightSamples sample_chosen(const Scene* scene, REAL3 p, REAL u_x, 
   light.density = (REAL)(1.0f);
   light.delta = NO_LANES;
   *seen = NO_LANES;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(chosen, &left, &index);
     const LightSamples one = sample_light(scene, index, p, u_x, u_y);
     light.wi = select3(light.wi, one.wi, mine);

@@ -31,9 +31,8 @@ static inline Photons begun_photons(const Scene* scene, const PhotonStarts* star
 // A light without extent falls off by its own rule up to the points p, where its photons are first bent, and
 // beyond them as the rays spread. So glass receives as much as any surface there.
 static inline void dim_with_distance(const Scene* scene, REAL3 p, MASK lanes, Photons* photons) {
-  MASK left = lanes & MASK_OF(photons->dimmed != NOT_DIMMED);
   u32 index;
-  while (any_lane(left)) {
+  for (u32 left = lane_bits(lanes & MASK_OF(photons->dimmed != NOT_DIMMED)); left;) {
     const MASK mine = take_alike(photons->dimmed, &left, &index);
     const LightSamples light = sample_light(scene, index, p, (REAL)(0.5f), (REAL)(0.5f));
     const REAL3 sent = scale3(light.radiance, M_PI_F * light.distance * light.distance);

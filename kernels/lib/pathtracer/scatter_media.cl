@@ -56,7 +56,7 @@ static inline Stretches find_stretches(const Scene* scene, const BegunRays* begu
   REAL3 decay = all3((float3)(0.0f)), scattering = decay;
   s.g = zero;
   u32 index;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(met->before, &left, &index);
     const float4 some = scene->media[index].scattering;
     if (some.x + some.y + some.z <= 0.0f) continue;
@@ -108,7 +108,7 @@ static inline REAL distance_for_light(const Scene* scene, const Stretches* s, MA
   REAL at = next_distance(s->decay, s->drawn, s->length, u, u_color);
   *density = next_density(s->decay, s->drawn, s->length, at);
   u32 index;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(chosen, &left, &index);
     __global const Light* lamp = scene->lights + index;
     if (!has_place(lamp)) continue;

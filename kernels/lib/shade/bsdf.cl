@@ -69,8 +69,8 @@ static inline MASK odd_cell(REAL3 p, float frequency) {
 static inline void add_checker(const Scene* scene, __global const Material* material,
                                const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(s->instance, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(s->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
     const REAL3 q = multiply3(points_of(scene, index, s, s->p), all3(instance->pattern_scale.xyz));
     const MASK odd = mine & odd_cell(q, material->checker_diffuse.w);
@@ -90,7 +90,7 @@ static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MA
   Terms terms = start_terms(bsdf->ambient, bsdf->diffuse);
   MASK mapped = NO_LANES;
   u32 index;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(s->material, &left, &index);
     __global const Material* material = scene->materials + index;
     terms.specular = select3(terms.specular, all3(material->specular.xyz), mine);
@@ -148,7 +148,7 @@ static inline void add_layers(const Scene* scene, const SurfaceInteractions* s, 
   bsdf->coated = layered & outside;
   bsdf->coated_behind = layered & ~outside;
   u32 index;
-  for (MASK left = layered; any_lane(left);) {
+  for (u32 left = lane_bits(layered); left;) {
     const MASK mine = take_alike(s->material, &left, &index);
     turn_frame(scene->layers + index, first_coordinate(s), mine, bsdf);
   }
@@ -174,7 +174,7 @@ static inline Bsdfs make_bsdfs(const Scene* scene, const SurfaceInteractions* s,
   bsdf.after = after;
   set_wavelength_row(&bsdf, (REAL)(0.0f));
   u32 index;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(s->material, &left, &index);
     __global const Material* material = scene->materials + index;
     bsdf.ambient = select3(bsdf.ambient, all3(material->ambient.xyz), mine);
@@ -216,8 +216,8 @@ static inline REAL3 add_highlights(const Scene* scene, const Bsdfs* bsdf, REAL3 
   if (!any_lane(lanes & MASK_OF(greatest3(bsdf->specular) > 0.0f))) return light;
   REAL cosine = (REAL)(0.0f);
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(bsdf->material, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
     cosine = select(cosine, highlight_cosine(scene->materials[index].flags, bsdf->ns, wo, wi), mine);
   }
   const REAL x = real_clamp(cosine, (REAL)(0.0f), (REAL)(1.0f));
@@ -230,8 +230,8 @@ static inline REAL3 add_highlights(const Scene* scene, const Bsdfs* bsdf, REAL3 
                                    REAL3 light) {
   REAL3 sum = light;
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(bsdf->material, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
     const float4 specular = scene->materials[index].specular;
     if (specular.x == 0.0f && specular.y == 0.0f && specular.z == 0.0f) continue;
     const REAL cosine = highlight_cosine(scene->materials[index].flags, bsdf->ns, wo, wi);
@@ -281,8 +281,8 @@ static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf
   SpecularSplits split = {none, none, NO_LANES, NO_LANES, one, one, one, zero};
   MASK dielectric = NO_LANES;
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(bsdf->material, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
     __global const Material* material = scene->materials + index;
     if (!(material->flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS))) continue;
     split.kr = select3(split.kr, reflection_of(bsdf, material), mine);

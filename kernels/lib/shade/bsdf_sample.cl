@@ -57,8 +57,8 @@ static inline void find_highlights(const Scene* scene, const Bsdfs* bsdf, MASK l
 static inline void find_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes, REAL* size,
                                    REAL* exponent) {
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(bsdf->material, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
     const float4 specular = scene->materials[index].specular;
     *size = select(*size, (REAL)(fmax(specular.x, fmax(specular.y, specular.z))), mine);
     *exponent = select(*exponent, (REAL)(specular.w), mine);

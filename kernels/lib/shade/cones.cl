@@ -32,8 +32,8 @@ static inline REAL triangle_curvatures(const Scene* scene, const SurfaceInteract
 static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
   REAL curvature = (REAL)(0.0f);
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(s->instance, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(s->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
     const float4 scale = instance->pattern_scale;
     const float size =

@@ -17,8 +17,8 @@ static inline REAL spectrum_at(const Scene* scene, u32 first, REAL row, MASK lan
 static inline REAL index_at(const Scene* scene, MASK medium, REAL row, MASK lanes) {
   REAL index = (REAL)(1.0f);
   u32 at;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(medium, &lanes, &at);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(medium, &left, &at);
     const u32 first = scene->media[at].spectrum;
     const REAL own =
         first == NO_SPECTRUM ? (REAL)(scene->media[at].absorption.w) : spectrum_at(scene, first, row, mine);
@@ -31,11 +31,11 @@ static inline REAL index_at(const Scene* scene, MASK medium, REAL row, MASK lane
 static inline MASK disperses(const Scene* scene, MASK before, MASK after, MASK lanes) {
   MASK found = NO_LANES;
   u32 at;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(before, &left, &at);
     if (scene->media[at].spectrum != NO_SPECTRUM) found |= mine;
   }
-  for (MASK left = lanes & ~found; any_lane(left);) {
+  for (u32 left = lane_bits(lanes & ~found); left;) {
     const MASK mine = take_alike(after, &left, &at);
     if (scene->media[at].spectrum != NO_SPECTRUM) found |= mine;
   }

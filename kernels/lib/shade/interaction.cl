@@ -191,7 +191,7 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
   REAL3 color = white;
   MASK on_field = NO_LANES;
   u32 index;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(hits->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
     turned = select(turned, (REAL)(moved_extent(scene, index)), mine);

@@ -30,7 +30,7 @@ static inline LayerShares make_shares(const Scene* scene, const Bsdfs* bsdf, REA
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), c = dot3(bsdf->ns, wo);
   LayerShares shares = {zero, zero, zero, zero};
   u32 index;
-  for (MASK left = layered_lanes(bsdf, lanes); any_lane(left);) {
+  for (u32 left = lane_bits(layered_lanes(bsdf, lanes)); left;) {
     const MASK mine = take_alike(bsdf->material, &left, &index);
     __global const Layers* m = scene->layers + index;
     const MASK coated = mine & bsdf->coated;
@@ -66,7 +66,7 @@ static inline void layer_scatter(const Scene* scene, const Bsdfs* bsdf, const La
   const MASK above = layered & MASK_OF(i.z > 0.0f) & MASK_OF(dot3(bsdf->ng, wi) > 0.0f);
   const MASK under = layered & MASK_OF(greatest3(*value) > 0.0f);
   u32 index;
-  for (MASK left = layered; any_lane(left);) {
+  for (u32 left = lane_bits(layered); left;) {
     const MASK mine = take_alike(bsdf->material, &left, &index);
     __global const Layers* m = scene->layers + index;
     if (any_lane(mine & under))
@@ -89,7 +89,7 @@ static inline REAL3 layer_direction(const Scene* scene, const Bsdfs* bsdf, const
   const MASK fuzz = MASK_OF(at < shares->fuzz), coat = MASK_OF(at < shares->fuzz + shares->coat);
   const MASK shine = MASK_OF(at < shares->fuzz + shares->coat + shares->shine);
   u32 index;
-  for (MASK left = layered_lanes(bsdf, lanes); any_lane(left);) {
+  for (u32 left = lane_bits(layered_lanes(bsdf, lanes)); left;) {
     const MASK mine = take_alike(bsdf->material, &left, &index);
     __global const Layers* m = scene->layers + index;
     alpha_x = select(alpha_x, select((REAL)(m->alpha_x), (REAL)(m->coat_alpha), coat), mine);

@@ -140,8 +140,8 @@ static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 w
   const REAL3 o = into_frame(bsdf, wo), i = into_frame(bsdf, wi);
   REAL3 sum = light;
   u32 index;
-  while (any_lane(layered)) {
-    const MASK mine = take_alike(bsdf->material, &layered, &index);
+  for (u32 left = lane_bits(layered); left;) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
     __global const Layers* m = scene->layers + index;
     REAL density;
     const float sharp = 1.0f - mirror_share(m->alpha_x, m->alpha_y);
@@ -157,7 +157,7 @@ static inline void mirror_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo
                                  SpecularSplits* split) {
   const REAL c = dot3(bsdf->ns, wo), one = (REAL)(1.0f);
   u32 index;
-  for (MASK left = layered_lanes(bsdf, lanes); any_lane(left);) {
+  for (u32 left = lane_bits(layered_lanes(bsdf, lanes)); left;) {
     const MASK mine = take_alike(bsdf->material, &left, &index);
     __global const Layers* m = scene->layers + index;
     const MASK coated = mine & bsdf->coated;

@@ -76,8 +76,8 @@ static inline void texture_points(const Scene* scene, const SurfaceInteractions*
   at->scale = (REAL)(1.0f);
   if (!TEXTURES_PLACED) return;
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(s->instance, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(s->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
     const float4 scale = instance->pattern_scale;
     at->p = select3(at->p, multiply3(points_of(scene, index, s, p), all3(scale.xyz)), mine);
@@ -240,8 +240,8 @@ NEVER_INLINE void map_terms(const Scene* scene, const SurfaceInteractions* s, MA
   TexturePoints at;
   texture_points(scene, s, lanes, &at);
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(s->material, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(s->material, &left, &index);
     __global const Material* material = scene->materials + index;
     map_material(scene, scene->material_maps + material->maps, material->flags, &at, s, mine, terms);
   }

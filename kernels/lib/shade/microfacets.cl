@@ -75,7 +75,7 @@ static inline Microfacets make_microfacets(const Scene* scene, const Bsdfs* bsdf
   Microfacets facets;
   facets.alpha = (REAL)(0.0f);
   u32 index;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(bsdf->material, &left, &index);
     facets.alpha = select(facets.alpha, (REAL)(scene->materials[index].reflection.w), mine);
   }
@@ -129,7 +129,7 @@ static inline void add_further(const Scene* scene, const Bsdfs* bsdf, const Micr
   const REAL size = part * further->lost * lost_i * fabs(c) / mean;
   REAL3 tint = all3((float3)(0.0f));
   u32 index;
-  for (MASK left = glass; any_lane(left);) {
+  for (u32 left = lane_bits(glass); left;) {
     const MASK mine = take_alike(bsdf->material, &left, &index);
     __global const Material* material = scene->materials + index;
     tint =

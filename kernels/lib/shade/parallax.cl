@@ -40,7 +40,7 @@ static inline ReliefWays relief_ways(const Scene* scene, __global const Material
   ways.end = end;
   ways.p = way;
   u32 index;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(at->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
     const REAL3 own = multiply3(vectors_of(scene, index, s, way), all3(instance->pattern_scale.xyz));
@@ -118,8 +118,8 @@ static inline REAL meet_heights(const Scene* scene, __global const MaterialMaps*
 static inline MASK has_parallax(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
   MASK found = NO_LANES;
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(s->material, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(s->material, &left, &index);
     const u32 number = scene->materials[index].maps;
     if (number != NO_MAPS && scene->material_maps[number].parallax != 0.0f) found |= mine;
   }
@@ -134,7 +134,7 @@ NEVER_INLINE void add_parallax(const Scene* scene, REAL3 d, MASK lanes, SurfaceI
   texture_points(scene, s, deep, &at);
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
   u32 index;
-  for (MASK left = deep; any_lane(left);) {
+  for (u32 left = lane_bits(deep); left;) {
     const MASK mine = take_alike(s->material, &left, &index);
     __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
     REAL3 along;

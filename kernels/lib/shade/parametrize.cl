@@ -82,8 +82,8 @@ NEVER_INLINE void find_coordinates(const Scene* scene, const Hits* hits, const R
   at->u = at->v = at->length = (REAL)(0.0f);
   at->dpdu = at->dpdv = zero;
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(hits->instance, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(hits->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
     SurfacePoints points = points_without_place(hits->ng);
     points_on_solid(instance->shape, instance->parameters,

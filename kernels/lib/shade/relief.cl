@@ -43,8 +43,8 @@ typedef struct TangentFrames {
 static inline void mesh_frames(const Scene* scene, const SurfaceInteractions* s, MASK lanes,
                                TangentFrames* frame) {
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(s->instance, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(s->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
     if (instance->shape != SHAPE_MESH) continue;
     REAL3 tangent = frame->tangent;
@@ -105,7 +105,7 @@ static inline REAL3 bumped_normals(const Scene* scene, __global const MaterialMa
     if (k == 1u) there.u += part;
     if (k == 2u) there.v += part;
     u32 index;
-    for (MASK left = lanes; k > 0u && any_lane(left);) {
+    for (u32 left = k > 0u ? lane_bits(lanes) : 0u; left;) {
       const MASK mine = take_alike(at->instance, &left, &index);
       __global const Instance* instance = scene->instances + index;
       const REAL3 way = multiply3(vectors_of(scene, index, s, along), all3(instance->pattern_scale.xyz));
@@ -131,7 +131,7 @@ NEVER_INLINE void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInt
   s->even = (REAL)(1.0f);
   MASK mapped = NO_LANES;
   u32 index;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(s->material, &left, &index);
     const u32 number = scene->materials[index].maps;
     __global const MaterialMaps* maps = scene->material_maps + number;
@@ -143,7 +143,7 @@ NEVER_INLINE void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInt
   texture_points(scene, s, mapped, &at);
   const TangentFrames frame = tangent_frames(scene, s, mapped);
   REAL3 normal = frame.normal;
-  for (MASK left = mapped; any_lane(left);) {
+  for (u32 left = lane_bits(mapped); left;) {
     const MASK mine = take_alike(s->material, &left, &index);
     __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
     if (maps->slot[MAP_NORMAL] != NO_TEXTURE)

@@ -12,11 +12,11 @@
 static inline REAL relief_depths(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
   REAL depth = (REAL)(0.0f);
   u32 index;
-  for (MASK left = has_parallax(scene, s, lanes); any_lane(left);) {
+  for (u32 left = lane_bits(has_parallax(scene, s, lanes)); left;) {
     const MASK mine = take_alike(s->material, &left, &index);
     depth = select(depth, (REAL)(scene->material_maps[scene->materials[index].maps].parallax), mine);
   }
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(s->instance, &left, &index);
     depth = select(depth, depth / scene->instances[index].pattern_scale.w, mine);
   }

@@ -65,8 +65,8 @@ static inline REAL lobe_energy(const Scene* scene, REAL c, REAL alpha, MASK lane
 static inline MASK rough_glass(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
   MASK glass = NO_LANES;
   u32 index;
-  while (any_lane(lanes)) {
-    const MASK mine = take_alike(bsdf->material, &lanes, &index);
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
     if (scene->materials[index].kind == MATERIAL_DIELECTRIC) glass |= mine;
   }
   return glass;
@@ -144,7 +144,7 @@ static inline Facets make_facets(const Scene* scene, const Bsdfs* bsdf, REAL3 wo
   facets.alpha = (REAL)(0.0f);
   facets.glass = NO_LANES;
   u32 index;
-  for (MASK left = lanes; any_lane(left);) {
+  for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(bsdf->material, &left, &index);
     facets.alpha = select(facets.alpha, (REAL)(scene->materials[index].reflection.w), mine);
   }

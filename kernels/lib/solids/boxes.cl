@@ -5,54 +5,70 @@
 #include "lib/solids/spans.cl"
 #include "lib/solids/surface_points.cl"
 
-// A ray for boxes around the origin. A direction without a component along an axis is inside it always or
-// never.
-typedef struct BoxSlabs {
-  REAL3 o, size, inverse;  // size: of o
-  MASK flat_x, flat_y, flat_z;
-} BoxSlabs;
+// A ray for boxes around the origin.
+typedef struct BoxRay {
+  REAL3 o, d, inverse;
+  bool flat;  // of some lane a component is too small to divide by: see leave_out_flat()
+} BoxRay;
 
-static inline BoxSlabs make_box_ray(REAL3 o, REAL3 d) {
-  BoxSlabs ray;
+#define FLAT(component) MASK_OF(fabs(component) < 1e-37f)
+
+static inline BoxRay make_box_ray(REAL3 o, REAL3 d) {
+  BoxRay ray;
   ray.o = o;
-  ray.size = real3(fabs(o.x), fabs(o.y), fabs(o.z));
+  ray.d = d;
   ray.inverse = real3(1.0f / d.x, 1.0f / d.y, 1.0f / d.z);
-  ray.flat_x = MASK_OF(fabs(d.x) < 1e-37f);
-  ray.flat_y = MASK_OF(fabs(d.y) < 1e-37f);
-  ray.flat_z = MASK_OF(fabs(d.z) < 1e-37f);
+  ray.flat = any_lane(FLAT(real_min(fabs(d.x), real_min(fabs(d.y), fabs(d.z)))));
   return ray;
 }
 
-// The part of the line where |x| <= h along one axis, cut off `span`; the axis of entry and exit is kept.
-static inline void cut_slab(REAL o, REAL size, REAL inverse, MASK flat, float h, int axis, Span* span,
-                            MASK* axis_in, MASK* axis_out) {
+// Where a line enters and leaves a box, and the slab of each axis.
+typedef struct BoxSpan {
+  REAL3 enters, leaves;
+  Span span;
+} BoxSpan;
+
+static inline void cut_slab(REAL o, REAL inverse, float h, REAL* enter, REAL* leave) {
   const REAL side = copysign((REAL)(h), inverse);
-  const REAL enter = (-side - o) * inverse, leave = (side - o) * inverse;
-  const MASK later = MASK_OF(enter > span->enter) & ~flat, sooner = MASK_OF(leave < span->leave) & ~flat;
-  span->enter = select(span->enter, enter, later);
-  span->leave = select(span->leave, leave, sooner);
-  *axis_in = select(*axis_in, (MASK)(axis), later);
-  *axis_out = select(*axis_out, (MASK)(axis), sooner);
-  span->crosses &= ~(flat & MASK_OF(size > h));
+  *enter = (-side - o) * inverse;
+  *leave = (side - o) * inverse;
 }
 
-static inline Span box_span(const BoxSlabs* ray, float3 h, MASK* axis_in, MASK* axis_out) {
-  Span span = {(REAL)(-INFINITY), (REAL)(INFINITY), ALL_LANES};
-  *axis_in = NO_LANES;
-  *axis_out = NO_LANES;
-  cut_slab(ray->o.x, ray->size.x, ray->inverse.x, ray->flat_x, h.x, 0, &span, axis_in, axis_out);
-  cut_slab(ray->o.y, ray->size.y, ray->inverse.y, ray->flat_y, h.y, 1, &span, axis_in, axis_out);
-  cut_slab(ray->o.z, ray->size.z, ray->inverse.z, ray->flat_z, h.z, 2, &span, axis_in, axis_out);
-  span.crosses &= MASK_OF(span.enter <= span.leave);
-  return span;
+// A direction without a component along an axis is inside the slab always or never. Returns the lanes that
+// may be inside.
+static inline MASK leave_out_flat(REAL o, REAL d, float h, REAL* enter, REAL* leave) {
+  const MASK flat = FLAT(d);
+  *enter = select(*enter, (REAL)(-INFINITY), flat);
+  *leave = select(*leave, (REAL)(INFINITY), flat);
+  return ~(flat & MASK_OF(fabs(o) > h));
 }
 
-// Unit normal along an axis, with the direction's sign or against it.
-static inline REAL3 axis_normals(MASK axis, REAL3 d, float along) {
-  const REAL zero = (REAL)(0.0f), one = (REAL)(along);
-  return real3(select(zero, copysign(one, d.x * along), MASK_OF(axis == 0)),
-               select(zero, copysign(one, d.y * along), MASK_OF(axis == 1)),
-               select(zero, copysign(one, d.z * along), MASK_OF(axis == 2)));
+static inline BoxSpan box_span(const BoxRay* ray, float3 h) {
+  BoxSpan box;
+  REAL3 *in = &box.enters, *out = &box.leaves;
+  cut_slab(ray->o.x, ray->inverse.x, h.x, &in->x, &out->x);
+  cut_slab(ray->o.y, ray->inverse.y, h.y, &in->y, &out->y);
+  cut_slab(ray->o.z, ray->inverse.z, h.z, &in->z, &out->z);
+  MASK within = ALL_LANES;
+  if (ray->flat) {
+    within &= leave_out_flat(ray->o.x, ray->d.x, h.x, &in->x, &out->x);
+    within &= leave_out_flat(ray->o.y, ray->d.y, h.y, &in->y, &out->y);
+    within &= leave_out_flat(ray->o.z, ray->d.z, h.z, &in->z, &out->z);
+  }
+  box.span.enter = real_max(real_max(in->x, in->y), in->z);
+  box.span.leave = real_min(real_min(out->x, out->y), out->z);
+  box.span.crosses = within & MASK_OF(box.span.enter <= box.span.leave);
+  return box;
+}
+
+// Unit normals along axes, with the direction's sign, or of the lanes of `against` against it.
+static inline REAL axis_normal(MASK here, REAL d, MASK against) {
+  const MASK sign = (AS_MASK(d) ^ against) & (int)0x80000000;
+  return select((REAL)(0.0f), AS_REAL(sign | as_int(1.0f)), here);
+}
+static inline REAL3 axis_normals(MASK axis, REAL3 d, MASK against) {
+  return real3(axis_normal(MASK_OF(axis == 0), d.x, against), axis_normal(MASK_OF(axis == 1), d.y, against),
+               axis_normal(MASK_OF(axis == 2), d.z, against));
 }
 
 // A box with these half sizes; the face is the one that p is nearest to.
@@ -74,14 +90,16 @@ static inline SurfacePoints points_on_faces(REAL3 p, float3 half_size) {
 
 static inline void closest_in_box(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                   SolidHits* hits) {
-  const BoxSlabs ray = make_box_ray(o, d);
-  MASK axis_in, axis_out;
-  const Span span = box_span(&ray, (float3)(1.0f), &axis_in, &axis_out);
-  active &= span.crosses;
+  const BoxRay ray = make_box_ray(o, d);
+  const BoxSpan box = box_span(&ray, (float3)(1.0f));
+  active &= box.span.crosses;
   if (!any_lane(active)) return;
-  const MASK enters = MASK_OF(span.enter > t_min);
-  const REAL3 ng = select3(axis_normals(axis_out, d, 1.0f), axis_normals(axis_in, d, -1.0f), enters);
-  offer(select(span.leave, span.enter, enters), ng, select(axis_out, axis_in, enters), active, t_min, hits);
+  const MASK enters = MASK_OF(box.span.enter > t_min);
+  const REAL t = select(box.span.leave, box.span.enter, enters);
+  const MASK along_x = MASK_OF(select(box.leaves.x, box.enters.x, enters) == t),
+             along_y = MASK_OF(select(box.leaves.y, box.enters.y, enters) == t);
+  const MASK axis = select(select((MASK)(2), (MASK)(1), along_y), (MASK)(0), along_x);
+  offer(t, axis_normals(axis, d, enters), axis, active, t_min, hits);
 }
 
 static inline SurfacePoints points_on_box(float4 parameters, REAL3 p, MASK part) {
@@ -102,16 +120,15 @@ static inline void closest_in_round_box(float4 parameters, REAL3 o, REAL3 d, REA
                                         SolidHits* hits) {
   const float3 half_size = parameters.xyz;
   const float r = parameters.w;
-  const BoxSlabs ray = make_box_ray(o, d);
-  MASK axis_in, axis_out;
-  const Span bounds = box_span(&ray, half_size, &axis_in, &axis_out);
+  const BoxRay ray = make_box_ray(o, d);
+  const Span bounds = box_span(&ray, half_size).span;
   active &= bounds.crosses & MASK_OF(bounds.leave > t_min) & MASK_OF(bounds.enter <= hits->t);
   if (!any_lane(active)) return;
   Span span = {(REAL)(INFINITY), (REAL)(-INFINITY), ALL_LANES};
   const float3 core = half_size - r;
-  unite_spans(&span, box_span(&ray, core + (float3)(r, 0.0f, 0.0f), &axis_in, &axis_out));
-  unite_spans(&span, box_span(&ray, core + (float3)(0.0f, r, 0.0f), &axis_in, &axis_out));
-  unite_spans(&span, box_span(&ray, core + (float3)(0.0f, 0.0f, r), &axis_in, &axis_out));
+  unite_spans(&span, box_span(&ray, core + (float3)(r, 0.0f, 0.0f)).span);
+  unite_spans(&span, box_span(&ray, core + (float3)(0.0f, r, 0.0f)).span);
+  unite_spans(&span, box_span(&ray, core + (float3)(0.0f, 0.0f, r)).span);
 #pragma unroll 1
   for (u32 corner = 0; corner < 8u; ++corner) {
     const REAL3 center = all3((float3)(corner & 1u ? core.x : -core.x, corner & 2u ? core.y : -core.y,

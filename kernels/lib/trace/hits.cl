@@ -138,20 +138,21 @@ static inline Hits select_hits(const Hits* a, const Hits* b, MASK m) {
 }
 
 // Solids of one shape, `index` a lane, in (t_min, hits->t] for the lanes of `active`; object-space rays. Of
-// equal distances the lower index counts.
+// equal distances the lower index counts. With `any` only the instance is set.
 ALWAYS_INLINE void offer_solids(u32 shape, float4 parameters, MASK index, REAL3 o, REAL3 d, REAL t_min,
-                                MASK active, Hits* hits) {
+                                MASK active, bool any, Hits* hits) {
   const REAL zero = (REAL)(0.0f);
   SolidHits solid = {hits->t, hits->ng, NO_LANES, NO_LANES};
   closest_in_solid(shape, parameters, o, d, t_min, active, &solid);
   const MASK earlier = MASK_OF(hits->instance != (int)NO_INSTANCE) & MASK_OF(hits->instance <= index);
   const MASK found = solid.found & ~(earlier & MASK_OF(solid.t == hits->t));
   if (!any_lane(found)) return;
+  hits->instance = select(hits->instance, index, found);
+  if (any) return;
   hits->t = select(hits->t, solid.t, found);
   hits->u = select(hits->u, zero, found);
   hits->v = select(hits->v, zero, found);
   hits->prim = select(hits->prim, solid.part, found);
-  hits->instance = select(hits->instance, index, found);
   hits->ng = select3(hits->ng, solid.ng, found);
 }
 
@@ -172,7 +173,7 @@ NEVER_INLINE void hit_solids(__global const Instance* restrict instances, u32 fi
     const REAL3 origins = still_origins(&found, i, o), directions = still_directions(&found, i, d);
     offer_solids(instance->shape, instance->parameters, (MASK)((int)i),
                  moves ? object_points(instance, origins) : origins,
-                 moves ? object_vectors(instance, directions) : directions, t_min, active, &found);
+                 moves ? object_vectors(instance, directions) : directions, t_min, active, any, &found);
   }
   *hits = found;
 }
