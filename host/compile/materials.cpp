@@ -94,6 +94,8 @@ u32 material_flags(const MaterialDescription& material) {
   if (!is_zero(material.transmission) || material.opacity < 1 || material.textures.opacity >= 0)
     flags |= MATERIAL_TRANSMITS;
   if (!is_zero(material.reflection) || material.coat > 0 || material.layers) flags |= MATERIAL_REFLECTS;
+  if (!is_zero(material.specular)) flags |= MATERIAL_SHINES;
+  if (!is_zero(material.emission)) flags |= MATERIAL_EMITS;
   if (material.layers) flags |= MATERIAL_LAYERED;
   if (material.medium < 0) flags |= MATERIAL_THIN;
   if (material.vertex_color) flags |= MATERIAL_VERTEX_COLOR;

@@ -18,6 +18,8 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_CLEAR 128u        // no local terms or tint: cannot be seen between equal indices
 #define MATERIAL_METAL_ROUGH 256u  // its terms follow from metalness and roughness (shared/metal_rough.h)
 #define MATERIAL_ONE_SIDED 512u    // from behind it is not there
+#define MATERIAL_SHINES 2048u      // it has a highlight: `specular` is not black
+#define MATERIAL_EMITS 4096u       // `emission` is not black
 #define MATERIAL_LAYERED 1024u     // layers stand over it (shared/layers.h)
 
 // Highlights up to this exponent, where it is whole, are products alone.

@@ -51,6 +51,10 @@ dmat4 set_transform(const SceneDescription& scene, const Object& object, const d
     }
     instance.object_from_world[row] = {values[0], values[1], values[2], values[3]};
   }
+  const auto& rows = instance.object_from_world;
+  if (rows[0].y == 0 && rows[0].z == 0 && rows[1].x == 0 && rows[1].z == 0 && rows[2].x == 0 &&
+      rows[2].y == 0)
+    instance.flags |= INSTANCE_SCALES;
   const dmat4 back = glm::inverse(used);
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 3; ++row)

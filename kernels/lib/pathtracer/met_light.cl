@@ -77,15 +77,13 @@ static inline REAL3 met_surface(const Scene* scene, const Walks* walks, const Sc
                                 const Hits* hits, const Shading* at, MASK lanes) {
   REAL3 light = all3((float3)(0.0f));
   if (!HAS_EMISSION) return light;
-  MASK shining = NO_LANES;
-  u32 index;
-  for (u32 left = lane_bits(lanes & at->s.entering); left;) {
-    const MASK mine = take_alike(at->s.material, &left, &index);
-    const float3 emission = scene->materials[index].emission.xyz;
-    light = select3(light, all3(emission), mine);
-    if (emission.x + emission.y + emission.z > 0.0f) shining |= mine;
-  }
+  const MASK shining = of_kind(&at->bsdf, MATERIAL_EMITS, lanes & at->s.entering);
   if (!any_lane(shining)) return light;
+  u32 index;
+  for (u32 left = lane_bits(shining); left;) {
+    const MASK mine = take_alike(at->s.material, &left, &index);
+    light = select3(light, all3(scene->materials[index].emission.xyz), mine);
+  }
   return weighed_emission(scene, walks, rays->d, hits, at, mapped_emission(&at->bsdf, light), shining);
 }
 

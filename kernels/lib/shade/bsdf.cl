@@ -208,6 +208,11 @@ static inline REAL highlight_cosine(u32 flags, REAL3 ns, REAL3 wo, REAL3 wi) {
   return -dot3(subtract3(wi, scale3(ns, 2.0f * dot3(ns, wi))), wo);
 }
 
+// The surfaces of `lanes` whose materials have one of the flags.
+static inline MASK of_kind(const Bsdfs* bsdf, u32 flags, MASK lanes) {
+  return lanes & MASK_OF((bsdf->flags & (int)flags) != 0);
+}
+
 // Adds the highlights of the surfaces of `lanes`.
 #if HAS_MAPS
 // Colour and exponent may come from textures, the exponent not whole.
@@ -230,10 +235,9 @@ static inline REAL3 add_highlights(const Scene* scene, const Bsdfs* bsdf, REAL3 
                                    REAL3 light) {
   REAL3 sum = light;
   u32 index;
-  for (u32 left = lane_bits(lanes); left;) {
+  for (u32 left = lane_bits(of_kind(bsdf, MATERIAL_SHINES, lanes)); left;) {
     const MASK mine = take_alike(bsdf->material, &left, &index);
     const float4 specular = scene->materials[index].specular;
-    if (specular.x == 0.0f && specular.y == 0.0f && specular.z == 0.0f) continue;
     const REAL cosine = highlight_cosine(scene->materials[index].flags, bsdf->ns, wo, wi);
     const REAL shine = highlight(real_clamp(cosine, (REAL)(0.0f), (REAL)(1.0f)), specular.w);
     const MASK shines = specular.w == 0.0f ? mine : mine & MASK_OF(cosine > 0.0f);
@@ -281,10 +285,9 @@ static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf
   SpecularSplits split = {none, none, NO_LANES, NO_LANES, one, one, one, zero};
   MASK dielectric = NO_LANES;
   u32 index;
-  for (u32 left = lane_bits(lanes); left;) {
+  for (u32 left = lane_bits(of_kind(bsdf, MATERIAL_REFLECTS | MATERIAL_TRANSMITS, lanes)); left;) {
     const MASK mine = take_alike(bsdf->material, &left, &index);
     __global const Material* material = scene->materials + index;
-    if (!(material->flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS))) continue;
     split.kr = select3(split.kr, reflection_of(bsdf, material), mine);
     split.kt = select3(split.kt, transmission_of(bsdf, material), mine);
     split.branches |= mine;

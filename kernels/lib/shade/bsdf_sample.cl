@@ -57,7 +57,7 @@ static inline void find_highlights(const Scene* scene, const Bsdfs* bsdf, MASK l
 static inline void find_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes, REAL* size,
                                    REAL* exponent) {
   u32 index;
-  for (u32 left = lane_bits(lanes); left;) {
+  for (u32 left = lane_bits(of_kind(bsdf, MATERIAL_SHINES, lanes)); left;) {
     const MASK mine = take_alike(bsdf->material, &left, &index);
     const float4 specular = scene->materials[index].specular;
     *size = select(*size, (REAL)(fmax(specular.x, fmax(specular.y, specular.z))), mine);
@@ -194,7 +194,8 @@ static inline BsdfSamples sample_lobes(const Scene* scene, const Bsdfs* bsdf, co
   const REAL perfect = lobes->mirror + lobes->through, at = u_term * lobes->all;
   const MASK mirror = MASK_OF(at < lobes->mirror), specular = MASK_OF(at < perfect);
   const REAL scattered = perfect + lobes->facets;
-  const MASK matte = MASK_OF(at < past_layers_of(lobes, scattered) + lobes->matte);
+  const MASK black = MASK_OF(lobes->all <= 0.0f);
+  const MASK matte = black | MASK_OF(at < past_layers_of(lobes, scattered) + lobes->matte);
   BsdfSamples sample;
   sample.specular = specular;
   sample.wi = local_direction(bsdf, lobes, wo, u_x, u_y, matte | ~lanes);
@@ -216,7 +217,6 @@ static inline BsdfSamples sample_lobes(const Scene* scene, const Bsdfs* bsdf, co
     sample.density = select(sample.density, chosen, specular);
     sample.weight = select3(sample.weight, scale3(part, 1.0f / select(one, chosen, specular)), specular);
   }
-  const MASK black = MASK_OF(lobes->all <= 0.0f);
   sample.weight = select3(sample.weight, all3((float3)(0.0f)), black);
   sample.density = select(sample.density, zero, black);
   return sample;

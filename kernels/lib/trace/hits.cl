@@ -169,11 +169,10 @@ NEVER_INLINE void hit_solids(__global const Instance* restrict instances, u32 fi
     if (any) active &= ~hit_anything(&found);
     if (!any_lane(active)) break;
     __global const Instance* instance = instances + i;
-    const bool moves = !(instance->flags & INSTANCE_IDENTITY);
-    const REAL3 origins = still_origins(&found, i, o), directions = still_directions(&found, i, d);
-    offer_solids(instance->shape, instance->parameters, (MASK)((int)i),
-                 moves ? object_points(instance, origins) : origins,
-                 moves ? object_vectors(instance, directions) : directions, t_min, active, any, &found);
+    REAL3 origins = still_origins(&found, i, o), directions = still_directions(&found, i, d);
+    into_object(instance, &origins, &directions);
+    offer_solids(instance->shape, instance->parameters, (MASK)((int)i), origins, directions, t_min, active,
+                 any, &found);
   }
   *hits = found;
 }

@@ -42,7 +42,7 @@ static inline REAL3 see_emission(const Scene* scene, const PathStates* paths, co
   REAL3 light = all3((float3)(0.0f));
   if (!HAS_EMISSION) return light;
   u32 index;
-  for (u32 left = lane_bits(lanes & s->entering); left;) {
+  for (u32 left = lane_bits(of_kind(bsdf, MATERIAL_EMITS, lanes & s->entering)); left;) {
     const MASK mine = take_alike(s->material, &left, &index);
     light = select3(light, all3(scene->materials[index].emission.xyz), mine);
   }
