@@ -15,6 +15,12 @@ typedef struct Faces {
   MASK flags, medium;  // of the material
 } Faces;
 
+static inline void set_face_material(const Scene* scene, u32 material, MASK lanes, Faces* faces) {
+  faces->material = select(faces->material, (MASK)((int)material), lanes);
+  faces->flags = select(faces->flags, (MASK)((int)scene->materials[material].flags), lanes);
+  faces->medium = select(faces->medium, (MASK)((int)scene->materials[material].medium), lanes);
+}
+
 // The faces of the hits of `lanes`.
 static inline Faces hit_faces(const Scene* scene, REAL3 d, const Hits* hits, MASK lanes) {
   Faces faces;
@@ -22,6 +28,7 @@ static inline Faces hit_faces(const Scene* scene, REAL3 d, const Hits* hits, MAS
   faces.material = NO_LANES;
   faces.flags = NO_LANES;
   faces.medium = NO_LANES;
+  MASK by_triangle = NO_LANES;  // their triangles have materials of their own
   u32 index;
   for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(hits->instance, &left, &index);
@@ -31,17 +38,17 @@ static inline Faces hit_faces(const Scene* scene, REAL3 d, const Hits* hits, MAS
           select3(faces.outward,
                   moved_normals(scene, index, world_normals(instance, hits->ng), time_of_hits(hits)), mine);
     if (instance->material != NO_MATERIAL)
-      faces.material = select(faces.material, (MASK)((int)instance->material), mine);
+      set_face_material(scene, instance->material, mine, &faces);
     else
-      for (u32 bits = lane_bits(mine); bits; bits &= bits - 1u) {
-        const u32 i = lowest_bit(bits);
-        MASK_LANE(faces.material, i) = (int)scene->triangles[MASK_LANE(hits->prim, i)].material;
-      }
+      by_triangle |= mine;
   }
-  for (u32 left = lane_bits(lanes); left;) {
+  for (u32 bits = lane_bits(by_triangle); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    MASK_LANE(faces.material, i) = (int)scene->triangles[MASK_LANE(hits->prim, i)].material;
+  }
+  for (u32 left = lane_bits(by_triangle); left;) {
     const MASK mine = take_alike(faces.material, &left, &index);
-    faces.flags = select(faces.flags, (MASK)((int)scene->materials[index].flags), mine);
-    faces.medium = select(faces.medium, (MASK)((int)scene->materials[index].medium), mine);
+    set_face_material(scene, index, mine, &faces);
   }
   faces.entering = MASK_OF(dot3(faces.outward, d) < 0.0f);
   return faces;
