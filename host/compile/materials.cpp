@@ -11,6 +11,7 @@
 #include "scene/integrators.h"
 #include "scene/kinds.h"
 #include "scene/lamps.h"
+#include "scene/materials/by_integrator.h"
 #include "scene/pack.h"
 
 namespace sundog {
@@ -145,7 +146,8 @@ bool lacks_materials(const SceneDescription& scene) {
 u32 add_materials(const SceneDescription& scene, CompiledScene& out) {
   const std::vector<u32> media = add_media(scene, out);
   const bool bends = bends_light(out.media);
-  for (const MaterialDescription& material : scene.materials) {
+  for (const MaterialDescription& any : scene.materials) {
+    const MaterialDescription& material = surface_for(scene, any);
     Material packed = make_material(material, media);
     if (stops_shadows(scene, material, bends)) packed.flags |= MATERIAL_SHADOW_OPAQUE;
     out.materials.push_back(packed);

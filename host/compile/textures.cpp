@@ -12,6 +12,7 @@
 #include "base/image_io.h"
 #include "base/memory.h"
 #include "compile/fields/pattern_code.h"
+#include "scene/materials/by_integrator.h"
 #include "scene/pack.h"
 
 namespace sundog {
@@ -39,9 +40,10 @@ class TextureCompiler {
   void compile() {
     out_.material_maps.push_back({});  // number 0 says that there is none
     for (std::size_t i = 0; i < scene_.materials.size(); ++i)
-      if (has_maps(scene_.materials[i])) {
+      if (const MaterialDescription& material = surface_for(scene_, scene_.materials[i]);
+          has_maps(material)) {
         out_.materials.edit()[i].maps = static_cast<u32>(out_.material_maps.size());
-        add_maps(scene_.materials[i]);
+        add_maps(material);
       }
     if (out_.material_maps.size() == 1) {
       out_.material_maps.clear();

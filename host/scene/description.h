@@ -187,6 +187,8 @@ struct MaterialDescription {
   double occlusion = 1;             // how much of the occlusion texture counts, [0, 1]
   double coat = 0;                  // a clear layer's mirror above all else, [0, 1], times its texture
   std::optional<OpenPbr> layers{};  // what stands over these terms, and its base: set_openpbr()
+  /// The same surface for integrators that follow paths, where it differs: surface_for().
+  std::shared_ptr<const MaterialDescription> by_paths{};
 };
 
 /// Triangles with shared vertices. `normals` (empty: flat shading), `uvs`, `tangents` and `colors` are empty

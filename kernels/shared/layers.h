@@ -18,17 +18,35 @@ SUNDOG_SHARED_BEGIN
 #define LAYER_TURNS 8u
 #define LAYER_ROWS (LAYER_GAINS + LAYER_TURNS)
 
+// A coat of two widths has gains of its own; one of facets as wide across as along has those of all such.
+#define NO_LAYER_GAINS 0xFFFFFFFFu
+
 // Narrower lobes are widened to this: mirrors are lobes too.
 #define LEAST_LAYER_ALPHA 1e-3f
 
-// 128 bytes, one for each material; its base colour is the material's diffuse term.
+// Where a texture gives the base's roughness, what depends on that is a grid in layer_rows, by the root of
+// the widths' mean (what specular_roughness is without a coat) from 0 to 1: first these numbers of each step,
+// then of each step its row LAYER_SHINE and its gains: one row where facets are as wide across as along, else
+// LAYER_TURNS.
+#define LAYER_GRID_STEPS 16u
+#define LAYER_GRID_STRAIGHT 0u  // as the members of Layers
+#define LAYER_GRID_SHINE_SCALE 1u
+#define LAYER_GRID_MATTE_SCALE 2u
+#define LAYER_GRID_MATTE_SCALE_BARE 3u
+#define LAYER_GRID_NUMBERS 4u
+#define NO_LAYER_GRID 0xFFFFFFFFu
+// The part of step k + 1 at the place y = k .. k + 1: by the width alpha, which is the root's square; its own
+// square in the first step, where gains rise with the square of alpha.
+#define LAYER_GRID_PART(y, k) (((y) * (y) - (k) * (k)) / (2.0f * (k) + 1.0f))
+
+// 160 bytes, one for each material; its base colour is the material's diffuse term.
 typedef struct Layers {
   float4 specular;              // a dielectric's tint, a metal's at its edge; w = metalness
   float4 coat;                  // colour of what lies below, seen through it straight on; w = weight
   float4 fuzz;                  // colour; w = weight
   float alpha_x, alpha_y, eta;  // widths along and across the tangent; index below over index above
   float film;                   // weight of the film
-  float coat_alpha, coat_eta;
+  float coat_alpha, coat_eta;   // the coat's width along the tangent; its index
   float fuzz_alpha;
   float metal;            // factor on a metal's reflection
   float matte_roughness;  // of the ground
@@ -41,9 +59,16 @@ typedef struct Layers {
   float darkening;       // how much of the coat's inner reflections' darkening there is
   float inner;           // what the coat's inside sends back of light from the base
   float straight;        // what the base's interface reflects straight on
-  float unused;
+  u32 grid;              // its first number, or NO_LAYER_GRID
+  // For textures of metalness or roughness:
+  float roughness;          // a factor on the texture's
+  float haze;               // twice the coat's roughness to the 4th power: what widens the base's facets
+  float stretch, narrowed;  // the width along the tangent over that of round facets; across over along
+  float inner_smooth, inner_matte;  // `inner` for a base that reflects as a mirror, and as a matte one
+  float coat_alpha_y;               // of the coat's facets across the tangent
+  u32 coat_gains;                   // of these: the first of LAYER_TURNS rows, or NO_LAYER_GAINS
 } Layers;
-SUNDOG_SHARED_SIZE(Layers, 128)
+SUNDOG_SHARED_SIZE(Layers, 160)
 
 SUNDOG_SHARED_END
 #endif

@@ -12,6 +12,7 @@
 #include "bench/frames/frame_runner.h"
 #include "compile/compiled_scene.h"
 #include "scene/decode_images.h"
+#include "scene/materials/by_integrator.h"
 
 namespace sundog {
 namespace {
@@ -105,12 +106,13 @@ double rays_of(const FrameRunner& frames) {
 }  // namespace
 
 SceneDescription without_textures(SceneDescription scene) {
-  for (MaterialDescription& material : scene.materials) {
-    material.textures = {};
-    material.metal_rough.reset();
-    material.cutoff = 0;
-    material.parallax = 0;
-  }
+  for (MaterialDescription& each : scene.materials)
+    change_all(each, [](MaterialDescription& material) {
+      material.textures = {};
+      material.metal_rough.reset();
+      material.cutoff = 0;
+      material.parallax = 0;
+    });
   scene.textures.clear();
   scene.images.clear();
   return scene;

@@ -13,7 +13,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr int facet_draws = 610, lattice_turn = 377;  // a Fibonacci lattice of facets
+constexpr int facet_draws = 610, facet_turn = 377;  // a Fibonacci lattice of facets
 
 double squared(double x) { return x * x; }
 
@@ -41,7 +41,7 @@ std::vector<SentLight> light_sent_to(const dvec3& wo, const FacetWidths& a) {
   std::vector<SentLight> sent;
   const double seen = 1 + hidden_by(wo, a);
   for (int i = 0; i < facet_draws; ++i) {
-    const double u = double(i * lattice_turn % facet_draws) / facet_draws;
+    const double u = double(i * facet_turn % facet_draws) / facet_draws;
     const dvec3 h = facet_seen_from(wo, a, u, (i + 0.5) / facet_draws);
     const double c = std::clamp(glm::dot(wo, h), 0.0, 1.0);
     const dvec3 wi = 2 * c * h - wo;

@@ -7,8 +7,9 @@
 #include <numbers>
 
 #include "compile/layers/albedos.h"
-#include "compile/layers/facets.h"
+#include "compile/layers/base.h"
 #include "compile/layers/film.h"
+#include "scene/materials/by_integrator.h"
 #include "scene/pack.h"
 
 namespace sundog {
@@ -61,78 +62,122 @@ FilmColors film_colors(const OpenPbr& v, double above, double index) {
   return colors;
 }
 
-}  // namespace
+/// What the base has about it, and what coat and fuzz pass to it.
+struct Above {
+  BaseSurroundings around;
+  AlbedoRow past_fuzz, past_coat;
+  FacetGains coat_gains;  // where there is a coat
+  double fuzz_weight;
+};
 
-Layers make_layers(const OpenPbr& v, std::vector<float>& rows) {
-  Layers to{};
-  const FacetWidths widths = facet_widths(roughened(v), v.specular_roughness_anisotropy);
-  const double least = LEAST_LAYER_ALPHA, above = 1 + v.coat_weight * (v.coat_ior - 1);
+Above layers_above(const OpenPbr& v, const Layers& to, const FilmColors& film) {
+  const FacetWidths coat_widths{to.coat_alpha, to.coat_alpha_y};
+  Above above;
+  FacetAlbedo coat{};
+  if (v.coat_weight > 0) {
+    above.coat_gains = facet_gains(coat_widths);
+    coat = facet_albedo(coat_widths, above.coat_gains, {v.coat_ior, 0, {}});
+  }
+  const AlbedoRow fuzz = v.fuzz_weight > 0 ? fuzz_albedo(to.fuzz_alpha) : AlbedoRow{};
+  above.fuzz_weight = v.fuzz_weight / std::max(1.0, *std::ranges::max_element(fuzz));
+  above.around.interface = {to.eta, v.thin_film_weight, {}};
+  above.around.tint = greatest(v.specular_color);
+  above.around.matte_roughness = v.base_diffuse_roughness;
+  for (std::size_t i = 0; i < LAYER_STEPS; ++i) {
+    above.around.interface.film_row[i] = greatest(film.glass[i]);
+    above.past_fuzz[i] = 1 - above.fuzz_weight * fuzz[i];
+    above.past_coat[i] = 1 - v.coat_weight * std::min(coat.of_interface[i], 1.0);
+    above.around.above[i] = above.past_fuzz[i] * above.past_coat[i];
+  }
+  return above;
+}
+
+void set_numbers(const OpenPbr& v, double above, Layers& to) {
   const double index = weighted_index(v.specular_ior / above, v.specular_weight),
                turn = glm::radians(v.geometry_tangent);
-  to.alpha_x = float(std::max(widths.x, least)), to.alpha_y = float(std::max(widths.y, least));
+  const FacetWidths widths = wide_enough(facet_widths(roughened(v), v.specular_roughness_anisotropy)),
+                    stretched = facet_widths(std::sqrt(0.5), v.specular_roughness_anisotropy);
+  to.alpha_x = float(widths.x), to.alpha_y = float(widths.y);
   to.eta = float(index < 1 ? 1 / index : index);
   to.film = float(v.thin_film_weight);
-  to.coat_alpha = float(std::max(v.coat_roughness * v.coat_roughness, least)),
+  const FacetWidths coat = wide_enough(facet_widths(v.coat_roughness, v.coat_roughness_anisotropy));
+  to.coat_alpha = float(coat.x), to.coat_alpha_y = float(coat.y);
   to.coat_eta = float(v.coat_ior);
   to.fuzz_alpha = float(std::max(v.fuzz_roughness * v.fuzz_roughness, 0.01));
   to.metal = float(std::min(v.specular_weight, 1.0));
   to.matte_roughness = float(v.base_diffuse_roughness);
   to.glass = float(v.transmission_weight);
   to.turn_x = float(std::cos(turn)), to.turn_y = float(std::sin(turn));
-  to.first = u32(rows.size());
-  const FilmColors film = film_colors(v, above, index);
-  AlbedoRow film_row{};
-  for (std::size_t i = 0; i < LAYER_STEPS; ++i) film_row[i] = greatest(film.glass[i]);
-  const FacetWidths base_widths{to.alpha_x, to.alpha_y}, coat_widths{to.coat_alpha, to.coat_alpha};
-  const FacetGains gains = facet_gains(base_widths);
-  const FacetAlbedo shine = facet_albedo(base_widths, gains, {to.eta, v.thin_film_weight, film_row});
-  FacetAlbedo coat{};
-  if (v.coat_weight > 0) coat = facet_albedo(coat_widths, facet_gains(coat_widths), {v.coat_ior, 0, {}});
-  const AlbedoRow fuzz = v.fuzz_weight > 0 ? fuzz_albedo(to.fuzz_alpha) : AlbedoRow{};
-  const double fuzz_weight = v.fuzz_weight / std::max(1.0, *std::ranges::max_element(fuzz));
-  AlbedoRow past_fuzz, past_coat, past_shine, past_all;
-  for (std::size_t i = 0; i < LAYER_STEPS; ++i) {
-    past_fuzz[i] = 1 - fuzz_weight * fuzz[i];
-    past_coat[i] = 1 - v.coat_weight * std::min(coat.of_interface[i], 1.0);
-    past_shine[i] = 1 - std::min(greatest(v.specular_color) * shine.of_interface[i], 1.0);
-    past_all[i] = past_fuzz[i] * past_coat[i] * past_shine[i];
-  }
-  const double straight = std::min(shine.of_interface.back(), 1.0);
-  const double of_glass = std::lerp(1.0, v.specular_roughness, straight);
-  to.straight = float(straight);
   to.darkening = float(v.coat_weight * v.coat_darkening);
+  to.inner_smooth = float(inner_reflectance(v.coat_ior, 0));
+  to.inner_matte = float(inner_reflectance(v.coat_ior, 1));
+  to.roughness = float(v.specular_roughness);
+  to.haze = float(2 * std::pow(v.coat_roughness, 4));
+  to.stretch = float(2 * stretched.x);
+  to.narrowed = float(1 - v.specular_roughness_anisotropy);
+}
+
+}  // namespace
+
+Layers make_layers(const OpenPbr& v, const MaterialTextures& textures, LayerRows& rows) {
+  Layers to{};
+  const double index_above = 1 + v.coat_weight * (v.coat_ior - 1);
+  set_numbers(v, index_above, to);
+  const FilmColors film =
+      film_colors(v, index_above, weighted_index(v.specular_ior / index_above, v.specular_weight));
+  const Above above = layers_above(v, to, film);
+  const FacetWidths widths{to.alpha_x, to.alpha_y};
+  const FacetGains gains = facet_gains(widths);
+  const BaseInterface base = base_interface(widths, gains, above.around);
+  const double of_glass = std::lerp(1.0, v.specular_roughness, base.straight);
+  to.straight = float(base.straight);
   to.inner =
       float(inner_reflectance(v.coat_ior, std::lerp(of_glass, v.specular_roughness, v.base_metalness)));
-  to.shine_scale = float(shine.scale);
-  to.matte_scale = float(1 / matte_albedo(v.base_diffuse_roughness, past_all));
-  to.matte_scale_bare = float(1 / matte_albedo(v.base_diffuse_roughness, past_shine));
+  to.shine_scale = float(base.shine_scale);
+  to.matte_scale = float(base.matte_scale);
+  to.matte_scale_bare = float(base.matte_scale_bare);
   to.specular = pack(v.specular_color, v.base_metalness);
   to.coat = pack(v.coat_color, v.coat_weight);
-  to.fuzz = pack(v.fuzz_color, fuzz_weight);
-  for (const AlbedoRow* row : {&past_fuzz, &past_coat, &past_shine})
-    rows.insert(rows.end(), row->begin(), row->end());
+  to.fuzz = pack(v.fuzz_color, above.fuzz_weight);
+  to.first = u32(rows.values.size());
+  for (const AlbedoRow* row : {&above.past_fuzz, &above.past_coat, &base.past})
+    rows.values.insert(rows.values.end(), row->begin(), row->end());
   for (const auto* colors : {&film.glass, &film.metal})
     for (int channel = 0; channel < 3; ++channel)
-      for (const dvec3& color : *colors) rows.push_back(float(color[channel]));
-  for (const AlbedoRow& row : gains) rows.insert(rows.end(), row.begin(), row.end());
+      for (const dvec3& color : *colors) rows.values.push_back(float(color[channel]));
+  for (const AlbedoRow& row : gains) rows.values.insert(rows.values.end(), row.begin(), row.end());
+  to.coat_gains = NO_LAYER_GAINS;
+  if (v.coat_weight > 0 && to.coat_alpha != to.coat_alpha_y) {
+    to.coat_gains = u32(rows.values.size());
+    for (const AlbedoRow& row : above.coat_gains)
+      rows.values.insert(rows.values.end(), row.begin(), row.end());
+  }
+  to.grid = NO_LAYER_GRID;
+  if (textures.roughness >= 0) to.grid = add_layer_grid(v.specular_roughness_anisotropy, above.around, rows);
   return to;
 }
 
 void add_layers(const SceneDescription& scene, CompiledScene& out) {
-  if (std::ranges::none_of(scene.materials,
-                           [](const MaterialDescription& m) { return m.layers.has_value(); }))
+  if (std::ranges::none_of(scene.materials, [&](const MaterialDescription& m) {
+        return surface_for(scene, m).layers.has_value();
+      }))
     return;
-  std::vector<float> rows;
+  LayerRows rows;
   std::vector<Layers> layers;
-  for (const MaterialDescription& material : scene.materials) {
-    layers.push_back(material.layers ? make_layers(*material.layers, rows) : Layers{});
+  for (const MaterialDescription& any : scene.materials) {
+    const MaterialDescription& material = surface_for(scene, any);
+    const MaterialTextures& textures = material.textures;
+    layers.push_back(material.layers ? make_layers(*material.layers, textures, rows) : Layers{});
     if (!material.layers) continue;
     out.features.layers = true;
-    if (material.layers->specular_roughness_anisotropy > 0) out.features.surface_coordinates = true;
+    out.features.layer_maps |= std::max({textures.metalness, textures.roughness, textures.glass}) >= 0;
+    if (std::max(material.layers->specular_roughness_anisotropy, material.layers->coat_roughness_anisotropy) >
+        0)
+      out.features.surface_coordinates = true;
   }
   layers.push_back({});  // of things without a material
   out.layers = std::move(layers);
-  out.layer_rows = std::move(rows);
+  out.layer_rows = std::move(rows.values);
 }
 
 }  // namespace sundog

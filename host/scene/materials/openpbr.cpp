@@ -15,10 +15,12 @@ FacetWidths facet_widths(double roughness, double anisotropy) {
 }
 
 bool set_openpbr(const OpenPbr& values, MaterialDescription& material, MediumDescription& inside) {
-  const double dielectric = 1 - values.base_metalness, through = values.transmission_weight * dielectric;
+  const double dielectric = material.textures.metalness >= 0 ? 1 : 1 - values.base_metalness,
+               through = values.transmission_weight * dielectric;
   const bool in_depth = values.transmission_depth > 0;
   material.diffuse = values.base_weight * values.base_color;
-  material.ambient = 0.1 * dielectric * (1 - values.transmission_weight) * material.diffuse;
+  const double matte = material.textures.glass >= 0 ? 1 : 1 - values.transmission_weight;
+  material.ambient = 0.1 * dielectric * matte * material.diffuse;
   material.specular = dvec3(0);
   material.reflection = through * values.specular_color;
   material.transmission = through * (in_depth ? dvec3(1) : values.transmission_color);

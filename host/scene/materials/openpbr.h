@@ -27,6 +27,7 @@ struct OpenPbr {
   double coat_weight = 0;
   glm::dvec3 coat_color{1};
   double coat_roughness = 0;
+  double coat_roughness_anisotropy = 0;
   double coat_ior = 1.6;
   double coat_darkening = 1;  // how much of what inner reflections of the coat take from the base
   double fuzz_weight = 0;
@@ -55,8 +56,10 @@ struct MediumDescription;
 ///   reflection    transmission_weight (1 - base_metalness) specular_color, by Fresnel: what lies over a
 ///   medium transmission  the same share of transmission_color, or of 1 where that is the medium's at a depth
 ///   roughness, emission, opacity by their names
-/// Returns whether light goes through, and sets `inside` then: index and dispersion, and absorption and
-/// scattering that leave transmission_color after transmission_depth.
+/// Where a texture of the material gives its metalness, these are the terms of what is no metal, and where
+/// one gives its transmission those of rays are of all that may transmit and the ambient one of what does
+/// not: kernels take the rest from them. Returns whether light goes through, and sets `inside` then: index
+/// and dispersion, and absorption and scattering that leave transmission_color after transmission_depth.
 bool set_openpbr(const OpenPbr& values, MaterialDescription& material, MediumDescription& inside);
 
 }  // namespace sundog

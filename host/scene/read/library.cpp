@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "scene/materials/by_integrator.h"
+
 namespace sundog {
 namespace fs = std::filesystem;
 
@@ -38,8 +40,10 @@ ModelLibrary::Parts ModelLibrary::add(Model model, const std::string& name) {
   const int first_medium = static_cast<int>(scene_.media.size());
   for (MediumDescription& medium : model.media) medium.name = fmt::format("{}: {}", name, medium.name);
   for (MaterialDescription& material : model.materials) {
-    material.name = fmt::format("{}: {}", name, material.name);
-    if (material.medium >= 0) material.medium += first_medium;
+    change_all(material, [&](MaterialDescription& m) {
+      m.name = fmt::format("{}: {}", name, m.name);
+      if (m.medium >= 0) m.medium += first_medium;
+    });
   }
   for (Mesh& mesh : model.meshes)
     for (int& material : mesh.materials) material += first_material;
@@ -52,7 +56,8 @@ ModelLibrary::Parts ModelLibrary::add(Model model, const std::string& name) {
     shift(texture.image, first_image);
     for (int& other : texture.of) shift(other, first_texture);
   }
-  for (MaterialDescription& material : model.materials) shift_textures(material, first_texture);
+  for (MaterialDescription& material : model.materials)
+    change_all(material, [&](MaterialDescription& m) { shift_textures(m, first_texture); });
   append(scene_.images, model.images);
   append(scene_.textures, model.textures);
   append(scene_.media, model.media);

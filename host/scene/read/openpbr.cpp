@@ -16,18 +16,22 @@ void read_base(JsonObject& object, OpenPbr& to, MaterialDescription& material, T
     to.base_color = base.even;
     material.textures.diffuse = material.textures.ambient = base.texture;
   }
-  to.base_metalness = object.number("base_metalness", to.base_metalness, zero_to_one);
+  if (const auto metalness = object.find("base_metalness"))
+    to.base_metalness = read_number(*metalness, textures, zero_to_one, &material.textures.metalness);
   to.base_diffuse_roughness = object.number("base_diffuse_roughness", to.base_diffuse_roughness, zero_to_one);
   to.specular_weight = object.number("specular_weight", to.specular_weight, weight_range);
   to.specular_color = object.color("specular_color", to.specular_color, zero_to_one);
-  to.specular_roughness = object.number("specular_roughness", to.specular_roughness, zero_to_one);
+  if (const auto roughness = object.find("specular_roughness"))
+    to.specular_roughness = read_number(*roughness, textures, zero_to_one, &material.textures.roughness);
   to.specular_roughness_anisotropy =
       object.number("specular_roughness_anisotropy", to.specular_roughness_anisotropy, zero_to_one);
   to.specular_ior = object.number("specular_ior", to.specular_ior, ior_range);
 }
 
-void read_transmission(JsonObject& object, OpenPbr& to) {
-  to.transmission_weight = object.number("transmission_weight", to.transmission_weight, zero_to_one);
+void read_transmission(JsonObject& object, OpenPbr& to, MaterialDescription& material,
+                       TextureLibrary& textures) {
+  if (const auto weight = object.find("transmission_weight"))
+    to.transmission_weight = read_number(*weight, textures, zero_to_one, &material.textures.glass);
   to.transmission_color = object.color("transmission_color", to.transmission_color, zero_to_one);
   to.transmission_depth = object.number("transmission_depth", to.transmission_depth, at_least_0);
   to.transmission_scatter = object.color("transmission_scatter", to.transmission_scatter, zero_to_one);
@@ -43,6 +47,8 @@ void read_above(JsonObject& object, OpenPbr& to) {
   to.coat_weight = object.number("coat_weight", to.coat_weight, zero_to_one);
   to.coat_color = object.color("coat_color", to.coat_color, zero_to_one);
   to.coat_roughness = object.number("coat_roughness", to.coat_roughness, zero_to_one);
+  to.coat_roughness_anisotropy =
+      object.number("coat_roughness_anisotropy", to.coat_roughness_anisotropy, zero_to_one);
   to.coat_ior = object.number("coat_ior", to.coat_ior, {.low = 1, .high = 3});
   to.coat_darkening = object.number("coat_darkening", to.coat_darkening, zero_to_one);
   to.fuzz_weight = object.number("fuzz_weight", to.fuzz_weight, zero_to_one);
@@ -68,8 +74,9 @@ void read_geometry(JsonObject& object, OpenPbr& to, MaterialDescription& materia
   const auto opacity = object.find("geometry_opacity");
   if (!opacity) return;
   to.geometry_opacity = read_number(*opacity, textures, zero_to_one, &material.textures.opacity);
-  const bool partly = to.geometry_opacity < 1 || material.textures.opacity >= 0;
-  if (partly && to.transmission_weight > 0 && to.base_metalness < 1)
+  const bool partly = to.geometry_opacity < 1 || material.textures.opacity >= 0,
+             dielectric = to.base_metalness < 1 || material.textures.metalness >= 0;
+  if (partly && to.transmission_weight > 0 && dielectric)
     opacity->fail("a material with a \"transmission_weight\" is not partly there");
 }
 
@@ -83,7 +90,7 @@ MaterialDescription read_openpbr(const JsonValue& value, std::string name,
     object.text("type", "openpbr");
     OpenPbr values;
     read_base(object, values, material, textures);
-    read_transmission(object, values);
+    read_transmission(object, values, material, textures);
     read_above(object, values);
     read_emission(object, values, material, textures);
     read_geometry(object, values, material, textures);

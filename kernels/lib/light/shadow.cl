@@ -48,8 +48,9 @@ NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, con
     const MASK mine = take_alike(s.material, &left, &index);
     __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
     SlotValues values;
-    read_slots(scene, maps, 1u << MAP_TRANSMISSION | 1u << MAP_OPACITY, &at, mine, &values);
+    read_slots(scene, maps, 1u << MAP_TRANSMISSION | 1u << MAP_OPACITY | BASE_SLOTS, &at, mine, &values);
     map_term(maps, &values, MAP_TRANSMISSION, mine, &transmission);
+    stop_at_base(scene, index, maps, &values, mine, &transmission);
     REAL opacity = opacity_of(maps, &values);
     if (scene->materials[index].flags & MATERIAL_ONE_SIDED)
       opacity = select((REAL)(0.0f), opacity, SHADOWS_AS_PATHS ? faces->entering : ~faces->entering);

@@ -31,6 +31,9 @@ typedef struct Bsdfs {
   MASK coated;               // fuzz and coat are on the viewer's side
   MASK coated_behind;        // on the other side
 #endif
+#if HAS_LAYER_MAPS
+  REAL metalness, roughness, glass;  // of layered materials, with textures
+#endif
 } Bsdfs;
 
 // The light of materials' emission as their textures have it.
@@ -86,6 +89,23 @@ static inline void keep_opacity(const Terms* terms, Bsdfs* bsdf) { bsdf->there =
 #else
 static inline void keep_opacity(const Terms* terms, Bsdfs* bsdf) {}
 #endif
+#if HAS_LAYER_MAPS
+static inline void start_base(const Scene* scene, u32 material, MASK lanes, Terms* terms) {
+  if (!(scene->materials[material].flags & MATERIAL_LAYERED)) return;
+  __global const Layers* layers = scene->layers + material;
+  terms->metalness = select(terms->metalness, (REAL)(layers->specular.w), lanes);
+  terms->roughness = select(terms->roughness, (REAL)(layers->roughness), lanes);
+  terms->glass = select(terms->glass, (REAL)(layers->glass), lanes);
+}
+static inline void keep_base(const Terms* terms, Bsdfs* bsdf) {
+  bsdf->metalness = terms->metalness;
+  bsdf->roughness = terms->roughness;
+  bsdf->glass = terms->glass;
+}
+#else
+static inline void start_base(const Scene* scene, u32 material, MASK lanes, Terms* terms) {}
+static inline void keep_base(const Terms* terms, Bsdfs* bsdf) {}
+#endif
 static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
   Terms terms = start_terms(bsdf->ambient, bsdf->diffuse);
   MASK mapped = NO_LANES;
@@ -97,6 +117,7 @@ static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MA
     terms.reflection = select3(terms.reflection, all3(material->reflection.xyz), mine);
     terms.transmission = select3(terms.transmission, all3(material->transmission.xyz), mine);
     terms.exponent = select(terms.exponent, (REAL)(material->specular.w), mine);
+    start_base(scene, index, mine, &terms);
     if (material->maps != NO_MAPS) mapped |= mine;
   }
   if (any_lane(mapped)) map_terms(scene, s, mapped, &terms);
@@ -109,6 +130,7 @@ static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MA
   bsdf->emission = terms.emission;
   bsdf->exponent = terms.exponent;
   keep_opacity(&terms, bsdf);
+  keep_base(&terms, bsdf);
 }
 #else
 static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {}

@@ -114,39 +114,9 @@ static inline REAL3 matte_lobe(REAL3 wo, REAL3 wi, REAL3 color, float roughness)
 }
 
 // The part of a lobe of these widths that a mirror stands for, where reflected rays are sent.
-static inline float mirror_share(float alpha_x, float alpha_y) {
-  const float smooth = 1.0f - sqrt(sqrt(alpha_x * alpha_y));
-  return smooth > 0.94f ? 1.0f : smooth * smooth;
-}
-
-// A row of a material's table at the cosine c, for `lanes`.
-static inline REAL layer_row(const Scene* scene, __global const Layers* layers, u32 row, REAL c, MASK lanes) {
-  const REAL x = real_clamp(c, (REAL)(0.0f), (REAL)(1.0f)) * (float)(LAYER_STEPS - 1u);
-  const MASK low = min(TO_MASK(x), (MASK)((int)LAYER_STEPS - 2));
-  __global const float* from = scene->layer_rows + layers->first + row * LAYER_STEPS;
-  const REAL a = gather_floats(from, low, lanes), b = gather_floats(from + 1, low, lanes);
-  return fma(x - TO_REAL(low), b - a, a);
-}
-// The gain of the base's facets for a direction: between the rows by its turn about the normal.
-static inline REAL shine_gain(const Scene* scene, __global const Layers* layers, REAL3 w, MASK lanes) {
-  if (layers->alpha_x == layers->alpha_y) return layer_row(scene, layers, LAYER_GAINS, w.z, lanes);
-  const REAL along = w.x * w.x, flat = real_max(fma(w.y, w.y, along), (REAL)(1e-12f));
-  const REAL y = along / flat * (float)(LAYER_TURNS - 1u);
-  const REAL x = real_clamp(w.z, (REAL)(0.0f), (REAL)(1.0f)) * (float)(LAYER_STEPS - 1u);
-  const MASK row = min(TO_MASK(y), (MASK)((int)LAYER_TURNS - 2)),
-             at = min(TO_MASK(x), (MASK)((int)LAYER_STEPS - 2));
-  const MASK low = row * (int)LAYER_STEPS + at;
-  __global const float* from = scene->layer_rows + layers->first + LAYER_GAINS * LAYER_STEPS;
-  const REAL a = gather_floats(from, low, lanes), b = gather_floats(from + 1, low, lanes);
-  const REAL c = gather_floats(from + LAYER_STEPS, low, lanes),
-             d = gather_floats(from + LAYER_STEPS + 1u, low, lanes);
-  const REAL part = x - TO_REAL(at), near = fma(part, b - a, a), far = fma(part, d - c, c);
-  return fma(y - TO_REAL(row), far - near, near);
-}
-static inline REAL3 layer_row3(const Scene* scene, __global const Layers* layers, u32 row, REAL c,
-                               MASK lanes) {
-  return real3(layer_row(scene, layers, row, c, lanes), layer_row(scene, layers, row + 1u, c, lanes),
-               layer_row(scene, layers, row + 2u, c, lanes));
+static inline REAL mirror_share(REAL alpha_x, REAL alpha_y) {
+  const REAL smooth = 1.0f - real_sqrt(real_sqrt(alpha_x * alpha_y));
+  return select(smooth * smooth, (REAL)(1.0f), MASK_OF(smooth > 0.94f));
 }
 #endif
 

@@ -14,13 +14,14 @@ static inline REAL3 left_by_layers(const Scene* scene, __global const Layers* m,
   if (m->fuzz.w == 0.0f && m->coat.w == 0.0f) return white;
   const MASK through = MASK_OF(c_i < 0.0f);
   const REAL of_o = past_layers(scene, m, c_o, lanes), of_i = past_layers(scene, m, fabs(c_i), lanes);
-  const REAL3 tint_o = multiply3(coat_tints(m, c_o), coat_darkening(m, bsdf->base)),
-              tint_i = coat_tints(m, fabs(c_i));
+  const LayerBase base = base_of(scene, m, bsdf, lanes);
+  const REAL3 darkening = coat_darkening(m, &base, bsdf->base);
+  const REAL3 tint_o = multiply3(coat_tints(m, c_o), darkening), tint_i = coat_tints(m, fabs(c_i));
   const MASK front = lanes & bsdf->coated, back = lanes & bsdf->coated_behind & through;
   REAL3 left = scale3(multiply3(tint_o, tint_i), real_min(of_o, of_i));
   left = select3(left, scale3(tint_o, of_o), through);
   left = select3(white, left, front);
-  return select3(left, scale3(multiply3(tint_i, coat_darkening(m, bsdf->base)), of_i), back);
+  return select3(left, scale3(multiply3(tint_i, darkening), of_i), back);
 }
 
 // The shares of samples for the viewer in wo, as large as what the lobes may return; and what the layers
@@ -36,9 +37,10 @@ static inline LayerShares make_shares(const Scene* scene, const Bsdfs* bsdf, REA
     const MASK coated = mine & bsdf->coated;
     const REAL by_fuzz = select(one, past_fuzz(scene, m, c, mine), coated);
     const REAL by_both = select(one, past_layers(scene, m, c, mine), coated);
-    const REAL by_shine = layer_row(scene, m, LAYER_SHINE, c, mine);
-    const float metal = m->specular.w, opaque = (1.0f - metal) * (1.0f - m->glass);
-    const REAL of_metal = metal * real_max(greatest3(bsdf->base), (REAL)(0.05f));
+    const LayerBase base = base_of(scene, m, bsdf, mine);
+    const REAL by_shine = past_shine(scene, m, &base, c, mine);
+    const REAL opaque = (1.0f - base.metal) * (1.0f - base.glass);
+    const REAL of_metal = base.metal * real_max(greatest3(bsdf->base), (REAL)(0.05f));
     shares.fuzz = select(shares.fuzz, 1.0f - by_fuzz, mine);
     shares.coat = select(shares.coat, by_fuzz - by_both, mine);
     shares.shine = select(shares.shine, by_both * fma(opaque, 1.0f - by_shine, of_metal), mine);
@@ -75,7 +77,8 @@ static inline void layer_scatter(const Scene* scene, const Bsdfs* bsdf, const La
     const MASK lit = mine & above;
     if (!any_lane(lit)) continue;
     REAL density;
-    const REAL3 own = layered_value(scene, m, bsdf, shares, o, i, 1.0f, lit, &density);
+    const LayerBase base = base_of(scene, m, bsdf, lit);
+    const REAL3 own = layered_value(scene, m, bsdf, &base, shares, o, i, (REAL)(1.0f), lit, &density);
     *value = select3(*value, along3(*value, bsdf->there, own), lit);
     *chosen = select(*chosen, *chosen + density, lit);
   }
@@ -92,8 +95,9 @@ static inline REAL3 layer_direction(const Scene* scene, const Bsdfs* bsdf, const
   for (u32 left = lane_bits(layered_lanes(bsdf, lanes)); left;) {
     const MASK mine = take_alike(bsdf->material, &left, &index);
     __global const Layers* m = scene->layers + index;
-    alpha_x = select(alpha_x, select((REAL)(m->alpha_x), (REAL)(m->coat_alpha), coat), mine);
-    alpha_y = select(alpha_y, select((REAL)(m->alpha_y), (REAL)(m->coat_alpha), coat), mine);
+    const LayerBase base = base_of(scene, m, bsdf, mine);
+    alpha_x = select(alpha_x, select(base.alpha_x, (REAL)(m->coat_alpha), coat), mine);
+    alpha_y = select(alpha_y, select(base.alpha_y, (REAL)(m->coat_alpha_y), coat), mine);
   }
   const REAL3 o = into_frame(bsdf, wo), h = seen_facet(o, alpha_x, alpha_y, u_x, u_y);
   const REAL3 mirrored = subtract3(scale3(h, 2.0f * dot3(h, o)), o);

@@ -7,7 +7,7 @@
 #define SUNDOG_LIB_LAYERS_CL
 #include "lib/core/directions.cl"
 #include "lib/shade/bsdf.cl"
-#include "lib/shade/layer_lobes.cl"
+#include "lib/shade/layer_base.cl"
 
 #if HAS_LAYERS
 // How much of the samples each kind of lobe gets.
@@ -43,17 +43,19 @@ static inline REAL3 coat_tints(__global const Layers* m, REAL c) {
                coat_tint(m->coat.z, m->coat.w, way));
 }
 
-// What reflections between the coat and a base of the colours `base` leave of the light from it (OpenPBR 1.1,
+// What reflections between the coat and a base of the colour `color` leave of the light from it (OpenPBR 1.1,
 // "Coat", "Darkening"): (1 - K) / (1 - E K), where K is sent back and E the base's albedo straight on, of
 // which what the base lets through is a part.
-static inline REAL3 coat_darkening(__global const Layers* m, REAL3 base) {
+static inline REAL3 coat_darkening(__global const Layers* m, const LayerBase* base, REAL3 color) {
   const REAL3 one = all3((float3)(1.0f));
   if (m->darkening == 0.0f) return one;
-  const float metal = m->specular.w, glassy = (1.0f - metal) * m->straight,
-              below = (1.0f - metal) * (1.0f - m->straight), matte = below * (1.0f - m->glass);
-  const REAL3 clear = all3(m->specular.xyz * glassy + below * m->glass);
-  const REAL3 back = add3(scale3(base, (REAL)(fma(metal, m->metal, matte))), clear);
-  const float inner = m->inner;
+  const REAL glassy = (1.0f - base->metal) * base->straight,
+             below = (1.0f - base->metal) * (1.0f - base->straight), matte = below * (1.0f - base->glass),
+             through = below * base->glass;
+  const REAL3 tint = scale3(all3(m->specular.xyz), glassy),
+              clear = add3(tint, real3(through, through, through));
+  const REAL3 back = add3(scale3(color, fma(base->metal, (REAL)(m->metal), matte)), clear);
+  const REAL inner = base->inner;
   const REAL3 left = real3((1.0f - inner) / (1.0f - inner * real_min(back.x, one.x)),
                            (1.0f - inner) / (1.0f - inner * real_min(back.y, one.y)),
                            (1.0f - inner) / (1.0f - inner * real_min(back.z, one.z)));
@@ -61,11 +63,11 @@ static inline REAL3 coat_darkening(__global const Layers* m, REAL3 base) {
 }
 
 // What the base's interface reflects at the cosine c: of the dielectric's opaque share and of the metal.
-static inline REAL3 shine_color(const Scene* scene, __global const Layers* m, REAL3 base, REAL c,
-                                MASK lanes) {
-  const float metal = m->specular.w, opaque = (1.0f - metal) * (1.0f - m->glass);
+static inline REAL3 shine_color(const Scene* scene, __global const Layers* m, const LayerBase* base,
+                                REAL3 color, REAL c, MASK lanes) {
+  const REAL opaque = (1.0f - base->metal) * (1.0f - base->glass);
   const REAL f = interface_reflectance(c, (REAL)(m->eta));
-  REAL3 of_glass = real3(f, f, f), of_metal = metal_shares(c, base, m->specular);
+  REAL3 of_glass = real3(f, f, f), of_metal = metal_shares(c, color, m->specular);
   if (m->film > 0.0f) {
     const REAL left = (REAL)(1.0f - m->film);
     of_glass = along3(scale3(of_glass, left), (REAL)(m->film), layer_row3(scene, m, LAYER_FILM, c, lanes));
@@ -73,14 +75,14 @@ static inline REAL3 shine_color(const Scene* scene, __global const Layers* m, RE
         along3(scale3(of_metal, left), (REAL)(m->film), layer_row3(scene, m, LAYER_FILM_METAL, c, lanes));
   }
   of_glass = multiply3(of_glass, all3(m->specular.xyz));
-  return along3(scale3(of_glass, (REAL)(opaque)), (REAL)(metal * m->metal), of_metal);
+  return along3(scale3(of_glass, opaque), base->metal * m->metal, of_metal);
 }
 
 // pi times the BSDF times the cosine of the layers of `lanes`, between directions of the frame, and what it
 // leaves of `below`, the light of the terms under them. `sharp`: the factor on the base's shine.
 static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, const Bsdfs* bsdf,
-                                  const LayerShares* shares, REAL3 wo, REAL3 wi, float sharp, MASK lanes,
-                                  REAL* density) {
+                                  const LayerBase* base, const LayerShares* shares, REAL3 wo, REAL3 wi,
+                                  REAL sharp, MASK lanes, REAL* density) {
   const REAL one = (REAL)(1.0f);
   const MASK coated = lanes & bsdf->coated;
   const REAL3 h = safe_unit3(add3(wo, wi));
@@ -94,36 +96,35 @@ static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, 
     chance += shares->fuzz * (0.5f / M_PI_F);
   }
   if (m->coat.w > 0.0f && any_lane(coated)) {
-    const REAL alpha = (REAL)(m->coat_alpha);
-    const REAL gains = lobe_energy_at(scene, LOBE_GAINS, wo.z, alpha, coated) *
-                       lobe_energy_at(scene, LOBE_GAINS, wi.z, alpha, coated);
-    const FacetLobe lobe = facet_lobe(wo, wi, h, alpha, alpha, gains);
+    const REAL gains = coat_gain(scene, m, wo, coated) * coat_gain(scene, m, wi, coated);
+    const FacetLobe lobe = facet_lobe(wo, wi, h, (REAL)(m->coat_alpha), (REAL)(m->coat_alpha_y), gains);
     const REAL part = mend_share(interface_reflectance(wo_h, (REAL)(m->coat_eta)), lobe.more);
     const REAL coat = select((REAL)(0.0f), m->coat.w * part * lobe.value * kept, coated);
     value = add3(value, real3(coat, coat, coat));
     kept = real_min(past_layers(scene, m, wo.z, coated), past_layers(scene, m, wi.z, coated));
     tint = multiply3(coat_tints(m, wo.z), coat_tints(m, wi.z));
-    tint = multiply3(tint, coat_darkening(m, bsdf->base));
+    tint = multiply3(tint, coat_darkening(m, base, bsdf->base));
     chance += shares->coat * lobe.density;
   }
-  const REAL gains = shine_gain(scene, m, wo, lanes) * shine_gain(scene, m, wi, lanes);
-  const FacetLobe shine = facet_lobe(wo, wi, h, (REAL)(m->alpha_x), (REAL)(m->alpha_y), gains);
+  const REAL gains = shine_gain(scene, m, base, wo, lanes) * shine_gain(scene, m, base, wi, lanes);
+  const FacetLobe shine = facet_lobe(wo, wi, h, base->alpha_x, base->alpha_y, gains);
   chance += shares->shine * shine.density;
-  const REAL3 color = mend_shares(shine_color(scene, m, bsdf->base, wo_h, lanes), shine.more);
-  REAL3 base = scale3(color, shine.value * (sharp * m->shine_scale) * select(one, kept, coated));
-  if (m->specular.w < 1.0f && m->glass < 1.0f) {
+  const REAL3 color = mend_shares(shine_color(scene, m, base, bsdf->base, wo_h, lanes), shine.more);
+  REAL3 own = scale3(color, shine.value * (sharp * base->shine_scale) * select(one, kept, coated));
+  const REAL ground = (1.0f - base->metal) * (1.0f - base->glass);
+  if (any_lane(lanes & MASK_OF(ground > 0.0f))) {
     const REAL3 matte = matte_lobe(wo, wi, bsdf->base, m->matte_roughness);
-    const REAL through =
-        layer_row(scene, m, LAYER_SHINE, wo.z, lanes) * layer_row(scene, m, LAYER_SHINE, wi.z, lanes);
-    REAL above = (REAL)(m->matte_scale_bare);
+    const REAL through = past_shine(scene, m, base, wo.z, lanes) * past_shine(scene, m, base, wi.z, lanes);
+    REAL above = base->matte_scale_bare;
     if (any_lane(coated))
       above = select(
-          above, m->matte_scale * past_layers(scene, m, wo.z, coated) * past_layers(scene, m, wi.z, coated),
+          above,
+          base->matte_scale * past_layers(scene, m, wo.z, coated) * past_layers(scene, m, wi.z, coated),
           coated);
-    base = along3(base, through * above * ((1.0f - m->specular.w) * (1.0f - m->glass)), matte);
+    own = along3(own, through * above * ground, matte);
   }
   *density = chance;
-  return add3(value, multiply3(base, select3(all3((float3)(1.0f)), tint, coated)));
+  return add3(value, multiply3(own, select3(all3((float3)(1.0f)), tint, coated)));
 }
 
 // The surfaces of `lanes` that are layered, seen from the side that shows their layers or from their inside.
@@ -144,8 +145,9 @@ static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 w
     const MASK mine = take_alike(bsdf->material, &left, &index);
     __global const Layers* m = scene->layers + index;
     REAL density;
-    const float sharp = 1.0f - mirror_share(m->alpha_x, m->alpha_y);
-    const REAL3 own = layered_value(scene, m, bsdf, &none, o, i, sharp, mine, &density);
+    const LayerBase base = base_of(scene, m, bsdf, mine);
+    const REAL sharp = 1.0f - mirror_share(base.alpha_x, base.alpha_y);
+    const REAL3 own = layered_value(scene, m, bsdf, &base, &none, o, i, sharp, mine, &density);
     sum = select3(sum, along3(sum, bsdf->there, own), mine);
   }
   return sum;
@@ -161,13 +163,16 @@ static inline void mirror_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo
     const MASK mine = take_alike(bsdf->material, &left, &index);
     __global const Layers* m = scene->layers + index;
     const MASK coated = mine & bsdf->coated;
+    const LayerBase base = base_of(scene, m, bsdf, mine);
     const REAL past = select(one, past_layers(scene, m, c, mine), coated);
     const REAL3 tint = select3(all3((float3)(1.0f)), coat_tints(m, c), coated);
-    const REAL3 below = multiply3(multiply3(tint, tint), shine_color(scene, m, bsdf->base, c, mine));
+    const REAL3 color = shine_color(scene, m, &base, bsdf->base, c, mine);
+    const REAL3 below = multiply3(multiply3(tint, tint), color);
     REAL coat = past_fuzz(scene, m, c, mine) * interface_reflectance(c, (REAL)(m->coat_eta));
-    coat *= m->coat.w * mirror_share(m->coat_alpha, m->coat_alpha);
+    coat *= m->coat.w * mirror_share((REAL)(m->coat_alpha), (REAL)(m->coat_alpha_y));
     coat = select((REAL)(0.0f), coat, coated);
-    const REAL3 own = along3(real3(coat, coat, coat), past * mirror_share(m->alpha_x, m->alpha_y), below);
+    const REAL share = past * mirror_share(base.alpha_x, base.alpha_y);
+    const REAL3 own = along3(real3(coat, coat, coat), share, below);
     split->kr = select3(split->kr, along3(split->kr, bsdf->there, own), mine);
   }
 }

@@ -4,6 +4,7 @@
 #define SUNDOG_LIB_MAPS_CL
 #include "lib/shade/interaction.cl"
 #include "lib/shade/texture.cl"
+#include "shared/layers.h"
 #include "shared/metal_rough.h"
 
 #if HAS_MAPS
@@ -14,6 +15,9 @@ typedef struct Terms {
   REAL exponent;
 #if HAS_LAYERS
   REAL there;  // the opacity
+#endif
+#if HAS_LAYER_MAPS
+  REAL metalness, roughness, glass;  // of layered materials
 #endif
 } Terms;
 
@@ -26,6 +30,13 @@ static inline void set_opacity(REAL opacity, MASK lanes, Terms* terms) {
 static inline void make_opaque(Terms* terms) {}
 static inline void set_opacity(REAL opacity, MASK lanes, Terms* terms) {}
 #endif
+#if HAS_LAYER_MAPS
+static inline void start_smooth(Terms* terms) {
+  terms->metalness = terms->roughness = terms->glass = (REAL)(0.0f);
+}
+#else
+static inline void start_smooth(Terms* terms) {}
+#endif
 
 // The terms of surfaces before their materials' own are added.
 static inline Terms start_terms(REAL3 ambient, REAL3 diffuse) {
@@ -37,6 +48,7 @@ static inline Terms start_terms(REAL3 ambient, REAL3 diffuse) {
   terms.emission = all3((float3)(1.0f));
   terms.exponent = (REAL)(0.0f);
   make_opaque(&terms);
+  start_smooth(&terms);
   return terms;
 }
 
@@ -164,6 +176,55 @@ static inline void map_colors(__global const MaterialMaps* maps, const SlotValue
   map_term(maps, values, shared ? MAP_DIFFUSE : MAP_AMBIENT, lanes, &terms->ambient);
 }
 
+// Metalness, roughness and transmission of a layered material's base. The other terms are those of what is no
+// metal, those of rays those of what transmits as much as the material may.
+#if HAS_LAYER_MAPS
+static inline REAL mapped_share(__global const MaterialMaps* maps, const SlotValues* values, u32 slot,
+                                REAL plain) {
+  return real_clamp(plain * first_value(maps, values, slot), (REAL)(0.0f), (REAL)(1.0f));
+}
+static inline void keep_share(REAL3* term, REAL share, MASK lanes) {
+  scale_term(term, real4(share, share, share, share), lanes);
+}
+// What textures of metalness and of transmission leave of rays through the surface.
+static inline REAL transmitting_part(__global const MaterialMaps* maps, const SlotValues* values,
+                                     float metalness) {
+  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
+  const REAL left = has_slot(maps, MAP_METALNESS)
+                        ? 1.0f - mapped_share(maps, values, MAP_METALNESS, (REAL)(metalness))
+                        : one;
+  return left * real_clamp(first_value(maps, values, MAP_GLASS), zero, one);
+}
+static inline void map_base_terms(const Scene* scene, u32 material, __global const MaterialMaps* maps,
+                                  const SlotValues* values, MASK lanes, Terms* terms) {
+  const REAL metalness = mapped_share(maps, values, MAP_METALNESS, terms->metalness),
+             roughness = mapped_share(maps, values, MAP_ROUGHNESS, terms->roughness),
+             glass = mapped_share(maps, values, MAP_GLASS, terms->glass);
+  terms->metalness = select(terms->metalness, metalness, lanes);
+  terms->roughness = select(terms->roughness, roughness, lanes);
+  terms->glass = select(terms->glass, glass, lanes);
+  if (has_slot(maps, MAP_METALNESS)) keep_share(&terms->ambient, 1.0f - metalness, lanes);
+  if (has_slot(maps, MAP_GLASS)) keep_share(&terms->ambient, 1.0f - glass, lanes);
+  if (!has_slot(maps, MAP_METALNESS) && !has_slot(maps, MAP_GLASS)) return;
+  const REAL part = transmitting_part(maps, values, scene->layers[material].specular.w);
+  keep_share(&terms->reflection, part, lanes);
+  keep_share(&terms->transmission, part, lanes);
+}
+// The same of what shadow rays pass, of the material of this number.
+#define BASE_SLOTS (1u << MAP_METALNESS | 1u << MAP_GLASS)
+static inline void stop_at_base(const Scene* scene, u32 material, __global const MaterialMaps* maps,
+                                const SlotValues* values, MASK lanes, REAL3* passed) {
+  if (has_slot(maps, MAP_METALNESS) || has_slot(maps, MAP_GLASS))
+    keep_share(passed, transmitting_part(maps, values, scene->layers[material].specular.w), lanes);
+}
+#else
+#define BASE_SLOTS 0u
+static inline void stop_at_base(const Scene* scene, u32 material, __global const MaterialMaps* maps,
+                                const SlotValues* values, MASK lanes, REAL3* passed) {}
+static inline void map_base_terms(const Scene* scene, u32 material, __global const MaterialMaps* maps,
+                                  const SlotValues* values, MASK lanes, Terms* terms) {}
+#endif
+
 // Adds a clear layer's mirror, which leaves less of what lies below.
 static inline void map_coat(REAL coat, MASK lanes, Terms* terms) {
   const REAL kept = 1.0f - coat;
@@ -191,9 +252,10 @@ static inline void map_opacity(REAL opacity, MASK lanes, Terms* terms) {
 }
 
 // Multiplies the terms of `lanes`, all of one material, by its textures.
-static inline void map_material(const Scene* scene, __global const MaterialMaps* maps, u32 flags,
-                                const TexturePoints* at, const SurfaceInteractions* s, MASK lanes,
-                                Terms* terms) {
+static inline void map_material(const Scene* scene, u32 index, const TexturePoints* at,
+                                const SurfaceInteractions* s, MASK lanes, Terms* terms) {
+  __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
+  const u32 flags = scene->materials[index].flags;
   const bool metal = HAS_METAL_ROUGH && flags & MATERIAL_METAL_ROUGH;
   const bool shared = maps->slot[MAP_AMBIENT] == maps->slot[MAP_DIFFUSE];
   u32 wanted = ~(1u << MAP_NORMAL | 1u << MAP_HEIGHT);
@@ -205,6 +267,7 @@ static inline void map_material(const Scene* scene, __global const MaterialMaps*
   map_term(maps, &values, MAP_REFLECTION, lanes, &terms->reflection);
   map_term(maps, &values, MAP_TRANSMISSION, lanes, &terms->transmission);
   map_term(maps, &values, MAP_EMISSION, lanes, &terms->emission);
+  map_base_terms(scene, index, maps, &values, lanes, terms);
   if (has_slot(maps, MAP_EXPONENT))
     terms->exponent = select(terms->exponent, terms->exponent * values.of[MAP_EXPONENT].x, lanes);
   if (has_slot(maps, MAP_OCCLUSION)) {
@@ -242,8 +305,7 @@ NEVER_INLINE void map_terms(const Scene* scene, const SurfaceInteractions* s, MA
   u32 index;
   for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(s->material, &left, &index);
-    __global const Material* material = scene->materials + index;
-    map_material(scene, scene->material_maps + material->maps, material->flags, &at, s, mine, terms);
+    map_material(scene, index, &at, s, mine, terms);
   }
 }
 #endif

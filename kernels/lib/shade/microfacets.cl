@@ -73,12 +73,7 @@ static inline void start_further(const Scene* scene, const SpecularSplits* split
 static inline Microfacets make_microfacets(const Scene* scene, const Bsdfs* bsdf, const SpecularSplits* split,
                                            REAL3 wo, MASK lanes) {
   Microfacets facets;
-  facets.alpha = (REAL)(0.0f);
-  u32 index;
-  for (u32 left = lane_bits(lanes); left;) {
-    const MASK mine = take_alike(bsdf->material, &left, &index);
-    facets.alpha = select(facets.alpha, (REAL)(scene->materials[index].reflection.w), mine);
-  }
+  facets.alpha = facet_width(scene, bsdf, lanes);
   facets.rough = split->branches & MASK_OF(facets.alpha >= LEAST_ALPHA);
   facets.bends = facets.rough & split->transmits & MASK_OF(split->eta != 1.0f);
   facets.glass = rough_glass(scene, bsdf, facets.bends);

@@ -33,6 +33,25 @@ static inline REAL lobe_energy_at(const Scene* scene, u32 first, REAL c, REAL al
 #endif
 
 #if HAS_ROUGH
+// The width of facets of the surfaces of `lanes`: 0 elsewhere.
+#if HAS_LAYER_MAPS
+static inline REAL mapped_width(const Bsdfs* bsdf, REAL width, MASK lanes) {
+  const MASK layered = lanes & MASK_OF((bsdf->flags & (int)MATERIAL_LAYERED) != 0);
+  return select(width, bsdf->roughness * bsdf->roughness, layered);
+}
+#else
+static inline REAL mapped_width(const Bsdfs* bsdf, REAL width, MASK lanes) { return width; }
+#endif
+static inline REAL facet_width(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
+  REAL width = (REAL)(0.0f);
+  u32 index;
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(bsdf->material, &left, &index);
+    width = select(width, (REAL)(scene->materials[index].reflection.w), mine);
+  }
+  return mapped_width(bsdf, width, lanes);
+}
+
 // The normal of a facet that wo sees, by its visible area (Dupuy and Benyoub 2023, "Sampling Visible GGX
 // Normals with Spherical Caps"). `alpha` is the width of the distribution.
 static inline REAL3 visible_normal(REAL3 n, REAL3 wo, REAL alpha, REAL u_x, REAL u_y) {
@@ -141,13 +160,8 @@ static inline void mend_glass(const Scene* scene, const Bsdfs* bsdf, REAL cosine
 static inline Facets make_facets(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL u_x, REAL u_y,
                                  MASK lanes) {
   Facets facets;
-  facets.alpha = (REAL)(0.0f);
+  facets.alpha = facet_width(scene, bsdf, lanes);
   facets.glass = NO_LANES;
-  u32 index;
-  for (u32 left = lane_bits(lanes); left;) {
-    const MASK mine = take_alike(bsdf->material, &left, &index);
-    facets.alpha = select(facets.alpha, (REAL)(scene->materials[index].reflection.w), mine);
-  }
   facets.rough = lanes & MASK_OF(facets.alpha > 0.0f);
   facets.bsdf = *bsdf;
   if (!any_lane(facets.rough)) return facets;

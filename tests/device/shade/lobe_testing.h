@@ -22,7 +22,7 @@ inline constexpr u32 count = 1u << 12;
 inline const std::string lobe_kernel = surface_text + R"(
 #include "lib/core/sampler.cl"
 // The surface z = 0 of one material, seen from above, or from below where `below`, behind it the other of the media 0 and 1.
-Bsdfs surface(__global const Material* materials, u32 below) {
+Bsdfs surface(__global const Material* materials, u32 below, float3 metal_rough) {
   const REAL3 n = real3(0.0f, 0.0f, below ? -1.0f : 1.0f), none = real3(0.0f, 0.0f, 0.0f);
   Bsdfs bsdf = make_surface(materials, n, (int)below, 1 - (int)below);
 #if HAS_LAYERS
@@ -35,16 +35,21 @@ Bsdfs surface(__global const Material* materials, u32 below) {
   bsdf.coated = layered & ~inside;
   bsdf.coated_behind = layered & inside;
 #endif
+#if HAS_LAYER_MAPS
+  bsdf.metalness = metal_rough.x;
+  bsdf.roughness = metal_rough.y;
+  bsdf.glass = metal_rough.z;
+#endif
   return bsdf;
 }
 // Draws where `wi` has no length, else takes wi. Out: wi, density, weight or pi BSDF cos, whether it is specular.
 __kernel void run(__global const Material* materials, __global const Medium* media, __global const float* energy,
-                  __global const Layers* layers, __global const float* layer_rows, __global const float4* wis, __global float* out, float4 wo4, u32 count) {
+                  __global const Layers* layers, __global const float* layer_rows, __global const float4* wis, __global float* out, float4 wo4, float4 metal_rough, u32 count) {
   const u32 i = get_global_id(0);
   if (i >= count) return;
   const Scene scene = {.materials = materials, .media = media, .lobe_energy = energy, .layers = layers, .layer_rows = layer_rows};
   const REAL3 wo = real3(wo4.x, wo4.y, wo4.z), given = real3(wis[i].x, wis[i].y, wis[i].z);
-  const Bsdfs bsdf = surface(materials, wo4.z < 0.0f);
+  const Bsdfs bsdf = surface(materials, wo4.z < 0.0f, metal_rough.xyz);
   const Lobes lobes = make_lobes(&scene, &bsdf, wo, ALL_LANES);
   // Roberts's sequence in three dimensions: even, and without a pattern of its own. In integers, as few floats lie
   // between large ones: numbers that are 0 too often draw lobes of small shares too often.
@@ -69,8 +74,8 @@ struct Lobe {
 
 class Tester {
  public:
-  /// `layered`: materials have layers.
-  explicit Tester(const DeviceInfo& info, bool layered = false)
+  /// `layered`: materials have layers; `mapped`: whose metalness and roughness textures give.
+  explicit Tester(const DeviceInfo& info, bool layered = false, bool mapped = false)
       : device_(info),
         kernel_(build_text(device_, lobe_kernel,
                            {{"TILE_W", "1"},
@@ -78,20 +83,30 @@ class Tester {
                             {"LANES", "1"},
                             {"WIDE_VECTORS", "0"},
                             {"HAS_ROUGH_GLASS", "1"},
-                            {"HAS_LAYERS", layered ? "1" : "0"}})
+                            {"HAS_LAYERS", layered ? "1" : "0"},
+                            {"HAS_LAYER_MAPS", mapped ? "1" : "0"}})
                     .kernel<Buffer<Material>, Buffer<Medium>, Buffer<float>, Buffer<Layers>, Buffer<float>,
-                            Buffer<float4>, Buffer<float>, float4, u32>("run")),
+                            Buffer<float4>, Buffer<float>, float4, float4, u32>("run")),
+        mapped_(mapped),
         energy_(device_.upload<float>(make_lobe_energy({.gains = true, .glass = true}))),
         layers_(device_.upload<Layers>(std::vector{Layers{}})),
         layer_rows_(device_.upload<float>(std::vector{0.f})) {}
 
-  /// From now on materials have these layers.
+  /// From now on materials have these layers; where they are mapped, with textures of one value that give
+  /// metalness and roughness.
   Layers set_layers(const OpenPbr& values) {
-    std::vector<float> table;
-    const Layers layers = make_layers(values, table);
+    LayerRows rows;
+    MaterialTextures textures;
+    if (mapped_) textures.metalness = textures.roughness = 0;
+    const Layers layers = make_layers(values, textures, rows);
     layers_ = device_.upload<Layers>(std::vector{layers});
-    layer_rows_ = device_.upload<float>(table);
+    layer_rows_ = device_.upload<float>(rows.values);
+    set_base(values.base_metalness, values.specular_roughness, values.transmission_weight);
     return layers;
+  }
+  /// What the textures have at the place.
+  void set_base(double metalness, double roughness, double glass = 0) {
+    base_ = {float(metalness), float(roughness), float(glass), 0};
   }
 
   /// For each direction the lobe there; for directions of no length a sample.
@@ -106,7 +121,7 @@ class Tester {
     const auto out = device_.make<float>(8 * wis.size());
     device_.run(kernel_, {.x = wis.size()}, device_.upload<Material>(std::vector{material}),
                 device_.upload<Medium>(media), energy_, layers_, layer_rows_, device_.upload<float4>(given),
-                out, float4{float(wo.x), float(wo.y), float(wo.z), 0}, size);
+                out, float4{float(wo.x), float(wo.y), float(wo.z), 0}, base_, size);
     std::vector<float> values(8 * wis.size());
     device_.read(out, std::span<float>(values));
     std::vector<Lobe> lobes;
@@ -124,8 +139,10 @@ class Tester {
  private:
   Device device_;
   Kernel<Buffer<Material>, Buffer<Medium>, Buffer<float>, Buffer<Layers>, Buffer<float>, Buffer<float4>,
-         Buffer<float>, float4, u32>
+         Buffer<float>, float4, float4, u32>
       kernel_;
+  bool mapped_;
+  float4 base_{};
   Buffer<float> energy_;
   Buffer<Layers> layers_;
   Buffer<float> layer_rows_;

@@ -114,3 +114,34 @@ TEST_CASE("scenes without layered materials have no tables of theirs") {
   CHECK(plain.layers.empty());
   CHECK(plain.layer_rows.empty());
 }
+
+TEST_CASE("textures of roughness have a grid, which materials that differ in colour share") {
+  const CompiledScene scene = compile(load_scene_text(R"({
+    "textures": {"t": {"type": "noise"}},
+    "materials": {
+      "a": {"type": "openpbr", "specular_roughness": "t"},
+      "b": {"type": "openpbr", "specular_roughness": "t", "base_color": [0.1, 0.2, 0.3], "base_metalness": "t"},
+      "c": {"type": "openpbr", "specular_roughness": "t", "specular_ior": 1.9},
+      "d": {"type": "openpbr", "base_metalness": "t", "transmission_weight": 0.5}},
+    "objects": [{"type": "sphere", "material": "a"}, {"type": "sphere", "material": "b"}, {"type": "sphere", "material": "c"},
+      {"type": "sphere", "material": "d"}]})"));
+  CHECK(scene.features.layer_maps);
+  std::vector<u32> grids;
+  for (std::size_t i = 0; i < 4; ++i) grids.push_back(scene.layers[i].grid);
+  CHECK(grids[0] == grids[1]);
+  CHECK(grids[2] != grids[0]);
+  CHECK(grids[3] == NO_LAYER_GRID);
+  CHECK(scene.layers[0].roughness == 1);
+  CHECK(scene.layers[1].specular.w == 1);  // the texture is a factor on it
+  CHECK(scene.materials[3].flags & MATERIAL_TRANSMITS);
+  CHECK(scene.materials[3].transmission.x == 0.5f);
+}
+
+TEST_CASE("numbers alone have no grid") {
+  const CompiledScene scene =
+      compile(load_scene_text(R"({"materials": {"m": {"type": "openpbr", "base_color": [1, 0, 0]}},
+    "objects": [{"type": "sphere", "material": "m"}]})"));
+  CHECK_FALSE(scene.features.layer_maps);
+  CHECK(scene.layers[0].grid == NO_LAYER_GRID);
+  CHECK(scene.layer_rows.size() == LAYER_ROWS * LAYER_STEPS);
+}

@@ -68,6 +68,61 @@ TEST_CASE("sheen, iridescence, anisotropy and clearcoat become layers by OpenPBR
   CHECK_FALSE(material_of(R"({"extensions":{"KHR_materials_unlit":{},"KHR_materials_sheen":{}}})").layers);
 }
 
+TEST_CASE("integrators that follow paths have metallic-roughness materials as OpenPBR's", "[models]") {
+  const MaterialDescription plain = material_of(R"({"pbrMetallicRoughness":{"metallicFactor":0.5,
+    "roughnessFactor":0.4,"baseColorFactor":[0.2,0.4,0.6,1]},"emissiveFactor":[0,1,0],
+    "extensions":{"KHR_materials_ior":{"ior":1.7}}})");
+  CHECK_FALSE(plain.layers);
+  REQUIRE(plain.by_paths);
+  const OpenPbr& values = plain.by_paths->layers.value();
+  CHECK(near(values.base_color, {0.2, 0.4, 0.6}));
+  CHECK(values.base_metalness == 0.5);
+  CHECK(values.specular_roughness == 0.4);
+  CHECK(values.specular_ior == 1.7);
+  CHECK(near(plain.by_paths->diffuse, {0.2, 0.4, 0.6}));
+  CHECK(near(plain.by_paths->specular, dvec3(0)));
+  CHECK(near(plain.by_paths->emission, {0, 1, 0}));
+  CHECK_FALSE(material_of(R"({"extensions":{"KHR_materials_unlit":{}}})").by_paths);
+}
+
+TEST_CASE("KHR_materials_specular leaves metals alone", "[models]") {
+  const auto values_of = [](const std::string& metalness) {
+    return *material_of(R"({"pbrMetallicRoughness":{"metallicFactor":)" + metalness +
+                        R"(},"extensions":{"KHR_materials_specular":{"specularFactor":0.25,
+      "specularColorFactor":[2,1,0]}}})")
+                .by_paths->layers;
+  };
+  CHECK(values_of("0").specular_weight == 0.5);
+  CHECK(near(values_of("0").specular_color, {1, 0.5, 0}));
+  CHECK(values_of("1").specular_weight == 1);
+  CHECK(values_of("1").specular_color == dvec3(1));
+  const OpenPbr half = values_of("0.5");
+  CHECK(half.specular_weight == 1);
+  const double root = (half.specular_ior - 1) / (half.specular_ior + 1);
+  CHECK(root * root == Approx(0.5 * 0.04));
+}
+
+TEST_CASE("glass of a glTF is as rough as it says for integrators that follow paths", "[models]") {
+  const MaterialDescription frosted = material_of(R"({"pbrMetallicRoughness":{"metallicFactor":0,
+    "roughnessFactor":0.5,"baseColorFactor":[0.5,1,1,1]},"extensions":{
+    "KHR_materials_transmission":{"transmissionFactor":0.8},"KHR_materials_volume":{"thicknessFactor":1}}})");
+  REQUIRE(frosted.by_paths);
+  CHECK(frosted.by_paths->type == MaterialType::dielectric);
+  CHECK(frosted.by_paths->medium == frosted.medium);
+  CHECK(frosted.by_paths->roughness == 0.5);
+  CHECK(frosted.by_paths->reflection == dvec3(0.8));
+  CHECK(near(frosted.by_paths->transmission, {0.4, 0.8, 0.8}));
+}
+
+TEST_CASE("opacity of a glTF is the same for integrators that follow paths", "[models]") {
+  const std::string pbr = R"({"pbrMetallicRoughness":{"metallicFactor":0,"baseColorFactor":[1,1,1,0.25]})";
+  const MaterialDescription blended = material_of(pbr + R"(,"alphaMode":"BLEND"})");
+  REQUIRE(blended.by_paths);
+  CHECK(blended.by_paths->opacity == 0.25);
+  CHECK(blended.by_paths->transmission == dvec3(0));
+  CHECK(blended.by_paths->diffuse == dvec3(1));
+}
+
 TEST_CASE("transmission with a volume is a dielectric with an absorbing medium, without one a thin pane",
           "[models]") {
   Model model;

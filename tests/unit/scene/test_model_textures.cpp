@@ -68,6 +68,54 @@ TEST_CASE("a glTF's specular textures are factors on the highlight of what is no
             .textures.specular == -1);
 }
 
+TEST_CASE("a glTF's packed texture is roughness and metalness for integrators that follow paths") {
+  SceneDescription scene = quad_with(R"({"pbrMetallicRoughness":{"roughnessFactor":0.5,
+      "baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":0}}})");
+  const MaterialDescription& m = scene.materials.at(0);
+  REQUIRE(m.by_paths);
+  const MaterialTextures& to = m.by_paths->textures;
+  CHECK(texture_of(scene, to.roughness).channel == 1);
+  CHECK(texture_of(scene, to.metalness).channel == 2);
+  CHECK(texture_of(scene, to.roughness).image == texture_of(scene, m.textures.metal_rough).image);
+  CHECK(to.diffuse == m.textures.diffuse);
+  CHECK(to.metal_rough == -1);
+  const CompiledScene whitted = compile(scene);
+  CHECK_FALSE(whitted.features.layers);
+  CHECK(whitted.features.metal_rough);
+  scene.render.integrator = "path";
+  const CompiledScene path = compile(scene);
+  CHECK(path.features.layer_maps);
+  CHECK_FALSE(path.features.metal_rough);
+  CHECK(path.layers[0].roughness == 0.5f);
+  CHECK(path.layers[0].grid != NO_LAYER_GRID);
+  CHECK(path.texel_levels.size() == whitted.texel_levels.size());
+}
+
+TEST_CASE("a glTF's transmission texture is that of OpenPBR's for integrators that follow paths") {
+  SceneDescription scene = quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0.2,
+      "baseColorTexture":{"index":0}},"extensions":{"KHR_materials_volume":{"thicknessFactor":1},
+      "KHR_materials_transmission":{"transmissionFactor":0.5,"transmissionTexture":{"index":0}}}})");
+  REQUIRE(scene.materials.at(0).by_paths);
+  const MaterialDescription& m = *scene.materials[0].by_paths;
+  CHECK(texture_of(scene, m.textures.glass).channel == 0);
+  CHECK(texture_of(scene, m.textures.diffuse).kind == TEXTURE_IMAGE);
+  CHECK(m.textures.transmission == m.textures.diffuse);
+  CHECK(m.layers->transmission_weight == 0.5);
+  CHECK(m.transmission == dvec3(0.5));
+  scene.render.integrator = "path";
+  CHECK(compile(scene).features.layer_maps);
+}
+
+TEST_CASE("textures of what layers have as numbers keep a glTF's material as it is with every integrator") {
+  for (const char* extension :
+       {R"("KHR_materials_clearcoat":{"clearcoatFactor":1,"clearcoatTexture":{"index":0}})",
+        R"("KHR_materials_specular":{"specularTexture":{"index":0}})"}) {
+    INFO(extension);
+    const std::string base = R"({"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{)";
+    CHECK_FALSE(quad_with(base + extension + "}}").materials.at(0).by_paths);
+  }
+}
+
 TEST_CASE("a glTF's clearcoat texture is a factor on the mirror of its clear layer") {
   const SceneDescription scene = quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":0},
       "extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":0.5,"clearcoatTexture":{"index":0}}}})");

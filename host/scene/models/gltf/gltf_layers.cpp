@@ -39,6 +39,41 @@ void add_anisotropy(const JsonAt& at, OpenPbr& values) {
       std::remainder(at.number("anisotropyRotation", 0, {}) * 180 / std::numbers::pi, 360);
 }
 
+/// KHR_materials_specular, which leaves metals alone, as OpenPBR's weight and colour, which do not: where
+/// some of the base is a metal the weight becomes a part of the index.
+void add_specular(const JsonAt& at, OpenPbr& values) {
+  const glm::dvec3 color = at.vector("specularColorFactor", glm::dvec3(1), not_negative);
+  const double most = std::max({color.x, color.y, color.z, 1.0}),
+               weight = std::min(most * at.number("specularFactor", 1, unit_range), 10.0);
+  if (values.base_metalness == 1) return;
+  values.specular_color = color / most;
+  if (values.base_metalness == 0) {
+    values.specular_weight = weight;
+    return;
+  }
+  const double root = (values.specular_ior - 1) / (values.specular_ior + 1),
+               weighted = std::sqrt(std::min(weight * root * root, 0.25));
+  values.specular_ior = (1 + weighted) / (1 - weighted);
+}
+
+bool has_texture(const JsonAt& material, const char* extension, const char* factor, const char* texture) {
+  const auto at = material.extension(extension);
+  return at && at->find(texture) && at->number(factor, 0, unit_range) > 0;
+}
+
+void add_gltf_layers(const JsonAt& material, OpenPbr& values) {
+  if (const auto sheen = material.extension("KHR_materials_sheen")) add_sheen(*sheen, values);
+  if (const auto film = material.extension("KHR_materials_iridescence")) add_film(*film, values);
+  if (const auto anisotropy = material.extension("KHR_materials_anisotropy"))
+    add_anisotropy(*anisotropy, values);
+  const auto coat = material.extension("KHR_materials_clearcoat");
+  if (!coat) return;
+  values.coat_weight = coat->number("clearcoatFactor", 0, unit_range);
+  values.coat_roughness = coat->number("clearcoatRoughnessFactor", 0, unit_range);
+  values.coat_ior = 1.5;
+  values.coat_darkening = 0;  // the extension mixes colours
+}
+
 }  // namespace
 
 bool has_layers(const JsonAt& material) {
@@ -53,17 +88,38 @@ bool has_layers(const JsonAt& material) {
                              [&](const char* name) { return material.extension(name).has_value(); });
 }
 
-void add_gltf_layers(const JsonAt& material, OpenPbr& values) {
-  if (const auto sheen = material.extension("KHR_materials_sheen")) add_sheen(*sheen, values);
-  if (const auto film = material.extension("KHR_materials_iridescence")) add_film(*film, values);
-  if (const auto anisotropy = material.extension("KHR_materials_anisotropy"))
-    add_anisotropy(*anisotropy, values);
-  const auto coat = material.extension("KHR_materials_clearcoat");
-  if (!coat) return;
-  values.coat_weight = coat->number("clearcoatFactor", 0, unit_range);
-  values.coat_roughness = coat->number("clearcoatRoughnessFactor", 0, unit_range);
-  values.coat_ior = 1.5;
-  values.coat_darkening = 0;  // the extension mixes colours
+bool fits_layers(const JsonAt& material) {
+  if (material.extension("KHR_materials_unlit")) return false;
+  const auto specular = material.extension("KHR_materials_specular");
+  if (specular && (specular->find("specularTexture") || specular->find("specularColorTexture"))) return false;
+  return !has_texture(material, "KHR_materials_clearcoat", "clearcoatFactor", "clearcoatTexture");
+}
+
+OpenPbr gltf_openpbr(const JsonAt& material, const MetalRough& base, double ior) {
+  OpenPbr values{.base_color = base.base, .base_metalness = base.metalness};
+  values.specular_roughness = base.roughness;
+  values.specular_ior = ior < 1 ? 1.5 : ior;
+  if (const auto specular = material.extension("KHR_materials_specular")) add_specular(*specular, values);
+  if (const auto through = material.extension("KHR_materials_transmission"))
+    values.transmission_weight = through->number("transmissionFactor", 0, unit_range);
+  add_gltf_layers(material, values);
+  return values;
+}
+
+void set_gltf_layers(const OpenPbr& values, double reflectance, MaterialDescription& material) {
+  const MaterialDescription before = material;
+  MediumDescription inside;
+  set_openpbr(values, material, inside);
+  material.type = before.type;
+  material.coat = 0;
+  material.emission = before.emission;
+  material.opacity = before.opacity;
+  const double through =
+      values.transmission_weight * (material.textures.metalness >= 0 ? 1 : 1 - values.base_metalness);
+  material.reflection = through == 0                              ? dvec3(0)
+                        : before.type == MaterialType::dielectric ? dvec3(through)
+                                                                  : dvec3(through * reflectance);
+  material.transmission = before.transmission;
 }
 
 }  // namespace sundog::models

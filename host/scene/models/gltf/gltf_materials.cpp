@@ -111,7 +111,7 @@ GltfMaterials::Entry GltfMaterials::read(const JsonAt& at) const {
   read_textures(at, entry);
   add_specular_textures(at, entry);
   add_clearcoat(at, entry);
-  add_layers(at, entry, ior, roughness);
+  add_layers(at, entry, ior);
   read_unlit(at, entry, base);
   blend(at, entry, alpha);
   return entry;
@@ -222,33 +222,29 @@ void GltfMaterials::add_clearcoat(const JsonAt& at, Entry& entry) const {
   material.reflection += coat;
 }
 
-/// The same values as OpenPBR's, of materials that have layers. What they let through stays as it is.
-void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior, double roughness) {
-  if (!has_layers(at)) return;
-  MaterialDescription& m = entry.material;
-  OpenPbr values{.base_color = entry.values.base, .base_metalness = entry.values.metalness};
-  values.specular_roughness = roughness;
-  values.specular_ior = ior < 1 ? 1.5 : ior;
-  if (const auto specular = at.extension("KHR_materials_specular")) {
-    values.specular_weight = specular->number("specularFactor", 1, unit_range);
-    values.specular_color =
-        glm::min(specular->vector("specularColorFactor", dvec3(1), not_negative), dvec3(1));
+/// The same values as OpenPBR's: with every integrator of materials that have layers, with those that follow
+/// paths of the others that they fit.
+void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) {
+  const bool metal_map = entry.metal_rough && entry.values.metalness > 0;
+  const bool always = has_layers(at);
+  if (!always && !fits_layers(at)) return;
+  OpenPbr values = gltf_openpbr(at, entry.values, ior);
+  if (always) {
+    set_gltf_layers(values, reflectance(ior), entry.material);
+    entry.specular = entry.specular_color = std::nullopt;
+    return;
   }
-  if (const auto through = at.extension("KHR_materials_transmission"))
-    values.transmission_weight = through->number("transmissionFactor", 0, unit_range);
-  add_gltf_layers(at, values);
-  const MaterialDescription before = m;
-  MediumDescription inside;
-  set_openpbr(values, m, inside);
-  m.type = before.type;
-  m.coat = 0;
-  m.emission = before.emission;
-  const double through = values.transmission_weight * (1 - values.base_metalness);
-  m.reflection = through == 0                         ? dvec3(0)
-                 : m.type == MaterialType::dielectric ? dvec3(through)
-                                                      : dvec3(through * reflectance(ior));
-  m.transmission = before.transmission;
-  entry.specular = entry.specular_color = std::nullopt;
+  MaterialDescription other;
+  const MaterialDescription& m = entry.material;
+  other.type = m.type, other.emission = m.emission, other.transmission = m.transmission;
+  other.normal_scale = m.normal_scale, other.occlusion = m.occlusion;
+  if (m.transmission == dvec3(0)) values.transmission_weight = 0;
+  // Kernels take the metal's share, and what a texture keeps, from what may pass. use_by_paths() has them.
+  if (metal_map && entry.values.metalness < 1) other.transmission /= 1 - entry.values.metalness;
+  if (metal_map) other.textures.metalness = 0;
+  if (entry.transmission) other.textures.glass = 0;
+  set_gltf_layers(values, reflectance(ior), other);
+  entry.by_paths = other;
 }
 
 void GltfMaterials::blend(const JsonAt& at, Entry& entry, double alpha) {
@@ -261,12 +257,14 @@ void GltfMaterials::blend(const JsonAt& at, Entry& entry, double alpha) {
   if (entry.base) {
     m.opacity = alpha;
     if (mode == "MASK") m.cutoff = cutoff;
+    if (entry.by_paths) entry.by_paths->opacity = m.opacity, entry.by_paths->cutoff = m.cutoff;
     entry.opacity = entry.base;
     entry.opacity->channel = 3;
     return;
   }
   // The same everywhere: a thin pane.
   const double opacity = mode == "BLEND" ? alpha : alpha >= cutoff ? 1 : 0;
+  if (entry.by_paths) entry.by_paths->opacity = opacity;
   if (m.layers) {
     m.opacity = opacity;
     return;
@@ -274,65 +272,6 @@ void GltfMaterials::blend(const JsonAt& at, Entry& entry, double alpha) {
   for (dvec3* part : {&m.ambient, &m.diffuse, &m.specular, &m.reflection, &m.transmission}) *part *= opacity;
   m.emission *= opacity;
   m.transmission += 1 - opacity;
-}
-
-void GltfMaterials::use_textures(const Entry& entry, MaterialDescription& material, Model& model) {
-  MaterialTextures& to = material.textures;
-  if (entry.base && !entry.unlit) {
-    to.ambient = to.diffuse = textures_.use(*entry.base, true, model);
-    if (material.reflection != dvec3(0) && !entry.has_medium) to.reflection = to.diffuse;
-    if (material.transmission != dvec3(0)) to.transmission = to.diffuse;
-    if (entry.values.metalness == 1) to.specular = to.diffuse;
-  }
-  if (entry.transmission && !entry.unlit) use_transmission(entry, material, model);
-  if (entry.by_values) {
-    material.metal_rough = entry.values;
-    to.ambient = to.reflection = to.specular = -1;
-    if (entry.metal_rough) to.metal_rough = textures_.use(*entry.metal_rough, false, model);
-  }
-  if (!entry.unlit) use_specular(entry, material, model);
-  if (entry.coat) to.coat = textures_.use(*entry.coat, false, model);
-  if (entry.opacity) to.opacity = textures_.use(*entry.opacity, true, model);
-  if (entry.emission) to.emission = textures_.use(*entry.emission, true, model);
-  if (entry.normal) to.normal = textures_.use(*entry.normal, false, model);
-  if (entry.occlusion) to.occlusion = textures_.use(*entry.occlusion, false, model);
-}
-
-/// With a texture t of the share f that passes: the transmission times t, the diffuse term times 1 - f t.
-void GltfMaterials::use_transmission(const Entry& entry, MaterialDescription& material, Model& model) {
-  MaterialTextures& to = material.textures;
-  const int passing = textures_.use(*entry.transmission, false, model);
-  if (passing < 0) return;
-  TextureDescription rest = model.textures[static_cast<std::size_t>(passing)];
-  rest.factor = glm::dvec4(-entry.transmitted);
-  rest.offset = glm::dvec4(1);
-  model.textures.push_back(rest);
-  const int remaining = static_cast<int>(model.textures.size()) - 1;
-  to.transmission = GltfTextures::product(passing, to.transmission, model);
-  to.ambient = to.diffuse = GltfTextures::product(remaining, to.diffuse, model);
-}
-
-void GltfMaterials::use_specular(const Entry& entry, MaterialDescription& material, Model& model) {
-  const int strength = entry.specular ? textures_.use(*entry.specular, false, model) : -1;
-  const int color = entry.specular_color ? textures_.use(*entry.specular_color, true, model) : -1;
-  const int both = GltfTextures::product(strength, color, model);
-  if (both >= 0) material.textures.specular = both;
-}
-
-int GltfMaterials::use(std::size_t index, bool vertex_color, Model& model) {
-  const auto [found, added] =
-      used_.try_emplace({index, vertex_color}, static_cast<int>(model.materials.size()));
-  if (added) {
-    const Entry& entry = materials_.at(index);
-    model.materials.push_back(entry.material);
-    model.materials.back().vertex_color = vertex_color;
-    use_textures(entry, model.materials.back(), model);
-    if (entry.has_medium) {
-      model.materials.back().medium = static_cast<int>(model.media.size());
-      model.media.push_back(entry.medium);
-    }
-  }
-  return found->second;
 }
 
 }  // namespace sundog::models

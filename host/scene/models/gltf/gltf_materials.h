@@ -1,6 +1,7 @@
 // glTF's materials as sundog's.
 #pragma once
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@ namespace sundog::models {
 /// share of base through: with a volume (thickness above 0) as a dielectric with a medium, absorbing
 /// -ln(attenuationColor) / attenuationDistance; without one as a thin pane, straight through. alphaMode BLEND
 /// and MASK become the opacity. The base colour's texture is a factor on all terms that have its colour.
+/// For integrators that follow paths most are OpenPBR's layers in place of these terms (gltf_layers.h).
 class GltfMaterials {
  public:
   GltfMaterials(const JsonAt& root, GltfTextures& textures);
@@ -31,6 +33,7 @@ class GltfMaterials {
  private:
   struct Entry {
     MaterialDescription material;
+    std::optional<MaterialDescription> by_paths;  // without textures
     MediumDescription medium;
     bool has_medium = false;
     std::optional<TextureDescription> base, opacity, emission, metal_rough, normal, occlusion;
@@ -45,10 +48,11 @@ class GltfMaterials {
   void settle_sides();
   static void read_unlit(const JsonAt& at, Entry& entry, glm::dvec3 base);
   void add_clearcoat(const JsonAt& at, Entry& entry) const;
-  static void add_layers(const JsonAt& at, Entry& entry, double ior, double roughness);
+  static void add_layers(const JsonAt& at, Entry& entry, double ior);
   void add_specular_textures(const JsonAt& at, Entry& entry) const;
   void use_textures(const Entry& entry, MaterialDescription& material, Model& model);
   void use_transmission(const Entry& entry, MaterialDescription& material, Model& model);
+  void use_by_paths(const Entry& entry, MaterialDescription& material, Model& model);
   void use_specular(const Entry& entry, MaterialDescription& material, Model& model);
   void transmit(const JsonAt& at, Entry& entry, glm::dvec3 base, double ior) const;
   static void blend(const JsonAt& at, Entry& entry, double alpha);

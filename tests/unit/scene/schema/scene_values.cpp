@@ -109,7 +109,7 @@ std::string line(const MaterialDescription& m) {
                      m.checker_size, m.vertex_color) +
          fmt::format("{} {} {} {} {} {}\n", text(m.emission), m.opacity, m.cutoff, m.textures.diffuse,
                      m.textures.exponent, m.textures.opacity) +
-         (m.layers ? line(*m.layers) : std::string());
+         (m.layers ? line(*m.layers) : std::string()) + (m.by_paths ? line(*m.by_paths) : std::string());
 }
 
 std::string line(const TextureDescription& t) {

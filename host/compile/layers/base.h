@@ -1,0 +1,40 @@
+// The interface of a layered material's base: what it leaves for the ground, at one roughness, and at a grid
+// of them where a texture gives the roughness.
+#pragma once
+#include <map>
+#include <vector>
+
+#include "compile/layers/facets.h"
+
+namespace sundog {
+
+/// What the base's facets have about them, whatever their widths.
+struct BaseSurroundings {
+  Interface interface;
+  double tint;             // the greatest part of a dielectric's
+  AlbedoRow above;         // what coat and fuzz pass
+  double matte_roughness;  // of the ground
+};
+
+struct BaseInterface {
+  AlbedoRow past;                                               // what it passes
+  double straight, shine_scale, matte_scale, matte_scale_bare;  // members of Layers
+};
+
+BaseInterface base_interface(const FacetWidths& widths, const FacetGains& gains,
+                             const BaseSurroundings& around);
+
+/// Widths that the kernels take: none is below LEAST_LAYER_ALPHA.
+FacetWidths wide_enough(const FacetWidths& widths);
+
+/// The table layer_rows while it is made: materials whose grids are the same share one.
+struct LayerRows {
+  std::vector<float> values;
+  std::map<std::vector<double>, u32> grids;
+};
+
+/// The first number of the grid (shared/layers.h) of facets of this anisotropy, which is added unless it is
+/// there. No step's facets return more than all light, nor do those between two steps.
+u32 add_layer_grid(double anisotropy, const BaseSurroundings& around, LayerRows& rows);
+
+}  // namespace sundog

@@ -1,0 +1,97 @@
+// A document's materials as a model's: with textures, media, and what they are for integrators that follow
+// paths.
+#include <utility>
+
+#include "scene/models/gltf/gltf_materials.h"
+
+namespace sundog::models {
+
+void GltfMaterials::use_textures(const Entry& entry, MaterialDescription& material, Model& model) {
+  MaterialTextures& to = material.textures;
+  if (entry.base && !entry.unlit) {
+    to.ambient = to.diffuse = textures_.use(*entry.base, true, model);
+    if (material.reflection != dvec3(0) && !entry.has_medium) to.reflection = to.diffuse;
+    if (material.transmission != dvec3(0)) to.transmission = to.diffuse;
+    if (entry.values.metalness == 1) to.specular = to.diffuse;
+  }
+  if (entry.transmission && !entry.unlit) use_transmission(entry, material, model);
+  if (entry.by_values) {
+    material.metal_rough = entry.values;
+    to.ambient = to.reflection = to.specular = -1;
+    if (entry.metal_rough) to.metal_rough = textures_.use(*entry.metal_rough, false, model);
+  }
+  if (!entry.unlit) use_specular(entry, material, model);
+  if (entry.coat) to.coat = textures_.use(*entry.coat, false, model);
+  if (entry.opacity) to.opacity = textures_.use(*entry.opacity, true, model);
+  if (entry.emission) to.emission = textures_.use(*entry.emission, true, model);
+  if (entry.normal) to.normal = textures_.use(*entry.normal, false, model);
+  if (entry.occlusion) to.occlusion = textures_.use(*entry.occlusion, false, model);
+}
+
+/// With a texture t of the share f that passes: the transmission times t, the diffuse term times 1 - f t.
+void GltfMaterials::use_transmission(const Entry& entry, MaterialDescription& material, Model& model) {
+  MaterialTextures& to = material.textures;
+  const int passing = textures_.use(*entry.transmission, false, model);
+  if (passing < 0) return;
+  TextureDescription rest = model.textures[static_cast<std::size_t>(passing)];
+  rest.factor = glm::dvec4(-entry.transmitted);
+  rest.offset = glm::dvec4(1);
+  model.textures.push_back(rest);
+  const int remaining = static_cast<int>(model.textures.size()) - 1;
+  to.transmission = GltfTextures::product(passing, to.transmission, model);
+  to.ambient = to.diffuse = GltfTextures::product(remaining, to.diffuse, model);
+}
+
+/// The material for integrators that follow paths: its layers, and what both have.
+void GltfMaterials::use_by_paths(const Entry& entry, MaterialDescription& material, Model& model) {
+  if (!entry.by_paths) return;
+  auto other = std::make_shared<MaterialDescription>(*entry.by_paths);
+  other->name = material.name;
+  other->medium = material.medium;
+  other->one_sided = material.one_sided;
+  other->vertex_color = material.vertex_color;
+  MaterialTextures& to = other->textures;
+  to = {};
+  to.emission = material.textures.emission, to.opacity = material.textures.opacity;
+  to.normal = material.textures.normal, to.occlusion = material.textures.occlusion;
+  const bool shared = !entry.transmission;  // else it has what passes taken from it
+  if (shared) to.diffuse = material.textures.diffuse;
+  if (!shared && entry.base) to.diffuse = textures_.use(*entry.base, true, model);
+  if (entry.transmission) to.glass = textures_.use(*entry.transmission, false, model);
+  to.ambient = to.diffuse;
+  if (other->transmission != dvec3(0)) to.transmission = to.diffuse;
+  if (entry.metal_rough) {
+    TextureDescription packed = *entry.metal_rough;
+    packed.channel = 1;
+    to.roughness = textures_.use(packed, false, model);
+    packed.channel = 2;
+    if (entry.values.metalness > 0) to.metalness = textures_.use(packed, false, model);
+  }
+  material.by_paths = std::move(other);
+}
+
+void GltfMaterials::use_specular(const Entry& entry, MaterialDescription& material, Model& model) {
+  const int strength = entry.specular ? textures_.use(*entry.specular, false, model) : -1;
+  const int color = entry.specular_color ? textures_.use(*entry.specular_color, true, model) : -1;
+  const int both = GltfTextures::product(strength, color, model);
+  if (both >= 0) material.textures.specular = both;
+}
+
+int GltfMaterials::use(std::size_t index, bool vertex_color, Model& model) {
+  const auto [found, added] =
+      used_.try_emplace({index, vertex_color}, static_cast<int>(model.materials.size()));
+  if (added) {
+    const Entry& entry = materials_.at(index);
+    model.materials.push_back(entry.material);
+    model.materials.back().vertex_color = vertex_color;
+    use_textures(entry, model.materials.back(), model);
+    if (entry.has_medium) {
+      model.materials.back().medium = static_cast<int>(model.media.size());
+      model.media.push_back(entry.medium);
+    }
+    use_by_paths(entry, model.materials.back(), model);
+  }
+  return found->second;
+}
+
+}  // namespace sundog::models
