@@ -95,6 +95,7 @@ u32 material_flags(const MaterialDescription& material) {
     flags |= MATERIAL_TRANSMITS;
   if (!is_zero(material.reflection) || material.coat > 0 || material.layers) flags |= MATERIAL_REFLECTS;
   if (material.layers) flags |= MATERIAL_LAYERED;
+  if (!material.multiple_scattering) flags |= MATERIAL_SCATTERS_ONCE;
   if (material.medium < 0) flags |= MATERIAL_THIN;
   if (material.vertex_color) flags |= MATERIAL_VERTEX_COLOR;
   if (material.one_sided) flags |= MATERIAL_ONE_SIDED | MATERIAL_TRANSMITS;

@@ -6,6 +6,7 @@
 #include "catch.h"
 #include "devices.h"
 #include "scenes.h"
+#include "single_albedo.h"
 
 using namespace sundog;
 using glm::dvec3;
@@ -53,6 +54,29 @@ TEST_CASE("in a white furnace rough glass is white at every roughness") {
       CHECK(mean_of(scenes::render_on(device, furnace(glass, roughness, {0.3, 0.1, 0})).image) ==
             Approx(1).epsilon(0.015));
     }
+  });
+}
+
+TEST_CASE("in a white furnace rough surfaces that scatter once keep what quadrature has") {
+  // The sine at which the ball is seen: how far off its middle the ray passes.
+  const dvec3 at(0.5, 0, 0);
+  const double off = 4 * at.x / std::hypot(4, at.x), cosine = std::sqrt(1 - off * off);
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const double roughness : {0.5, 1.0}) {
+      INFO(roughness);
+      SceneDescription metal = furnace(white_metal, roughness, at);
+      metal.materials.back().multiple_scattering = false;
+      CHECK(mean_of(scenes::render_on(device, metal).image) ==
+            Approx(light_met_once(cosine, roughness * roughness, 0).reflected).epsilon(0.012));
+    }
+    // Of light that goes through once, more is lost on its way out.
+    SceneDescription ball = furnace(glass, 1, at);
+    const double kept = mean_of(scenes::render_on(device, ball).image);
+    ball.materials.back().multiple_scattering = false;
+    const OnceLight once = light_met_once(cosine, 1, 1.5);
+    const double left = mean_of(scenes::render_on(device, ball).image);
+    CHECK(left < once.reflected + once.transmitted);
+    CHECK(left > 0.7 * kept);
   });
 }
 
