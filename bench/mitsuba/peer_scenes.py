@@ -63,8 +63,8 @@ def find_barrel():
     return folder if os.path.exists(os.path.join(folder, "mesh.obj")) else None
 
 
-def write_sky(path):
-    """A sky and a sun of 3x3 texels as RGBE, whose mantissas are cut off: both programs read this file."""
+def make_sky():
+    """A sky and a sun of 3x3 texels as RGBE bytes, whose mantissas are cut off."""
     h, w = 256, 512
     y = np.cos((np.arange(h) + 0.5) / h * math.pi)[:, None] * np.ones((1, w))
     up = np.sqrt(np.clip(y, 0, 1))[..., None]
@@ -75,19 +75,33 @@ def write_sky(path):
     image[row - 1:row + 2, column - 1:column + 2] = [3000, 2700, 2200]
     mantissa, exponent = np.frexp(image.max(axis=2))
     scaled = np.floor(image * (mantissa * 256 / image.max(axis=2))[..., None])
-    rgbe = np.dstack([scaled, exponent + 128]).astype(np.uint8)
+    return np.dstack([scaled, exponent + 128]).astype(np.uint8)
+
+
+def write_sky(path, rgbe):
     with open(path, "wb") as out:
-        out.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (h, w) + rgbe.tobytes())
+        out.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % rgbe.shape[:2] + rgbe.tobytes())
+
+
+def sky_between_edges(rgbe):
+    """The same sky for Mitsuba 3.9, whose first and last rows of texels lie on the poles, where sundog's lie half a row below and above them.
+    Of twice the rows and one, every second is one of the picture's and those between are their means: blended linearly, the same radiance."""
+    sky = rgbe[..., :3] * np.exp2(rgbe[..., 3:].astype(float) - 136)
+    around = np.concatenate([sky[:1], sky, sky[-1:]])
+    rows = np.empty((2 * len(sky) + 1,) + sky.shape[1:], np.float32)
+    rows[1::2], rows[0::2] = sky, (around[1:] + around[:-1]) / 2
+    return rows
 
 
 def write_files(folder):
     """What scenes name: the sky, and the barrel's model where there is one. Returns the scenes that can be made."""
-    write_sky(os.path.join(folder, "sky.hdr"))
+    write_sky(os.path.join(folder, "sky.hdr"), make_sky())
     barrel = find_barrel()
     if not barrel:
         return [name for name in NAMES if name != "textured"]
-    for file in ("mesh.obj", "diffuse.png"):
-        shutil.copyfile(os.path.join(barrel, file), os.path.join(folder, file))
+    shutil.copyfile(os.path.join(barrel, "diffuse.png"), os.path.join(folder, "diffuse.png"))
+    with open(os.path.join(barrel, "mesh.obj")) as model, open(os.path.join(folder, "mesh.obj"), "w") as copy:
+        copy.writelines(line for line in model if not line.startswith(("mtllib", "usemtl")))
     return list(NAMES)
 
 

@@ -8,7 +8,8 @@ import time
 
 import numpy as np
 
-from peer_scenes import (BARREL_SCALE, COLORS, DEPTH, INTERFACES, LAMP, METAL, METAL_ALPHA, MIRROR, OBJECTS, SIZE, UNDER_SKY, camera_of, sundog_scene)
+from peer_scenes import (BARREL_SCALE, COLORS, DEPTH, INTERFACES, LAMP, METAL, METAL_ALPHA, MIRROR, OBJECTS, SIZE, UNDER_SKY, camera_of, make_sky,
+                         sky_between_edges, sundog_scene)
 
 
 def read_pfm(path):
@@ -84,7 +85,7 @@ def mitsuba_scene(mi, name, folder, sampler):
     scene = {"type": "scene", "integrator": {"type": "volpath" if name == "ice" else "path", "max_depth": DEPTH + 1},
              "sensor": mitsuba_camera(mi, name, sampler)}
     if name in UNDER_SKY:
-        scene["sky"] = {"type": "envmap", "filename": os.path.join(folder, "sky.hdr"), "to_world": T().rotate([0, 1, 0], 180)}
+        scene["sky"] = {"type": "envmap", "bitmap": mi.Bitmap(sky_between_edges(make_sky())), "to_world": T().rotate([0, 1, 0], 180)}
     else:
         to_world = T().translate(LAMP["center"]).rotate([1, 0, 0], 90).scale([LAMP["size"][0] / 2, LAMP["size"][1] / 2, 1])
         scene["lamp"] = {"type": "rectangle", "to_world": to_world, "bsdf": {"type": "diffuse", "reflectance": rgb([0, 0, 0])},
