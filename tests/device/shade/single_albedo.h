@@ -29,18 +29,19 @@ inline double fresnel_of(double cosine, double eta) {
 }
 
 /// Of light that comes at `cosine` to the normal; `eta` 0: facets are perfect mirrors. Normals of facets are
-/// taken by the GGX distribution, in equal parts of its two variables.
+/// taken by the GGX distribution (Walter and others 2007, equations 35 and 36) with 1 - q^2 as its first
+/// number, which leaves nothing unbounded at flat angles.
 inline OnceLight light_met_once(double cosine, double alpha, double eta) {
   constexpr int steps = 400;
   const glm::dvec3 o(std::sqrt(1 - cosine * cosine), 0, cosine);
   OnceLight sum;
   for (int i = 0; i < steps * steps; ++i) {
-    const double u = (i / steps + 0.5) / steps, turn = 2 * std::numbers::pi * (i % steps + 0.5) / steps;
-    const double c = 1 / std::sqrt(1 + alpha * alpha * u / (1 - u)), s = std::sqrt(1 - c * c);
+    const double q = (i / steps + 0.5) / steps, turn = 2 * std::numbers::pi * (i % steps + 0.5) / steps;
+    const double c = q / std::hypot(q, alpha * std::sqrt(1 - q * q)), s = std::sqrt(1 - c * c);
     const glm::dvec3 h(s * std::cos(turn), s * std::sin(turn), c);
     const double seen = glm::dot(o, h);
     if (seen <= 0) continue;
-    const double share = seen / (c * cosine * steps * steps), f = eta > 0 ? fresnel_of(seen, eta) : 1;
+    const double share = 2 * q * seen / (c * cosine * steps * steps), f = eta > 0 ? fresnel_of(seen, eta) : 1;
     const auto leaves = [&](double z) {
       return z > 0 ? share / (1 + smith_of(cosine, alpha) + smith_of(z, alpha)) : 0;
     };
