@@ -8,7 +8,8 @@ Dr.Jit looks for LLVM by itself, or where DRJIT_LIBLLVM_PATH says. `textured` ne
 means   the whole and 4x4 regions of both converged pictures, three channels each, in standard errors of both together: how many of these 51 are
         beyond three, the greatest, and the chances of both, were they 51 independent normal numbers (they are fewer: channels are alike)
 errors  the root mean square error, of linear colour within 0..1, at each of --counts samples, against both programs' pictures together, whose noise
-        is taken off; and the samples that reach 0.02, by a line through two points in logarithms
+        is taken off (Mitsuba under a sky against its own: its rows of texels lie elsewhere); and the samples that reach 0.02, by a line through two
+        points in logarithms
 times   samples a second at --samples, and the seconds of pictures of as many samples as reach 0.02. All ways take turns, one thread each: medians,
         and the range of the ratios of single rounds. Only an idle machine's count
 
@@ -43,7 +44,8 @@ class Bench:
     def __init__(self, name, folder, args, mi):
         self.name, self.args = name, args
         self.sundog = programs.Sundog(name, folder, args.sundog, args.device)
-        self.mitsuba = programs.Mitsuba(name, folder, mi)
+        self.mitsuba = programs.Mitsuba(name, folder, mi, same_radiance=False)
+        self.same = programs.Mitsuba(name, folder, mi, same_radiance=True)
 
     def render(self, way, samples, seed=0):
         """The picture, its seconds, and the samples that it has."""
@@ -52,41 +54,51 @@ class Bench:
             return *self.sundog.render(sampler, samples), samples
         return *self.mitsuba.render(sampler, samples, seed), self.mitsuba.samples_made(sampler)
 
-    def stored(self, key, make):
-        """The parts of a converged picture, from --pictures where they are."""
-        if not self.args.pictures:
-            return figures.Picture(make())
-        path = os.path.join(self.args.pictures, f"{self.name}-{key}-{self.args.converged}.npy")
-        if not os.path.exists(path):
-            np.save(path, np.array(make(), np.float32))
-        return figures.Picture(np.load(path).astype(float))
+    def stored(self, key, samples, make):
+        """A converged picture, from --pictures where it is."""
+        path = self.args.pictures and os.path.join(self.args.pictures, f"{self.name}-{key}-{samples}.npy")
+        if path and os.path.exists(path):
+            return figures.Picture(np.load(path).astype(float), samples)
+        parts = np.array(make())
+        if path:
+            np.save(path, parts.astype(np.float32))
+        return figures.Picture(parts, samples)
+
+    def halves(self):
+        """sundog's sample i is the same in every picture, so the second half is what a whole adds to the first."""
+        total = self.args.converged
+        first, whole = (self.sundog.render("independent", n)[0] for n in (total // 2, total))
+        return [first, 2 * whole - first]
+
+    @staticmethod
+    def passes(program, total):
+        each = min(PASS, total // 2)
+        return [program.render("independent", each, seed=1000 + i)[0] for i in range(total // each)]
 
     def converge(self):
-        """Of `independent` samples. sundog's sample i is the same in every picture, so the second half is what a whole adds to the first."""
+        """Pictures of `independent` samples: sundog's, Mitsuba's of the same radiance, and of what Mitsuba makes of the sky's file."""
         total = self.args.converged
-
-        def halves():
-            first, whole = (self.sundog.render("independent", n)[0] for n in (total // 2, total))
-            return [first, 2 * whole - first]
-
-        def passes():
-            each = min(PASS, total // 2)
-            return [self.mitsuba.render("independent", each, seed=1000 + i)[0] for i in range(total // each)]
-        return self.stored("sundog", halves), self.stored("mitsuba", passes)
+        ours = self.stored("sundog", total, self.halves)
+        theirs = self.stored("mitsuba", total, lambda: self.passes(self.same, total))
+        if self.name not in peer_scenes.UNDER_SKY:
+            return ours, theirs, theirs
+        return ours, theirs, self.stored("mitsuba_file", 2 * total, lambda: self.passes(self.mitsuba, 2 * total))
 
 
-def measure_errors(bench, ours, theirs):
-    """sundog's `independent` makes the first samples of its converged picture again."""
-    total, found = bench.args.converged, {}
-    reference = figures.Reference(ours, total, theirs, total)
-    for way in WAYS:
+def measure_errors(bench, ours, theirs, of_file):
+    """Under a sky each program by its own limit. sundog's `independent` makes the first samples of its converged picture again."""
+    both = figures.Reference(ours, theirs)
+    own = both if of_file is theirs else figures.Reference(of_file)
+    found = {}
+    for way, (program, _) in WAYS.items():
+        reference = both if program == "sundog" else own
         points = []
         for count in bench.args.counts:
             image, _, samples = bench.render(way, count, seed=count)
             points.append((samples, reference.error_of(image, samples if way == "sundog independent" else 0)))
         needed, outside = figures.samples_for_error(points)
         found[way] = {"errors": points, "samples_to_error": needed, "extrapolated": outside}
-    return {"reference": reference.facts, "ways": found}
+    return {"reference": both.facts(), "reference_of_mitsuba": own.facts(), "ways": found}
 
 
 def take_turns(bench, counts):
@@ -129,13 +141,13 @@ def tell_means(m):
     print(f"  means   whole R, G, B off by per cent (standard errors) {whole}; regions' error {m['median_error_of_regions_per_cent']:.2f} %\n"
           f"          {m['beyond_3']} of {m['figures']} beyond 3 (chance of as many {m['chance_of_as_many']:.2g}); greatest {m['greatest']:.2f} in "
           f"{m['greatest_in']}, {m['greatest_per_cent']:+.2f} % (chance of as great {m['chance_of_as_great']:.2g}); "
-          f"root mean square {m['root_mean_square_of_regions']:.2f}")
+          f"root mean square {m['root_mean_square_of_regions']:.2f}\n"
+          f"          root mean square difference of pixels {m['pictures_apart']:.4f}, by noise alone {m['apart_by_noise_alone']:.4f}")
 
 
 def tell_errors(e):
-    r = e["reference"]
-    print(f"  errors  reference of {r['samples']} samples, noise {r['noise']:.4f}; programs apart {r['programs_apart']:.4f}, "
-          f"by noise alone {r['apart_by_noise_alone']:.4f}")
+    r, own = e["reference"], e["reference_of_mitsuba"]
+    print(f"  errors  reference of {r['samples']} samples, noise {r['noise']:.4f}; for Mitsuba {own['samples']}, {own['noise']:.4f}")
     for way, found in e["ways"].items():
         points = ", ".join(f"{error:.4f} at {n}" for n, error in found["errors"])
         print(f"          {way:20} {points}; {figures.ERROR} at {found['samples_to_error']:.1f}{' (extrapolated)' if found['extrapolated'] else ''}")
@@ -163,12 +175,12 @@ def describe_run(args, mi):
 
 def run_scene(bench, parts, result):
     if {"means", "errors"} & set(parts):
-        ours, theirs = bench.converge()
+        ours, theirs, of_file = bench.converge()
     if "means" in parts:
         result["means"] = figures.compare_means(ours, theirs) | {"samples": bench.args.converged}
         tell_means(result["means"])
     if "errors" in parts:
-        result["errors"] = measure_errors(bench, ours, theirs)
+        result["errors"] = measure_errors(bench, ours, theirs, of_file)
         tell_errors(result["errors"])
     if "times" in parts:
         if "errors" not in result:

@@ -9,11 +9,10 @@ ERROR = 0.02  # root mean square, linear, clipped to 0..1
 
 
 class Picture:
-    """The mean of parts of independent samples, and the variance of each of its pixels by how the parts differ."""
+    """The mean of parts of independent samples, and the variance of each of its pixels by how the parts differ. `samples`: of all parts."""
 
-    def __init__(self, parts):
-        parts = np.array(parts)
-        self.parts, self.mean = parts, parts.mean(0)
+    def __init__(self, parts, samples):
+        self.parts, self.samples, self.mean = parts, samples, parts.mean(0)
         self.variance = parts.var(0, ddof=1) / len(parts)
 
 
@@ -51,12 +50,14 @@ def compare_means(ours, theirs):
     error = np.hypot(region_errors(ours), region_errors(theirs))
     off = np.divide(mean_a - mean_b, error, out=np.zeros_like(error), where=error > 0)
     count, greatest = int((np.abs(off) > 3).sum()), float(np.abs(off).max())
+    apart = math.sqrt(((clipped(ours.mean) - clipped(theirs.mean))**2).mean())
     region, channel = np.unravel_index(np.abs(off).argmax(), off.shape)
     per_cent, error_per_cent = 100 * (mean_a / mean_b - 1), 100 * error / mean_b
     return {
         "figures": off.size, "beyond_3": count, "chance_of_as_many": chance_of(count, off.size, beyond(3)),
         "greatest": greatest, "chance_of_as_great": chance_of(1, off.size, beyond(greatest)),
         "greatest_in": f"{name_of_region(region)} {CHANNELS[channel]}", "greatest_per_cent": float(per_cent[region, channel]),
+        "pictures_apart": apart, "apart_by_noise_alone": math.sqrt(clipped_noise(ours) + clipped_noise(theirs)),
         "root_mean_square_of_regions": float(np.sqrt((off[1:]**2).mean())),
         "whole_per_cent": per_cent[0].tolist(), "whole_error_per_cent": error_per_cent[0].tolist(), "whole_standard_errors": off[0].tolist(),
         "median_error_of_regions_per_cent": float(np.median(error_per_cent[1:])),
@@ -75,17 +76,15 @@ def clipped_noise(picture):
 
 
 class Reference:
-    """The mean of two Pictures, by their samples; its noise is taken off in squares."""
+    """The mean of Pictures, by their samples; its noise is taken off errors in squares."""
 
-    def __init__(self, ours, our_samples, theirs, their_samples):
-        share = our_samples / (our_samples + their_samples)
-        self.samples = our_samples + their_samples
-        self.image = share * ours.mean + (1 - share) * theirs.mean
-        self.noise = share**2 * clipped_noise(ours) + (1 - share)**2 * clipped_noise(theirs)
-        square = float(((clipped(ours.mean) - clipped(theirs.mean))**2).mean())
-        expected = clipped_noise(ours) + clipped_noise(theirs)
-        self.facts = {"samples": self.samples, "noise": math.sqrt(self.noise), "programs_apart": math.sqrt(square),
-                      "apart_by_noise_alone": math.sqrt(expected)}
+    def __init__(self, *pictures):
+        self.samples = sum(p.samples for p in pictures)
+        self.image = sum(p.samples / self.samples * p.mean for p in pictures)
+        self.noise = sum((p.samples / self.samples)**2 * clipped_noise(p) for p in pictures)
+
+    def facts(self):
+        return {"samples": self.samples, "noise": math.sqrt(self.noise)}
 
     def error_of(self, image, contained=0):
         """`contained`: so many samples of the reference are those of the picture, and are taken out of it."""
