@@ -108,6 +108,7 @@ def load_mitsuba(variant):
     """On one thread."""
     import mitsuba as mi
     mi.set_variant(variant)
+    mi.set_log_level(mi.LogLevel.Error)
     import drjit
     drjit.set_thread_count(1)
     return mi
