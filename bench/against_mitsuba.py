@@ -1,209 +1,237 @@
 #!/usr/bin/env python3
-"""Path tracing against Mitsuba 3 (PyPI mitsuba): the same scenes, in turn, one thread each. Prints the means of the whole picture and of
-4x4 regions in standard errors of their difference, and samples a second of both. Usage:
+"""Path tracing against Mitsuba 3 (PyPI mitsuba): the five scenes of bench/mitsuba/peer_scenes.py in both programs. Usage:
 
-    bench/against_mitsuba.py SUNDOG [--scenes cornell,glass,environment,ice] [--samples 64] [--seeds 8] [--device 0:0/1] [--variant llvm_ad_rgb]
+    bench/against_mitsuba.py SUNDOG [--scenes cornell,glass] [--parts means,errors,times] [--json FILE] [options]
 
-The standard error is that of Mitsuba's pictures with different seeds, and is taken to be as large for sundog with as many samples.
+Dr.Jit looks for LLVM by itself, or where DRJIT_LIBLLVM_PATH says. `textured` needs the model of the barrel in $SUNDOG_ASSETS or ../shared/assets.
+
+means   the whole and 4x4 regions of both converged pictures, three channels each, in standard errors of both together: how many of these 51 are
+        beyond three, the greatest, and the chances of both, were they 51 independent normal numbers (they are fewer: channels are alike)
+errors  the root mean square error, of linear colour within 0..1, at each of --counts samples, against both programs' pictures together, whose noise
+        is taken off (Mitsuba under a sky against its own: its rows of texels lie elsewhere); and the samples that reach 0.02, by a line through two
+        points in logarithms
+times   samples a second at --samples, and the seconds of pictures of as many samples as reach 0.02. All ways take turns, one thread each: medians,
+        and the range of the ratios of single rounds. Only an idle machine's count
+
+A FILE of --json that is there already is kept but for the parts that are made; `times` needs `errors`, there or made. --pictures DIR keeps the
+converged pictures for the next run. Within a minute: --scenes cornell --samples 16 --converged 64 --counts 4,16 --rounds 1.
 """
 import argparse
+import datetime
 import json
-import math
 import os
-import subprocess
+import platform
+import statistics
+import sys
 import tempfile
-import time
 
 import numpy as np
 
-SIZE, DEPTH = 256, 32
-WHITE, RED, GREEN = [0.725, 0.71, 0.68], [0.63, 0.065, 0.05], [0.14, 0.45, 0.091]
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "mitsuba"))
+import figures
+import peer_scenes
+import programs
+
+WAYS = {"sundog sobol": ("sundog", "sobol"), "sundog independent": ("sundog", "independent"),
+        "Mitsuba independent": ("mitsuba", "independent"), "Mitsuba multijitter": ("mitsuba", "multijitter")}
+PASS = 256  # samples of Mitsuba's passes, for its memory
+PARTS = ("means", "errors", "times")
 
 
-def room():
-    """Boxes about the room x -1..1, y 0..2, z -1..1, which is open towards the camera."""
-    return [("box", {"min": [-1.1, -0.1, -1.1], "max": [1.1, 0, 1]}, "white"), ("box", {"min": [-1.1, 2, -1.1], "max": [1.1, 2.1, 1]}, "white"),
-            ("box", {"min": [-1, 0, -1.1], "max": [1, 2, -1]}, "white"), ("box", {"min": [-1.1, 0, -1.1], "max": [-1, 2, 1]}, "red"),
-            ("box", {"min": [1, 0, -1.1], "max": [1.1, 2, 1]}, "green")]
+class Bench:
+    """A scene in both programs."""
+
+    def __init__(self, name, folder, args, mi):
+        self.name, self.args = name, args
+        self.sundog = programs.Sundog(name, folder, args.sundog, args.device)
+        self.mitsuba = programs.Mitsuba(name, folder, mi, same_radiance=False)
+        self.same = programs.Mitsuba(name, folder, mi, same_radiance=True)
+
+    def render(self, way, samples, seed=0):
+        """The picture, its seconds, and the samples that it has."""
+        program, sampler = WAYS[way]
+        if program == "sundog":
+            return *self.sundog.render(sampler, samples), samples
+        return *self.mitsuba.render(sampler, samples, seed), self.mitsuba.samples_made(sampler)
+
+    def stored(self, key, samples, make):
+        """A converged picture, from --pictures where it is."""
+        path = self.args.pictures and os.path.join(self.args.pictures, f"{self.name}-{key}-{samples}.npy")
+        if path and os.path.exists(path):
+            return figures.Picture(np.load(path).astype(float), samples)
+        parts = np.array(make())
+        if path:
+            np.save(path, parts.astype(np.float32))
+        return figures.Picture(parts, samples)
+
+    def halves(self):
+        """sundog's sample i is the same in every picture, so the second half is what a whole adds to the first."""
+        total = self.args.converged
+        first, whole = (self.sundog.render("independent", n)[0] for n in (total // 2, total))
+        return [first, 2 * whole - first]
+
+    @staticmethod
+    def passes(program, total):
+        each = min(PASS, total // 2)
+        return [program.render("independent", each, seed=1000 + i)[0] for i in range(total // each)]
+
+    def converge(self):
+        """Pictures of `independent` samples: sundog's, Mitsuba's of the same radiance, and of what Mitsuba makes of the sky's file."""
+        total = self.args.converged
+        ours = self.stored("sundog", total, self.halves)
+        theirs = self.stored("mitsuba", total, lambda: self.passes(self.same, total))
+        if self.name not in peer_scenes.UNDER_SKY:
+            return ours, theirs, theirs
+        return ours, theirs, self.stored("mitsuba_file", 2 * total, lambda: self.passes(self.mitsuba, 2 * total))
 
 
-def turned(center, half, degrees):
-    return {"min": [-h for h in half], "max": half, "turn": degrees, "center": center}
+def measure_errors(bench, ours, theirs, of_file):
+    """Under a sky each program by its own limit. sundog's `independent` makes the first samples of its converged picture again."""
+    both = figures.Reference(ours, theirs)
+    own = both if of_file is theirs else figures.Reference(of_file)
+    found = {}
+    for way, (program, _) in WAYS.items():
+        reference = both if program == "sundog" else own
+        points = []
+        for count in bench.args.counts:
+            image, _, samples = bench.render(way, count, seed=count)
+            points.append((samples, reference.error_of(image, samples if way == "sundog independent" else 0)))
+        needed, outside = figures.samples_for_error(points)
+        found[way] = {"errors": points, "samples_to_error": needed, "extrapolated": outside}
+    return {"reference": both.facts(), "reference_of_mitsuba": own.facts(), "ways": found}
 
 
-SCENES = {
-    "cornell": room() + [("box", turned([-0.35, 0.6, -0.3], [0.3, 0.6, 0.3], 17), "white"),
-                         ("box", turned([0.35, 0.3, 0.35], [0.3, 0.3, 0.3], -17), "white")],
-    "glass": room() + [("sphere", {"center": [0.42, 0.401, 0.3], "radius": 0.4}, "glass"),
-                       ("sphere", {"center": [-0.45, 0.451, -0.35], "radius": 0.45}, "mirror")],
-    "environment": [("box", {"min": [-10, -0.1, -10], "max": [10, 0, 10]}, "ground"),
-                    ("sphere", {"center": [-0.65, 0.601, 0], "radius": 0.6}, "clay"),
-                    ("sphere", {"center": [0.65, 0.601, 0], "radius": 0.6}, "mirror")],
-    "ice": room() + [("box", turned([0, 0.601, 0.1], [0.5, 0.6, 0.5], 25), "shell"),
-                     ("box", turned([0, 0.601, 0.1], [0.35, 0.45, 0.35], 25), "liquid")],
-}
-COLORS = {"white": WHITE, "red": RED, "green": GREEN, "ground": [0.4, 0.4, 0.4], "clay": [0.6, 0.25, 0.15]}
-# index inside and outside, absorption inside and outside
-INTERFACES = {"glass": (1.5, 1.0, None, None), "shell": (1.5, 1.0, [0.4, 0.15, 0.1], None), "liquid": (1.33, 1.5, [0.5, 4.0, 5.0], [0.4, 0.15, 0.1])}
-MIRROR = [0.95, 0.95, 0.95]
-LAMP = {"center": [0, 1.99, 0], "size": [0.5, 0.4], "radiance": [17.0, 12.0, 4.0]}
+def take_turns(bench, counts):
+    """Seconds of pictures and their samples, by way; a first round, which compiles, does not count."""
+    seconds, made = {way: [] for way in counts}, {}
+    for turn in range(bench.args.rounds + 1):
+        for way, count in counts.items():
+            _, time, made[way] = bench.render(way, count, seed=turn)
+            if turn:
+                seconds[way].append(time)
+    return seconds, made
 
 
-def camera_of(name):
-    if name == "environment":
-        return {"position": [0, 1.4, 5], "target": [0, 0.45, 0], "fov": 35.0}
-    return {"position": [0, 1, 3.9], "target": [0, 1, 0], "fov": 39.3}
+def ratios(base, other):
+    """How much longer `other` took: of the medians, and the range of single rounds."""
+    each = [b / a for a, b in zip(base, other)]
+    return {"median": statistics.median(other) / statistics.median(base), "least": min(each), "greatest": max(each)}
 
 
-def write_sky(path):
-    """A sky and a sun, equirectangular, as RGBE: -z in the middle, +x right of it."""
-    h, w = 256, 512
-    y = np.cos((np.arange(h) + 0.5) / h * math.pi)[:, None] * np.ones((1, w))
-    up = np.sqrt(np.clip(y, 0, 1))[..., None]
-    image = (1 - up) * np.array([0.9, 0.85, 0.8]) + up * np.array([0.15, 0.3, 0.7])
-    image[y < 0] = (0.2, 0.18, 0.15)
-    s = np.array([0.5, 0.75, 0.6]) / np.linalg.norm([0.5, 0.75, 0.6])
-    row, column = int(math.acos(s[1]) / math.pi * h), int((0.5 + math.atan2(s[0], -s[2]) / (2 * math.pi)) * w)
-    image[row - 1:row + 2, column - 1:column + 2] = [3000, 2700, 2200]
-    mantissa, exponent = np.frexp(image.max(axis=2))
-    scaled = np.floor(image * (mantissa * 256 / image.max(axis=2))[..., None])
-    rgbe = np.dstack([scaled, exponent + 128]).astype(np.uint8)
-    with open(path, "wb") as out:
-        out.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (h, w) + rgbe.tobytes())
+def measure_times(bench, errors):
+    pixels = peer_scenes.SIZE**2
+    seconds, made = take_turns(bench, dict.fromkeys(WAYS, bench.args.samples))
+    rates = {way: pixels * made[way] / statistics.median(seconds[way]) for way in WAYS}
+    counts = {way: max(1, round(found["samples_to_error"])) for way, found in errors["ways"].items()
+              if found["samples_to_error"] <= bench.args.most_samples}
+    until, reached = take_turns(bench, counts)
+    result = {"load_average": os.getloadavg()[0], "samples": made, "seconds": seconds, "samples_a_second": rates,
+              "rate_against_mitsuba": ratios(seconds["sundog sobol"], seconds["Mitsuba independent"]),
+              "until_error": {way: {"samples": reached[way], "seconds": until[way], "median": statistics.median(until[way])} for way in counts}}
+    peers = [way for way in counts if WAYS[way][0] == "mitsuba"]
+    if peers and "sundog sobol" in counts:
+        best = min(peers, key=lambda way: result["until_error"][way]["median"])
+        result["best_peer"] = best
+        result["times_faster_to_error"] = ratios(until["sundog sobol"], until[best])
+    return result
 
 
-def sundog_scene(name, samples):
-    camera = camera_of(name)
-    materials = {key: {"color": color, "ambient": 0, "diffuse": 1} for key, color in COLORS.items()}
-    materials["mirror"] = {"ambient": 0, "diffuse": 0, "reflection": {"color": MIRROR}}
-    media = {}
-    for rank, (key, (inside, _, absorption, _)) in enumerate(INTERFACES.items()):
-        media[key] = {"ior": inside, "absorption": absorption or [0, 0, 0], "priority": rank}
-        materials[key] = {"type": "dielectric", "medium": key}
-    objects = []
-    for kind, numbers, material in SCENES[name]:
-        numbers = dict(numbers)
-        thing = {"type": kind, "material": material}
-        if "turn" in numbers:
-            thing["transform"] = [{"rotate": {"axis": [0, 1, 0], "degrees": numbers.pop("turn")}}, {"translate": numbers.pop("center")}]
-        objects.append({**thing, **numbers})
-    scene = {"camera": camera, "image": {"width": SIZE, "height": SIZE}, "media": media, "materials": materials, "objects": objects,
-             "render": {"integrator": "path", "max_depth": DEPTH, "samples": samples, "sampler": "independent"}}
-    if name == "environment":
-        scene["environment"] = {"type": "image", "file": "sky.hdr"}
-    else:
-        scene["lights"] = [{"type": "rectangle", "position": LAMP["center"], "direction": [0, -1, 0], "up": [0, 0, -1],
-                            "size": LAMP["size"], "color": LAMP["radiance"]}]
-    return scene
+def tell_means(m):
+    whole = ", ".join(f"{d:+.3f} ({s:+.1f})" for d, s in zip(m["whole_per_cent"], m["whole_standard_errors"]))
+    print(f"  means   whole R, G, B off by per cent (standard errors) {whole}; regions' error {m['median_error_of_regions_per_cent']:.2f} %\n"
+          f"          {m['beyond_3']} of {m['figures']} beyond 3 (chance of as many {m['chance_of_as_many']:.2g}); greatest {m['greatest']:.2f} in "
+          f"{m['greatest_in']}, {m['greatest_per_cent']:+.2f} % (chance of as great {m['chance_of_as_great']:.2g}); "
+          f"root mean square {m['root_mean_square_of_regions']:.2f}\n"
+          f"          root mean square difference of pixels {m['pictures_apart']:.4f}, by noise alone {m['apart_by_noise_alone']:.4f}")
 
 
-def mitsuba_scene(mi, name, folder):
-    T = mi.ScalarTransform4f
-
-    def rgb(c):
-        return {"type": "rgb", "value": list(c)}
-
-    def medium(sigma):
-        return {"type": "homogeneous", "albedo": 0.0, "sigma_t": rgb([v / max(sigma) for v in sigma]), "scale": max(sigma)}
-
-    camera = camera_of(name)
-    scene = {"type": "scene", "integrator": {"type": "volpath" if name == "ice" else "path", "max_depth": DEPTH + 1},
-             "sensor": {"type": "perspective", "fov": camera["fov"], "fov_axis": "y", "near_clip": 0.01, "far_clip": 1000.0,
-                        "to_world": T().look_at(origin=camera["position"], target=camera["target"], up=[0, 1, 0]),
-                        "film": {"type": "hdrfilm", "width": SIZE, "height": SIZE, "rfilter": {"type": "box"}, "pixel_format": "rgb",
-                                 "component_format": "float32"},
-                        "sampler": {"type": "independent", "sample_count": 64}}}
-    if name == "environment":
-        scene["sky"] = {"type": "envmap", "filename": os.path.join(folder, "sky.hdr"), "to_world": T().rotate([0, 1, 0], 180)}
-    else:
-        to_world = T().translate(LAMP["center"]).rotate([1, 0, 0], 90).scale([LAMP["size"][0] / 2, LAMP["size"][1] / 2, 1])
-        scene["lamp"] = {"type": "rectangle", "to_world": to_world, "bsdf": {"type": "diffuse", "reflectance": rgb([0, 0, 0])},
-                         "emitter": {"type": "area", "radiance": rgb(LAMP["radiance"])}}
-    for i, (kind, numbers, material) in enumerate(SCENES[name]):
-        if kind == "sphere":
-            shape = {"type": "sphere", "center": numbers["center"], "radius": numbers["radius"]}
-        else:
-            low, high = np.array(numbers["min"], float), np.array(numbers["max"], float)
-            middle = np.array(numbers.get("center", [0, 0, 0]), float) + (low + high) / 2
-            to_world = T().translate(middle.tolist()).rotate([0, 1, 0], numbers.get("turn", 0)).scale(((high - low) / 2).tolist())
-            shape = {"type": "cube", "to_world": to_world}
-        if material in COLORS:
-            shape["bsdf"] = {"type": "diffuse", "reflectance": rgb(COLORS[material])}
-        elif material == "mirror":
-            shape["bsdf"] = {"type": "conductor", "material": "none", "specular_reflectance": rgb(MIRROR)}
-        else:
-            inside, outside, absorbs, absorbs_outside = INTERFACES[material]
-            shape["bsdf"] = {"type": "dielectric", "int_ior": inside, "ext_ior": outside}
-            if absorbs:
-                shape["interior"] = medium(absorbs)
-            if absorbs_outside:
-                shape["exterior"] = medium(absorbs_outside)
-        scene[f"thing{i}"] = shape
-    return mi.load_dict(scene)
+def tell_errors(e):
+    r, own = e["reference"], e["reference_of_mitsuba"]
+    print(f"  errors  reference of {r['samples']} samples, noise {r['noise']:.4f}; for Mitsuba {own['samples']}, {own['noise']:.4f}")
+    for way, found in e["ways"].items():
+        points = ", ".join(f"{error:.4f} at {n}" for n, error in found["errors"])
+        print(f"          {way:20} {points}; {figures.ERROR} at {found['samples_to_error']:.1f}{' (extrapolated)' if found['extrapolated'] else ''}")
 
 
-def read_pfm(path):
-    with open(path, "rb") as file:
-        kind, size, scale = file.readline().strip(), file.readline().split(), float(file.readline())
-        assert kind == b"PF" and scale < 0
-        return np.frombuffer(file.read(), "<f4").reshape(int(size[1]), int(size[0]), 3)[::-1]
+def tell_times(t):
+    for way, rate in t["samples_a_second"].items():
+        until = t["until_error"].get(way)
+        to_error = f"{until['median']:.3f} s to {figures.ERROR} with {until['samples']} samples" if until else f"{figures.ERROR} not reached"
+        print(f"  times   {way:20} {rate / 1e6:.2f} Msamples/s, {to_error}")
+
+    def told(r):
+        return f"{r['median']:.2f} ({r['least']:.2f}..{r['greatest']:.2f})"
+    print(f"          samples a second, sundog sobol over Mitsuba independent: {told(t['rate_against_mitsuba'])} times")
+    if "best_peer" in t:
+        print(f"          time to {figures.ERROR}, {t['best_peer']} over sundog sobol: {told(t['times_faster_to_error'])} times")
 
 
-def render_sundog(program, folder, name, samples, device):
-    scene, out, stats = (os.path.join(folder, name + end) for end in (".json", ".pfm", ".stats.json"))
-    with open(scene, "w") as file:
-        json.dump(sundog_scene(name, samples), file)
-    subprocess.run([program, "render", scene, "-o", out, "--stats", stats, "--quiet", "--device", device], check=True)
-    with open(stats) as file:
-        return read_pfm(out).astype(float), json.load(file)["seconds"]["render"]
+def describe_run(args, mi):
+    version = os.popen(f"'{args.sundog}' --version").read().strip()
+    model = [line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")] if os.path.exists("/proc/cpuinfo") else []
+    return {"date": datetime.date.today().isoformat(), "processor": model[0] if model else platform.processor(), "cores": os.cpu_count(), "sundog": version,
+            "mitsuba": mi.__version__, "variant": args.variant, "device": args.device, "load_average": os.getloadavg()[0]}
 
 
-def regions(image):
-    step = SIZE // 4
-    return np.array([image.mean((0, 1))] + [image[y:y + step, x:x + step].mean((0, 1)) for y in range(0, SIZE, step) for x in range(0, SIZE, step)])
+def run_scene(bench, parts, result):
+    if {"means", "errors"} & set(parts):
+        ours, theirs, of_file = bench.converge()
+    if "means" in parts:
+        result["means"] = figures.compare_means(ours, theirs) | {"samples": bench.args.converged}
+        tell_means(result["means"])
+    if "errors" in parts:
+        result["errors"] = measure_errors(bench, ours, theirs, of_file)
+        tell_errors(result["errors"])
+    if "times" in parts:
+        if "errors" not in result:
+            sys.exit("times need errors: add errors to --parts, or give the --json of a run that has them")
+        result["times"] = measure_times(bench, result["errors"])
+        tell_times(result["times"])
 
 
-def compare(mi, args, name, folder):
-    scene = mitsuba_scene(mi, name, folder)
-    np.array(mi.render(scene, spp=1, seed=999))
-    render_sundog(args.sundog, folder, name, 1, args.device)
-    means, theirs, ours = [], [], []
-    for seed in range(args.seeds):
-        start = time.perf_counter()
-        image = np.array(mi.render(scene, spp=args.samples, seed=seed), float)
-        theirs.append(time.perf_counter() - start)
-        means.append(regions(image))
-        picture, seconds = render_sundog(args.sundog, folder, name, args.samples, args.device)
-        ours.append(seconds)
-    picture, _ = render_sundog(args.sundog, folder, name, args.samples * args.seeds, args.device)
-    means, found = np.array(means), regions(picture)
-    error = means.std(0, ddof=1) / math.sqrt(args.seeds) * math.sqrt(2)
-    off = (found - means.mean(0)) / error
-    apart = np.abs(found / means.mean(0) - 1)[1:][np.abs(off[1:]) > 3]
-    rate = SIZE * SIZE * args.samples / 1e6
-    print(f"{name}: mean {found[0].round(5)} against {means.mean(0)[0].round(5)} ({off[0].round(1)} standard errors); "
-          f"regions: greatest {np.abs(off[1:]).max():.1f}, {(np.abs(off[1:]) > 3).sum()} of {off[1:].size} beyond 3, these by {100 * max(apart, default=0):.2f} %; "
-          f"{rate / np.median(ours):.2f} against {rate / np.median(theirs):.2f} Msamples/s: {np.median(theirs) / np.median(ours):.2f} times", flush=True)
+def listed(text):
+    return text.split(",")
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sundog")
+    parser.add_argument("--scenes", type=listed, default=list(peer_scenes.NAMES))
+    parser.add_argument("--parts", type=listed, default=list(PARTS))
+    parser.add_argument("--converged", type=int, default=1024, help="samples of the converged pictures, of each program")
+    parser.add_argument("--counts", type=lambda text: [int(n) for n in listed(text)], default=[4, 16, 64, 256])
+    parser.add_argument("--samples", type=int, default=64, help="of the pictures whose rates are taken")
+    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--most-samples", type=int, default=2048, help="above it no picture is made that reaches 0.02")
+    parser.add_argument("--device", default="0:0/1")
+    parser.add_argument("--variant", default="llvm_ad_rgb")
+    parser.add_argument("--json")
+    parser.add_argument("--pictures", help="folder that keeps the converged pictures")
+    return parser.parse_args()
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("sundog")
-    parser.add_argument("--scenes", default=",".join(SCENES))
-    parser.add_argument("--samples", type=int, default=64)
-    parser.add_argument("--seeds", type=int, default=8)
-    parser.add_argument("--device", default="0:0/1")
-    parser.add_argument("--variant", default="llvm_ad_rgb")
-    args = parser.parse_args()
-    import mitsuba as mi
-    mi.set_variant(args.variant)
-    if "llvm" in args.variant:
-        import drjit
-        drjit.set_thread_count(1)
+    args = arguments()
+    for known, given in ((peer_scenes.NAMES, args.scenes), (PARTS, args.parts)):
+        if unknown := set(given) - set(known):
+            sys.exit(f"{', '.join(sorted(unknown))}: wanted some of {', '.join(known)}")
+    mi = programs.load_mitsuba(args.variant)
+    results = {"runs": [], "scenes": {}}
+    if args.json and os.path.exists(args.json):
+        with open(args.json) as file:
+            results = json.load(file)
+    results["runs"].append(describe_run(args, mi) | {"parts": args.parts, "scenes": args.scenes})
     with tempfile.TemporaryDirectory() as folder:
-        write_sky(os.path.join(folder, "sky.hdr"))
-        for name in args.scenes.split(","):
-            compare(mi, args, name, folder)
+        there = peer_scenes.write_files(folder)
+        for name in args.scenes:
+            if name not in there:
+                print(f"{name} is left out: no {peer_scenes.BARREL} in $SUNDOG_ASSETS or ../shared/assets", flush=True)
+                continue
+            print(name, flush=True)
+            run_scene(Bench(name, folder, args, mi), args.parts, results["scenes"].setdefault(name, {}))
+            if args.json:
+                with open(args.json, "w") as file:
+                    json.dump(results, file, indent=1)
 
 
 if __name__ == "__main__":

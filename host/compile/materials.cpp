@@ -98,6 +98,7 @@ u32 material_flags(const MaterialDescription& material) {
   if (!is_zero(material.specular)) flags |= MATERIAL_SHINES;
   if (!is_zero(material.emission)) flags |= MATERIAL_EMITS;
   if (material.layers) flags |= MATERIAL_LAYERED;
+  if (!material.multiple_scattering) flags |= MATERIAL_SCATTERS_ONCE;
   if (material.medium < 0) flags |= MATERIAL_THIN;
   if (material.vertex_color) flags |= MATERIAL_VERTEX_COLOR;
   if (material.one_sided) flags |= MATERIAL_ONE_SIDED | MATERIAL_TRANSMITS;

@@ -164,7 +164,8 @@ struct MaterialDescription {
   dvec3 emission{0};                     // radiance that the outside sends out
   dvec3 reflection{0}, transmission{0};  // a dielectric's tints default to 1 (set by the loader)
   double roughness = 0;  // of reflection and transmission, [0, 1]; the GGX distribution's alpha is its square
-  int medium = -1;       // index into media of the inside; -1: thin, transmits straight through
+  bool multiple_scattering = true;  // light that meets several facets of a rough surface is given back
+  int medium = -1;                  // index into media of the inside; -1: thin, transmits straight through
   bool shadow_opaque = false;
   bool shadow_filter = false;  // path tracing: shadow rays go straight through an interface that bends light
   bool checker = false;

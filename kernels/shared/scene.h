@@ -13,14 +13,15 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_CHECKER 4u        // ambient and diffuse alternate with checker_ambient and checker_diffuse
 #define MATERIAL_TRANSMITS 8u      // kt or Fresnel transmission is not zero
 #define MATERIAL_REFLECTS 16u
-#define MATERIAL_THIN 32u          // no interior: transmits straight through and changes no medium
-#define MATERIAL_VERTEX_COLOR 64u  // ambient and diffuse are multiplied by the vertex colour
-#define MATERIAL_CLEAR 128u        // no local terms or tint: cannot be seen between equal indices
-#define MATERIAL_METAL_ROUGH 256u  // its terms follow from metalness and roughness (shared/metal_rough.h)
-#define MATERIAL_ONE_SIDED 512u    // from behind it is not there
-#define MATERIAL_SHINES 2048u      // it has a highlight: `specular` is not black
-#define MATERIAL_EMITS 4096u       // `emission` is not black
-#define MATERIAL_LAYERED 1024u     // layers stand over it (shared/layers.h)
+#define MATERIAL_THIN 32u             // no interior: transmits straight through and changes no medium
+#define MATERIAL_VERTEX_COLOR 64u     // ambient and diffuse are multiplied by the vertex colour
+#define MATERIAL_CLEAR 128u           // no local terms or tint: cannot be seen between equal indices
+#define MATERIAL_METAL_ROUGH 256u     // its terms follow from metalness and roughness (shared/metal_rough.h)
+#define MATERIAL_ONE_SIDED 512u       // from behind it is not there
+#define MATERIAL_LAYERED 1024u        // layers stand over it (shared/layers.h)
+#define MATERIAL_SCATTERS_ONCE 2048u  // its facets give no light back that meets two of them
+#define MATERIAL_SHINES 4096u         // it has a highlight: `specular` is not black
+#define MATERIAL_EMITS 8192u          // `emission` is not black
 
 // Highlights up to this exponent, where it is whole, are products alone.
 #define GREATEST_WHOLE_EXPONENT 65535.0f

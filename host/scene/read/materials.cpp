@@ -315,6 +315,7 @@ MaterialDescription read_material(const JsonValue& value, std::string name, cons
     material.reflection = reflection.even, material.textures.reflection = reflection.texture;
     material.transmission = transmission.even, material.textures.transmission = transmission.texture;
     material.roughness = object.number("roughness", material.roughness, zero_to_one);
+    material.multiple_scattering = object.boolean("multiple_scattering", material.multiple_scattering);
     read_interior(object, material, medium_names, media);
     read_opacity(object, material, textures);
     read_surface(object, material, textures);

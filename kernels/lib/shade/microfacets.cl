@@ -45,9 +45,10 @@ static inline void set_further(const Scene* scene, const SpecularSplits* split, 
 
 typedef struct Microfacets {
   MASK rough, bends;  // has facets; they also transmit
-  MASK glass;         // of those that transmit the dielectrics
+  MASK mends;         // the lobe is scaled by gains: see microfacet_gain()
+  MASK glass;         // of those that transmit the dielectrics whose further light is a lobe of its own
   REAL alpha, lambda_o;
-  REAL gain;  // of the viewer's side: see microfacet_gain()
+  REAL gain;  // of the viewer's side
 #if HAS_ROUGH_GLASS
   FurtherLight further;
 #endif
@@ -76,11 +77,12 @@ static inline Microfacets make_microfacets(const Scene* scene, const Bsdfs* bsdf
   facets.alpha = facet_width(scene, bsdf, lanes);
   facets.rough = split->branches & MASK_OF(facets.alpha >= LEAST_ALPHA);
   facets.bends = facets.rough & split->transmits & MASK_OF(split->eta != 1.0f);
-  facets.glass = rough_glass(scene, bsdf, facets.bends);
+  facets.mends = giving_back(bsdf, facets.rough & ~facets.bends);
+  facets.glass = rough_glass(scene, bsdf, giving_back(bsdf, facets.bends));
   if (!any_lane(facets.rough)) return facets;
   const REAL cosine = dot3(bsdf->ns, wo);
   facets.lambda_o = smith_lambda(cosine, facets.alpha);
-  facets.gain = microfacet_gain(scene, cosine, facets.alpha, facets.rough & ~facets.bends);
+  facets.gain = microfacet_gain(scene, cosine, facets.alpha, facets.mends);
   start_further(scene, split, cosine, &facets);
   return facets;
 }
@@ -176,7 +178,7 @@ static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Mic
   *density = select(zero, drawn, good);
   const REAL size = M_PI_F * seen / (1.0f + facets->lambda_o + lambda_i);
   REAL3 color = select3(split.kr, split.kt, below);
-  const MASK mends = good & ~facets->bends;
+  const MASK mends = good & facets->mends;
   if (any_lane(mends)) {
     const REAL more = fma(facets->gain, microfacet_gain(scene, cos_i, facets->alpha, mends), (REAL)(-1.0f));
     const REAL3 mended = real3(color.x * fma(color.x, more, one), color.y * fma(color.y, more, one),

@@ -78,6 +78,11 @@ static inline REAL lobe_energy(const Scene* scene, REAL c, REAL alpha, MASK lane
   return lobe_energy_at(scene, 0u, c, alpha, lanes);
 }
 
+// The surfaces of `lanes` whose facets give back the light that meets more than one of them.
+static inline MASK giving_back(const Bsdfs* bsdf, MASK lanes) {
+  return lanes & MASK_OF((bsdf->flags & (int)MATERIAL_SCATTERS_ONCE) == 0);
+}
+
 // Dielectrics that facets bend light at, among the surfaces of `lanes`, and the value of their table of
 // host/compile/lobe_energy.h, by the index behind over the one before, eta; 1 elsewhere.
 #if HAS_ROUGH_GLASS
@@ -147,7 +152,7 @@ typedef struct Facets {
 static inline void mend_glass(const Scene* scene, const Bsdfs* bsdf, REAL cosine, Facets* facets) {
   const MASK bends = facets->rough & MASK_OF((bsdf->flags & (int)MATERIAL_TRANSMITS) != 0) &
                      MASK_OF((bsdf->flags & (int)MATERIAL_THIN) == 0);
-  const MASK glass = rough_glass(scene, bsdf, bends);
+  const MASK glass = rough_glass(scene, bsdf, giving_back(bsdf, bends));
   const REAL eta = index_behind(scene, bsdf, glass);
   facets->glass = glass & MASK_OF(eta != 1.0f);
   facets->energy =
@@ -168,7 +173,7 @@ static inline Facets make_facets(const Scene* scene, const Bsdfs* bsdf, REAL3 wo
   const REAL cosine = dot3(bsdf->ns, wo);
   facets.bsdf.ns = select3(bsdf->ns, visible_normal(bsdf->ns, wo, facets.alpha, u_x, u_y), facets.rough);
   facets.lambda_o = smith_lambda(cosine, facets.alpha);
-  facets.energy = lobe_energy(scene, cosine, facets.alpha, facets.rough);
+  facets.energy = lobe_energy(scene, cosine, facets.alpha, giving_back(bsdf, facets.rough));
   mend_glass(scene, bsdf, cosine, &facets);
   return facets;
 }

@@ -123,6 +123,19 @@ TEST_CASE("the density of an environment's directions integrates to one and is t
   });
 }
 
+TEST_CASE("a sun of one pixel is chosen nearly as it is blended: the light over the density varies little") {
+  on_every_device([&](const DeviceInfo& device) {
+    const std::vector<float4> drawn = draw(device, picture(32, 16, 0, 20, 5, 100));
+    double sum = 0, squares = 0;
+    for (std::size_t i = 1; i < drawn.size(); i += 2) {
+      sum += double(drawn[i].z) / count;
+      squares += double(drawn[i].z) * double(drawn[i].z) / count;
+    }
+    // In quarters of pixels (1 + 1/9)^2 - 1, in closed form; in whole ones (1 + 4/9)^2 - 1.
+    CHECK(squares / (sum * sum) - 1 == Approx(0.235).epsilon(0.05));
+  });
+}
+
 TEST_CASE("an environment is seen upright, its middle along -z, and turns counterclockwise") {
   SceneDescription scene = scenes::line_of_sight({0, 0, 0}, {0, 0, -1});
   scene.environment = picture(4, 1, 0);

@@ -1,6 +1,7 @@
 // Rough lobes as integrators see them that follow one ray on: in a furnace they return what they should,
 // densities are those of the samples, and viewer and light may change places.
 #include "lobe_testing.h"
+#include "single_albedo.h"
 
 using namespace sundog;
 using namespace sundog::lobes;
@@ -81,6 +82,46 @@ TEST_CASE("light takes the same way through rough surfaces in both directions") 
       CHECK(value(glass, o, below) > 0);
       // Veach 1997, equation 5.14: of radiance over the squared index.
       CHECK(value(glass, o, below) / (index * index) == Approx(value(glass, below, o)).epsilon(1e-3));
+    }
+  });
+}
+
+TEST_CASE("rough surfaces that scatter once lose the light that meets two facets, by quadrature") {
+  on_every_device([](const DeviceInfo& info) {
+    Tester tester(info);
+    for (const double roughness : {0.4472, 0.7, 1.0})
+      for (const double cosine : {1.0, 0.6, 0.2}) {
+        INFO(roughness << " at " << cosine);
+        const double alpha = roughness * roughness;
+        Material metal = rough_metal(roughness), glass = rough_glass(roughness);
+        metal.flags |= MATERIAL_SCATTERS_ONCE;
+        glass.flags |= MATERIAL_SCATTERS_ONCE;
+        CHECK(mean_weight(tester.draw(metal, 1, at_cosine(cosine), 4 * count)) ==
+              Approx(light_met_once(cosine, alpha, 0).reflected).epsilon(0.003));
+        const OnceLight through = light_met_once(cosine, alpha, 1.5);
+        CHECK(mean_weight(tester.draw(glass, 1.5, at_cosine(cosine), 16 * count)) ==
+              Approx(through.reflected + through.transmitted).epsilon(0.005));
+      }
+    // Less than what gives it back, which the furnaces above see.
+    CHECK(light_met_once(0.6, 1, 0).reflected < 0.7);
+    CHECK(light_met_once(0.6, 1, 1.5).reflected + light_met_once(0.6, 1, 1.5).transmitted < 0.95);
+  });
+}
+
+TEST_CASE("the lobe of metal that scatters once is the distribution times its masking") {
+  const double alpha = 0.2, color = 0.75, cosine = 0.7;
+  const dvec3 o = at_cosine(cosine);
+  on_every_device([&](const DeviceInfo& info) {
+    Tester tester(info);
+    Material metal = rough_metal(std::sqrt(alpha), float(color));
+    metal.flags |= MATERIAL_SCATTERS_ONCE;
+    for (const dvec3& wi : {on_sphere(0.7, 0), on_sphere(0.5, 0.02), on_sphere(0.9, 0.9)}) {
+      const dvec3 h = glm::normalize(o + wi);
+      const double width = h.z * h.z * (alpha * alpha - 1) + 1;
+      const double distribution = alpha * alpha / (pi * width * width);
+      const double masking = 1 / (1 + smith_of(cosine, alpha) + smith_of(wi.z, alpha));
+      CHECK(tester.look(metal, 1, o, {wi})[0].value.x ==
+            Approx(pi * color * distribution * masking / (4 * cosine)).epsilon(1e-3));
     }
   });
 }

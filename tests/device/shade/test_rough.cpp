@@ -6,6 +6,7 @@
 #include "catch.h"
 #include "devices.h"
 #include "scenes.h"
+#include "single_albedo.h"
 
 using namespace sundog;
 using glm::dvec3;
@@ -53,6 +54,33 @@ TEST_CASE("in a white furnace rough glass is white at every roughness") {
       CHECK(mean_of(scenes::render_on(device, furnace(glass, roughness, {0.3, 0.1, 0})).image) ==
             Approx(1).epsilon(0.015));
     }
+  });
+}
+
+TEST_CASE("in a white furnace rough surfaces that scatter once keep what quadrature has") {
+  // A floor, and what is below it where it transmits.
+  const auto kept = [](const DeviceInfo& device, int material(SceneDescription&), double roughness,
+                       double cosine) {
+    SceneDescription scene = scenes::line_of_sight({3 * std::sqrt(1 - cosine * cosine), 3 * cosine, 0}, {});
+    scene.image.width = scene.image.height = 12;
+    scene.render.samples = 16;
+    scene.image.background_bottom = scene.image.background_top = {1, 1, 1};
+    scenes::place(scene, PlaneShape{}, material(scene));
+    scene.materials.back().roughness = roughness;
+    scene.materials.back().multiple_scattering = false;
+    return mean_of(scenes::render_on(device, scene).image);
+  };
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const double roughness : {0.5, 1.0})
+      for (const double cosine : {0.9, 0.4}) {
+        INFO(roughness << " at " << cosine);
+        const double alpha = roughness * roughness;
+        CHECK(kept(device, white_metal, roughness, cosine) ==
+              Approx(light_met_once(cosine, alpha, 0).reflected).epsilon(0.012));
+        const OnceLight once = light_met_once(cosine, alpha, 1.5);
+        CHECK(kept(device, glass, roughness, cosine) ==
+              Approx(once.reflected + once.transmitted).epsilon(0.012));
+      }
   });
 }
 

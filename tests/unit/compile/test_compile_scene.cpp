@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "compile/compiled_scene.h"
+#include "scene_text.h"
 #include "test_meshes.h"
 
 using namespace sundog;
@@ -105,6 +106,21 @@ TEST_CASE("material flags say what a surface does") {
   CHECK(flat.materials[0].specular.w == 7);
   CHECK(flat.materials[1].flags == (MATERIAL_REFLECTS | MATERIAL_TRANSMITS));
   CHECK(flat.materials[1].transmission == float4{0.25f, 0.25f, 0.25f, 0});
+}
+
+TEST_CASE("a material scatters as often as its facets have it, or once where its scene says so") {
+  const auto material_of = [](const char* more) {
+    const std::string text = R"({"objects": [{"type": "sphere", "material": "m"}],
+      "materials": {"m": {"diffuse": 0, "reflection": 0.9, "roughness": 0.5)" +
+                             std::string(more) + "}}}";
+    return compile(load_scene_text(text)).materials[0];
+  };
+  const Material plain = material_of(""), often = material_of(R"(, "multiple_scattering": true)"),
+                 once = material_of(R"(, "multiple_scattering": false)");
+  CHECK(plain.flags == (MATERIAL_REFLECTS | MATERIAL_THIN));
+  CHECK(often.flags == plain.flags);
+  CHECK(once.flags == (plain.flags | MATERIAL_SCATTERS_ONCE));
+  CHECK(once.reflection == plain.reflection);
 }
 
 TEST_CASE("features follow the materials that are used") {

@@ -1,0 +1,130 @@
+"""Renders of one of the scenes by sundog and by Mitsuba 3: a way is a program with one of its samplers, and a render gives the picture, linear RGB
+as height x width x 3, and its seconds without loading, compilation and upload.
+"""
+import json
+import os
+import subprocess
+import time
+
+import numpy as np
+
+from peer_scenes import (BARREL_SCALE, COLORS, DEPTH, INTERFACES, LAMP, METAL, METAL_ALPHA, MIRROR, OBJECTS, SIZE, UNDER_SKY, camera_of, make_sky,
+                         sky_between_edges, sundog_scene)
+
+
+def read_pfm(path):
+    with open(path, "rb") as file:
+        kind, size, scale = file.readline().strip(), file.readline().split(), float(file.readline())
+        assert kind == b"PF" and scale < 0
+        return np.frombuffer(file.read(), "<f4").reshape(int(size[1]), int(size[0]), 3)[::-1].astype(float)
+
+
+class Sundog:
+    def __init__(self, name, folder, program, device):
+        self.name, self.folder, self.program, self.device = name, folder, program, device
+
+    def render(self, sampler, samples):
+        scene, out, stats = (os.path.join(self.folder, self.name + end) for end in (".json", ".pfm", ".stats.json"))
+        with open(scene, "w") as file:
+            json.dump(sundog_scene(self.name, samples, sampler), file)
+        subprocess.run([self.program, "render", scene, "-o", out, "--stats", stats, "--quiet", "--device", self.device], check=True)
+        with open(stats) as file:
+            return read_pfm(out), json.load(file)["seconds"]["render"]
+
+
+def rgb(color):
+    return {"type": "rgb", "value": list(color)}
+
+
+def absorbing(sigma):
+    """Mitsuba wants an RGB within 0..1; the rest is the scale."""
+    return {"type": "homogeneous", "albedo": 0.0, "sigma_t": rgb([v / max(sigma) for v in sigma]), "scale": max(sigma)}
+
+
+def mitsuba_surface(material, folder):
+    if material in COLORS:
+        return {"bsdf": {"type": "diffuse", "reflectance": rgb(COLORS[material])}}
+    if material == "mirror":
+        return {"bsdf": {"type": "conductor", "material": "none", "specular_reflectance": rgb(MIRROR)}}
+    if material == "metal":
+        return {"bsdf": {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": METAL_ALPHA, "specular_reflectance": rgb(METAL)}}
+    if material == "barrel":
+        texture = {"type": "bitmap", "filename": os.path.join(folder, "diffuse.png"), "filter_type": "bilinear"}
+        return {"bsdf": {"type": "diffuse", "reflectance": texture}}
+    inside, outside, absorbs, absorbs_outside = INTERFACES[material]
+    surface = {"bsdf": {"type": "dielectric", "int_ior": inside, "ext_ior": outside}}
+    if absorbs:
+        surface["interior"] = absorbing(absorbs)
+    if absorbs_outside:
+        surface["exterior"] = absorbing(absorbs_outside)
+    return surface
+
+
+def mitsuba_shape(mi, kind, numbers, folder):
+    T = mi.ScalarTransform4f
+    if kind == "sphere":
+        return {"type": "sphere", "center": numbers["center"], "radius": numbers["radius"]}
+    if kind == "mesh":
+        return {"type": "obj", "filename": os.path.join(folder, "mesh.obj"), "to_world": T().scale(BARREL_SCALE)}
+    low, high = np.array(numbers["min"], float), np.array(numbers["max"], float)
+    middle = np.array(numbers.get("center", [0, 0, 0]), float) + (low + high) / 2
+    to_world = T().translate(middle.tolist()).rotate([0, 1, 0], numbers.get("turn", 0)).scale(((high - low) / 2).tolist())
+    return {"type": "cube", "to_world": to_world}
+
+
+def mitsuba_camera(mi, name, sampler):
+    camera = camera_of(name)
+    film = {"type": "hdrfilm", "width": SIZE, "height": SIZE, "rfilter": {"type": "box"}, "pixel_format": "rgb", "component_format": "float32"}
+    return {"type": "perspective", "fov": camera["fov"], "fov_axis": "y", "near_clip": 0.01, "far_clip": 1000.0, "film": film,
+            "to_world": mi.ScalarTransform4f().look_at(origin=camera["position"], target=camera["target"], up=[0, 1, 0]),
+            "sampler": {"type": sampler, "sample_count": 64}}
+
+
+def mitsuba_sky(mi, folder, same_radiance):
+    """`same_radiance`: as sundog blends the picture, which is what means are compared by. Else the file, as Mitsuba is used: its multijittered
+    samples have an eighth less noise with it."""
+    picture = {"bitmap": mi.Bitmap(sky_between_edges(make_sky()))} if same_radiance else {"filename": os.path.join(folder, "sky.hdr")}
+    return {"type": "envmap", "to_world": mi.ScalarTransform4f().rotate([0, 1, 0], 180)} | picture
+
+
+def mitsuba_scene(mi, name, folder, sampler, same_radiance):
+    T = mi.ScalarTransform4f
+    # Its volpath takes the length of a way by one channel's absorption: red, of which the liquid takes a tenth, then has rare samples that
+    # count hundreds of times, and neither its mean nor its error is known at 512 samples.
+    scene = {"type": "scene", "integrator": {"type": "volpathmis" if name == "ice" else "path", "max_depth": DEPTH + 1},
+             "sensor": mitsuba_camera(mi, name, sampler)}
+    if name in UNDER_SKY:
+        scene["sky"] = mitsuba_sky(mi, folder, same_radiance)
+    else:
+        to_world = T().translate(LAMP["center"]).rotate([1, 0, 0], 90).scale([LAMP["size"][0] / 2, LAMP["size"][1] / 2, 1])
+        scene["lamp"] = {"type": "rectangle", "to_world": to_world, "bsdf": {"type": "diffuse", "reflectance": rgb([0, 0, 0])},
+                         "emitter": {"type": "area", "radiance": rgb(LAMP["radiance"])}}
+    for i, (kind, numbers, material) in enumerate(OBJECTS[name]):
+        scene[f"thing{i}"] = mitsuba_shape(mi, kind, numbers, folder) | mitsuba_surface(material, folder)
+    return mi.load_dict(scene)
+
+
+def load_mitsuba(variant):
+    """On one thread."""
+    import mitsuba as mi
+    mi.set_variant(variant)
+    mi.set_log_level(mi.LogLevel.Error)
+    import drjit
+    drjit.set_thread_count(1)
+    return mi
+
+
+class Mitsuba:
+    def __init__(self, name, folder, mi, same_radiance):
+        self.name, self.folder, self.mi, self.same_radiance, self.scenes = name, folder, mi, same_radiance, {}
+
+    def render(self, sampler, samples, seed=0):
+        if sampler not in self.scenes:
+            self.scenes[sampler] = mitsuba_scene(self.mi, self.name, self.folder, sampler, self.same_radiance)
+        start = time.perf_counter()
+        image = np.array(self.mi.render(self.scenes[sampler], spp=samples, seed=seed), float)
+        return image, time.perf_counter() - start
+
+    def samples_made(self, sampler):
+        """Of the last render: `multijitter` rounds them up to a grid."""
+        return self.scenes[sampler].sensors()[0].sampler().sample_count()
