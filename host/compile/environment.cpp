@@ -16,7 +16,7 @@ namespace sundog {
 namespace {
 
 using std::numbers::pi;
-constexpr u32 most_columns = 1024, most_rows = 512;  // cells
+constexpr u32 most_columns = 2048, most_rows = 1024;  // cells
 constexpr int gradient_rows = 256, sky_columns = 512, sky_rows = 256;
 
 /// Columns: to the right, up and ahead, as the picture is turned.
@@ -139,8 +139,8 @@ constexpr AxisShares share_of_pixel{0.125, 0.75, 0.125},
 
 AxisShares shares_of(u32 part, u32 parts) { return parts == 1 ? share_of_pixel : share_of_half[part % 2]; }
 
-/// The mean luminance of the blended picture over a pixel's square, or with two `parts` along each axis over
-/// such a part.
+/// The mean luminance (w of the pixels) of the blended picture over a pixel's square, or with two `parts`
+/// along each axis over such a part.
 double light_of_part(const Picture& picture, u32 part_x, u32 part_y, u32 parts) {
   const AxisShares across = shares_of(part_x, parts), down = shares_of(part_y, parts);
   const u32 x = part_x / parts, y = part_y / parts;
@@ -149,7 +149,7 @@ double light_of_part(const Picture& picture, u32 part_x, u32 part_y, u32 parts) 
     for (u32 i = 0; i < 3; ++i) {
       const u32 row = std::min(y + j > 0 ? y + j - 1 : 0, picture.height - 1);
       const u32 column = (x + i + picture.width - 1) % picture.width;
-      sum += across[i] * down[j] * luminance(picture.pixels[std::size_t{row} * picture.width + column]);
+      sum += across[i] * down[j] * double(picture.pixels[std::size_t{row} * picture.width + column].w);
     }
   return sum;
 }
@@ -173,26 +173,26 @@ u32 parts_a_cell(u32 parts, u32 most) {
   return each;
 }
 
-/// Cells are chosen evenly within, but pixels are blended: about a sun of a few pixels the light of a cell
-/// varies. Half as wide it varies a quarter as much. Computed skies are smooth.
+/// Quarters of pixels lie between the middles of four: so directions are chosen in them as the light is
+/// blended, which matters about a sun of a few pixels. Computed skies are smooth.
 u32 parts_of_pixels(const Picture& picture, EnvironmentType type) {
   const bool room = 2 * picture.width <= most_columns && 2 * picture.height <= most_rows;
   return type == EnvironmentType::image && room ? 2 : 1;
 }
 
-/// The last step of running sums that begins at or before u.
-std::size_t step_of(std::span<const float> sums, double u) {
-  const auto after = std::upper_bound(sums.begin() + 1, sums.end() - 1, u);
-  return static_cast<std::size_t>(after - sums.begin()) - 1;
+/// Moves `step` on to the last step of running sums that begins at or before u.
+void step_to(std::span<const float> sums, double u, std::size_t& step) {
+  while (step + 2 < sums.size() && double(sums[step + 1]) <= u) ++step;
 }
 
 /// For n steps n words, as shared/environment.h has them. A device's product of a number and n may round over
 /// the border of a word: the words reach a little further.
 void append_cutpoints(std::span<const float> sums, std::vector<u32>& cutpoints) {
   const double count = static_cast<double>(sums.size() - 1), slack = 1e-6, below_one = 1 - 0x1p-24;
+  std::size_t first = 0, last = 0;
   for (double k = 0; k < count; ++k) {
-    const std::size_t first = step_of(sums, k / count * (1 - slack)),
-                      last = step_of(sums, std::min((k + 1) / count * (1 + slack), below_one));
+    step_to(sums, k / count * (1 - slack), first);
+    step_to(sums, std::min((k + 1) / count * (1 + slack), below_one), last);
     cutpoints.push_back(static_cast<u32>(first | last << CUTPOINT_SHIFT));
   }
 }
@@ -258,7 +258,10 @@ void add_environment(const SceneDescription& scene, CompiledScene& out, const Ha
   packed.ahead = pack(axes[2]);
   packed.width = picture.width;
   packed.height = picture.height;
-  add_shares(picture, parts_of_pixels(picture, e.type), packed, out);
+  const u32 parts = parts_of_pixels(picture, e.type);
+  packed.up.w = parts == 2 ? CELLS_ARE_QUARTERS : CELLS_ARE_PIXELS;
+  for (float4& pixel : picture.pixels) pixel.w = static_cast<float>(luminance(pixel));
+  add_shares(picture, parts, packed, out);
   out.environments.push_back(packed);
   out.environment = std::move(picture.pixels);
   out.info.sees_environment = e.visible;

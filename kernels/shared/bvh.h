@@ -115,8 +115,8 @@ SUNDOG_SHARED_SIZE(Turn, 80)
 #define NO_LIGHT 0xFFFFFFFFu
 #define INSTANCE_IDENTITY 1u   // object_from_world is the identity
 #define INSTANCE_FILTERS 2u    // a shadow ray may pass (some material of it transmits and lets light through)
-#define INSTANCE_SCALES 8u     // object_from_world has no turn: off its diagonal there are zeros
 #define INSTANCE_TRANSMITS 4u  // some material of it has an interior medium
+#define INSTANCE_SCALES 8u     // object_from_world has no turn: off its diagonal there are zeros
 
 // 32 bytes: the raw intersection. ng is the geometric normal in object space, outward, not normalised.
 typedef struct Hit {

@@ -6,19 +6,23 @@ SUNDOG_SHARED_BEGIN
 
 // 64 bytes. The picture's rows go from the top (`up`) to the bottom, its columns about the axis: the middle
 // is seen along `ahead`, what is right of it along `right`. The table `environment` holds its pixels (rgb),
-// row by row. A cell covers whole pixels, or a quarter of one. `environment_shares` has first the cosines to
+// row by row. A cell covers whole pixels, or with CELLS_ARE_QUARTERS a quarter of one: then it lies between
+// the middles of four pixels, whose luminances stand in w, and directions are chosen in it as these are
+// blended; else evenly in solid angle. `environment_shares` has first the cosines to
 // `up` of the borders of the rows of cells, then the running sums of the rows' light, from 0 to 1, then for
 // each row those of its cells. `environment_cutpoints` has first for the rows, then for the cells of each
 // row, n words for n sums' steps: word k has the first and, above CUTPOINT_SHIFT, the last step that a number
 // in [k, k + 1) / n may lie in.
 typedef struct Environment {
-  float4 right, up, ahead;  // unit, at right angles
+  float4 right, up, ahead;  // unit, at right angles; up.w: CELLS_*
   u32 width, height;        // in pixels
   u32 columns, rows;        // in cells
 } Environment;
 SUNDOG_SHARED_SIZE(Environment, 64)
 
 #define CUTPOINT_SHIFT 16u
+#define CELLS_ARE_PIXELS 0.0f
+#define CELLS_ARE_QUARTERS 1.0f
 
 SUNDOG_SHARED_END
 #endif

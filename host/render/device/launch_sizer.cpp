@@ -172,6 +172,10 @@ std::optional<std::string> LaunchSizer::shrink_group(const std::string& why, std
 
 // At last gives each work-item a group of its own, whose loops no other shares.
 std::optional<std::string> LaunchSizer::fewer_samples(const std::string& why) {
+  if (limits_.most_run > 1) {
+    limits_.most_run = 1;
+    return why + "; work-items of one tile of pixels from here on";
+  }
   if (last_samples_ > 1) {
     most_samples_ = last_samples_ / 2;
     return fmt::format("{}; launches of at most {} samples a pixel from here on", why, most_samples_);

@@ -123,7 +123,7 @@ TEST_CASE("the density of an environment's directions integrates to one and is t
   });
 }
 
-TEST_CASE("a sun of one pixel is chosen nearly as it is blended: the light over the density varies little") {
+TEST_CASE("a sun of one pixel is chosen as it is blended: the light over the density varies little") {
   on_every_device([&](const DeviceInfo& device) {
     const std::vector<float4> drawn = draw(device, picture(32, 16, 0, 20, 5, 100));
     double sum = 0, squares = 0;
@@ -131,8 +131,9 @@ TEST_CASE("a sun of one pixel is chosen nearly as it is blended: the light over 
       sum += double(drawn[i].z) / count;
       squares += double(drawn[i].z) * double(drawn[i].z) / count;
     }
-    // In quarters of pixels (1 + 1/9)^2 - 1, in closed form; in whole ones (1 + 4/9)^2 - 1.
-    CHECK(squares / (sum * sum) - 1 == Approx(0.235).epsilon(0.05));
+    // By the sine's change over half a pixel alone; were directions chosen evenly in quarters of pixels,
+    // (1 + 1/9)^2 - 1, in closed form.
+    CHECK(squares / (sum * sum) - 1 < 0.002);
   });
 }
 

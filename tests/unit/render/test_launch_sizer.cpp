@@ -1,4 +1,5 @@
 // How tiles are cut into launches: every sample once, in any size, and what is asked for after failures.
+#include <algorithm>
 #include <map>
 
 #include "catch.h"
@@ -87,6 +88,32 @@ TEST_CASE("launches grow to the wanted time and shrink where they take longer") 
   LaunchSizer fields(cpu(), {}, {}, true);
   fields.begin(tile, 16);
   CHECK(fields.next()->samples <= 512);
+}
+
+TEST_CASE("work-items take runs of items where each unit has enough work-items left") {
+  LaunchLimits limits = cpu();
+  limits.most_run = 8;
+  LaunchSizer sizer(limits, {}, {}, false);
+  sizer.begin({0, 0, 2048, 2048}, 1);
+  unsigned longest = 0, shortest = 8;
+  while (const auto next = sizer.next()) {
+    const unsigned run = next->launch.run, items = next->launch.last_item - next->launch.first_item;
+    const auto work_items = static_cast<unsigned>(next->size.x);
+    REQUIRE((run >= 1 && run <= 8));
+    REQUIRE(work_items * run >= items);
+    REQUIRE((work_items - 1) * run < items);
+    CHECK((run == 1 || work_items >= 16 * limits.compute_units));
+    longest = std::max(longest, run);
+    shortest = std::min(shortest, run);
+    sizer.note_time(1e-6 * static_cast<double>(next->samples));
+  }
+  CHECK(longest == 8);
+  CHECK(shortest <= 2);
+  sizer.begin({0, 0, 2048, 2048}, 1);
+  REQUIRE(sizer.next());
+  CHECK(sizer.ask_less(LaunchFailure::loops_cut_short, "why"));
+  sizer.begin({0, 0, 2048, 2048}, 1);
+  CHECK(sizer.next()->launch.run == 1);
 }
 
 TEST_CASE("failures are answered by less, until there is nothing less") {
