@@ -38,7 +38,8 @@ struct Placed {
 /// Writes the rows of the inverse of `world_from_unit`; returns the transform that a kernel then really uses.
 dmat4 set_transform(const SceneDescription& scene, const Object& object, const dmat4& world_from_unit,
                     Instance& instance) {
-  if (world_from_unit == dmat4(1) && !object.moves()) instance.flags |= INSTANCE_IDENTITY;
+  const bool identity = world_from_unit == dmat4(1) && !object.moves();
+  if (identity) instance.flags |= INSTANCE_IDENTITY;
   const dmat4 inverse = glm::inverse(world_from_unit);
   dmat4 used(1);
   for (int row = 0; row < 3; ++row) {
@@ -52,9 +53,9 @@ dmat4 set_transform(const SceneDescription& scene, const Object& object, const d
     instance.object_from_world[row] = {values[0], values[1], values[2], values[3]};
   }
   const auto& rows = instance.object_from_world;
-  if (rows[0].y == 0 && rows[0].z == 0 && rows[1].x == 0 && rows[1].z == 0 && rows[2].x == 0 &&
-      rows[2].y == 0)
-    instance.flags |= INSTANCE_SCALES;
+  const bool turned = rows[0].y != 0 || rows[0].z != 0 || rows[1].x != 0 || rows[1].z != 0 ||
+                      rows[2].x != 0 || rows[2].y != 0;
+  if (!identity && !turned) instance.flags |= INSTANCE_SCALES;
   const dmat4 back = glm::inverse(used);
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 3; ++row)
