@@ -61,6 +61,7 @@ class Bench:
             return figures.Picture(np.load(path).astype(float), samples)
         parts = np.array(make())
         if path:
+            os.makedirs(self.args.pictures, exist_ok=True)
             np.save(path, parts.astype(np.float32))
         return figures.Picture(parts, samples)
 
