@@ -13,9 +13,9 @@ needed=(g++ cmake ninja-build ocl-icd-opencl-dev opencl-clhpp-headers pocl-openc
 # Debian 12 has Boost 1.81 beside an older one.
 if grep -qs '^12' /etc/debian_version; then needed+=(libboost1.81-dev); else needed+=(libboost-dev); fi
 # The tests compare with these where they are; Open MPI is what `mpirun sundog` needs; a browser opens the viewer's page; pip
-# builds the Python package, pkg-config finds the library, and Doxygen reads its headers.
+# builds the Python package, pkg-config finds the library, Doxygen reads its headers, and git says what has changed.
 peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin chromium chromium-driver
-  python3-dev python3-venv pkg-config doxygen)
+  python3-dev python3-venv pkg-config doxygen git)
 # Of one version, so that every machine finds the same: tests/check_format.sh, tests/tidy.sh.
 checkers=(clang-format-19 clang-tidy-19)
 
