@@ -50,6 +50,13 @@ void for_each_table(const SceneTables& tables, const Visit& visit) {
 #undef SUNDOG_VISIT_TABLE
 }
 
+/// Of the instances that share a mesh BVH, `first` the first of them, the one that triangle `prim` belongs to.
+inline u32 instance_of_triangle(const SceneTables& tables, u32 first, u32 prim) {
+  const std::vector<Instance>& instances = tables.instances.rows();
+  while (instances[first].flags & INSTANCE_SHARES && instances[first + 1].first_prim <= prim) ++first;
+  return first;
+}
+
 /// Bytes of all tables.
 std::size_t table_bytes(const SceneTables& tables);
 

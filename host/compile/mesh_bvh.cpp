@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "base/error.h"
+#include "compile/mesh_groups.h"
 #include "compile/vertices.h"
 
 namespace sundog {
@@ -52,23 +53,25 @@ void check_attributes(const SceneDescription& scene, std::size_t index) {
       fail(scene, index, fmt::format("material {} of {}", material, scene.materials.size()));
 }
 
-/// Names the first triangle corner that makes no box.
-[[noreturn]] void fail_corner(const SceneDescription& scene, std::size_t index) {
-  const Mesh& mesh = scene.meshes[index];
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (int corner = 0; corner < 3; ++corner) {
-      const u32 vertex = mesh.triangles[t][corner];
-      if (vertex >= mesh.positions.size())
-        fail(scene, index,
-             fmt::format("triangle {} names vertex {}; wanted less than {}; mend the model", t, vertex,
-                         mesh.positions.size()));
-      const glm::vec3& p = mesh.positions[vertex];
-      if (!in_range(p))
-        fail(scene, index,
-             fmt::format("vertex {} is ({}, {}, {}); wanted finite numbers up to {:g}; mend the model",
-                         vertex, p.x, p.y, p.z, farthest_vertex));
-    }
-  throw std::logic_error("a mesh that was refused has no bad corner");
+/// Names the first triangle corner of the meshes that makes no box.
+[[noreturn]] void fail_corner(const SceneDescription& scene, std::span<const std::size_t> meshes) {
+  for (const std::size_t index : meshes) {
+    const Mesh& mesh = scene.meshes[index];
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (int corner = 0; corner < 3; ++corner) {
+        const u32 vertex = mesh.triangles[t][corner];
+        if (vertex >= mesh.positions.size())
+          fail(scene, index,
+               fmt::format("triangle {} names vertex {}; wanted less than {}; mend the model", t, vertex,
+                           mesh.positions.size()));
+        const glm::vec3& p = mesh.positions[vertex];
+        if (!in_range(p))
+          fail(scene, index,
+               fmt::format("vertex {} is ({}, {}, {}); wanted finite numbers up to {:g}; mend the model",
+                           vertex, p.x, p.y, p.z, farthest_vertex));
+      }
+  }
+  throw std::logic_error("meshes that were refused have no bad corner");
 }
 
 /// The box of a triangle, empty when a corner is no vertex or is out of range.
@@ -108,8 +111,54 @@ Mesh resized(const Mesh& mesh, double unit) {
   return result;
 }
 
-WideBvh build_mesh(const SceneDescription& scene, std::size_t index, const Mesh& mesh) {
-  check_attributes(scene, index);
+/// A BVH and the meshes that share it.
+struct Tree {
+  std::vector<std::size_t> meshes;
+  Mesh copy;  // their positions and triangles, where they are several or the tables hold them in another unit
+  WideBvh bvh;
+
+  const Mesh& mesh(const SceneDescription& scene) const {
+    return copy.triangles.empty() ? scene.meshes[meshes[0]] : copy;
+  }
+};
+
+/// The positions and triangles of several meshes as one.
+Mesh join_meshes(const SceneDescription& scene, std::span<const std::size_t> meshes) {
+  Mesh joined;
+  std::vector<glm::vec3>& positions = joined.positions.values();
+  std::vector<glm::uvec3>& triangles = joined.triangles.values();
+  for (const std::size_t i : meshes) {
+    const Mesh& mesh = scene.meshes[i];
+    const auto first = static_cast<u32>(positions.size()), count = static_cast<u32>(mesh.positions.size());
+    positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const glm::uvec3& triangle : mesh.triangles) {
+      if (triangle.x >= count || triangle.y >= count || triangle.z >= count) fail_corner(scene, {&i, 1});
+      triangles.push_back(triangle + first);
+    }
+  }
+  return joined;
+}
+
+/// The meshes of each BVH. Those in another unit have one of their own.
+std::vector<Tree> plan_trees(const SceneDescription& scene, const std::vector<PlacedMesh>& placed) {
+  std::vector<Tree> trees;
+  for (const std::vector<std::size_t>& group : mesh_groups(scene)) {
+    const bool together = std::ranges::all_of(group, [&](std::size_t i) { return placed[i].unit == 1; });
+    if (together)
+      trees.push_back({group, {}, {}});
+    else
+      for (const std::size_t i : group) trees.push_back({{i}, {}, {}});
+  }
+  return trees;
+}
+
+void build_tree(const SceneDescription& scene, double unit, Tree& tree) {
+  for (const std::size_t i : tree.meshes) check_attributes(scene, i);
+  if (tree.meshes.size() > 1)
+    tree.copy = join_meshes(scene, tree.meshes);
+  else if (unit != 1)
+    tree.copy = resized(scene.meshes[tree.meshes[0]], unit);
+  const Mesh& mesh = tree.mesh(scene);
   const auto fill = [&](std::span<Ref> refs) {
     std::atomic<bool> bad{false};
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, refs.size(), 4096), [&](const auto& range) {
@@ -119,11 +168,11 @@ WideBvh build_mesh(const SceneDescription& scene, std::size_t index, const Mesh&
         refs[t] = Ref::of(box, static_cast<u32>(t));
       }
     });
-    if (bad) fail_corner(scene, index);
+    if (bad) fail_corner(scene, tree.meshes);
   };
   WideBvhSettings settings;
   if (scene.render.spatial_splits) settings.cut = &mesh;
-  return build_wide_bvh(mesh.triangles.size(), fill, settings);
+  tree.bvh = build_wide_bvh(mesh.triangles.size(), fill, settings);
 }
 
 /// By the arithmetic of finish_triangle.
@@ -179,26 +228,35 @@ struct Rows {
   std::size_t nodes = 0, blocks = 0, triangles = 0, vertices = 0;
 };
 
-/// Where each mesh begins, and at the end the sums.
-std::vector<Rows> lay_out(const SceneDescription& scene, const std::vector<WideBvh>& trees) {
-  std::vector<Rows> first(1);
-  for (std::size_t i = 0; i < trees.size(); ++i) {
-    Rows next = first.back();
-    if (!trees[i].nodes.empty()) {
-      next.nodes += trees[i].nodes.size();
-      next.blocks += trees[i].blocks.size();
-      next.triangles += scene.meshes[i].triangles.size();
-      next.vertices += vertex_count(scene.meshes[i]);
-    }
-    first.push_back(next);
-  }
-  const Rows& sum = first.back();
+void check_rows(const SceneDescription& scene, const Rows& sum) {
   if (sum.blocks > BVH_FIRST_MASK || sum.nodes >= BVH_LEAF || sum.triangles >= NO_PRIM ||
       sum.vertices >= NO_PRIM)
     throw SceneError(
         scene.file.string(), "",
         fmt::format("{} triangles in {} blocks are more than the tables can index; use smaller meshes",
                     sum.triangles, sum.blocks));
+}
+
+/// Where each tree begins, and at the end the sums. Notes where its meshes begin.
+std::vector<Rows> lay_out(const SceneDescription& scene, const std::vector<Tree>& trees,
+                          std::vector<PlacedMesh>& placed) {
+  std::vector<Rows> first(1);
+  for (const Tree& tree : trees) {
+    Rows next = first.back();
+    for (const std::size_t i : tree.meshes) {
+      placed[i].follows = i != tree.meshes[0];
+      placed[i].root = static_cast<u32>(first.back().nodes);
+      placed[i].first_vertex = static_cast<u32>(next.vertices);
+      placed[i].first_triangle = static_cast<u32>(next.triangles);
+      placed[i].triangle_count = static_cast<u32>(scene.meshes[i].triangles.size());
+      next.triangles += scene.meshes[i].triangles.size();
+      next.vertices += vertex_count(scene.meshes[i]);
+    }
+    next.nodes += tree.bvh.nodes.size();
+    next.blocks += tree.bvh.blocks.size();
+    first.push_back(next);
+  }
+  check_rows(scene, first.back());
   return first;
 }
 
@@ -222,6 +280,18 @@ std::vector<Bounds> grandchildren(const std::vector<Bvh8Node>& nodes) {
   return boxes;
 }
 
+/// The boxes of parts of a mesh in a tree that it shares: of rows of its triangles, which lie near each other.
+std::vector<Bounds> boxes_of_rows(const Mesh& mesh) {
+  constexpr std::size_t parts = 32;
+  const std::size_t step = (mesh.triangles.size() + parts - 1) / parts;
+  std::vector<Bounds> boxes;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (t % step == 0) boxes.push_back(Bounds::none());
+    boxes.back().extend(triangle_box(mesh, mesh.triangles[t]));
+  }
+  return boxes;
+}
+
 std::vector<u32> distinct_materials(std::span<const TriangleShading> triangles) {
   std::vector<u32> materials;
   for (const TriangleShading& triangle : triangles) {
@@ -232,37 +302,42 @@ std::vector<u32> distinct_materials(std::span<const TriangleShading> triangles) 
   return materials;
 }
 
-/// Writes one mesh's rows, its parts in parallel.
-void fill_tables(const Mesh& mesh, const WideBvh& tree, const Rows& first, u32 default_material,
-                 CompiledScene& out, PlacedMesh& placed) {
-  placed.root = static_cast<u32>(first.nodes);
-  placed.first_vertex = static_cast<u32>(first.vertices);
-  placed.first_triangle = static_cast<u32>(first.triangles);
-  placed.triangle_count = static_cast<u32>(mesh.triangles.size());
-  placed.boxes = grandchildren(tree.nodes);
-  const auto triangles = std::span(out.triangles.edit()).subspan(first.triangles, mesh.triangles.size());
+/// Writes the rows of a tree's meshes, in parallel.
+void fill_tables(const SceneDescription& scene, const Tree& tree, const Rows& first, u32 default_material,
+                 CompiledScene& out, std::vector<PlacedMesh>& placed) {
+  const Mesh& mesh = tree.mesh(scene);
+  const WideBvh& bvh = tree.bvh;
+  double cost = 0;
+  u32 stack = 0;
   tbb::parallel_invoke(
-      [&] { placed.cost = expected_cost(tree.nodes, 0, [](u32, u32 count) { return double(count); }); },
-      [&] { placed.stack = stack_need(tree.nodes, 0); },
+      [&] { cost = expected_cost(bvh.nodes, 0, [](u32, u32 count) { return double(count); }); },
+      [&] { stack = stack_need(bvh.nodes, 0); },
       [&] {
-        append_tree(tree, mesh, static_cast<u32>(first.triangles),
-                    std::span(out.nodes.edit()).subspan(first.nodes), placed.root,
+        append_tree(bvh, mesh, static_cast<u32>(first.triangles),
+                    std::span(out.nodes.edit()).subspan(first.nodes), static_cast<u32>(first.nodes),
                     std::span(out.blocks.edit()).subspan(first.blocks), static_cast<u32>(first.blocks));
       },
       [&] {
-        fill_vertices(mesh, static_cast<u32>(first.vertices), default_material,
-                      std::span(out.vertices.edit()).subspan(first.vertices, vertex_count(mesh)), triangles);
-        placed.materials = distinct_materials(triangles);
+        tbb::parallel_for(std::size_t{0}, tree.meshes.size(), [&](std::size_t k) {
+          const Mesh& own = tree.meshes.size() > 1 ? scene.meshes[tree.meshes[k]] : mesh;
+          PlacedMesh& one = placed[tree.meshes[k]];
+          const auto triangles = std::span(out.triangles.edit()).subspan(one.first_triangle, one.triangle_count);
+          fill_vertices(own, one.first_vertex, default_material,
+                        std::span(out.vertices.edit()).subspan(one.first_vertex, vertex_count(own)), triangles);
+          one.materials = distinct_materials(triangles);
+          one.boxes = tree.meshes.size() > 1 ? boxes_of_rows(own) : grandchildren(bvh.nodes);
+        });
       });
-  note_places(std::span(out.blocks.rows()).subspan(first.blocks, tree.blocks.size()),
+  for (const std::size_t i : tree.meshes) placed[i].cost = cost, placed[i].stack = stack;
+  note_places(std::span(out.blocks.rows()).subspan(first.blocks, bvh.blocks.size()),
               static_cast<u32>(first.blocks), out.triangles.edit());
 }
 
-double mean_fill(const std::vector<WideBvh>& trees) {
+double mean_fill(const std::vector<Tree>& trees) {
   std::size_t members = 0, blocks = 0;
-  for (const WideBvh& tree : trees) {
-    members += tree.members.size();
-    blocks += tree.blocks.size();
+  for (const Tree& tree : trees) {
+    members += tree.bvh.members.size();
+    blocks += tree.bvh.blocks.size();
   }
   return blocks > 0 ? static_cast<double>(members) / static_cast<double>(blocks) : 0;
 }
@@ -274,21 +349,16 @@ std::vector<PlacedMesh> add_meshes(const SceneDescription& scene, u32 default_ma
   for (const Object& object : scene.objects)
     if (const auto* shape = std::get_if<MeshShape>(&object.shape))
       placed[std::size_t(shape->mesh)].used = true;
-  std::vector<WideBvh> trees(placed.size());  // of a mesh that is not used: without nodes
-  std::vector<Mesh> copies(placed.size());    // of those that the tables hold in another unit
-  const auto mesh = [&](std::size_t i) -> const Mesh& {
-    return placed[i].unit != 1 ? copies[i] : scene.meshes[i];
-  };
-  tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
-    if (!placed[i].used) return;
-    placed[i].unit = table_unit(scene.meshes[i]);
-    if (placed[i].unit != 1) copies[i] = resized(scene.meshes[i], placed[i].unit);
-    trees[i] = build_mesh(scene, i, mesh(i));
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    if (placed[i].used) placed[i].unit = table_unit(scene.meshes[i]);
+  std::vector<Tree> trees = plan_trees(scene, placed);
+  tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t i) {
+    build_tree(scene, placed[trees[i].meshes[0]].unit, trees[i]);
   });
-  const std::vector<Rows> first = lay_out(scene, trees);
+  const std::vector<Rows> first = lay_out(scene, trees, placed);
   resize_tables(first.back(), out);
-  tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
-    if (placed[i].used) fill_tables(mesh(i), trees[i], first[i], default_material, out, placed[i]);
+  tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t i) {
+    fill_tables(scene, trees[i], first[i], default_material, out, placed);
   });
   out.figures.mean_block_fill = mean_fill(trees);
   return placed;

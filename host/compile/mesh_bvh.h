@@ -9,14 +9,15 @@ namespace sundog {
 
 /// A mesh in the tables, and what its instances need to know of it.
 struct PlacedMesh {
-  bool used = false;  // some object places it
-  double unit = 1;    // of the tables' coordinates, in the mesh's: a power of two
-  u32 root = 0;       // its first node
+  bool used = false;     // some object places it
+  bool follows = false;  // it is in the BVH of the one before it in the triangles' table
+  double unit = 1;       // of the tables' coordinates, in the mesh's: a power of two
+  u32 root = 0;          // the first node of its BVH
   u32 first_vertex = 0, first_triangle = 0;
   u32 triangle_count = 0;
-  double cost = 0;             // expected cost of a ray that crosses its box
-  u32 stack = 0;               // entries its traversal may need
-  std::vector<Bounds> boxes;   // of its root's grandchildren: a tight hull for a rotated instance
+  double cost = 0;             // expected cost of a ray that crosses the BVH's box
+  u32 stack = 0;               // entries the BVH's traversal may need
+  std::vector<Bounds> boxes;   // of what it has in its root's grandchildren: a tight hull for a rotated instance
   std::vector<u32> materials;  // of its triangles, each once
 };
 

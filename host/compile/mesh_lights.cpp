@@ -64,8 +64,7 @@ std::vector<u32> lamps_of(const SceneDescription& scene) {
 
 }  // namespace
 
-void add_mesh_lights(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
-                     CompiledScene& out) {
+void add_mesh_lights(const SceneDescription& scene, CompiledScene& out) {
   std::vector<u32> first = lamps_of(scene);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
@@ -81,12 +80,9 @@ void add_mesh_lights(const SceneDescription& scene, const std::vector<PlacedMesh
     out.features.area_lights = true;
   }
   if (std::ranges::all_of(first, [](u32 light) { return light == NO_LIGHT; })) return;
-  for (Instance& instance : out.instances.edit()) {
-    if (instance.object >= first.size() || first[instance.object] == NO_LIGHT) continue;
-    instance.light = first[instance.object];
-    if (const auto* shape = std::get_if<MeshShape>(&scene.objects[instance.object].shape))
-      instance.first_prim = meshes[static_cast<std::size_t>(shape->mesh)].first_triangle;
-  }
+  for (Instance& instance : out.instances.edit())
+    if (instance.object < first.size() && first[instance.object] != NO_LIGHT)
+      instance.light = first[instance.object];
 }
 
 }  // namespace sundog

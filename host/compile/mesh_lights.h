@@ -10,8 +10,7 @@ namespace sundog {
 /// instances, and those of lamps for path tracing, get the index of their light. To be called once the
 /// instances are placed. What shines by a texture, and meshes of more
 /// than `most_shining` triangles, are left to the rays that meet them.
-void add_mesh_lights(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
-                     CompiledScene& out);
+void add_mesh_lights(const SceneDescription& scene, CompiledScene& out);
 
 constexpr std::size_t most_shining = 200'000;
 

@@ -127,8 +127,8 @@ const SharedTable<float>& lobe_energies(LobeTables wanted) {
 }
 
 /// The lights as surfaces choose them, once it is known what shines.
-void finish_lights(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, CompiledScene& out) {
-  add_mesh_lights(scene, meshes, out);
+void finish_lights(const SceneDescription& scene, CompiledScene& out) {
+  add_mesh_lights(scene, out);
   add_light_tree(scene, out);
   if (traces_paths(out.integrator))
     std::erase_if(out.light_rays.edit(), [](const LightRay& ray) { return ray.ray > 0; });
@@ -244,7 +244,7 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   out.pattern_source = p.surfaces.made.pattern_source;
   out.features.camera_inside = is_camera_inside(scene.camera.position - out.origin,
                                                 p.instances.made.instances.rows(), p.instances.boxes);
-  finish_lights(scene, p.meshes.placed, out);
+  finish_lights(scene, out);
   if (out.features.rough || out.features.layers)
     out.lobe_energy = lobe_energies({.gains = traces_paths(out.integrator) || out.features.layers != 0,
                                      .glass = out.features.rough_glass != 0});

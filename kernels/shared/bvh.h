@@ -79,20 +79,21 @@ typedef struct Vertex {
 } Vertex;
 SUNDOG_SHARED_SIZE(Vertex, 32)
 
-// 128 bytes. Instances [0, bounded_count) are leaves of the scene BVH in leaf order; the rest, planes and a
-// few solids beside meshes, are tried one by one. A ray is taken into object space without renormalising, so
+// 128 bytes. Instances [0, bounded_count) are leaves of the scene BVH in leaf order, meshes that share a BVH
+// behind the first of them, which is the leaf; the rest, planes and a few solids beside meshes, are tried one
+// by one. A ray is taken into object space without renormalising, so
 // t is the same in both; a normal goes to world space by the transpose of object_from_world's linear part.
 typedef struct Instance {
   float4 object_from_world[3];  // rows of the affine matrix
   float4 parameters;
   u32 shape;     // SHAPE_*
-  u32 root;      // SHAPE_MESH: the mesh BVH's first node
+  u32 root;      // SHAPE_MESH: the first node of its mesh BVH
   u32 material;  // of a solid; a mesh's triangles carry their own unless material != NO_MATERIAL
   u32 flags;     // INSTANCE_*
   u32 object;    // index of the scene object it came from, for AOVs and messages
   float touch;   // above 0 where surfaces of it may lie on others' or its own: how far rounding may part them
   u32 light;     // index of the light that it shows, or NO_LIGHT
-  u32 first_prim;        // of a mesh whose triangles are lights, from `light` on: the index of the first
+  u32 first_prim;        // of a mesh: the index of its first triangle
   float4 world_center;   // of the bounds; w = half the diagonal (0 when unbounded)
   float4 pattern_scale;  // xyz: from object space to that of the scene file, where patterns are measured;
                          // w: lengths there over lengths in the world, their geometric mean
@@ -117,6 +118,7 @@ SUNDOG_SHARED_SIZE(Turn, 80)
 #define INSTANCE_FILTERS 2u    // a shadow ray may pass (some material of it transmits and lets light through)
 #define INSTANCE_TRANSMITS 4u  // some material of it has an interior medium
 #define INSTANCE_SCALES 8u     // object_from_world has no turn: off its diagonal there are zeros
+#define INSTANCE_SHARES 16u    // the next instance is in the same mesh BVH, and its triangles come next
 
 // 32 bytes: the raw intersection. ng is the geometric normal in object space, outward, not normalised.
 typedef struct Hit {

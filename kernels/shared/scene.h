@@ -89,7 +89,7 @@ typedef struct SceneInfo {
   float4 background_top;     // seen by rays that meet nothing: bottom..top, linear in the elevation's sine
   float4 ambient;            // sum of the ambient lights
   u32 width, height;
-  u32 tlas_root;      // first node of the scene BVH
+  u32 tlas_root;      // first node of the scene BVH, or BVH_LEAF: instance 0 is its only leaf
   u32 bounded_count;  // instances in the scene BVH (0: the BVH is empty)
   u32 instance_count;
   u32 light_count;  // rays that a surface sends to lights: one a light, or with HAS_AREA_LIGHTS light_rays

@@ -72,6 +72,9 @@ std::vector<HostHit> cross_instance(const CompiledScene& scene, u32 index, const
     const Enter enter = [&](const Bvh8Node& node, u32 slot) { return all || crosses(node, slot, ray); };
     visit_leaves(scene, instance.root, enter,
                  [&](u32 block) { cross_block(scene.blocks.at(block), ray, hits); });
+    std::erase_if(hits, [&](const HostHit& hit) {  // those of others in the BVH
+      return hit.prim < instance.first_prim || instance_of_triangle(scene, index, hit.prim) != index;
+    });
   } else {
     for (const auto& [t, ng] :
          solid_crossings(instance.shape, instance.parameters, ray.origin, ray.direction))
@@ -110,7 +113,11 @@ HostRay object_ray(const Instance& instance, const HostRay& ray) {
 std::optional<HostHit> trace_host(const CompiledScene& scene, const HostRay& ray) {
   Nearest nearest;
   const Enter enter = [&](const Bvh8Node& node, u32 slot) { return crosses(node, slot, ray); };
-  const auto offer = [&](u32 index) { nearest.offer(cross_instance(scene, index, ray, false)); };
+  const auto offer = [&](u32 index) {
+    nearest.offer(cross_instance(scene, index, ray, false));
+    for (; scene.instances[index].flags & INSTANCE_SHARES; ++index)
+      nearest.offer(cross_instance(scene, index + 1, ray, false));
+  };
   if (scene.info.bounded_count > 0) visit_leaves(scene, scene.info.tlas_root, enter, offer);
   for (u32 i = scene.info.bounded_count; i < scene.info.instance_count; ++i) offer(i);
   return nearest.hit;

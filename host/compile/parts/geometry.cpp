@@ -1,4 +1,5 @@
 // Parts that rays meet: meshes with their coordinates for textures, and instances.
+#include "compile/mesh_groups.h"
 #include "compile/parts/parts.h"
 #include "compile/placing/instances.h"
 #include "compile/textures.h"
@@ -28,6 +29,7 @@ ContentKey meshes_key(const SceneDescription& scene, const SurfacesPart& surface
     key.add(bool(used[i]));
     if (used[i]) key.add(scene.meshes[i]);
   }
+  for (const std::vector<std::size_t>& group : mesh_groups(scene)) key.add_all(group);
   return key.key();
 }
 

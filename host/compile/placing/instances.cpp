@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <unordered_map>
 
 #include "base/error.h"
 #include "compile/bvh/wide_bvh.h"
@@ -23,6 +25,8 @@ struct Placed {
   Instance instance{};
   Bounds box = Bounds::none();  // wherever it is while the shutter is open
   std::vector<Bounds> parts;    // smaller boxes that hold it between them; empty: there are none
+  std::vector<Placed> sharing;  // those that follow in its BVH
+  bool follows = false;
   double cost = 1;
   float4 moves{};
   bool bounded() const { return instance.shape != SHAPE_PLANE; }
@@ -112,7 +116,9 @@ class Placer {
                               static_cast<float>(unit.scale.z), static_cast<float>(1 / size)};
     if (mesh) {
       instance.root = mesh->root;
+      instance.first_prim = mesh->first_triangle;
       placed.cost = mesh->cost;
+      placed.follows = mesh->follows;
     }
     Bounds interval = Bounds::none();
     std::span<const Bounds> boxes;
@@ -198,6 +204,27 @@ bool may_contain(const Instance& instance, const Bounds& box, const dvec3& camer
   return true;
 }
 
+/// Puts meshes that are in the BVH of others to the first of these.
+void join_sharing(std::vector<Placed> following, std::vector<Placed>& bounded) {
+  std::unordered_map<u32, std::size_t> first;
+  for (std::size_t i = 0; i < bounded.size(); ++i)
+    if (bounded[i].instance.shape == SHAPE_MESH) first.emplace(bounded[i].instance.root, i);
+  std::ranges::sort(following, {}, [](const Placed& placed) { return placed.instance.first_prim; });
+  for (Placed& placed : following) {
+    Placed& joined = bounded[first.at(placed.instance.root)];
+    Instance& before = joined.sharing.empty() ? joined.instance : joined.sharing.back().instance;
+    before.flags |= INSTANCE_SHARES;
+    joined.sharing.push_back(std::move(placed));
+  }
+}
+
+/// The box of an instance and those in its BVH.
+Bounds box_of_all(const Placed& placed) {
+  Bounds box = placed.box;
+  for (const Placed& other : placed.sharing) box.extend(other.box);
+  return box;
+}
+
 /// Refs of the instances' boxes, or of their parts': an instance is then in several leaves.
 std::vector<Ref> refs_of(const std::vector<Placed>& bounded) {
   constexpr std::size_t most_in_parts = 1000;  // the leaves of a CompactNode lie near each other
@@ -205,7 +232,8 @@ std::vector<Ref> refs_of(const std::vector<Placed>& bounded) {
   for (std::size_t i = 0; i < bounded.size(); ++i) {
     const Placed& placed = bounded[i];
     const bool in_parts = !placed.parts.empty() && bounded.size() <= most_in_parts;
-    for (const Bounds& box : in_parts ? std::span<const Bounds>(placed.parts) : std::span(&placed.box, 1))
+    const Bounds whole = box_of_all(placed);
+    for (const Bounds& box : in_parts ? std::span<const Bounds>(placed.parts) : std::span(&whole, 1))
       refs.push_back(Ref::of(box, static_cast<u32>(i)));
   }
   return refs;
@@ -217,9 +245,11 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
   WideBvhSettings settings;
   settings.block_width = 1;
   settings.block_cost = 3;                                         // an instance costs more than a node
-  if (refs.size() > bounded.size()) settings.max_leaf_blocks = 1;  // those of a leaf follow each other
+  const bool shared = std::ranges::any_of(bounded, [](const Placed& one) { return !one.sharing.empty(); });
+  if (shared || refs.size() > bounded.size()) settings.max_leaf_blocks = 1;  // a leaf's follow each other
   WideBvh tree =
       build_wide_bvh(refs.size(), [&](std::span<Ref> to) { std::ranges::copy(refs, to.begin()); }, settings);
+  const bool alone = bounded.size() == 1;
   std::vector<Placed> sorted;
   std::vector<u32> places(bounded.size(), NO_INSTANCE), place_of_block;
   for (const WideBvh::Block& block : tree.blocks) {
@@ -227,6 +257,8 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
     if (place == NO_INSTANCE) {
       place = static_cast<u32>(sorted.size());
       sorted.push_back(bounded[tree.members[block.first]]);
+      std::vector<Placed> sharing = std::move(sorted.back().sharing);
+      std::ranges::move(sharing, std::back_inserter(sorted));
     }
     place_of_block.push_back(place);
   }
@@ -244,7 +276,7 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
     nodes.push_back(node);
   }
 
-  out.info.tlas_root = root;
+  out.info.tlas_root = alone ? BVH_LEAF : root;
   out.info.bounded_count = static_cast<u32>(bounded.size());
   out.features.bvh_stack = std::max(1u, stack_need(tree.nodes, 0) + mesh_stack);
   out.figures.sah_cost = expected_cost(tree.nodes, 0, [&](u32 first, u32 count) {
@@ -294,7 +326,7 @@ dmat4 place_of_plane(const SceneDescription& scene, const Object& object, const 
 
 std::vector<Bounds> add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
                                   u32 default_material, CompiledScene& out) {
-  std::vector<Placed> bounded, unbounded, fields;
+  std::vector<Placed> bounded, following, unbounded, fields;
   u32 mesh_stack = 0;
   Placer placer(scene, meshes, default_material, out);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -306,9 +338,14 @@ std::vector<Bounds> add_instances(const SceneDescription& scene, const std::vect
     }
     const Placed placed = placer.place(object, static_cast<u32>(i));
     out.features.shapes[placed.instance.shape] = true;
-    (placed.instance.shape == SHAPE_SDF ? fields : placed.bounded() ? bounded : unbounded).push_back(placed);
+    (placed.instance.shape == SHAPE_SDF ? fields
+     : placed.follows                   ? following
+     : placed.bounded()                 ? bounded
+                                        : unbounded)
+        .push_back(placed);
   }
-  for (const Placed& placed : bounded) out.figures.box.extend(placed.box);
+  join_sharing(std::move(following), bounded);
+  for (const Placed& placed : bounded) out.figures.box.extend(box_of_all(placed));
   out.info.scene_center = bounded.empty() ? float4{} : sphere_around(out.figures.box);
   const std::vector<Placed> large = take_large_solids(bounded, out.figures.box);
   add_scene_bvh(bounded, out, mesh_stack);

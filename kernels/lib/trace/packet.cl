@@ -63,9 +63,7 @@ NEVER_INLINE void packet_in_leaf(const Scene* scene, const PacketRays* rays, Pac
 // The bounded instances; `rays` in world space and aimed.
 NEVER_INLINE void packet_in_scene(const Scene* scene, const PacketRays* rays, PacketHits* hits, bool any) {
   const u32 live = ALL_RAYS & ~lane_bits(as_int16(hits->found->t)), root = scene->info->tlas_root;
-  if (scene->info->bounded_count == 1u) {
-    packet_in_instance(scene, rays, hits, live, 0u, any);
-  } else if (root & BVH_LEAF) {
+  if (root & BVH_LEAF) {
     packet_in_leaf(scene, rays, hits, live, root, any);
   } else {
     PacketWalk walk;

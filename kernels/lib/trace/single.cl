@@ -114,8 +114,7 @@ static inline void trace_bounded(const Scene* scene, u32 word, float3 o, float3 
 static inline void trace_instances(const Scene* scene, float3 o, float3 d, float t_min, float time, bool any,
                                    Hit* hit) {
   if (scene->info->bounded_count == 0u) return;
-  trace_bounded(scene, scene->info->bounded_count == 1u ? BVH_LEAF : scene->info->tlas_root, o, d, t_min,
-                time, any, hit);
+  trace_bounded(scene, scene->info->tlas_root, o, d, t_min, time, any, hit);
 }
 
 #endif

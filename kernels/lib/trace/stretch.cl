@@ -96,22 +96,22 @@ static inline u32 push_all_crossed(__global const u32* nodes, u32 word, const Sl
   return top;
 }
 
-static inline void note_triangle(__global const TriangleBlock* restrict blocks, u32 place, float t, float u,
-                                 float v, u32 instance, Stretch* stretch) {
+static inline void note_triangle(const Scene* scene, u32 place, float t, float u, float v, u32 instance,
+                                 Stretch* stretch) {
   Hit hit;
   hit.t = t;
   hit.u = u;
   hit.v = v;
   hit.prim = place;
   hit.instance = instance;
-  finish_triangle(blocks, &hit);
+  finish_triangle(scene->instances, scene->blocks, &hit);
   note_hit(stretch, &hit);
 }
 
 #if WIDE_VECTORS
-static inline void note_block(__global const TriangleBlock* restrict blocks, u32 index, const ShearRay* shear,
-                              u32 instance, Stretch* stretch) {
-  const BlockTest test = test_block(blocks + index, shear, stretch->from, stretch->to);
+static inline void note_block(const Scene* scene, u32 index, const ShearRay* shear, u32 instance,
+                              Stretch* stretch) {
+  const BlockTest test = test_block(scene->blocks + index, shear, stretch->from, stretch->to);
   if (!test.lanes) return;
   float t[8], u[8], v[8];
   vstore8(test.t, 0, t);
@@ -119,16 +119,17 @@ static inline void note_block(__global const TriangleBlock* restrict blocks, u32
   vstore8(test.v, 0, v);
   for (u32 bits = test.lanes; bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    note_triangle(blocks, index * 8u + i, t[i], u[i], v[i], instance, stretch);
+    note_triangle(scene, index * 8u + i, t[i], u[i], v[i], instance, stretch);
   }
 }
 #else
-static inline void note_block(__global const TriangleBlock* restrict blocks, u32 index, const ShearRay* shear,
-                              u32 instance, Stretch* stretch) {
-  for (u32 i = 0; i < 8u && blocks[index].prim[i] != NO_PRIM; ++i) {
+static inline void note_block(const Scene* scene, u32 index, const ShearRay* shear, u32 instance,
+                              Stretch* stretch) {
+  __global const TriangleBlock* block = scene->blocks + index;
+  for (u32 i = 0; i < 8u && block->prim[i] != NO_PRIM; ++i) {
     float t, u, v;
-    if (hits_triangle(blocks[index].v0_x + i, shear, stretch->from, stretch->to, &t, &u, &v))
-      note_triangle(blocks, index * 8u + i, t, u, v, instance, stretch);
+    if (hits_triangle(block->v0_x + i, shear, stretch->from, stretch->to, &t, &u, &v))
+      note_triangle(scene, index * 8u + i, t, u, v, instance, stretch);
   }
 }
 #endif
@@ -149,7 +150,7 @@ static inline void note_mesh(const Scene* scene, u32 index, Stretch* stretch, u3
     if (word & BVH_LEAF) {
       const u32 first = word & BVH_FIRST_MASK,
                 last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
-      for (u32 i = first; i <= last; ++i) note_block(scene->blocks, i, &shear, index, stretch);
+      for (u32 i = first; i <= last; ++i) note_block(scene, i, &shear, index, stretch);
     } else
       top = push_all_crossed(scene->nodes, word, &slabs, stretch, stack, top);
   }
@@ -158,8 +159,7 @@ static inline void note_mesh(const Scene* scene, u32 index, Stretch* stretch, u3
 static inline void note_bounded(const Scene* scene, Stretch* stretch) {
   u32 stack[BVH_STACK + 1];
   u32 top = 0;
-  if (scene->info->bounded_count)
-    stack[top++] = scene->info->bounded_count == 1u ? BVH_LEAF : scene->info->tlas_root;
+  if (scene->info->bounded_count) stack[top++] = scene->info->tlas_root;
   const SlabRay slabs = make_slab_ray(stretch->o, stretch->d);
   while (top) {
     const u32 word = stack[--top];

@@ -6,6 +6,7 @@
 #include "lib/core/config.h"
 #include "lib/core/tables.h"
 #include "lib/trace/hits.cl"
+#include "lib/trace/listed_hits.cl"
 #include "lib/trace/packet.cl"
 #include "lib/trace/single.cl"
 #include "lib/trace/walk.cl"
@@ -78,18 +79,17 @@ static inline bool trace_packet(const Scene* scene, const REAL3* o, const REAL3*
 
 #if WALKS_IN_TURN
 static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                               MASK active, bool lone_mesh, bool any, Hits* hits) {
-  const WalkRays walkers = {o, d, t_min, hits};
+                               MASK active, bool lone_mesh, bool any, Hits* hits, HitList* lists) {
+  const WalkRays walkers = {o, d, t_min, hits, lists};
   const u32 bits = lane_bits(active);
   if (lone_mesh)
     walk_rays(scene, &walkers, bits, scene->instances->root, 0u, any);
   else
-    walk_rays(scene, &walkers, bits, scene->info->bounded_count == 1u ? BVH_LEAF : scene->info->tlas_root,
-              NO_INSTANCE, any);
+    walk_rays(scene, &walkers, bits, scene->info->tlas_root, NO_INSTANCE, any);
 }
 #else
 static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                               MASK active, bool lone_mesh, bool any, Hits* hits) {
+                               MASK active, bool lone_mesh, bool any, Hits* hits, HitList* lists) {
   for (u32 bits = lane_bits(active); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     Hit hit = get_hit(hits, i);
@@ -102,18 +102,19 @@ static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* 
 
 // The bounded instances for the lanes of `active`. `way`: TRACE_* bits.
 static inline void trace_bounded_batch(const Scene* scene, const REAL3* world_o, const REAL3* world_d,
-                                       const REAL* t_min, MASK active, u32 way, Hits* hits) {
+                                       const REAL* t_min, MASK active, u32 way, Hits* hits,
+                                       HitList* lists) {
   REAL3 o = *world_o, d = *world_d;
   // A mesh alone needs no scene BVH, and takes all rays into its space at once.
   const bool lone_mesh =
-      HAS_MESH && scene->info->bounded_count == 1u && scene->instances->shape == SHAPE_MESH;
+      HAS_MESH && scene->info->tlas_root == BVH_LEAF && scene->instances->shape == SHAPE_MESH;
   if (WIDE_VECTORS && lone_mesh && !(scene->instances->flags & INSTANCE_IDENTITY)) {
     o = object_points(scene->instances, still_origins(hits, 0u, o));
     d = object_vectors(scene->instances, still_directions(hits, 0u, d));
   }
   const bool any = way & TRACE_ANY;
   if ((way & TRACE_COHERENT) && trace_packet(scene, &o, &d, t_min, active, lone_mesh, any, hits)) return;
-  trace_alone(scene, &o, &d, t_min, active, lone_mesh, any, hits);
+  trace_alone(scene, &o, &d, t_min, active, lone_mesh, any, hits, lists);
 }
 
 // Whether a batch goes through the BVH; else all solids are tried.
@@ -125,7 +126,7 @@ static inline bool goes_in_tree(const Scene* scene, bool coherent) {
 // The hits of the lanes of `active` in (t_min, t_max]. `time`: of the rays, where things move. `way`: TRACE_*
 // bits.
 static inline void find_hits(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                             REAL t_max, REAL time, MASK active, u32 way, Hits* hits) {
+                             REAL t_max, REAL time, MASK active, u32 way, Hits* hits, HitList* lists) {
   *hits = no_hits(t_max);
   set_time_of_hits(scene, time, hits);
   if (!HAS_TRACED) return;
@@ -137,7 +138,8 @@ static inline void find_hits(const Scene* scene, const REAL3* o, const REAL3* d,
                hits);
   if (!HAS_BVH) return;
   if (way & TRACE_ANY) active &= ~hit_anything(hits);
-  if (in_tree && any_lane(active)) trace_bounded_batch(scene, o, d, t_min, active, way, hits);
+  if (LISTS_HITS && lists) active &= ~opaque_hits(scene->instances, hits, active);
+  if (in_tree && any_lane(active)) trace_bounded_batch(scene, o, d, t_min, active, way, hits, lists);
 }
 
 // Indices and geometric normals of the triangles among the hits. `coherent`: several rays meet the same one.
@@ -152,15 +154,18 @@ static inline void finish_triangles(const Scene* scene, bool coherent, Hits* hit
     if (HAS_SOLID && scene->instances[instance].shape != SHAPE_MESH) continue;
     Hit hit;
     hit.prim = (u32)place;
-    finish_triangle(scene->blocks, &hit);
+    hit.instance = (u32)instance;
+    finish_triangle(scene->instances, scene->blocks, &hit);
     const float3 ng = (float3)(hit.ng_x, hit.ng_y, hit.ng_z);
     if (coherent) {
       const MASK alike = MASK_OF(places == place) & MASK_OF(hits->instance == instance);
       bits &= ~lane_bits(alike);
       hits->prim = select(hits->prim, (MASK)((int)hit.prim), alike);
+      hits->instance = select(hits->instance, (MASK)((int)hit.instance), alike);
       hits->ng = select3(hits->ng, all3(ng), alike);
     } else {
       MASK_LANE(hits->prim, i) = (int)hit.prim;
+      MASK_LANE(hits->instance, i) = (int)hit.instance;
       set3(&hits->ng, i, ng);
     }
   }
@@ -169,15 +174,51 @@ static inline void finish_triangles(const Scene* scene, bool coherent, Hits* hit
 // The nearest hits of the lanes of `active` in (t_min, t_max].
 static inline void trace_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
                                REAL t_max, REAL time, MASK active, bool coherent, Hits* hits) {
-  find_hits(scene, o, d, t_min, t_max, time, active, coherent ? TRACE_COHERENT : TRACE_NEAREST, hits);
+  find_hits(scene, o, d, t_min, t_max, time, active, coherent ? TRACE_COHERENT : TRACE_NEAREST, hits,
+            0);
   finish_triangles(scene, coherent, hits);
 }
+
+#if LISTS_HITS
+// What the lanes of `active` meet on their way to lights in (t_min, t_max]: `last` is something that lets no
+// light through, or else the nearest solid; before it come the triangles of `lists`, a list a lane.
+static inline void list_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
+                              REAL t_max, REAL time, MASK active, Hits* last, HitList* lists) {
+  for (u32 i = 0; i < BATCH; ++i) clear_list(lists + i);
+  find_hits(scene, o, d, t_min, t_max, time, active, TRACE_NEAREST, last, lists);
+}
+
+// The nearest hits behind t_min of the lanes of `lanes`, of which `listed` receives those that their lists
+// have. Returns those that must be traced on from t_min: their lists end, or the solid behind these has been
+// passed with a face that it touches.
+NEVER_INLINE MASK next_listed(const Scene* scene, const HitList* lists, const REAL* t_min, MASK lanes,
+                              const Hits* last, Hits* hits, MASK* listed) {
+  *hits = *last;
+  hits->instance |= ~lanes;
+  MASK taken = NO_LANES, ended = NO_LANES;
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    Hit hit = get_hit(last, i);
+    if (take_nearest(scene->blocks, lists + i, REAL_LANE(*t_min, i), &hit)) {
+      MASK_LANE(taken, i) = -1;
+      set_hit(hits, i, &hit);
+    } else if (lists[i].full || (hit.instance != NO_INSTANCE && !(hit.t > REAL_LANE(*t_min, i)))) {
+      MASK_LANE(ended, i) = -1;
+      MASK_LANE(hits->instance, i) = (int)NO_INSTANCE;
+    }
+  }
+  finish_triangles(scene, false, hits);
+  *listed = taken;
+  return ended;
+}
+#endif
 
 // The lanes of `active` that hit anything in (t_min, t_max].
 static inline MASK occluded_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
                                   REAL t_max, REAL time, MASK active, bool coherent) {
   Hits hits;
-  find_hits(scene, o, d, t_min, t_max, time, active, TRACE_ANY | (coherent ? TRACE_COHERENT : 0u), &hits);
+  find_hits(scene, o, d, t_min, t_max, time, active, TRACE_ANY | (coherent ? TRACE_COHERENT : 0u), &hits,
+            0);
   return active & hit_anything(&hits);
 }
 

@@ -37,8 +37,16 @@ static inline ShearRay make_shear_ray(float3 o, float3 d) {
   return ray;
 }
 
-// The geometric normal of a triangle and its index, for a hit whose prim is still `block * 8 + lane`.
-static inline void finish_triangle(__global const TriangleBlock* restrict blocks, Hit* hit) {
+// Of the instances that share a BVH, `first` the first of them, the one that the triangle `prim` belongs to.
+static inline u32 instance_of_triangle(__global const Instance* restrict instances, u32 first, u32 prim) {
+  while ((instances[first].flags & INSTANCE_SHARES) && instances[first + 1u].first_prim <= prim) ++first;
+  return first;
+}
+
+// The geometric normal of a triangle, its index and its instance, for a hit whose prim is still
+// `block * 8 + lane`, and its instance the first of those that share the BVH.
+static inline void finish_triangle(__global const Instance* restrict instances,
+                                   __global const TriangleBlock* restrict blocks, Hit* hit) {
   __global const TriangleBlock* block = blocks + (hit->prim >> 3);
   const u32 i = hit->prim & 7u;
   const float3 v0 = (float3)(block->v0_x[i], block->v0_y[i], block->v0_z[i]);
@@ -46,6 +54,7 @@ static inline void finish_triangle(__global const TriangleBlock* restrict blocks
   const float3 e2 = (float3)(block->v2_x[i], block->v2_y[i], block->v2_z[i]) - v0;
   const float3 ng = cross(e1, e2);
   hit->prim = block->prim[i];
+  hit->instance = instance_of_triangle(instances, hit->instance, hit->prim);
   hit->ng_x = ng.x;
   hit->ng_y = ng.y;
   hit->ng_z = ng.z;

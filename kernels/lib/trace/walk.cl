@@ -11,6 +11,7 @@
 #include "lib/core/transform.cl"
 #include "lib/trace/aimed_rays.cl"
 #include "lib/trace/hits.cl"
+#include "lib/trace/listed_hits.cl"
 #include "lib/trace/nodes.cl"
 #include "lib/trace/triangles.cl"
 #include "lib/trace/walk_solids.cl"
@@ -37,6 +38,7 @@ typedef struct WalkRays {
   const REAL3 *o, *d;
   const REAL* t_min;
   Hits* hits;
+  HitList* lists;  // a list a ray, of all hits that may let light through; 0: the nearest hit is wanted
 } WalkRays;
 
 static inline void push_word(Walk* walk, u32 word) {
@@ -102,15 +104,49 @@ static inline void leave_mesh(Walk* walk, const PreparedRays* world) {
   walk->base = 0;
 }
 
+#if LISTS_HITS
+// What a walk that lists hits makes of those of a block.
+NEVER_INLINE void list_hits(const Scene* scene, const WalkRays* rays, Walk* walk, u32 index,
+                            const BlockTest* test) {
+  const u32 ray = walk->ray, first = walk->instance;
+  HitList* list = rays->lists + ray;
+  for (u32 lanes = test->lanes; lanes; lanes &= lanes - 1u) {
+    const u32 lane = lowest_bit(lanes);
+    const u32 own = instance_of_triangle(scene->instances, first, scene->blocks[index].prim[lane]);
+    if (scene->instances[own].flags & INSTANCE_FILTERS) continue;
+    // No light comes this way.
+    MASK_LANE(rays->hits->instance, ray) = (int)first;
+    MASK_LANE(rays->hits->prim, ray) = (int)(index * 8u + lane);
+    clear_list(list);
+    walk->top = 1u;
+    return;
+  }
+  const float t = REAL_LANE(rays->hits->t, ray);
+  const float end = list_block(index, test, first, t, list);
+  if (end == t) return;
+  REAL_LANE(rays->hits->t, ray) = end;
+  drop_behind(walk, walk->base, end);
+}
+#else
+static inline void list_hits(const Scene* scene, const WalkRays* rays, Walk* walk, u32 index,
+                             const BlockTest* test) {}
+#endif
+
 // The first block of a leaf; the others wait.
-ALWAYS_INLINE void walk_block(__global const TriangleBlock* blocks, const REAL* t_min, Hits* hits, Walk* walk,
-                              u32 word) {
+ALWAYS_INLINE void walk_block(const Scene* scene, const WalkRays* rays, Walk* walk, u32 word) {
+  __global const TriangleBlock* blocks = scene->blocks;
+  const REAL* t_min = rays->t_min;
+  Hits* hits = rays->hits;
   const u32 index = word & BVH_FIRST_MASK, ray = walk->ray;
   walk->stack[walk->top] = word - (1u << BVH_LEAF_SHIFT) + 1u;
   walk->top += (word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK) != 0u;
   const ShearRay shear = get_shear(walk->rays, ray);
   const BlockTest test = test_block(blocks + index, &shear, REAL_LANE(*t_min, ray), REAL_LANE(hits->t, ray));
   if (!test.lanes) return;
+  if (LISTS_HITS && rays->lists) {
+    list_hits(scene, rays, walk, index, &test);
+    return;
+  }
   Hit hit = get_hit(hits, ray);
   nearest_of_block(blocks, index, &test, walk->instance, &hit);
   set_hit(hits, ray, &hit);
@@ -130,7 +166,7 @@ ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const Prep
     return 0u;
   }
   if (HAS_MESH && walk->instance != NO_INSTANCE) {
-    walk_block(scene->blocks, rays->t_min, rays->hits, walk, word);
+    walk_block(scene, rays, walk, word);
     return 0u;
   }
   // The first of the leaf's scene->instances; the others wait.
@@ -140,12 +176,26 @@ ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const Prep
   return enter_mesh(scene->instances, walk, index) ? LEAF_TURN : 0u;
 }
 
+#if LISTS_HITS
+// The walks of `bits` that have come to something that lets no light through, and end there.
+static inline u32 end_at_opaque(__global const Instance* restrict instances, const WalkRays* rays, u32 bits) {
+  const u32 ended = lane_bits(opaque_hits(instances, rays->hits, lanes_of(bits)));
+  for (u32 left = ended; left; left &= left - 1u) clear_list(rays->lists + lowest_bit(left));
+  return ended;
+}
+#else
+static inline u32 end_at_opaque(__global const Instance* restrict instances, const WalkRays* rays, u32 bits) {
+  return 0u;
+}
+#endif
+
 // The walks of `bits`, which is not 0, at solids[ray]. Returns those that continue.
 NEVER_INLINE u32 walk_solids(__global const Instance* restrict instances, const u32* solids, u32 bits,
                              const WalkRays* rays, Walk* walks, bool any) {
   const REAL before = rays->hits->t;
   hit_solids_by_lane(instances, solids, bits, rays->o, rays->d, rays->t_min, rays->hits);
   if (any) return bits & ~lane_bits(hit_anything(rays->hits));
+  if (LISTS_HITS && rays->lists) bits &= ~end_at_opaque(instances, rays, bits);
   for (u32 nearer = bits & lane_bits(MASK_OF(rays->hits->t < before)); nearer; nearer &= nearer - 1u) {
     const u32 ray = lowest_bit(nearer);
     drop_behind(&walks[ray], 1u, REAL_LANE(rays->hits->t, ray));

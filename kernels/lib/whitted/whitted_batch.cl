@@ -7,8 +7,32 @@
 #include "lib/whitted/steps.cl"
 
 #if BATCH > 1
-// Takes the newest shadow rays, at most `most`, to the light or to their next filters, where those that pass
-// wait again. `coherent`: the rays run close together.
+// Takes the newest shadow rays, at most `most`, to the light or to filters, behind which those that pass wait
+// again. `coherent`: the rays run close together.
+#if LISTS_HITS
+NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 most, bool coherent,
+                                  float4* radiance, u32* counts) {
+  SceneRays rays;
+  PathStates paths;
+  HitList lists[BATCH];
+  Hits last, hits;
+  MASK lanes = pop_shadows(stack, most, &rays, &paths);
+  if (coherent) {
+    for (u32 i = 0; i < BATCH; ++i) clear_list(lists + i);
+    find_hits(scene, &rays.o, &rays.d, &rays.t_min, rays.t_max, time_of_rays(&rays), lanes, TRACE_COHERENT,
+              &last, 0);
+  } else
+    list_batch(scene, &rays.o, &rays.d, &rays.t_min, rays.t_max, time_of_rays(&rays), lanes, &last, lists);
+  do {
+    MASK listed;
+    const MASK again = next_listed(scene, lists, &rays.t_min, lanes, &last, &hits, &listed);
+    if (any_lane(again)) push_shadows(stack, &rays, &paths, again);
+    const MASK passing = reach_filters(scene, &rays, &paths, &hits, lanes & ~again, radiance, counts);
+    push_shadows(stack, &rays, &paths, passing & ~listed);
+    lanes = passing & listed;
+  } while (any_lane(lanes));
+}
+#else
 NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 most, bool coherent,
                                   float4* radiance, u32* counts) {
   SceneRays rays;
@@ -18,6 +42,7 @@ NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 mo
   const MASK passing = reach_filters(scene, &rays, &paths, &hits, lanes, radiance, counts);
   push_shadows(stack, &rays, &paths, passing);
 }
+#endif
 
 // Adds the lights that the surfaces of `lanes` see. `coherent`: the rays run close together, and so do those
 // to one light; else shadow rays wait until there are many, or with `last` until no others come.

@@ -42,9 +42,7 @@ void check_distances(const Shape& shape, const dvec3& origin, const dvec3& direc
   for (std::size_t i = 0; i < found.size(); ++i) CHECK(found[i] == Approx(expected[i]).epsilon(1e-6));
 }
 
-Bounds instance_box(const CompiledScene& scene) {
-  return child_bounds(scene.nodes.at(scene.info.tlas_root), 0);
-}
+Bounds instance_box(const CompiledScene& scene) { return scene.figures.box; }
 
 const std::vector<Shape> bounded_shapes =
     with_every_solid({SphereShape{2}, BoxShape{{1, 2, 3}}, CylinderShape{0.5, 2, true},

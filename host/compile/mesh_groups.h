@@ -1,0 +1,15 @@
+// Which meshes share a BVH: those that lie in each other, as liquid in ice.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "scene/description.h"
+
+namespace sundog {
+
+/// The meshes of each BVH, in ascending order, of all that objects place; most have one of their own. Meshes
+/// share one where a single object places each, by the same transform and without motion, and their boxes
+/// overlap by much: two trees in one place would each be walked by nearly every ray. At most 16 share one.
+std::vector<std::vector<std::size_t>> mesh_groups(const SceneDescription& scene);
+
+}  // namespace sundog

@@ -1,0 +1,96 @@
+// All that rays to a light meet on their way, found in one walk: of surfaces that may let light through each
+// (multi-hit traversal, Gribble, Naveros and Kerzner 2014), of others any. A ray that passes four interfaces
+// is so walked once, not five times.
+#ifndef SUNDOG_LIB_LISTED_HITS_CL
+#define SUNDOG_LIB_LISTED_HITS_CL
+#include "lib/core/config.h"
+#define LISTS_HITS (WALKS_IN_TURN && HAS_MESH && HAS_SHADOW_FILTERS && !HAS_SDF && BATCH > 1)
+
+// Of more, the nearest are kept.
+#define MOST_LISTED 8u
+
+// The triangles that a ray met, in no order; `place` as in finish_triangle().
+typedef struct HitList {
+  u32 count;
+  bool full;  // behind the farthest there may be others
+  float t[MOST_LISTED], u[MOST_LISTED], v[MOST_LISTED];
+  u32 place[MOST_LISTED], instance[MOST_LISTED];
+} HitList;
+
+#include "lib/core/tables.h"
+#include "lib/trace/hits.cl"
+#include "lib/trace/triangles.cl"
+
+// The lanes of `lanes` whose hits let no light through.
+static inline MASK opaque_hits(__global const Instance* restrict instances, const Hits* hits, MASK lanes) {
+  MASK found = NO_LANES;
+  u32 index;
+  for (u32 left = lane_bits(lanes & hit_anything(hits)); left;) {
+    const MASK mine = take_alike(hits->instance, &left, &index);
+    if (!(instances[index].flags & INSTANCE_FILTERS)) found |= mine;
+  }
+  return found;
+}
+
+#if LISTS_HITS
+static inline void clear_list(HitList* list) {
+  list->count = 0;
+  list->full = false;
+}
+
+static inline u32 farthest_listed(const HitList* list) {
+  u32 farthest = 0;
+  for (u32 k = 1; k < list->count; ++k)
+    if (list->t[k] > list->t[farthest]) farthest = k;
+  return farthest;
+}
+
+static inline void add_listed(HitList* list, float t, float u, float v, u32 place, u32 instance) {
+  u32 at = list->count;
+  if (at < MOST_LISTED) {
+    ++list->count;
+  } else {
+    at = farthest_listed(list);
+    list->full = true;
+    if (t >= list->t[at]) return;
+  }
+  list->t[at] = t;
+  list->u[at] = u;
+  list->v[at] = v;
+  list->place[at] = place;
+  list->instance[at] = instance;
+}
+
+// The hits of a block in the mesh of `instance`, all of them listed. Returns how far the ray still is to look.
+static inline float list_block(u32 index, const BlockTest* test, u32 instance, float t_max, HitList* list) {
+  float t[8], u[8], v[8];
+  vstore8(test->t, 0, t);
+  vstore8(test->u, 0, u);
+  vstore8(test->v, 0, v);
+  for (u32 lanes = test->lanes; lanes; lanes &= lanes - 1u) {
+    const u32 i = lowest_bit(lanes);
+    add_listed(list, t[i], u[i], v[i], index * 8u + i, instance);
+  }
+  return list->full ? list->t[farthest_listed(list)] : t_max;
+}
+
+// Takes the nearest of the list behind t_min as *hit when it goes before that. Returns whether it does.
+static inline bool take_nearest(__global const TriangleBlock* restrict blocks, const HitList* list,
+                                float t_min, Hit* hit) {
+  bool taken = false;
+  for (u32 k = 0; k < list->count; ++k) {
+    const float t = list->t[k];
+    if (!(t > t_min) || t > hit->t) continue;
+    if (t == hit->t && !wins_tie(blocks, list->instance[k], list->place[k], hit)) continue;
+    hit->t = t;
+    hit->u = list->u[k];
+    hit->v = list->v[k];
+    hit->prim = list->place[k];
+    hit->instance = list->instance[k];
+    taken = true;
+  }
+  return taken;
+}
+#endif
+
+#endif
