@@ -50,7 +50,8 @@ void for_each_table(const SceneTables& tables, const Visit& visit) {
 #undef SUNDOG_VISIT_TABLE
 }
 
-/// Of the instances that share a mesh BVH, `first` the first of them, the one that triangle `prim` belongs to.
+/// Of the instances that share a mesh BVH, `first` being the first of them, the one that has the triangle
+/// `prim`.
 inline u32 instance_of_triangle(const SceneTables& tables, u32 first, u32 prim) {
   const std::vector<Instance>& instances = tables.instances.rows();
   while (instances[first].flags & INSTANCE_SHARES && instances[first + 1].first_prim <= prim) ++first;

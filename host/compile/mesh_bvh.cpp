@@ -280,7 +280,8 @@ std::vector<Bounds> grandchildren(const std::vector<Bvh8Node>& nodes) {
   return boxes;
 }
 
-/// The boxes of parts of a mesh in a tree that it shares: of rows of its triangles, which lie near each other.
+/// The boxes of parts of a mesh in a tree that it shares: of rows of its triangles, which lie near each
+/// other.
 std::vector<Bounds> boxes_of_rows(const Mesh& mesh) {
   constexpr std::size_t parts = 32;
   const std::size_t step = (mesh.triangles.size() + parts - 1) / parts;
@@ -321,9 +322,11 @@ void fill_tables(const SceneDescription& scene, const Tree& tree, const Rows& fi
         tbb::parallel_for(std::size_t{0}, tree.meshes.size(), [&](std::size_t k) {
           const Mesh& own = tree.meshes.size() > 1 ? scene.meshes[tree.meshes[k]] : mesh;
           PlacedMesh& one = placed[tree.meshes[k]];
-          const auto triangles = std::span(out.triangles.edit()).subspan(one.first_triangle, one.triangle_count);
+          const auto triangles =
+              std::span(out.triangles.edit()).subspan(one.first_triangle, one.triangle_count);
           fill_vertices(own, one.first_vertex, default_material,
-                        std::span(out.vertices.edit()).subspan(one.first_vertex, vertex_count(own)), triangles);
+                        std::span(out.vertices.edit()).subspan(one.first_vertex, vertex_count(own)),
+                        triangles);
           one.materials = distinct_materials(triangles);
           one.boxes = tree.meshes.size() > 1 ? boxes_of_rows(own) : grandchildren(bvh.nodes);
         });
@@ -352,9 +355,8 @@ std::vector<PlacedMesh> add_meshes(const SceneDescription& scene, u32 default_ma
   for (std::size_t i = 0; i < placed.size(); ++i)
     if (placed[i].used) placed[i].unit = table_unit(scene.meshes[i]);
   std::vector<Tree> trees = plan_trees(scene, placed);
-  tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t i) {
-    build_tree(scene, placed[trees[i].meshes[0]].unit, trees[i]);
-  });
+  tbb::parallel_for(std::size_t{0}, trees.size(),
+                    [&](std::size_t i) { build_tree(scene, placed[trees[i].meshes[0]].unit, trees[i]); });
   const std::vector<Rows> first = lay_out(scene, trees, placed);
   resize_tables(first.back(), out);
   tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t i) {

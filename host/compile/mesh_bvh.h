@@ -15,9 +15,10 @@ struct PlacedMesh {
   u32 root = 0;          // the first node of its BVH
   u32 first_vertex = 0, first_triangle = 0;
   u32 triangle_count = 0;
-  double cost = 0;             // expected cost of a ray that crosses the BVH's box
-  u32 stack = 0;               // entries the BVH's traversal may need
-  std::vector<Bounds> boxes;   // of what it has in its root's grandchildren: a tight hull for a rotated instance
+  double cost = 0;  // expected cost of a ray that crosses the BVH's box
+  u32 stack = 0;    // entries the BVH's traversal may need
+  std::vector<Bounds>
+      boxes;  // of what it has in its root's grandchildren: a tight hull for a rotated instance
   std::vector<u32> materials;  // of its triangles, each once
 };
 

@@ -75,6 +75,9 @@ SUNDOG_SHARED_SIZE(Medium, 48)
 // Surfaces ask by shafts in scenes of so many instances at most: the answer has a bit for each.
 #define SHAFT_INSTANCES 32u
 
+// The part of a light that is worth a ray to it, of SceneInfo.cutoff.
+#define LEAST_OF_LIGHT 0x1p-12f
+
 // 384 bytes: the scene's constants. Positions in all tables count from a point of the world, `origin` plus
 // `origin_rest`, near what the camera looks at (host/compile/local_origin.h). The pixel (x, y), y down,
 // sample offset (a, b) in [0, 1)^2, looks along camera_corner + (x + a) camera_dx + (y + b) camera_dy, which

@@ -90,7 +90,11 @@ void cross_block(Walk& walk, const TriangleBlock& block, Ray& ray, u32 instance)
     const float t = glm::dot(e2, q) / det;
     if (!(t > ray.t_min && t <= ray.t_max)) continue;
     ray.t_max = t;
-    walk.hit = {t, u, v, block.prim[i], instance_of_triangle(walk.scene, instance, block.prim[i]),
+    walk.hit = {t,
+                u,
+                v,
+                block.prim[i],
+                instance_of_triangle(walk.scene, instance, block.prim[i]),
                 glm::cross(e1, e2)};
     walk.found = true;
   }

@@ -142,6 +142,8 @@ vec3 direct_light(const World& world, const Path& path, const Surface& s) {
     if (!(glm::dot(s.ns, sample.wi) > 0)) continue;
     const vec3 possible = sample.radiance * local_reflection(s, path.ray.d, sample.wi);
     if (!(greatest(possible) >= std::numeric_limits<float>::min())) continue;
+    const float share = world.scene.info.cutoff * LEAST_OF_LIGHT * greatest(sample.radiance);
+    if (greatest(path.throughput * possible) < share) continue;
     sum += possible * visibility(world, {s.p + s.offset * s.ng, sample.wi, 0, sample.distance}, path.media);
   }
   return sum;

@@ -244,7 +244,7 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
   const std::vector<Ref> refs = refs_of(bounded);
   WideBvhSettings settings;
   settings.block_width = 1;
-  settings.block_cost = 3;                                         // an instance costs more than a node
+  settings.block_cost = 3;  // an instance costs more than a node
   const bool shared = std::ranges::any_of(bounded, [](const Placed& one) { return !one.sharing.empty(); });
   if (shared || refs.size() > bounded.size()) settings.max_leaf_blocks = 1;  // a leaf's follow each other
   WideBvh tree =

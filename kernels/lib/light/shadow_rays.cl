@@ -98,9 +98,11 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
     possible = scale3(possible, relief_visibility(scene, s, light.wi, facing));
     possible = scale3(possible, walls_visibility(scene, rays, s, light.wi, facing, counts));
   }
-  // A high power of (r.v) may leave less than the least normal float, which some devices take for zero: not
-  // worth a ray.
-  const MASK lit = facing & MASK_OF(greatest3(possible) >= FLT_MIN);
+  // A high power of (r.v) may leave less than the least normal float, which some devices take for zero, or
+  // too small a part of the light: not worth a ray.
+  const REAL share = scene->info->cutoff * LEAST_OF_LIGHT * greatest3(light.radiance);
+  const MASK lit = facing & MASK_OF(greatest3(possible) >= FLT_MIN) &
+                   MASK_OF(greatest3(multiply3(paths->throughput, possible)) >= share);
   if (!any_lane(lit)) return;
   counts[COUNT_SHADOW] += lane_count(lit);
   note_rays(paths->pixel, lit, counts);

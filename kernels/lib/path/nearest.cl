@@ -44,7 +44,7 @@ static inline void next_hits(const Scene* scene, SceneRays* rays, MASK active, b
                              u32* counts) {
   const bool any = to_light && !HAS_SHADOW_FILTERS;
   find_hits(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active,
-            any ? TRACE_ANY : TRACE_NEAREST, hits, 0);
+            any ? TRACE_ANY : TRACE_NEAREST, hits, 0, 0);
   finish_triangles(scene, false, hits);
   const u32 purpose = any ? MARCH_TO_BLOCK : to_light ? MARCH_TO_LIGHT : MARCH_TO_SEE;
   if (any) active &= ~hit_anything(hits);

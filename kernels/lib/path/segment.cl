@@ -143,11 +143,7 @@ static inline MASK cross_unseen(const Scene* scene, SceneRays* rays, Encounters*
   return unseen;
 }
 
-// The lanes of `active` at the interfaces met->hit. Returns those that cannot see them: their rays are then
-// what holds behind. The media of the others are those just before the surface. Crossed interfaces do not
-// move the origin, so what lies behind a vanished interface keeps its bits.
-static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK active, Encounters* met,
-                                    u32* counts) {
+static inline void start_encounters(Encounters* met) {
   met->absorbed = all3((float3)(1.0f));
   met->before = NO_LANES;
   met->after = NO_LANES;
@@ -157,6 +153,14 @@ static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK ac
   met->face.flags = NO_LANES;
   met->face.medium = NO_LANES;
   forget_behind(met);
+}
+
+// The lanes of `active` at the interfaces met->hit. Returns those that cannot see them: their rays are then
+// what holds behind. The media of the others are those just before the surface. Crossed interfaces do not
+// move the origin, so what lies behind a vanished interface keeps its bits.
+static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK active, Encounters* met,
+                                    u32* counts) {
+  start_encounters(met);
   return cross_unseen(scene, rays, met, active, counts);
 }
 #else
@@ -170,6 +174,50 @@ static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK ac
   met->before = NO_LANES;
   met->after = NO_LANES;
   met->face = hit_faces(scene, rays->d, &met->hit, active & hit_anything(&met->hit));
+  return NO_LANES;
+}
+#endif
+
+// Whether rays inside of media pass all that they do not see in one walk.
+#define LISTS_UNSEEN (LISTS_HITS && HAS_MEDIA && !HAS_PARALLAX)
+#if LISTS_UNSEEN
+// The priorities of the media that the lanes of `lanes` are in.
+static inline MASK priorities_around(const Scene* scene, const SceneRays* rays, MASK lanes) {
+  MASK priorities = (MASK)((int)0x80000000);
+  u32 index;
+  const MASK here = current_media(scene->media, rays, lanes);
+  for (u32 left = lane_bits(lanes & MASK_OF(here != 0)); left;) {
+    const MASK mine = take_alike(here, &left, &index);
+    priorities = select(priorities, (MASK)(scene->media[index].priority), mine);
+  }
+  return priorities;
+}
+
+// The same as meet_interfaces() for rays that do not run close together; most of those returned there are
+// taken on at once.
+static inline MASK meet_listed(const Scene* scene, SceneRays* rays, MASK active, Encounters* met,
+                               u32* counts) {
+  HitList lists[BATCH];
+  Hits last, hits;
+  MASK listed, unseen = NO_LANES;
+  const MASK priorities = priorities_around(scene, rays, active);
+  list_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active, &priorities,
+             &last, lists);
+  start_encounters(met);
+  met->hit = last;
+  do {
+    const MASK again = next_listed(scene, lists, &rays->t_min, active, &last, &hits, &listed);
+    active &= ~again;
+    met->hit = select_hits(&met->hit, &hits, active);
+    const MASK crossing = cross_unseen(scene, rays, met, active, counts);
+    unseen |= again | (crossing & ~listed);
+    active = crossing & listed;
+  } while (any_lane(active));
+  return unseen;
+}
+#else
+static inline MASK meet_listed(const Scene* scene, SceneRays* rays, MASK active, Encounters* met,
+                               u32* counts) {
   return NO_LANES;
 }
 #endif

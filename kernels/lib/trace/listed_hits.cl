@@ -4,7 +4,7 @@
 #ifndef SUNDOG_LIB_LISTED_HITS_CL
 #define SUNDOG_LIB_LISTED_HITS_CL
 #include "lib/core/config.h"
-#define LISTS_HITS (WALKS_IN_TURN && HAS_MESH && HAS_SHADOW_FILTERS && !HAS_SDF && BATCH > 1)
+#define LISTS_HITS (WALKS_IN_TURN && HAS_MESH && (HAS_SHADOW_FILTERS || HAS_MEDIA) && !HAS_SDF && BATCH > 1)
 
 // Of more, the nearest are kept.
 #define MOST_LISTED 8u
@@ -61,7 +61,18 @@ static inline void add_listed(HitList* list, float t, float u, float v, u32 plac
   list->instance[at] = instance;
 }
 
-// The hits of a block in the mesh of `instance`, all of them listed. Returns how far the ray still is to look.
+// Whether rays in a medium of `priority` do not see the instance: it is filled by one of a lower priority.
+static inline bool is_overruled(const Scene* scene, u32 index, int priority) {
+  __global const Instance* instance = scene->instances + index;
+  if (!(instance->flags & INSTANCE_TRANSMITS) || instance->material == NO_MATERIAL || instance->touch > 0.0f)
+    return false;
+  __global const Material* material = scene->materials + instance->material;
+  return (material->flags & (MATERIAL_TRANSMITS | MATERIAL_THIN)) == MATERIAL_TRANSMITS &&
+         scene->media[material->medium].priority < priority;
+}
+
+// The hits of a block in the mesh of `instance`, all of them listed. Returns how far the ray still is to
+// look.
 static inline float list_block(u32 index, const BlockTest* test, u32 instance, float t_max, HitList* list) {
   float t[8], u[8], v[8];
   vstore8(test->t, 0, t);

@@ -79,8 +79,9 @@ static inline bool trace_packet(const Scene* scene, const REAL3* o, const REAL3*
 
 #if WALKS_IN_TURN
 static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                               MASK active, bool lone_mesh, bool any, Hits* hits, HitList* lists) {
-  const WalkRays walkers = {o, d, t_min, hits, lists};
+                               MASK active, bool lone_mesh, bool any, Hits* hits, HitList* lists,
+                               const MASK* priorities) {
+  const WalkRays walkers = {o, d, t_min, hits, lists, priorities};
   const u32 bits = lane_bits(active);
   if (lone_mesh)
     walk_rays(scene, &walkers, bits, scene->instances->root, 0u, any);
@@ -89,7 +90,8 @@ static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* 
 }
 #else
 static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                               MASK active, bool lone_mesh, bool any, Hits* hits, HitList* lists) {
+                               MASK active, bool lone_mesh, bool any, Hits* hits, HitList* lists,
+                               const MASK* priorities) {
   for (u32 bits = lane_bits(active); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     Hit hit = get_hit(hits, i);
@@ -102,8 +104,8 @@ static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* 
 
 // The bounded instances for the lanes of `active`. `way`: TRACE_* bits.
 static inline void trace_bounded_batch(const Scene* scene, const REAL3* world_o, const REAL3* world_d,
-                                       const REAL* t_min, MASK active, u32 way, Hits* hits,
-                                       HitList* lists) {
+                                       const REAL* t_min, MASK active, u32 way, Hits* hits, HitList* lists,
+                                       const MASK* priorities) {
   REAL3 o = *world_o, d = *world_d;
   // A mesh alone needs no scene BVH, and takes all rays into its space at once.
   const bool lone_mesh =
@@ -114,7 +116,7 @@ static inline void trace_bounded_batch(const Scene* scene, const REAL3* world_o,
   }
   const bool any = way & TRACE_ANY;
   if ((way & TRACE_COHERENT) && trace_packet(scene, &o, &d, t_min, active, lone_mesh, any, hits)) return;
-  trace_alone(scene, &o, &d, t_min, active, lone_mesh, any, hits, lists);
+  trace_alone(scene, &o, &d, t_min, active, lone_mesh, any, hits, lists, priorities);
 }
 
 // Whether a batch goes through the BVH; else all solids are tried.
@@ -126,7 +128,8 @@ static inline bool goes_in_tree(const Scene* scene, bool coherent) {
 // The hits of the lanes of `active` in (t_min, t_max]. `time`: of the rays, where things move. `way`: TRACE_*
 // bits.
 static inline void find_hits(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                             REAL t_max, REAL time, MASK active, u32 way, Hits* hits, HitList* lists) {
+                             REAL t_max, REAL time, MASK active, u32 way, Hits* hits, HitList* lists,
+                             const MASK* priorities) {
   *hits = no_hits(t_max);
   set_time_of_hits(scene, time, hits);
   if (!HAS_TRACED) return;
@@ -138,8 +141,9 @@ static inline void find_hits(const Scene* scene, const REAL3* o, const REAL3* d,
                hits);
   if (!HAS_BVH) return;
   if (way & TRACE_ANY) active &= ~hit_anything(hits);
-  if (LISTS_HITS && lists) active &= ~opaque_hits(scene->instances, hits, active);
-  if (in_tree && any_lane(active)) trace_bounded_batch(scene, o, d, t_min, active, way, hits, lists);
+  if (LISTS_HITS && lists && !priorities) active &= ~opaque_hits(scene->instances, hits, active);
+  if (in_tree && any_lane(active))
+    trace_bounded_batch(scene, o, d, t_min, active, way, hits, lists, priorities);
 }
 
 // Indices and geometric normals of the triangles among the hits. `coherent`: several rays meet the same one.
@@ -174,18 +178,19 @@ static inline void finish_triangles(const Scene* scene, bool coherent, Hits* hit
 // The nearest hits of the lanes of `active` in (t_min, t_max].
 static inline void trace_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
                                REAL t_max, REAL time, MASK active, bool coherent, Hits* hits) {
-  find_hits(scene, o, d, t_min, t_max, time, active, coherent ? TRACE_COHERENT : TRACE_NEAREST, hits,
-            0);
+  find_hits(scene, o, d, t_min, t_max, time, active, coherent ? TRACE_COHERENT : TRACE_NEAREST, hits, 0, 0);
   finish_triangles(scene, coherent, hits);
 }
 
 #if LISTS_HITS
-// What the lanes of `active` meet on their way to lights in (t_min, t_max]: `last` is something that lets no
-// light through, or else the nearest solid; before it come the triangles of `lists`, a list a lane.
+// What the lanes of `active` meet in (t_min, t_max]: triangles that do not end them in `lists`, a list a
+// lane; behind these, or instead, `last`: rays to lights (`priorities` is 0) meet something that lets no
+// light through, or else the nearest solid; others, in media of `priorities`, what they see, or a solid.
 static inline void list_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                              REAL t_max, REAL time, MASK active, Hits* last, HitList* lists) {
+                              REAL t_max, REAL time, MASK active, const MASK* priorities, Hits* last,
+                              HitList* lists) {
   for (u32 i = 0; i < BATCH; ++i) clear_list(lists + i);
-  find_hits(scene, o, d, t_min, t_max, time, active, TRACE_NEAREST, last, lists);
+  find_hits(scene, o, d, t_min, t_max, time, active, TRACE_NEAREST, last, lists, priorities);
 }
 
 // The nearest hits behind t_min of the lanes of `lanes`, of which `listed` receives those that their lists
@@ -217,7 +222,7 @@ NEVER_INLINE MASK next_listed(const Scene* scene, const HitList* lists, const RE
 static inline MASK occluded_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
                                   REAL t_max, REAL time, MASK active, bool coherent) {
   Hits hits;
-  find_hits(scene, o, d, t_min, t_max, time, active, TRACE_ANY | (coherent ? TRACE_COHERENT : 0u), &hits,
+  find_hits(scene, o, d, t_min, t_max, time, active, TRACE_ANY | (coherent ? TRACE_COHERENT : 0u), &hits, 0,
             0);
   return active & hit_anything(&hits);
 }

@@ -38,7 +38,9 @@ typedef struct WalkRays {
   const REAL3 *o, *d;
   const REAL* t_min;
   Hits* hits;
-  HitList* lists;  // a list a ray, of all hits that may let light through; 0: the nearest hit is wanted
+  HitList* lists;          // a list a ray, of the hits that do not end it; 0: the nearest hit is wanted
+  const MASK* priorities;  // of the media that the rays are in, those of lower ones are listed; 0: all that
+                           // may let light through
 } WalkRays;
 
 static inline void push_word(Walk* walk, u32 word) {
@@ -105,11 +107,39 @@ static inline void leave_mesh(Walk* walk, const PreparedRays* world) {
 }
 
 #if LISTS_HITS
+// The hits of a block: those on what the ray does not see are listed, of the others the nearest ends it.
+static inline void list_overruled(const Scene* scene, const WalkRays* rays, Walk* walk, u32 index,
+                                  const BlockTest* test) {
+  const u32 ray = walk->ray, first = walk->instance;
+  const int priority = MASK_LANE(*rays->priorities, ray);
+  HitList* list = rays->lists + ray;
+  float t[8], u[8], v[8];
+  vstore8(test->t, 0, t);
+  vstore8(test->u, 0, u);
+  vstore8(test->v, 0, v);
+  Hit hit = get_hit(rays->hits, ray);
+  for (u32 lanes = test->lanes; lanes; lanes &= lanes - 1u) {
+    const u32 i = lowest_bit(lanes), place = index * 8u + i;
+    const u32 own = instance_of_triangle(scene->instances, first, scene->blocks[index].prim[i]);
+    if (is_overruled(scene, own, priority))
+      add_listed(list, t[i], u[i], v[i], place, first);
+    else
+      offer_triangle(scene->blocks, place, t[i], u[i], v[i], first, &hit);
+  }
+  if (list->full) hit.t = fmin(hit.t, list->t[farthest_listed(list)]);
+  set_hit(rays->hits, ray, &hit);
+  drop_behind(walk, walk->base, hit.t);
+}
+
 // What a walk that lists hits makes of those of a block.
 NEVER_INLINE void list_hits(const Scene* scene, const WalkRays* rays, Walk* walk, u32 index,
                             const BlockTest* test) {
   const u32 ray = walk->ray, first = walk->instance;
   HitList* list = rays->lists + ray;
+  if (rays->priorities) {
+    list_overruled(scene, rays, walk, index, test);
+    return;
+  }
   for (u32 lanes = test->lanes; lanes; lanes &= lanes - 1u) {
     const u32 lane = lowest_bit(lanes);
     const u32 own = instance_of_triangle(scene->instances, first, scene->blocks[index].prim[lane]);
@@ -195,7 +225,7 @@ NEVER_INLINE u32 walk_solids(__global const Instance* restrict instances, const 
   const REAL before = rays->hits->t;
   hit_solids_by_lane(instances, solids, bits, rays->o, rays->d, rays->t_min, rays->hits);
   if (any) return bits & ~lane_bits(hit_anything(rays->hits));
-  if (LISTS_HITS && rays->lists) bits &= ~end_at_opaque(instances, rays, bits);
+  if (LISTS_HITS && rays->lists && !rays->priorities) bits &= ~end_at_opaque(instances, rays, bits);
   for (u32 nearer = bits & lane_bits(MASK_OF(rays->hits->t < before)); nearer; nearer &= nearer - 1u) {
     const u32 ray = lowest_bit(nearer);
     drop_behind(&walks[ray], 1u, REAL_LANE(rays->hits->t, ray));

@@ -9,7 +9,7 @@
 #if BATCH > 1
 // Takes the newest shadow rays, at most `most`, to the light or to filters, behind which those that pass wait
 // again. `coherent`: the rays run close together.
-#if LISTS_HITS
+#if LISTS_HITS && HAS_SHADOW_FILTERS
 NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 most, bool coherent,
                                   float4* radiance, u32* counts) {
   SceneRays rays;
@@ -20,9 +20,9 @@ NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 mo
   if (coherent) {
     for (u32 i = 0; i < BATCH; ++i) clear_list(lists + i);
     find_hits(scene, &rays.o, &rays.d, &rays.t_min, rays.t_max, time_of_rays(&rays), lanes, TRACE_COHERENT,
-              &last, 0);
+              &last, 0, 0);
   } else
-    list_batch(scene, &rays.o, &rays.d, &rays.t_min, rays.t_max, time_of_rays(&rays), lanes, &last, lists);
+    list_batch(scene, &rays.o, &rays.d, &rays.t_min, rays.t_max, time_of_rays(&rays), lanes, 0, &last, lists);
   do {
     MASK listed;
     const MASK again = next_listed(scene, lists, &rays.t_min, lanes, &last, &hits, &listed);
@@ -78,7 +78,8 @@ NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, Scen
   Encounters met;
   Shading at;
   REAL3 seen;
-  const MASK unseen = meet_interfaces(scene, rays, lanes, coherent, &met, counts);
+  const MASK unseen = coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, lanes, coherent, &met, counts)
+                                                : meet_listed(scene, rays, lanes, &met, counts);
   const MASK hit = meet_surfaces(scene, tile, rays, paths, lanes, unseen, ALL_LANES, &met, &at, &seen, stack,
                                  radiance, counts);
   add_lights(scene, tile, rays, paths, hit, coherent, stack->count == 0u, &met.hit, &at, shadows, radiance,
