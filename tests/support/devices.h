@@ -8,9 +8,9 @@
 #include "device/device.h"
 #include "shared/types.h"
 
-/// Sets RUSTICL_ENABLE=llvmpipe unless it is set, so that a second implementation is tested where Mesa is
-/// installed. To be called before the first OpenCL call.
-void prepare_opencl_environment();
+/// Sets the drivers' variables, unless they are set. With `every_driver` RUSTICL_ENABLE=llvmpipe too, so that
+/// a second implementation is tested where Mesa is installed. To be called before the first OpenCL call.
+void prepare_opencl_environment(bool every_driver);
 
 /// Every usable device, or those of SUNDOG_TEST_DEVICES (a comma-separated list of --device SPECs). Fails the
 /// test when there is none.

@@ -273,7 +273,9 @@ TEST_CASE(
   CAPTURE(resumed.err);
   CHECK(resumed.status == 0);
   CHECK(read_file(folder / "a.pfm") == folder.plain);
-  CHECK(folder.stats()["devices"][0]["pixels"] == 0);
+  // The missing half alone, of which rank 0 may make a tile too that rank 1 is late with.
+  const json devices = folder.stats()["devices"];
+  CHECK(devices[0]["pixels"].get<int>() + devices[1]["pixels"].get<int>() == 160 * 60);
   CHECK_FALSE(std::filesystem::exists(folder / "checkpoint"));
 }
 

@@ -291,7 +291,8 @@ TEST_CASE(
     "while a kernel is built that no other stands in for, other edits are drawn; then it needs no compiler") {
   const DeviceInfo& device = test_devices().front();
   RenderSession session(std::vector<DeviceInfo>{device});
-  const SceneDescription usual = scenes::shipped_small("spheres");
+  SceneDescription usual = scenes::shipped_small("mandelbulb");
+  usual.render.max_depth = 3;  // as above, so that its general kernels are in the cache
   check_settled(session, usual, device, true);
   SceneDescription field = new_formula("length(p) - 1");
   field.fields[0].root = {};

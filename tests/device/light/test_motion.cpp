@@ -25,15 +25,18 @@ SceneDescription turning_things() {
   return load_scene(SUNDOG_SOURCE_DIR "/tests/support/turning_things.json");
 }
 
-/// The scene as it is at a time, with its own kernels: something behind the camera still moves.
+/// The scene as it is at a time, with its own kernels: something behind the camera still moves, or turns.
 SceneDescription still_at(SceneDescription scene, double time, int samples) {
+  bool turns = false;
   for (Object& object : scene.objects) {
+    turns |= !object.turns.empty();
     object.world_from_object = world_at(object, time) * object.world_from_object;
     object.moves_by = dvec3(0);
     object.turns.clear();
   }
   scenes::place(scene, SphereShape{0.01}, 0, glm::translate(glm::dmat4(1), dvec3(0, 9, 30)));
   scene.objects.back().moves_by = {0, 1, 0};
+  if (turns) scene.objects.back().turns = {{.degrees = 90, .about = {0, 9, 30}}};
   scene.render.samples = samples;
   return scene;
 }

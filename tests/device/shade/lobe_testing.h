@@ -2,7 +2,10 @@
 // samples of a batch of directions at a time.
 #pragma once
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "catch.h"
@@ -124,6 +127,7 @@ class Tester {
                 out, float4{float(wo.x), float(wo.y), float(wo.z), 0}, base_, size);
     std::vector<float> values(8 * wis.size());
     device_.read(out, std::span<float>(values));
+    device_.save_programs();  // for the next process: this one keeps its testers to the end
     std::vector<Lobe> lobes;
     for (std::size_t i = 0; i < wis.size(); ++i) {
       const float* v = values.data() + 8 * i;
@@ -147,6 +151,15 @@ class Tester {
   Buffer<Layers> layers_;
   Buffer<float> layer_rows_;
 };
+
+/// The tester of a device, made once in a process: some drivers compile its kernel for seconds, and its
+/// tables take as long. It stays until the end: drivers are gone when statics are destroyed.
+inline Tester& tester_on(const DeviceInfo& info, bool layered = false, bool mapped = false) {
+  static auto& made = *new std::map<std::tuple<std::string, bool, bool>, Tester>;
+  Tester& tester = made.try_emplace({info.label(), layered, mapped}, info, layered, mapped).first->second;
+  tester.set_base(0, 0);
+  return tester;
+}
 
 inline Material rough_metal(double roughness, float color = 1) {
   Material metal{};

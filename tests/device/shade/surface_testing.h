@@ -1,8 +1,11 @@
 // What textures make of points of surfaces, without rays, on a plane: small programs that scenes share,
 // because some drivers compile a frame's kernels for half a minute.
 #pragma once
+#include <fmt/format.h>
+
 #include <map>
 #include <memory>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -36,13 +39,6 @@ struct Shaded {
 };
 
 inline const char* const kernel_text = R"(
-#if PART == 1
-#include "lib/shade/relief.cl"
-#elif PART == 3
-#include "lib/light/relief_shadow.cl"
-#else
-#include "lib/shade/parallax.cl"
-#endif
 static float4 lane4(const REAL3* a, REAL w, u32 i) { return (float4)(get3(a, i), REAL_LANE(w, i)); }
 static u32 first_texture(const Scene* scene) {
   u32 slot = 0;
@@ -146,6 +142,14 @@ inline KernelDefines defines_of(const DeviceInfo& info, Part part, bool images, 
   return defines;
 }
 
+/// The part's includes stand under no #if: there each would be expanded wherever it is met, to 36 MB of text.
+inline std::string text_of(Part part) {
+  const char* file = part == Part::relief     ? "lib/shade/relief.cl"
+                     : part == Part::parallax ? "lib/light/relief_shadow.cl"
+                                              : "lib/shade/parallax.cl";
+  return fmt::format("#include \"{}\"\n{}", file, kernel_text);
+}
+
 /// The same for each test that asks.
 inline Lab& lab_of(const DeviceInfo& info, Part part, bool images, bool pages) {
   // Left to the end of the process, as drivers may be gone before.
@@ -154,7 +158,7 @@ inline Lab& lab_of(const DeviceInfo& info, Part part, bool images, bool pages) {
   if (!lab) {
     Device device(info);
     auto kernel = scene_kernel<Buffer<float4>, Buffer<float4>, u32>(
-        build_text(device, kernel_text, defines_of(info, part, images, pages)), "shade_points");
+        build_text(device, text_of(part), defines_of(info, part, images, pages)), "shade_points");
     lab = std::make_unique<Lab>(Lab{std::move(device), std::move(kernel)});
   }
   return *lab;

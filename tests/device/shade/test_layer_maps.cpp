@@ -53,33 +53,26 @@ std::vector<double> blocks(const Image& image) {
 
 }  // namespace
 
-TEST_CASE("white materials with a texture of roughness return at most all light, and little less") {
-  Tester tester(picture_devices().front(), true, true);
+TEST_CASE(
+    "white materials with textures of roughness or metalness return at most all light, and little less") {
+  Tester& tester = tester_on(picture_devices().front(), true, true);
   for (const Named& one : white_materials(0.3)) {
-    tester.set_layers(one.values);
+    tester.set_layers(one.values);  // of all that is done here this takes longest
+    const Material material = layered(one.values).material;
     for (const double roughness : roughnesses)
       for (const double cosine : {1.0, 0.7, 0.3, 0.1}) {
         INFO(one.name << " of the roughness " << roughness << " at " << cosine);
         tester.set_base(one.values.base_metalness, roughness);
-        const Material material = layered(one.values).material;
         for (const double side : {1.0, -1.0}) {
           const double mean = mean_weight(tester.draw(material, 1, side * at_cosine(cosine), 4 * count));
           CHECK(mean < 1.005);
           CHECK(mean > one.least - 0.005);  // scaled down for the midst of steps
         }
       }
-  }
-}
-
-TEST_CASE("white materials with a texture of metalness return at most all light, and little less") {
-  Tester tester(picture_devices().front(), true, true);
-  for (const Named& one : white_materials(0.3)) {
-    tester.set_layers(one.values);
     for (const double metalness : {0.0, 0.35, 1.0}) {
       INFO(one.name << " of the metalness " << metalness);
       tester.set_base(metalness, 0.4);
-      const double mean =
-          mean_weight(tester.draw(layered(one.values).material, 1, at_cosine(0.5), 4 * count));
+      const double mean = mean_weight(tester.draw(material, 1, at_cosine(0.5), 4 * count));
       CHECK(mean < 1.005);
       CHECK(mean > one.least);
     }
@@ -87,7 +80,7 @@ TEST_CASE("white materials with a texture of metalness return at most all light,
 }
 
 TEST_CASE("light takes the same way in both directions where textures give metalness and roughness") {
-  Tester tester(picture_devices().front(), true, true);
+  Tester& tester = tester_on(picture_devices().front(), true, true);
   const OpenPbr values = colored();
   tester.set_layers(values);
   const Material material = layered(values).material;
@@ -104,7 +97,7 @@ TEST_CASE("light takes the same way in both directions where textures give metal
 }
 
 TEST_CASE("samples lie as their density has it where textures give metalness and roughness") {
-  Tester tester(picture_devices().front(), true, true);
+  Tester& tester = tester_on(picture_devices().front(), true, true);
   OpenPbr values = colored();
   tester.set_layers(values);
   for (const double roughness : {0.43, 0.9}) {
@@ -119,7 +112,8 @@ TEST_CASE("samples lie as their density has it where textures give metalness and
 }
 
 TEST_CASE("a texture of one value gives the lobes of the number") {
-  Tester plain(picture_devices().front(), true), mapped(picture_devices().front(), true, true);
+  Tester &plain = tester_on(picture_devices().front(), true),
+         &mapped = tester_on(picture_devices().front(), true, true);
   for (const double roughness : {0.25, 0.4, 0.65}) {
     OpenPbr values = colored();
     values.specular_roughness = roughness;

@@ -6,7 +6,7 @@ using namespace sundog;
 using namespace sundog::lobes;
 
 TEST_CASE("white layered materials return at most all light at every roughness, and little less") {
-  Tester tester(picture_devices().front(), true);
+  Tester& tester = tester_on(picture_devices().front(), true);
   for (const double roughness : {0.0, 0.1, 0.2, 0.35, 0.5, 1.0})
     for (const Named& one : white_materials(roughness)) {
       tester.set_layers(one.values);
@@ -25,7 +25,7 @@ TEST_CASE("white layered materials return at most all light at every roughness, 
 }
 
 TEST_CASE("light takes the same way through layers in both directions") {
-  Tester tester(picture_devices().front(), true);
+  Tester& tester = tester_on(picture_devices().front(), true);
   OpenPbr values = colored();
   const Material material = layered(values).material;
   for (const double anisotropy : {0.0, 0.7}) {
@@ -43,7 +43,7 @@ TEST_CASE("light takes the same way through layers in both directions") {
 }
 
 TEST_CASE("samples of layers lie as their density has it") {
-  Tester tester(picture_devices().front(), true);
+  Tester& tester = tester_on(picture_devices().front(), true);
   OpenPbr brushed{.base_metalness = 1, .specular_roughness = 0.8, .specular_roughness_anisotropy = 0.6};
   tester.set_layers(brushed);
   CHECK(chi_squared(tester, layered(brushed).material, 1, at_cosine(0.7)) < 1.5);
@@ -65,7 +65,7 @@ TEST_CASE("samples of layers lie as their density has it") {
 }
 
 TEST_CASE("what layers leave for those below is what they do not return") {
-  Tester tester(picture_devices().front(), true);
+  Tester& tester = tester_on(picture_devices().front(), true);
   const OpenPbr black{.base_weight = 0, .specular_weight = 0, .specular_roughness = 0.5};
   OpenPbr coat = black, fuzz = black, shine = black;
   coat.coat_weight = 1, coat.coat_roughness = 0.6, coat.coat_ior = 1.8;
@@ -89,7 +89,7 @@ TEST_CASE("what layers leave for those below is what they do not return") {
 }
 
 TEST_CASE("a coat darkens a matte base as reflections within it do") {
-  Tester tester(picture_devices().front(), true);
+  Tester& tester = tester_on(picture_devices().front(), true);
   const double index = 1.6, albedo = 0.5, turn_back = std::sqrt(1 - 1 / (index * index));
   // What the inside of the coat sends back of light from all around, with all of it beyond the critical
   // angle.
@@ -114,7 +114,7 @@ TEST_CASE("a coat darkens a matte base as reflections within it do") {
 }
 
 TEST_CASE("a coat darkens clear glass by next to nothing: what the base lets through is not sent back") {
-  Tester tester(picture_devices().front(), true);
+  Tester& tester = tester_on(picture_devices().front(), true);
   OpenPbr glass{.specular_roughness = 0, .transmission_weight = 1, .coat_weight = 1};
   for (const double roughness : {0.0, 0.3}) {
     glass.coat_roughness = roughness;

@@ -22,7 +22,7 @@ void returns_all(const std::vector<Lobe>& drawn) {
 
 TEST_CASE("a white rough mirror returns all light and no more, a grey one no more than smooth") {
   on_every_device([](const DeviceInfo& info) {
-    Tester tester(info);
+    Tester& tester = tester_on(info);
     for (const double roughness : {0.02, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0})
       for (const double cosine : {1.0, 0.6, 0.2, 0.04}) {
         INFO(roughness << " at " << cosine);
@@ -36,7 +36,7 @@ TEST_CASE("a white rough mirror returns all light and no more, a grey one no mor
 
 TEST_CASE("white rough glass returns all light and no more at every roughness and index, from either side") {
   on_every_device([](const DeviceInfo& info) {
-    Tester tester(info);
+    Tester& tester = tester_on(info);
     for (const double index : {1.05, 1.2, 1.45, 3.5})
       for (const double roughness : {0.03, 0.1, 0.2, 0.45, 1.0})
         for (const double cosine : {0.9, 0.2, -0.9, -0.4}) {
@@ -58,7 +58,7 @@ TEST_CASE("samples of rough lobes lie as their density has it") {
   coated.diffuse = {0.3f, 0.3f, 0.3f, 0};
   coated.specular = {0.3f, 0.3f, 0.3f, 12};
   on_every_device([&](const DeviceInfo& info) {
-    Tester tester(info);
+    Tester& tester = tester_on(info);
     CHECK(chi_squared(tester, rough_metal(0.7), 1, at_cosine(0.7)) < 1.5);
     CHECK(chi_squared(tester, coated, 1, at_cosine(0.5)) < 1.5);
     CHECK(chi_squared(tester, rough_glass(0.8), 1.5, at_cosine(0.7)) < 1.5);
@@ -71,7 +71,7 @@ TEST_CASE("light takes the same way through rough surfaces in both directions") 
   const dvec3 o = at_cosine(0.8), above = on_sphere(0.35, 0.1), below = on_sphere(-0.7, 0.05);
   const double index = 1.5;
   on_every_device([&](const DeviceInfo& info) {
-    Tester tester(info);
+    Tester& tester = tester_on(info);
     const auto value = [&](const Material& material, const dvec3& wo, const dvec3& wi) {
       return tester.look(material, index, wo, {wi})[0].value.x / std::abs(wi.z);
     };
@@ -88,7 +88,7 @@ TEST_CASE("light takes the same way through rough surfaces in both directions") 
 
 TEST_CASE("rough surfaces that scatter once lose the light that meets two facets, by quadrature") {
   on_every_device([](const DeviceInfo& info) {
-    Tester tester(info);
+    Tester& tester = tester_on(info);
     for (const double roughness : {0.4472, 0.7, 1.0})
       for (const double cosine : {1.0, 0.6, 0.2}) {
         INFO(roughness << " at " << cosine);
@@ -112,7 +112,7 @@ TEST_CASE("the lobe of metal that scatters once is the distribution times its ma
   const double alpha = 0.2, color = 0.75, cosine = 0.7;
   const dvec3 o = at_cosine(cosine);
   on_every_device([&](const DeviceInfo& info) {
-    Tester tester(info);
+    Tester& tester = tester_on(info);
     Material metal = rough_metal(std::sqrt(alpha), float(color));
     metal.flags |= MATERIAL_SCATTERS_ONCE;
     for (const dvec3& wi : {on_sphere(0.7, 0), on_sphere(0.5, 0.02), on_sphere(0.9, 0.9)}) {
