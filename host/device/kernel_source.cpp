@@ -1,6 +1,6 @@
-// Include expansion. A file that was included where no #if is open is never needed again; one included under
-// an #if may not have been seen by the compiler, so it is expanded anew next time, and a guard of its own
-// keeps it single.
+// Include expansion. A file is not needed again while every #if is open under which it was included; behind
+// them the compiler may not have seen it, so it is expanded anew next time, and a guard of its own keeps it
+// single.
 #include "device/kernel_source.h"
 
 #include <fmt/format.h>
@@ -64,17 +64,16 @@ class Expander {
   Expander(const GeneratedFiles& generated, const std::filesystem::path& folder)
       : generated_(generated), folder_(folder) {}
 
-  /// `certain`: the compiler is sure to see this text, for no #if is open.
-  void expand(const std::string& path, bool certain) {
+  void expand(const std::string& path) {
     const std::string text = file_text(path);
     const bool guarded = has_include_guard(text);
     open_.push_back(path);
     if (!guarded) out += fmt::format("#ifndef {0}\n#define {0}\n", guard_name(path));
     out += fmt::format("#line 1 \"{}\"\n", path);
-    expand_lines(path, text, certain, guarded ? 1 : 0);
+    expand_lines(path, text, guarded ? 1 : 0);
     if (!guarded) out += "#endif\n";
     open_.pop_back();
-    if (certain) done_.insert(path);
+    seen_.back().insert(path);
   }
 
   std::string out;
@@ -85,31 +84,43 @@ class Expander {
     return embedded_kernel(path, folder_);
   }
 
-  void expand_lines(const std::string& path, const std::string& text, bool certain, int guard_depth) {
+  void expand_lines(const std::string& path, const std::string& text, int guard_depth) {
     std::istringstream in(text);
     std::string line;
     int depth = 0;
     for (int number = 1; std::getline(in, line); ++number) {
       const Directive directive = parse_directive(line);
-      if (directive.word.starts_with("if")) ++depth;
-      if (directive.word == "endif") --depth;
+      follow_conditional(directive.word, guard_depth, depth);
       const std::string target = included_path(directive);
       if (target.empty()) {
         out += line + "\n";
-      } else if (done_.contains(target)) {
+      } else if (is_seen(target)) {
         out += "\n";
       } else {
-        include(target, fmt::format("{}:{}", path, number), certain && depth <= guard_depth);
+        include(target, fmt::format("{}:{}", path, number));
         out += fmt::format("#line {} \"{}\"\n", number + 1, path);
       }
     }
   }
 
-  void include(const std::string& target, const std::string& place, bool certain) {
+  /// Opens and closes the branches of an #if. A guard around a file is none: behind it all is seen.
+  void follow_conditional(const std::string& word, int guard_depth, int& depth) {
+    const bool begins = word.starts_with("if"), turns = word.starts_with("el"), ends = word == "endif";
+    if ((turns || ends) && depth > guard_depth) seen_.pop_back();
+    if (begins) ++depth;
+    if ((begins || turns) && depth > guard_depth) seen_.emplace_back();
+    if (ends) --depth;
+  }
+
+  bool is_seen(const std::string& path) const {
+    return std::ranges::any_of(seen_, [&](const auto& branch) { return branch.contains(path); });
+  }
+
+  void include(const std::string& target, const std::string& place) {
     if (std::find(open_.begin(), open_.end(), target) != open_.end())
       throw BuildError(fmt::format("{}: {} includes itself", place, target), "");
     try {
-      expand(target, certain);
+      expand(target);
     } catch (const MissingKernelFile& missing) {
       throw BuildError(fmt::format("{}: {}", place, missing.what()), "");
     }
@@ -117,8 +128,8 @@ class Expander {
 
   const GeneratedFiles& generated_;
   const std::filesystem::path& folder_;
-  std::vector<std::string> open_;  // the files being expanded, outermost first
-  std::set<std::string> done_;
+  std::vector<std::string> open_;               // the files being expanded, outermost first
+  std::vector<std::set<std::string>> seen_{1};  // the files seen in each branch of an #if that is open
 };
 
 }  // namespace
@@ -128,7 +139,7 @@ std::string expand_kernel(const std::string& entry, const KernelDefines& defines
   Expander expander(generated, folder);
   expander.out = "#line 1 \"defines\"\n";
   for (const auto& [name, value] : defines) expander.out += fmt::format("#define {} {}\n", name, value);
-  expander.expand(entry, true);
+  expander.expand(entry);
   return expander.out;
 }
 

@@ -199,19 +199,20 @@ static inline void list_batch(const Scene* scene, const REAL3* o, const REAL3* d
 NEVER_INLINE MASK next_listed(const Scene* scene, const HitList* lists, const REAL* t_min, MASK lanes,
                               const Hits* last, Hits* hits, MASK* listed) {
   *hits = *last;
-  hits->instance |= ~lanes;
-  MASK taken = NO_LANES, ended = NO_LANES;
+  MASK taken = NO_LANES, ended = lanes & hit_anything(last) & MASK_OF(last->t <= *t_min);
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
+    if (!lists[i].count) continue;
     Hit hit = get_hit(last, i);
     if (take_nearest(scene->blocks, lists + i, REAL_LANE(*t_min, i), &hit)) {
       MASK_LANE(taken, i) = -1;
       set_hit(hits, i, &hit);
-    } else if (lists[i].full || (hit.instance != NO_INSTANCE && !(hit.t > REAL_LANE(*t_min, i)))) {
+    } else if (lists[i].full) {
       MASK_LANE(ended, i) = -1;
-      MASK_LANE(hits->instance, i) = (int)NO_INSTANCE;
     }
   }
+  ended &= ~taken;
+  hits->instance |= ended | ~lanes;
   finish_triangles(scene, false, hits);
   *listed = taken;
   return ended;

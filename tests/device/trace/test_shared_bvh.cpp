@@ -23,11 +23,17 @@ Mesh ball(float radius, glm::vec3 center) {
   return mesh;
 }
 
-/// A square of two triangles at the height y.
-Mesh pane(float y) {
+void add_pane(Mesh& mesh, float y, float slope) {
+  const auto first = static_cast<unsigned>(mesh.positions.size());
+  for (const glm::vec3 corner : {glm::vec3(-2, y - 2 * slope, -1), {2, y + 2 * slope, -1}, {0, y, 2}})
+    mesh.positions.push_back(corner);
+  mesh.triangles.emplace_back(first, first + 2, first + 1);
+}
+
+/// Triangles over the origin, the steeper the higher: their boxes overlap, and rays meet far ones first.
+Mesh panes(int count, float up) {
   Mesh mesh;
-  mesh.positions = {{-1, y, -1}, {1, y, -1}, {1, y, 1}, {-1, y, 1}};
-  mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
+  for (int i = 0; i < count; ++i) add_pane(mesh, up * (1 + 0.1f * float(i)), 0.07f * float(i));
   return mesh;
 }
 
@@ -108,16 +114,21 @@ TEST_CASE("meshes in one BVH are told apart") {
 TEST_CASE("a ray to a light passes any number of panes of meshes, up to what lets no light through") {
   constexpr int count = 20;
   const bool blocked = GENERATE(false, true);
-  SceneDescription scene = scenes::line_of_sight({3, 0.05, 0.1}, {0, 0, 0.1});
+  const int up = GENERATE(1, -1);  // leaves are met from their beginning, and from their end
+  SceneDescription scene = scenes::line_of_sight({3, 0.05 * up, 0.1}, {0, 0, 0.1});
   LightDescription sun;
   sun.type = LightType::directional;
-  sun.direction = {0, -1, 0};
+  sun.direction = {0, -up, 0};
   scene.lights.push_back(sun);
-  scenes::place(scene, PlaneShape{}, scenes::add_white(scene));
+  scenes::place(scene, PlaneShape{}, scenes::add_white(scene), glm::scale(glm::dmat4(1), dvec3(1, up, 1)));
   const int tinted = scenes::add_mirror(scene, 0);
   scene.materials.back().transmission = {0.9, 1, 1};
-  for (int i = 0; i < count; ++i) place_mesh(scene, pane(1 + 0.1f * float(i)), tinted);
-  if (blocked) place_mesh(scene, pane(2.25f), 0);
+  place_mesh(scene, panes(count, float(up)), tinted);
+  if (blocked) {
+    Mesh opaque;
+    add_pane(opaque, float(up) * 2.25f, 0);
+    place_mesh(scene, opaque, 0);
+  }
   on_each_tracer([&](const DeviceInfo& device, Tracer tracer) {
     SceneDescription own = scene;
     own.render.tracer = tracer;

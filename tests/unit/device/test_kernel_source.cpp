@@ -61,6 +61,18 @@ TEST_CASE("a file included under an #if is there again for those who need it for
   CHECK(occurrences(text, "#ifndef SUNDOG_INCLUDED_a_cl\n#define SUNDOG_INCLUDED_a_cl\n") == 2);
 }
 
+TEST_CASE(
+    "a file seen in a branch of an #if is there again in no text of that branch, but in other branches") {
+  const GeneratedFiles files = {{"main.cl",
+                                 "#if A\n#include \"b.cl\"\n#include \"c.cl\"\n#if B\n#include "
+                                 "\"c.cl\"\n#endif\n#else\n#include \"c.cl\"\n#endif\n"},
+                                {"b.cl", "#if C\n#include \"d.cl\"\n#endif\n#include \"c.cl\"\n"},
+                                {"c.cl", "int in_c;\n"},
+                                {"d.cl", "#include \"c.cl\"\n"}};
+  // Under C, behind that, and under #else.
+  CHECK(occurrences(expand_kernel("main.cl", {}, files), "int in_c;") == 3);
+}
+
 TEST_CASE("a header's own include guard does not count as an #if") {
   const std::string guarded = "// Comment.\n#ifndef H\n#define H\n#include \"a.cl\"\n#endif\n";
   const GeneratedFiles files = {
