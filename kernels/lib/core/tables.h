@@ -18,4 +18,11 @@ typedef struct Scene {
 #define SCENE_VALUE(type, host_type, name, label) , name
 #define SCENE_OF_PARAMETERS {info SCENE_TABLES(SCENE_VALUE)}
 
+// Asks the processor for the first bytes of a row that is read later: the wait for memory is over by then.
+#if defined(__AVX2__) && !defined(SUNDOG_PORTABLE)
+#define FETCH_ROW(row) __builtin_prefetch((const void*)(ulong)(row))
+#else
+#define FETCH_ROW(row)
+#endif
+
 #endif

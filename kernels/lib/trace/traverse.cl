@@ -168,6 +168,7 @@ static inline void finish_triangles(const Scene* scene, bool coherent, Hits* hit
       hits->instance = select(hits->instance, (MASK)((int)hit.instance), alike);
       hits->ng = select3(hits->ng, all3(ng), alike);
     } else {
+      FETCH_ROW(scene->triangles + hit.prim);  // for its normals
       MASK_LANE(hits->prim, i) = (int)hit.prim;
       MASK_LANE(hits->instance, i) = (int)hit.instance;
       set3(&hits->ng, i, ng);
