@@ -131,7 +131,7 @@ static inline void list_overruled(const Scene* scene, const WalkRays* rays, Walk
   drop_behind(walk, walk->base, hit.t);
 }
 
-// What a walk that lists hits makes of those of a block.
+// Adds the hits of a block to the list of a walk, or ends the walk where no light passes.
 NEVER_INLINE void list_hits(const Scene* scene, const WalkRays* rays, Walk* walk, u32 index,
                             const BlockTest* test) {
   const u32 ray = walk->ray, first = walk->instance;

@@ -1,5 +1,5 @@
-// Meshes in one BVH are drawn as those with a BVH each, on every tracer; rays pass what they do not see, and
-// rays to lights what lets light through, in one walk, however much that is.
+// Meshes that share a BVH look like meshes with a BVH each, on every tracer. One walk passes any number of
+// surfaces that cannot be seen, or that let light through.
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -93,7 +93,7 @@ void check_alike(const DeviceInfo& device, SceneDescription scene, Tracer tracer
 
 }  // namespace
 
-TEST_CASE("meshes in one BVH are told apart") {
+TEST_CASE("each mesh in a shared BVH keeps its own hits") {
   SceneDescription scene = small_picture();
   for (const dvec3 color : {dvec3(0.9, 0.2, 0.1), dvec3(0.1, 0.8, 0.2), dvec3(0.2, 0.2, 0.9)})
     scenes::add_white(scene), scene.materials.back().diffuse = color;
@@ -138,7 +138,7 @@ TEST_CASE("a ray to a light passes any number of panes of meshes, up to what let
   });
 }
 
-TEST_CASE("what a medium of a higher priority fills cannot be seen in it, however much that is") {
+TEST_CASE("surfaces inside a medium of a higher priority cannot be seen, however many") {
   SceneDescription scene = small_picture();
   const int ice = scenes::add_dielectric(scene, 1.31, {0.2, 0.1, 0}, 2);
   place_mesh(scene, ball(1, {0, 0, 0}), ice);
