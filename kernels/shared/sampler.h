@@ -80,30 +80,29 @@ static inline u32 owen_hash(u32 x, u32 seed) {
 // Samples that a sequence has before it begins again.
 #define SOBOL_SAMPLES 65536u
 
-// Adds (mod 2) the columns that bit `bit` of the reversed index `order` stands for. `order` may be a vector.
-#define SOBOL_COLUMN(bit, columns) ((columns) & (0u - ((order >> (bit)) & 1u)))
+// Direction numbers of two dimensions (in the low and the high 16 bits), reversed: a column for each bit of
+// the reversed index, by fours: COLUMNS(first bit, columns of this bit and of the three behind it) is their
+// sum (mod 2) for an index. The dimensions 0 and 1: van der Corput, and x + 1.
+#define SOBOL_PAIR_01(COLUMNS)                                      \
+  (COLUMNS(0, 0xffff8000u, 0x55554000u, 0x33332000u, 0x11111000u) ^ \
+   COLUMNS(4, 0x0f0f0800u, 0x05050400u, 0x03030200u, 0x01010100u) ^ \
+   COLUMNS(8, 0x00ff0080u, 0x00550040u, 0x00330020u, 0x00110010u) ^ \
+   COLUMNS(12, 0x000f0008u, 0x00050004u, 0x00030002u, 0x00010001u))
 
-// The dimensions 0 and 1 (in the low and the high 16 bits), reversed, of the sample whose reversed index is
-// `order`. Direction numbers: van der Corput, and x + 1.
-#define SOBOL_PAIR_01                                                                              \
-  (SOBOL_COLUMN(0, 0xffff8000u) ^ SOBOL_COLUMN(1, 0x55554000u) ^ SOBOL_COLUMN(2, 0x33332000u) ^    \
-   SOBOL_COLUMN(3, 0x11111000u) ^ SOBOL_COLUMN(4, 0x0f0f0800u) ^ SOBOL_COLUMN(5, 0x05050400u) ^    \
-   SOBOL_COLUMN(6, 0x03030200u) ^ SOBOL_COLUMN(7, 0x01010100u) ^ SOBOL_COLUMN(8, 0x00ff0080u) ^    \
-   SOBOL_COLUMN(9, 0x00550040u) ^ SOBOL_COLUMN(10, 0x00330020u) ^ SOBOL_COLUMN(11, 0x00110010u) ^  \
-   SOBOL_COLUMN(12, 0x000f0008u) ^ SOBOL_COLUMN(13, 0x00050004u) ^ SOBOL_COLUMN(14, 0x00030002u) ^ \
-   SOBOL_COLUMN(15, 0x00010001u))
+// The dimensions 2 and 3: x^2 + x + 1 with 1, 3, and x^3 + x + 1 with 1, 1, 3, which fill each eighth of a
+// square in its first eight samples.
+#define SOBOL_PAIR_23(COLUMNS)                                      \
+  (COLUMNS(0, 0xb082aa09u, 0x60417706u, 0x203f3903u, 0x10151601u) ^ \
+   COLUMNS(4, 0x0ff409aau, 0x05530677u, 0x02f60339u, 0x01920116u) ^ \
+   COLUMNS(8, 0x008900a3u, 0x00470071u, 0x003d003au, 0x00140017u) ^ \
+   COLUMNS(12, 0x000b0009u, 0x00060006u, 0x00020003u, 0x00010001u))
 
-// The same of the dimensions 2 and 3: x^2 + x + 1 with 1, 3, and x^3 + x + 1 with 1, 1, 3, which fill each
-// eighth of a square in its first eight samples.
-#define SOBOL_PAIR_23                                                                              \
-  (SOBOL_COLUMN(0, 0xb082aa09u) ^ SOBOL_COLUMN(1, 0x60417706u) ^ SOBOL_COLUMN(2, 0x203f3903u) ^    \
-   SOBOL_COLUMN(3, 0x10151601u) ^ SOBOL_COLUMN(4, 0x0ff409aau) ^ SOBOL_COLUMN(5, 0x05530677u) ^    \
-   SOBOL_COLUMN(6, 0x02f60339u) ^ SOBOL_COLUMN(7, 0x01920116u) ^ SOBOL_COLUMN(8, 0x008900a3u) ^    \
-   SOBOL_COLUMN(9, 0x00470071u) ^ SOBOL_COLUMN(10, 0x003d003au) ^ SOBOL_COLUMN(11, 0x00140017u) ^  \
-   SOBOL_COLUMN(12, 0x000b0009u) ^ SOBOL_COLUMN(13, 0x00060006u) ^ SOBOL_COLUMN(14, 0x00020003u) ^ \
-   SOBOL_COLUMN(15, 0x00010001u))
-static inline u32 sobol_pair_01(u32 order) { return SOBOL_PAIR_01; }
-static inline u32 sobol_pair_23(u32 order) { return SOBOL_PAIR_23; }
+// Of the index `order`, which may be a vector.
+#define SOBOL_COLUMN(bit, column) ((column) & (0u - ((order >> (bit)) & 1u)))
+#define SOBOL_COLUMNS(bit, a, b, c, d) \
+  (SOBOL_COLUMN(bit, a) ^ SOBOL_COLUMN(bit + 1, b) ^ SOBOL_COLUMN(bit + 2, c) ^ SOBOL_COLUMN(bit + 3, d))
+static inline u32 sobol_pair_01(u32 order) { return SOBOL_PAIR_01(SOBOL_COLUMNS); }
+static inline u32 sobol_pair_23(u32 order) { return SOBOL_PAIR_23(SOBOL_COLUMNS); }
 
 // The reversed index, 16 bits, of the sample in a sequence that is shuffled by `seed`: aligned runs of 2^k
 // samples stay such runs.

@@ -44,6 +44,17 @@ static inline LANE_U32 owen_lanes(LANE_U32 x, LANE_U32 seed) {
 // unit_float() of bits: 24 of them are an int above 0.
 static inline REAL unit_lanes(LANE_U32 bits) { return TO_REAL(AS_MASK(bits >> 8)) * 0x1p-24f; }
 
+// A sum of four columns by looking it up among the sixteen, where vectors can.
+#if LANES == 16 && defined(__AVX512F__) && !defined(SUNDOG_PORTABLE)
+#define SUMS_OF_FOUR(a, b, c, d)                                                                    \
+  (int16)(0, a, b, a ^ b, c, a ^ c, b ^ c, a ^ b ^ c, d, a ^ d, b ^ d, a ^ b ^ d, c ^ d, a ^ c ^ d, \
+          b ^ c ^ d, a ^ b ^ c ^ d)
+#define LANE_COLUMNS(bit, a, b, c, d) \
+  AS_LANE_U32(__builtin_ia32_permvarsi512(SUMS_OF_FOUR(a, b, c, d), AS_MASK(order >> bit)))
+#else
+#define LANE_COLUMNS SOBOL_COLUMNS
+#endif
+
 static inline REAL scrambled_lanes(LANE_U32 reversed, LANE_U32 seed, u32 component) {
   const LANE_U32 own = hash_lanes(seed + 0x9e3779b9u * (component + 1u));
   return unit_lanes(reversed_lanes(owen_lanes(reversed & 0xffffu, own)));
@@ -66,28 +77,19 @@ typedef struct LaneSamples {
   MASK x, y, sample;
 } LaneSamples;
 
-// Two numbers in [0, 1) for each lane: of the dimensions from `dimension` on, a multiple of four, or with
-// `later` of the two behind those.
-static inline void pair_lanes(const LaneSamples* at, MASK dimension, bool later, REAL* u, REAL* v) {
-  const LANE_U32 first = AS_LANE_U32(dimension), x = AS_LANE_U32(at->x), y = AS_LANE_U32(at->y),
-                 sample = AS_LANE_U32(at->sample), own = later ? first + 2u : first;
+// Two numbers in [0, 1) for each lane, of the dimensions from `own` on, an even number, by the samplers whose
+// dimensions have no more in common.
+static inline void unlinked_pair(const LaneSamples* at, LANE_U32 own, REAL* u, REAL* v) {
+  const LANE_U32 x = AS_LANE_U32(at->x), y = AS_LANE_U32(at->y), sample = AS_LANE_U32(at->sample);
   if (SAMPLER == SAMPLER_BLUE_NOISE) {
     const LANE_U32 index = reversed_lanes(Z_ORDER(x, y) << SAMPLE_ROOM | sample);
     const LANE_U32 place = owen_lanes(index, hash_lanes(own >> 1));
     *u = blue_noise_lanes(place, own);
     *v = blue_noise_lanes(second_lanes(place), own + 1u);
-    return;
-  }
-  if (SAMPLER == SAMPLER_INDEPENDENT) {
+  } else {
     *u = unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(own)))));
     *v = unit_lanes(hash_lanes(sample + hash_lanes(x + hash_lanes(y + hash_lanes(own + 1u)))));
-    return;
   }
-  const LANE_U32 seed = hash_lanes(x + hash_lanes(y + hash_lanes(first >> 2)));
-  const LANE_U32 order = owen_lanes(reversed_lanes(sample) >> 16, seed) & 0xffffu;
-  const LANE_U32 pair = later ? SOBOL_PAIR_23 : SOBOL_PAIR_01;
-  *u = scrambled_lanes(pair, seed, later ? 2u : 0u);
-  *v = scrambled_lanes(pair >> 16, seed, later ? 3u : 1u);
 }
 
 // Four numbers in [0, 1) for each lane: of the dimensions from `dimension` on, a multiple of four.
@@ -95,11 +97,40 @@ typedef struct FourNumbers {
   REAL x, y, z, w;
 } FourNumbers;
 
-static inline FourNumbers sample_lanes(const LaneSamples* at, MASK dimension) {
+// Those of the four that `first` and `later` ask for: the first two and the two behind them.
+static inline FourNumbers chosen_lanes(const LaneSamples* at, MASK dimension, bool first, bool later) {
+  const LANE_U32 own = AS_LANE_U32(dimension);
   FourNumbers u;
-  pair_lanes(at, dimension, false, &u.x, &u.y);
-  pair_lanes(at, dimension, true, &u.z, &u.w);
+  if ((SAMPLER == SAMPLER_BLUE_NOISE) | (SAMPLER == SAMPLER_INDEPENDENT)) {
+    if (first) unlinked_pair(at, own, &u.x, &u.y);
+    if (later) unlinked_pair(at, own + 2u, &u.z, &u.w);
+    return u;
+  }
+  const LANE_U32 seed =
+      hash_lanes(AS_LANE_U32(at->x) + hash_lanes(AS_LANE_U32(at->y) + hash_lanes(own >> 2)));
+  const LANE_U32 order = owen_lanes(reversed_lanes(AS_LANE_U32(at->sample)) >> 16, seed) & 0xffffu;
+  if (first) {
+    const LANE_U32 pair = SOBOL_PAIR_01(LANE_COLUMNS);
+    u.x = scrambled_lanes(pair, seed, 0u);
+    u.y = scrambled_lanes(pair >> 16, seed, 1u);
+  }
+  if (later) {
+    const LANE_U32 pair = SOBOL_PAIR_23(LANE_COLUMNS);
+    u.z = scrambled_lanes(pair, seed, 2u);
+    u.w = scrambled_lanes(pair >> 16, seed, 3u);
+  }
   return u;
+}
+
+NEVER_INLINE FourNumbers sample_lanes(const LaneSamples* at, MASK dimension) {
+  return chosen_lanes(at, dimension, true, true);
+}
+
+// Two of the four: the first two, or with `later` those behind them.
+static inline void pair_lanes(const LaneSamples* at, MASK dimension, bool later, REAL* u, REAL* v) {
+  const FourNumbers chosen = chosen_lanes(at, dimension, !later, later);
+  *u = later ? chosen.z : chosen.x;
+  *v = later ? chosen.w : chosen.y;
 }
 
 // Hammersley's set of `samples` points, shifted per pixel (Cranley and Patterson 1976).
