@@ -132,25 +132,30 @@ double luminance(const float4& c) {
   return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
 }
 
-/// What a pixel and its neighbours on either side have of the mean over it along an axis, or over its halves.
-using AxisShares = std::array<double, 3>;
-constexpr AxisShares share_of_pixel{0.125, 0.75, 0.125},
-    share_of_half[2] = {{0.25, 0.75, 0}, {0, 0.75, 0.25}};
+/// The luminance (w) of a pixel; columns go round, and the first and the last row stand for what is beyond.
+double luminance_at(const Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y) {
+  const std::ptrdiff_t width = picture.width, height = picture.height;
+  const std::ptrdiff_t row = std::clamp<std::ptrdiff_t>(y, 0, height - 1), column = (x + width) % width;
+  return double(picture.pixels[static_cast<std::size_t>(row * width + column)].w);
+}
 
-AxisShares shares_of(u32 part, u32 parts) { return parts == 1 ? share_of_pixel : share_of_half[part % 2]; }
-
-/// The mean luminance (w of the pixels) of the blended picture over a pixel's square, or with two `parts`
-/// along each axis over such a part.
-double light_of_part(const Picture& picture, u32 part_x, u32 part_y, u32 parts) {
-  const AxisShares across = shares_of(part_x, parts), down = shares_of(part_y, parts);
-  const u32 x = part_x / parts, y = part_y / parts;
+/// The mean luminance of the blended picture over a pixel's square.
+double light_of_pixel(const Picture& picture, u32 x, u32 y) {
+  constexpr std::array share{0.125, 0.75, 0.125};  // of a pixel and its neighbours along an axis
   double sum = 0;
   for (u32 j = 0; j < 3; ++j)
-    for (u32 i = 0; i < 3; ++i) {
-      const u32 row = std::min(y + j > 0 ? y + j - 1 : 0, picture.height - 1);
-      const u32 column = (x + i + picture.width - 1) % picture.width;
-      sum += across[i] * down[j] * double(picture.pixels[std::size_t{row} * picture.width + column].w);
-    }
+    for (u32 i = 0; i < 3; ++i)
+      sum +=
+          share[i] * share[j] * luminance_at(picture, std::ptrdiff_t{x} + i - 1, std::ptrdiff_t{y} + j - 1);
+  return sum;
+}
+
+/// The same over a cell between the middles of four pixels, of which pixel (x, y) is right of it and below.
+double light_between_pixels(const Picture& picture, u32 x, u32 y) {
+  double sum = 0;
+  for (const int j : {-1, 0})
+    for (const int i : {-1, 0})
+      sum += luminance_at(picture, std::ptrdiff_t{x} + i, std::ptrdiff_t{y} + j) / 4;
   return sum;
 }
 
@@ -166,18 +171,19 @@ double append_shares(std::span<const double> light, std::vector<float>& shares) 
   return whole;
 }
 
-/// Pixels, or parts of pixels, a cell along an axis.
-u32 parts_a_cell(u32 parts, u32 most) {
+/// Pixels a cell along an axis.
+u32 pixels_a_cell(u32 pixels, u32 most) {
   u32 each = 1;
-  while (parts / each > most || parts % each != 0) ++each;
+  while (pixels / each > most || pixels % each != 0) ++each;
   return each;
 }
 
-/// Quarters of pixels lie between the middles of four: so directions are chosen in them as the light is
-/// blended, which matters about a sun of a few pixels. Computed skies are smooth.
-u32 parts_of_pixels(const Picture& picture, EnvironmentType type) {
-  const bool room = 2 * picture.width <= most_columns && 2 * picture.height <= most_rows;
-  return type == EnvironmentType::image && room ? 2 : 1;
+/// Between the middles of four pixels directions are chosen as the light is blended, which matters about a
+/// sun of a few pixels. Computed skies are smooth.
+bool are_cells_between_pixels(const Picture& picture, EnvironmentType type) {
+  const bool dark = std::ranges::all_of(picture.pixels, [](const float4& pixel) { return pixel.w == 0; });
+  return type == EnvironmentType::image && !dark && picture.width <= most_columns &&
+         picture.height <= most_rows;
 }
 
 /// Moves `step` on to the last step of running sums that begins at or before u.
@@ -197,35 +203,75 @@ void append_cutpoints(std::span<const float> sums, std::vector<u32>& cutpoints) 
   }
 }
 
-void add_shares(const Picture& picture, u32 parts, Environment& e, CompiledScene& out) {
-  const u32 width = picture.width * parts, height = picture.height * parts;
-  const u32 across = parts_a_cell(width, most_columns), down = parts_a_cell(height, most_rows);
-  e.columns = width / across;
-  e.rows = height / down;
-  std::vector<double> rows(e.rows);
-  std::vector<float> sums, cells;
-  std::vector<u32> words;
+/// The shares of cells, row by row.
+struct CellShares {
+  std::vector<double> rows;  // the light of each
+  std::vector<float> sums;   // the running sums of each row's cells
+  std::vector<u32> words;    // their cutpoints
+};
+
+void append_row(std::span<const double> light, CellShares& cells) {
+  std::vector<float> sums;
+  cells.rows.push_back(append_shares(light, sums));
+  append_cutpoints(sums, cells.words);
+  cells.sums.insert(cells.sums.end(), sums.begin(), sums.end());
+}
+
+/// Cells of whole pixels. `facts`: see shared/environment.h.
+CellShares shares_of_pixels(const Picture& picture, Environment& e, std::vector<float>& facts) {
+  const u32 across = pixels_a_cell(picture.width, most_columns),
+            down = pixels_a_cell(picture.height, most_rows);
+  e.columns = picture.width / across;
+  e.rows = picture.height / down;
+  CellShares cells;
   for (u32 row = 0; row < e.rows; ++row) {
     std::vector<double> light(e.columns);
     for (u32 y = row * down; y < (row + 1) * down; ++y) {
-      const double angle = std::cos(pi * y / height) - std::cos(pi * (y + 1) / height);
-      for (u32 x = 0; x < width; ++x) light[x / across] += angle * light_of_part(picture, x, y, parts);
+      const double angle = std::cos(pi * y / picture.height) - std::cos(pi * (y + 1) / picture.height);
+      for (u32 x = 0; x < picture.width; ++x) light[x / across] += angle * light_of_pixel(picture, x, y);
     }
-    sums.clear();
-    rows[row] = append_shares(light, sums);
-    append_cutpoints(sums, words);
-    cells.insert(cells.end(), sums.begin(), sums.end());
+    append_row(light, cells);
   }
-  sums.clear();
-  append_shares(rows, sums);
-  std::vector<float>& shares = out.environment_shares.edit();
   for (u32 row = 0; row <= e.rows; ++row)
-    shares.push_back(static_cast<float>(std::cos(pi * double(row) / double(e.rows))));
+    facts.push_back(static_cast<float>(std::cos(pi * double(row) / double(e.rows))));
+  return cells;
+}
+
+/// Cells between the middles of pixels: a row more than the picture has; the first and the last one are half
+/// as high.
+CellShares shares_between_pixels(const Picture& picture, Environment& e, std::vector<float>& facts) {
+  e.columns = picture.width;
+  e.rows = picture.height + 1;
+  CellShares cells;
+  std::vector<double> evenness;  // the part of a row's solid angle in its part of the picture
+  double whole = 0;
+  for (u32 row = 0; row < e.rows; ++row) {
+    const double top = std::max(row - 0.5, 0.0) / picture.height,
+                 bottom = std::min((row + 0.5) / picture.height, 1.0);
+    const double angle = std::cos(pi * top) - std::cos(pi * bottom);
+    std::vector<double> light(e.columns);
+    for (u32 x = 0; x < e.columns; ++x) light[x] = angle * light_between_pixels(picture, x, row);
+    append_row(light, cells);
+    evenness.push_back(angle / (bottom - top));
+    whole += cells.rows.back();
+  }
+  const double cell = 2 * pi * pi / e.columns;  // of width and height in the picture
+  for (const double even : evenness) facts.push_back(static_cast<float>(even / (cell * whole)));
+  facts.push_back(0);
+  return cells;
+}
+
+void add_shares(const Picture& picture, Environment& e, CompiledScene& out) {
+  std::vector<float>& shares = out.environment_shares.edit();
+  const CellShares cells = e.up.w == CELLS_BETWEEN_PIXELS ? shares_between_pixels(picture, e, shares)
+                                                          : shares_of_pixels(picture, e, shares);
+  std::vector<float> sums;
+  append_shares(cells.rows, sums);
   shares.insert(shares.end(), sums.begin(), sums.end());
-  shares.insert(shares.end(), cells.begin(), cells.end());
+  shares.insert(shares.end(), cells.sums.begin(), cells.sums.end());
   std::vector<u32>& cutpoints = out.environment_cutpoints.edit();
   append_cutpoints(sums, cutpoints);
-  cutpoints.insert(cutpoints.end(), words.begin(), words.end());
+  cutpoints.insert(cutpoints.end(), cells.words.begin(), cells.words.end());
 }
 
 void add_sun(const SceneDescription& scene, const glm::dmat3& axes, CompiledScene& out) {
@@ -258,10 +304,9 @@ void add_environment(const SceneDescription& scene, CompiledScene& out, const Ha
   packed.ahead = pack(axes[2]);
   packed.width = picture.width;
   packed.height = picture.height;
-  const u32 parts = parts_of_pixels(picture, e.type);
-  packed.up.w = parts == 2 ? CELLS_ARE_QUARTERS : CELLS_ARE_PIXELS;
   for (float4& pixel : picture.pixels) pixel.w = static_cast<float>(luminance(pixel));
-  add_shares(picture, parts, packed, out);
+  packed.up.w = are_cells_between_pixels(picture, e.type) ? CELLS_BETWEEN_PIXELS : CELLS_ARE_PIXELS;
+  add_shares(picture, packed, out);
   out.environments.push_back(packed);
   out.environment = std::move(picture.pixels);
   out.info.sees_environment = e.visible;

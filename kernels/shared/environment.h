@@ -6,13 +6,15 @@ SUNDOG_SHARED_BEGIN
 
 // 64 bytes. The picture's rows go from the top (`up`) to the bottom, its columns about the axis: the middle
 // is seen along `ahead`, what is right of it along `right`. The table `environment` holds its pixels (rgb),
-// row by row. A cell covers whole pixels, or with CELLS_ARE_QUARTERS a quarter of one: then it lies between
-// the middles of four pixels, whose luminances stand in w, and directions are chosen in it as these are
-// blended; else evenly in solid angle. `environment_shares` has first the cosines to
-// `up` of the borders of the rows of cells, then the running sums of the rows' light, from 0 to 1, then for
-// each row those of its cells. `environment_cutpoints` has first for the rows, then for the cells of each
-// row, n words for n sums' steps: word k has the first and, above CUTPOINT_SHIFT, the last step that a number
-// in [k, k + 1) / n may lie in.
+// row by row. A cell covers whole pixels, and directions are chosen evenly in its solid angle; or, with
+// CELLS_BETWEEN_PIXELS, it lies between the middles of four pixels, whose luminances stand in w, and
+// directions are chosen in it as these are blended. Then there is a row of cells more than of pixels, the
+// first and the last row are half as high, and cells of column 0 lie across the seam. `environment_shares`
+// has first, for each row and one more, the cosine to `up` of its border, or the density of its directions,
+// per steradian, over luminance and times the sine to `up`; then the running sums of the rows' light, from 0
+// to 1, then for each row those of its cells. `environment_cutpoints` has first for the rows, then for the
+// cells of each row, n words for n sums' steps: word k has the first and, above CUTPOINT_SHIFT, the last step
+// that a number in [k, k + 1) / n may lie in.
 typedef struct Environment {
   float4 right, up, ahead;  // unit, at right angles; up.w: CELLS_*
   u32 width, height;        // in pixels
@@ -22,7 +24,7 @@ SUNDOG_SHARED_SIZE(Environment, 64)
 
 #define CUTPOINT_SHIFT 16u
 #define CELLS_ARE_PIXELS 0.0f
-#define CELLS_ARE_QUARTERS 1.0f
+#define CELLS_BETWEEN_PIXELS 1.0f
 
 SUNDOG_SHARED_END
 #endif

@@ -37,13 +37,6 @@ NEVER_INLINE REAL3 environment_at(const Scene* scene, REAL x, REAL y, MASK lanes
   return light;
 }
 
-// What the environment sends along the directions of `lanes`.
-static inline REAL3 environment_along(const Scene* scene, REAL3 d, MASK lanes) {
-  REAL x, y;
-  environment_place(scene->environments, d, &x, &y);
-  return environment_at(scene, x, y, lanes);
-}
-
 // Running sums: where they begin in environment_shares, where their cutpoints do, and how many steps they
 // have.
 typedef struct RunningSums {
@@ -85,38 +78,7 @@ static inline REAL step_begin(const Scene* scene, const RunningSums* sums, MASK 
   return from;
 }
 
-// The luminance of the blended picture at the corners of cells that are quarters of pixels: left and right of
-// the top, left and right of the bottom.
-typedef struct CellLight {
-  REAL corner[4];
-} CellLight;
-
 static inline REAL mix_lanes(REAL from, REAL to, REAL part) { return fma(part, to - from, from); }
-
-// Where a cell begins between the middles of two pixels, of which the first is returned.
-static inline MASK first_middle(MASK cell, REAL* part) {
-  *part = select((REAL)(0.5f), (REAL)(0.0f), MASK_OF((cell & 1) != 0));
-  return (cell - 1) >> 1;
-}
-
-static inline CellLight light_of_cells(const Scene* scene, MASK column, MASK row, MASK lanes) {
-  const int width = (int)scene->environments->width, height = (int)scene->environments->height;
-  REAL a, b;
-  const MASK left = first_middle(column, &a), top = first_middle(row, &b);
-  const MASK x0 = select(left, left + width, MASK_OF(left < 0)),
-             x1 = select((MASK)(0), left + 1, MASK_OF(left + 1 < width)), y0 = max(top, (MASK)(0)) * width,
-             y1 = min(top + 1, (MASK)(height - 1)) * width;
-  __global const float* luminance = (__global const float*)scene->environment + 3;
-  const REAL p = gather_floats(luminance, (y0 + x0) * 4, lanes),
-             q = gather_floats(luminance, (y0 + x1) * 4, lanes),
-             r = gather_floats(luminance, (y1 + x0) * 4, lanes),
-             s = gather_floats(luminance, (y1 + x1) * 4, lanes);
-  const REAL p_r = mix_lanes(p, r, b), q_s = mix_lanes(q, s, b), c = b + 0.5f, d = a + 0.5f;
-  const REAL r_p = mix_lanes(p, r, c), s_q = mix_lanes(q, s, c);
-  const CellLight light = {
-      {mix_lanes(p_r, q_s, a), mix_lanes(p_r, q_s, d), mix_lanes(r_p, s_q, a), mix_lanes(r_p, s_q, d)}};
-  return light;
-}
 
 // The place in [0, 1] by the number u, where the density goes evenly from `from` to `to`.
 static inline REAL place_by_slope(REAL u, REAL from, REAL to) {
@@ -125,16 +87,29 @@ static inline REAL place_by_slope(REAL u, REAL from, REAL to) {
   return select(v, real_min(v * sum / nonzero(from + root), (REAL)(1.0f)), MASK_OF(sum > 0.0f));
 }
 
-// The density, per steradian, of the directions at (x, y) in cells, and at y of the picture's height, which
-// are chosen as the light is blended.
-static inline REAL blended_density(__global const Environment* e, REAL share, const CellLight* light, REAL x,
-                                   REAL y, REAL sine) {
-  const REAL* c = light->corner;
-  const REAL mean = 0.25f * (c[0] + c[1] + c[2] + c[3]);
-  const REAL here = mix_lanes(mix_lanes(c[0], c[1], x), mix_lanes(c[2], c[3], x), y);
-  const REAL part = select((REAL)(1.0f), here / nonzero(mean), MASK_OF(mean > 0.0f));
-  const float area = 2.0f * M_PI_F * M_PI_F / ((float)e->columns * (float)e->rows);
-  return share * part / (area * real_max(sine, (REAL)(1e-6f)));
+// Moves places in cells between the middles of four pixels, even in [0, 1], to where luminance puts them.
+static inline void place_by_light(const Scene* scene, MASK column, MASK row, REAL* across, REAL* down) {
+  const int width = (int)scene->environments->width, height = (int)scene->environments->height;
+  const MASK left = select(column - 1, (MASK)(width - 1), MASK_OF(column == 0)),
+             top = max(row - 1, (MASK)(0)) * width, bottom = min(row, (MASK)(height - 1)) * width;
+  __global const float* luminance = (__global const float*)scene->environment + 3;
+  const REAL a = gather_floats(luminance, (top + left) * 4, ALL_LANES),
+             b = gather_floats(luminance, (top + column) * 4, ALL_LANES),
+             c = gather_floats(luminance, (bottom + left) * 4, ALL_LANES),
+             d = gather_floats(luminance, (bottom + column) * 4, ALL_LANES);
+  *down = place_by_slope(*down, a + b, c + d);
+  *across = place_by_slope(*across, mix_lanes(a, c, *down), mix_lanes(b, d, *down));
+}
+
+static inline REAL row_fact(const Scene* scene, MASK row, MASK lanes) {
+  return gather_floats(scene->environment_shares, row, lanes);
+}
+
+// The density, per steradian, of directions that rows of cells between pixels choose by their radiance.
+static inline REAL blended_density(const Scene* scene, REAL3 radiance, MASK row, REAL sine, MASK lanes) {
+  const REAL light =
+      fma((REAL)(0.0722f), radiance.z, fma((REAL)(0.7152f), radiance.y, (REAL)(0.2126f) * radiance.x));
+  return light * row_fact(scene, row, lanes) / real_max(sine, (REAL)(1e-6f));
 }
 
 // The density, per steradian, of the directions of cells with the share `share`, which are chosen evenly in
@@ -143,30 +118,29 @@ static inline REAL even_density(__global const Environment* e, REAL share, REAL 
   return share * (float)e->columns / (2.0f * M_PI_F * height);
 }
 
-static inline REAL row_cosine(const Scene* scene, MASK row, MASK lanes) {
-  return gather_floats(scene->environment_shares, row, lanes);
-}
-
-// The density with which sample_environment() chooses the directions.
-static inline REAL environment_density(const Scene* scene, REAL3 d, MASK lanes) {
+// What the environment sends along the directions of `lanes`, and the density with which
+// sample_environment() chooses them.
+static inline REAL3 environment_along(const Scene* scene, REAL3 d, MASK lanes, REAL* density) {
   __global const Environment* e = scene->environments;
-  REAL x, y, row_share, share, density;
+  REAL x, y;
   environment_place(e, d, &x, &y);
-  const REAL across = x * (float)e->columns, down = y * (float)e->rows;
-  const MASK column = min(TO_MASK(across), (MASK)((int)e->columns - 1)),
-             row = min(TO_MASK(down), (MASK)((int)e->rows - 1));
-  const RunningSums rows = sums_of_rows(e), cells = sums_of_cells(e, row);
-  step_begin(scene, &rows, row, lanes, &row_share);
-  step_begin(scene, &cells, column, lanes, &share);
-  share *= row_share;
-  if (e->up.w == CELLS_ARE_QUARTERS) {
-    const CellLight light = light_of_cells(scene, column, row, lanes);
+  const REAL3 radiance = environment_at(scene, x, y, lanes);
+  if (e->up.w == CELLS_BETWEEN_PIXELS) {
     REAL sine, cosine;
     sincos_of_turn(0.5f * y, &sine, &cosine);
-    density = blended_density(e, share, &light, across - TO_REAL(column), down - TO_REAL(row), sine);
-  } else
-    density = even_density(e, share, row_cosine(scene, row, lanes) - row_cosine(scene, row + 1, lanes));
-  return select((REAL)(0.0f), density, lanes);
+    const MASK row = TO_MASK(fma(y, (REAL)((float)e->height), (REAL)(0.5f)));
+    *density = blended_density(scene, radiance, row, sine, lanes);
+    return radiance;
+  }
+  const MASK column = min(TO_MASK(x * (float)e->columns), (MASK)((int)e->columns - 1)),
+             row = min(TO_MASK(y * (float)e->rows), (MASK)((int)e->rows - 1));
+  const RunningSums rows = sums_of_rows(e), cells = sums_of_cells(e, row);
+  REAL row_share, share;
+  step_begin(scene, &rows, row, lanes, &row_share);
+  step_begin(scene, &cells, column, lanes, &share);
+  *density =
+      even_density(e, share * row_share, row_fact(scene, row, lanes) - row_fact(scene, row + 1, lanes));
+  return radiance;
 }
 
 // Directions by two numbers in [0, 1): a row of cells by its share of the light, a cell in it, a place there.
@@ -177,29 +151,29 @@ static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL
   const MASK row = step_of(scene, &rows, u_y, ALL_LANES);
   const RunningSums cells = sums_of_cells(e, row);
   const MASK column = step_of(scene, &cells, u_x, ALL_LANES);
-  REAL row_share, share, y, up, side;
+  REAL row_share, share, x, y, up, side;
   const REAL row_from = step_begin(scene, &rows, row, ALL_LANES, &row_share),
              from = step_begin(scene, &cells, column, ALL_LANES, &share);
   REAL down = real_clamp((u_y - row_from) / real_max(row_share, least), zero, one),
        across = real_clamp((u_x - from) / real_max(share, least), zero, one);
   LightSamples sample;
-  share *= row_share;
-  if (e->up.w == CELLS_ARE_QUARTERS) {
-    const CellLight light = light_of_cells(scene, column, row, ALL_LANES);
-    const REAL* c = light.corner;
-    down = place_by_slope(down, c[0] + c[1], c[2] + c[3]);
-    across = place_by_slope(across, mix_lanes(c[0], c[2], down), mix_lanes(c[1], c[3], down));
-    y = (TO_REAL(row) + down) / (float)e->rows;
+  const bool blended = e->up.w == CELLS_BETWEEN_PIXELS;
+  if (blended) {
+    place_by_light(scene, column, row, &across, &down);
+    const float height = (float)e->height;
+    const REAL top = real_max(TO_REAL(row) - 0.5f, zero),
+               bottom = real_min(TO_REAL(row) + 0.5f, (REAL)(height));
+    x = (TO_REAL(column) + across - 0.5f) / (float)e->width;
+    y = mix_lanes(top, bottom, down) / height;
     sincos_of_turn(0.5f * y, &side, &up);
-    sample.density = blended_density(e, share, &light, across, down, side);
   } else {
-    const REAL top = row_cosine(scene, row, ALL_LANES), height = top - row_cosine(scene, row + 1, ALL_LANES);
+    const REAL top = row_fact(scene, row, ALL_LANES), height = top - row_fact(scene, row + 1, ALL_LANES);
+    x = (TO_REAL(column) + across) / (float)e->columns;
     up = fma(-down, height, top);
     side = real_sqrt(real_max(fma(-up, up, one), zero));
     y = real_acos(real_clamp(up, -one, one)) * (1.0f / M_PI_F);
-    sample.density = even_density(e, share, height);
+    sample.density = even_density(e, share * row_share, height);
   }
-  const REAL x = (TO_REAL(column) + across) / (float)e->columns;
   REAL sine, cosine;
   sincos_of_turn(x - 0.5f, &sine, &cosine);
   sample.wi = along3(along3(scale3(all3(e->up.xyz), up), side * sine, all3(e->right.xyz)), side * cosine,
@@ -207,6 +181,7 @@ static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL
   sample.distance = (REAL)(INFINITY);
   sample.delta = NO_LANES;
   sample.radiance = environment_at(scene, x, y, ALL_LANES);
+  if (blended) sample.density = blended_density(scene, sample.radiance, row, side, ALL_LANES);
   return sample;
 }
 
@@ -235,18 +210,21 @@ static inline LightSamples sample_sun(__global const Light* light, REAL u_x, REA
   return sample;
 }
 
-// What lies behind everything: the environment where rays see it, else the background.
+// What lies behind everything: the environment where rays see it, with the density of choosing it, else the
+// background.
 static inline bool sees_environment(const Scene* scene) {
   return HAS_ENVIRONMENT && scene->info->sees_environment;
 }
-static inline REAL3 distant_along(const Scene* scene, REAL3 d, MASK lanes) {
-  return sees_environment(scene) ? environment_along(scene, d, lanes) : background_along(scene->info, d);
+static inline REAL3 distant_along(const Scene* scene, REAL3 d, MASK lanes, REAL* density) {
+  return sees_environment(scene) ? environment_along(scene, d, lanes, density)
+                                 : background_along(scene->info, d);
 }
 
 // What the rays of `lanes` see, which meet nothing: that, and the suns in front of it.
 static inline REAL3 sky_along(const Scene* scene, REAL3 d, MASK lanes) {
   if (!HAS_SKY) return background_along(scene->info, d);
-  REAL3 light = distant_along(scene, d, lanes);
+  REAL density;
+  REAL3 light = distant_along(scene, d, lanes, &density);
   for (u32 index = 0; index < scene->info->table_lights; ++index) {
     __global const Light* sun = scene->lights + index;
     if (sun->kind != LIGHT_SUN) continue;

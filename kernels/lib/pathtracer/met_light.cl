@@ -91,9 +91,10 @@ static inline REAL3 met_surface(const Scene* scene, const Walks* walks, const Sc
 static inline REAL3 met_sky(const Scene* scene, const Walks* walks, REAL3 d, MASK lanes) {
   if (!HAS_SKY) return background_along(scene->info, d);
   const float chance = 1.0f / (float)max(scene->info->light_count, 1u);
-  REAL3 light = distant_along(scene, d, lanes);
+  REAL density;
+  REAL3 light = distant_along(scene, d, lanes, &density);
   if (sees_environment(scene)) {
-    const REAL chosen = environment_density(scene, d, lanes) * chance;
+    const REAL chosen = density * chance;
     light = scale3(light, weight_of_met(scene, walks, density_on_stretch(walks, 0, chosen)));
     if (HAS_CAUSTICS) light = select3(light, all3((float3)(0.0f)), found_by_photons(walks));
   }

@@ -46,9 +46,12 @@ __kernel void draw(__global const Environment* environments, __global const floa
   pair_lanes(&at, 16, false, (REAL*)&v, (REAL*)&v + 1);
   const float up = 1.0f - 2.0f * u.y, side = sqrt(fmax(1.0f - up * up, 0.0f));
   const REAL3 d = real3(side * cospi(2.0f * u.x), up, side * sinpi(2.0f * u.x));
-  out[2u * i] = (float4)(environment_density(&scene, d, ALL_LANES), environment_along(&scene, d, ALL_LANES).x, d.y, 0.0f);
+  float density;
+  const float seen = environment_along(&scene, d, ALL_LANES, &density).x;
+  out[2u * i] = (float4)(density, seen, d.y, 0.0f);
   const LightSamples s = sample_environment(&scene, v.x, v.y);
-  out[2u * i + 1u] = (float4)(s.density, environment_density(&scene, s.wi, ALL_LANES), s.radiance.x / s.density, s.wi.y);
+  environment_along(&scene, s.wi, ALL_LANES, &density);
+  out[2u * i + 1u] = (float4)(s.density, density, s.radiance.x / s.density, s.wi.y);
 }
 )";
 
