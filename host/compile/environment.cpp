@@ -269,6 +269,7 @@ void add_shares(const Picture& picture, Environment& e, CompiledScene& out) {
   append_shares(cells.rows, sums);
   shares.insert(shares.end(), sums.begin(), sums.end());
   shares.insert(shares.end(), cells.sums.begin(), cells.sums.end());
+  shares.insert(shares.end(), 16, 1);  // kernels read several at once
   std::vector<u32>& cutpoints = out.environment_cutpoints.edit();
   append_cutpoints(sums, cutpoints);
   cutpoints.insert(cutpoints.end(), cells.words.begin(), cells.words.end());

@@ -146,6 +146,18 @@ static inline REAL read_lanes(const float* from) {
 #endif
 }
 
+static inline REAL load_lanes(__global const float* from) {
+#if LANES == 1
+  return *from;
+#elif LANES == 4
+  return vload4(0, from);
+#elif LANES == 8
+  return vload8(0, from);
+#else
+  return vload16(0, from);
+#endif
+}
+
 static inline void write_lanes(float* to, REAL v) {
 #if LANES == 1
   *to = v;

@@ -37,45 +37,67 @@ NEVER_INLINE REAL3 environment_at(const Scene* scene, REAL x, REAL y, MASK lanes
   return light;
 }
 
-// Running sums: where they begin in environment_shares, where their cutpoints do, and how many steps they
-// have.
-typedef struct RunningSums {
-  MASK first, cutpoints;
-  u32 count;
-} RunningSums;
-
-static inline RunningSums sums_of_rows(__global const Environment* e) {
-  const RunningSums sums = {(MASK)((int)e->rows + 1), NO_LANES, e->rows};
-  return sums;
-}
-static inline RunningSums sums_of_cells(__global const Environment* e, MASK row) {
-  const int rows = (int)e->rows, columns = (int)e->columns;
-  const RunningSums sums = {row * (columns + 1) + 2 * (rows + 1), row * columns + rows, e->columns};
-  return sums;
-}
-
-// The last step that begins at or before u: one that has light, for u in [0, 1). Found between cutpoints
-// (Chen and Asau 1974, "On Generating Random Variates from an Empirical Distribution").
-static inline MASK step_of(const Scene* scene, const RunningSums* sums, REAL u, MASK lanes) {
-  const MASK bucket = min(TO_MASK(u * (float)sums->count), (MASK)((int)sums->count - 1));
-  const MASK word = gather_words(scene->environment_cutpoints, sums->cutpoints + bucket, lanes);
-  MASK low = word & (int)((1u << CUTPOINT_SHIFT) - 1u), high = word >> (int)CUTPOINT_SHIFT;
-  for (MASK open = lanes & MASK_OF(low < high); any_lane(open); open = lanes & MASK_OF(low < high)) {
-    const MASK middle = (low + high + 1) >> 1;
-    const REAL sum = gather_floats(scene->environment_shares, sums->first + middle, open);
-    const MASK before = MASK_OF(sum <= u);
-    low = select(low, middle, open & before);
-    high = select(high, middle - 1, open & ~before);
+// The last step that begins at or before u, one that has light, for u in [0, 1); `place`: where in it u lies.
+// Found between cutpoints (Chen and Asau 1974, "On Generating Random Variates from an Empirical
+// Distribution"), several sums at once.
+static inline u32 choose_step(const Scene* scene, u32 first, u32 cutpoints, u32 count, float u, float* share,
+                              float* place) {
+  __global const float* sums = scene->environment_shares + first;
+  const u32 word = scene->environment_cutpoints[cutpoints + min((u32)(u * (float)count), count - 1u)];
+  u32 low = word & ((1u << CUTPOINT_SHIFT) - 1u), high = word >> CUTPOINT_SHIFT;
+  while (high - low >= LANES) {
+    const u32 middle = (low + high + 1u) >> 1;
+    const bool before = sums[middle] <= u;
+    low = before ? middle : low;
+    high = before ? high : middle - 1u;
   }
+  low += popcount(lane_bits(MASK_OF(load_lanes(sums + low + 1u) <= u)) & ((1u << (high - low)) - 1u));
+  *share = sums[low + 1u] - sums[low];
+  *place = clamp((u - sums[low]) / fmax(*share, 1e-37f), 0.0f, 1.0f);
   return low;
 }
 
-// Where a step of running sums begins, and how large it is.
-static inline REAL step_begin(const Scene* scene, const RunningSums* sums, MASK step, MASK lanes,
-                              REAL* size) {
-  const REAL from = gather_floats(scene->environment_shares, sums->first + step, lanes);
-  *size = gather_floats(scene->environment_shares, sums->first + step + 1, lanes) - from;
-  return from;
+// Cells by two numbers in [0, 1), with their share of the light, and places in them; the luminances of the
+// pixels at the corners of cells between pixels: left and right of the top, left and right of the bottom.
+typedef struct ChosenCells {
+  MASK column, row;
+  REAL share, across, down;
+  REAL corner[4];
+} ChosenCells;
+
+NEVER_INLINE void choose_cells(const Scene* scene, REAL u_x, REAL u_y, MASK lanes, ChosenCells* cells) {
+  __global const Environment* e = scene->environments;
+  const u32 rows = e->rows, columns = e->columns, width = e->width, height = e->height;
+  const bool blended = e->up.w == CELLS_BETWEEN_PIXELS;
+  cells->column = cells->row = NO_LANES;
+  cells->share = cells->across = cells->down = (REAL)(0.0f);
+  for (u32 i = 0; i < 4u; ++i) cells->corner[i] = (REAL)(0.0f);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    float row_share, share, across, down;
+    const u32 row = choose_step(scene, rows + 1u, 0u, rows, REAL_LANE(u_y, i), &row_share, &down);
+    const u32 column = choose_step(scene, row * (columns + 1u) + 2u * (rows + 1u), row * columns + rows,
+                                   columns, REAL_LANE(u_x, i), &share, &across);
+    MASK_LANE(cells->row, i) = (int)row;
+    MASK_LANE(cells->column, i) = (int)column;
+    REAL_LANE(cells->share, i) = share * row_share;
+    REAL_LANE(cells->across, i) = across;
+    REAL_LANE(cells->down, i) = down;
+    if (!blended) continue;
+    const u32 left = column ? column - 1u : width - 1u;
+    __global const float4 *top = scene->environment + max(row, 1u) * width - width,
+                          *bottom = scene->environment + min(row, height - 1u) * width;
+    REAL_LANE(cells->corner[0], i) = top[left].w;
+    REAL_LANE(cells->corner[1], i) = top[column].w;
+    REAL_LANE(cells->corner[2], i) = bottom[left].w;
+    REAL_LANE(cells->corner[3], i) = bottom[column].w;
+  }
+}
+
+// The share of steps of running sums that begin at `first`.
+static inline REAL share_of_step(const Scene* scene, MASK first, MASK step, MASK lanes) {
+  return gather_floats(scene->environment_shares, first + step + 1, lanes) -
+         gather_floats(scene->environment_shares, first + step, lanes);
 }
 
 static inline REAL mix_lanes(REAL from, REAL to, REAL part) { return fma(part, to - from, from); }
@@ -87,18 +109,12 @@ static inline REAL place_by_slope(REAL u, REAL from, REAL to) {
   return select(v, real_min(v * sum / nonzero(from + root), (REAL)(1.0f)), MASK_OF(sum > 0.0f));
 }
 
-// Moves places in cells between the middles of four pixels, even in [0, 1], to where luminance puts them.
-static inline void place_by_light(const Scene* scene, MASK column, MASK row, REAL* across, REAL* down) {
-  const int width = (int)scene->environments->width, height = (int)scene->environments->height;
-  const MASK left = select(column - 1, (MASK)(width - 1), MASK_OF(column == 0)),
-             top = max(row - 1, (MASK)(0)) * width, bottom = min(row, (MASK)(height - 1)) * width;
-  __global const float* luminance = (__global const float*)scene->environment + 3;
-  const REAL a = gather_floats(luminance, (top + left) * 4, ALL_LANES),
-             b = gather_floats(luminance, (top + column) * 4, ALL_LANES),
-             c = gather_floats(luminance, (bottom + left) * 4, ALL_LANES),
-             d = gather_floats(luminance, (bottom + column) * 4, ALL_LANES);
-  *down = place_by_slope(*down, a + b, c + d);
-  *across = place_by_slope(*across, mix_lanes(a, c, *down), mix_lanes(b, d, *down));
+// Moves places in cells between pixels, even in [0, 1], to where luminance puts them.
+static inline void place_by_light(ChosenCells* cells) {
+  const REAL* c = cells->corner;
+  cells->down = place_by_slope(cells->down, c[0] + c[1], c[2] + c[3]);
+  cells->across =
+      place_by_slope(cells->across, mix_lanes(c[0], c[2], cells->down), mix_lanes(c[1], c[3], cells->down));
 }
 
 static inline REAL row_fact(const Scene* scene, MASK row, MASK lanes) {
@@ -134,45 +150,37 @@ static inline REAL3 environment_along(const Scene* scene, REAL3 d, MASK lanes, R
   }
   const MASK column = min(TO_MASK(x * (float)e->columns), (MASK)((int)e->columns - 1)),
              row = min(TO_MASK(y * (float)e->rows), (MASK)((int)e->rows - 1));
-  const RunningSums rows = sums_of_rows(e), cells = sums_of_cells(e, row);
-  REAL row_share, share;
-  step_begin(scene, &rows, row, lanes, &row_share);
-  step_begin(scene, &cells, column, lanes, &share);
+  const int above = (int)e->rows + 1;
+  const REAL row_share = share_of_step(scene, (MASK)(above), row, lanes),
+             share = share_of_step(scene, row * ((int)e->columns + 1) + 2 * above, column, lanes);
   *density =
       even_density(e, share * row_share, row_fact(scene, row, lanes) - row_fact(scene, row + 1, lanes));
   return radiance;
 }
 
 // Directions by two numbers in [0, 1): a row of cells by its share of the light, a cell in it, a place there.
-static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL u_y) {
+static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL u_y, MASK lanes) {
   __global const Environment* e = scene->environments;
-  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), least = (REAL)(1e-37f);
-  const RunningSums rows = sums_of_rows(e);
-  const MASK row = step_of(scene, &rows, u_y, ALL_LANES);
-  const RunningSums cells = sums_of_cells(e, row);
-  const MASK column = step_of(scene, &cells, u_x, ALL_LANES);
-  REAL row_share, share, x, y, up, side;
-  const REAL row_from = step_begin(scene, &rows, row, ALL_LANES, &row_share),
-             from = step_begin(scene, &cells, column, ALL_LANES, &share);
-  REAL down = real_clamp((u_y - row_from) / real_max(row_share, least), zero, one),
-       across = real_clamp((u_x - from) / real_max(share, least), zero, one);
+  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
+  ChosenCells cells;
+  choose_cells(scene, u_x, u_y, lanes, &cells);
   LightSamples sample;
+  REAL x, y, up, side;
   const bool blended = e->up.w == CELLS_BETWEEN_PIXELS;
   if (blended) {
-    place_by_light(scene, column, row, &across, &down);
-    const float height = (float)e->height;
-    const REAL top = real_max(TO_REAL(row) - 0.5f, zero),
-               bottom = real_min(TO_REAL(row) + 0.5f, (REAL)(height));
-    x = (TO_REAL(column) + across - 0.5f) / (float)e->width;
-    y = mix_lanes(top, bottom, down) / height;
+    place_by_light(&cells);
+    const REAL height = (REAL)((float)e->height), row = TO_REAL(cells.row);
+    const REAL top = real_max(row - 0.5f, zero), bottom = real_min(row + 0.5f, height);
+    x = (TO_REAL(cells.column) + cells.across - 0.5f) / (float)e->width;
+    y = mix_lanes(top, bottom, cells.down) / height;
     sincos_of_turn(0.5f * y, &side, &up);
   } else {
-    const REAL top = row_fact(scene, row, ALL_LANES), height = top - row_fact(scene, row + 1, ALL_LANES);
-    x = (TO_REAL(column) + across) / (float)e->columns;
-    up = fma(-down, height, top);
+    const REAL top = row_fact(scene, cells.row, lanes), height = top - row_fact(scene, cells.row + 1, lanes);
+    x = (TO_REAL(cells.column) + cells.across) / (float)e->columns;
+    up = fma(-cells.down, height, top);
     side = real_sqrt(real_max(fma(-up, up, one), zero));
     y = real_acos(real_clamp(up, -one, one)) * (1.0f / M_PI_F);
-    sample.density = even_density(e, share * row_share, height);
+    sample.density = even_density(e, cells.share, height);
   }
   REAL sine, cosine;
   sincos_of_turn(x - 0.5f, &sine, &cosine);
@@ -180,8 +188,8 @@ static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL
                      all3(e->ahead.xyz));
   sample.distance = (REAL)(INFINITY);
   sample.delta = NO_LANES;
-  sample.radiance = environment_at(scene, x, y, ALL_LANES);
-  if (blended) sample.density = blended_density(scene, sample.radiance, row, side, ALL_LANES);
+  sample.radiance = environment_at(scene, x, y, lanes);
+  if (blended) sample.density = blended_density(scene, sample.radiance, cells.row, side, lanes);
   return sample;
 }
 

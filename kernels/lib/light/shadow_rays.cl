@@ -49,7 +49,7 @@ NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, 
   u32 index;
   for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(chosen, &left, &index);
-    const LightSamples one = sample_light(scene, index, p, u_x, u_y);
+    const LightSamples one = sample_light(scene, index, p, u_x, u_y, mine);
     light.wi = select3(light.wi, one.wi, mine);
     light.distance = select(light.distance, one.distance, mine);
     light.radiance = select3(light.radiance, one.radiance, mine);
@@ -61,7 +61,7 @@ NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, 
 #else
 static inline LightSamples choose_among(const Scene* scene, const LightRay* way, const TileSamples* tile,
                                         const PathStates* paths, REAL3 p, MASK lanes) {
-  return sample_light(scene, way->light, p, (REAL)(0.5f), (REAL)(0.5f));
+  return sample_light(scene, way->light, p, (REAL)(0.5f), (REAL)(0.5f), lanes);
 }
 #endif
 
@@ -70,13 +70,13 @@ static inline LightSamples choose_among(const Scene* scene, const LightRay* way,
 static inline LightSamples choose_way(const Scene* scene, u32 index, const TileSamples* tile,
                                       const PathStates* paths, REAL3 p, MASK lanes) {
   const REAL middle = (REAL)(0.5f);
-  if (!HAS_AREA_LIGHTS) return sample_light(scene, index, p, middle, middle);
+  if (!HAS_AREA_LIGHTS) return sample_light(scene, index, p, middle, middle, lanes);
   const LightRay way = scene->light_rays[index];
   if (HAS_LIGHT_TREE && way.light == LIGHT_CHOSEN) return choose_among(scene, &way, tile, paths, p, lanes);
   REAL u_x = middle, u_y = middle;
   if (scene->lights[way.light].kind >= LIGHT_RECTANGLE)
     bounce_numbers(tile, paths, way.light, BOUNCE_LIGHT_POINT, way.ray, way.rays, lanes, &u_x, &u_y);
-  LightSamples light = sample_light(scene, way.light, p, u_x, u_y);
+  LightSamples light = sample_light(scene, way.light, p, u_x, u_y, lanes);
   light.radiance = scale3(light.radiance, light_weight(&light) / (float)way.rays);
   return light;
 }

@@ -54,7 +54,7 @@ static inline LightSamples sample_chosen(const Scene* scene, REAL3 p, REAL u_x, 
   *seen = NO_LANES;
   for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(chosen, &left, &index);
-    const LightSamples one = sample_light(scene, index, p, u_x, u_y);
+    const LightSamples one = sample_light(scene, index, p, u_x, u_y, mine);
     light.wi = select3(light.wi, one.wi, mine);
     light.distance = select(light.distance, one.distance, mine);
     light.radiance = select3(light.radiance, one.radiance, mine);

@@ -184,7 +184,7 @@ NEVER_INLINE PhotonStarts start_photons(const Scene* scene, const PhotonLaunch* 
   starts.dimmed = (MASK)(NOT_DIMMED);
   starts.light = NO_LANES;
   LightSamples sky;
-  if (HAS_ENVIRONMENT) sky = sample_environment(scene, v.z, v.w);
+  if (HAS_ENVIRONMENT) sky = sample_environment(scene, v.z, v.w, lanes);
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     const PhotonNumbers mine = {REAL_LANE(u.w, i), REAL_LANE(u.z, i), REAL_LANE(u.x, i),

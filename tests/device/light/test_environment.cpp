@@ -49,7 +49,7 @@ __kernel void draw(__global const Environment* environments, __global const floa
   float density;
   const float seen = environment_along(&scene, d, ALL_LANES, &density).x;
   out[2u * i] = (float4)(density, seen, d.y, 0.0f);
-  const LightSamples s = sample_environment(&scene, v.x, v.y);
+  const LightSamples s = sample_environment(&scene, v.x, v.y, ALL_LANES);
   environment_along(&scene, s.wi, ALL_LANES, &density);
   out[2u * i + 1u] = (float4)(s.density, density, s.radiance.x / s.density, s.wi.y);
 }
