@@ -41,7 +41,7 @@ __kernel void run(__global const Pixel* in, __global Place* out, u32 count) {
 }
 )";
 
-/// Four numbers of each of four lanes.
+/// Four numbers of each lane.
 const char* const lanes_text = R"(
 #include "lib/core/sampler_lanes.cl"
 typedef struct Pixel { u32 x, y, sample, samples; } Pixel;
@@ -104,7 +104,7 @@ TEST_CASE("a device's samples are the host's to the bit") {
     }
     const auto four = run_text<float4>(
         device, lanes_text, in,
-        {{"SAMPLER", std::to_string(SAMPLER_SOBOL)}, {"TILE_W", "2"}, {"TILE_H", "2"}, {"LANES", "4"}});
+        {{"SAMPLER", std::to_string(SAMPLER_SOBOL)}, {"TILE_W", "4"}, {"TILE_H", "4"}, {"LANES", "16"}});
     for (std::size_t i = 0; i < in.size(); ++i)
       for (u32 k = 0; k < 4; ++k) {
         const float found[] = {four[i].x, four[i].y, four[i].z, four[i].w};
