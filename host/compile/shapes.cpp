@@ -57,6 +57,10 @@ struct ShapeReader {
     want(s.inner_radius >= 0 && s.inner_radius < s.radius, "an inner radius from 0 to below the radius");
     return {SHAPE_DISK, dvec3(s.radius), {static_cast<float>(s.inner_radius / s.radius), 0, 0, 0}};
   }
+  UnitShape operator()(const RectangleShape& s) const {
+    for (int axis = 0; axis < 2; ++axis) want_positive(s.half[axis], "half size");
+    return {SHAPE_RECTANGLE, {s.half.x, std::max(s.half.x, s.half.y), s.half.y}, {}};
+  }
   UnitShape operator()(const TorusShape& s) const {
     want_positive(s.major_radius, "major radius");
     want(s.minor_radius > 0 && s.minor_radius < s.major_radius,
@@ -128,6 +132,8 @@ double reach(const UnitShape& unit, const dvec3& d) {
       return std::max(double(p.x) * across - d.y, double(p.y) * across + d.y);
     case SHAPE_DISK:
       return across;
+    case SHAPE_RECTANGLE:
+      return size.x + size.z;
     case SHAPE_TORUS:
       return across + double(p.x) * length;
     case SHAPE_ROUNDBOX:
@@ -154,6 +160,7 @@ std::vector<FlatFace> flat_faces(const UnitShape& unit) {
     case SHAPE_CONE:
       return caps(p.z != 0 ? double(p.x) : 0, p.z != 0 ? double(p.y) : 0);
     case SHAPE_DISK:
+    case SHAPE_RECTANGLE:
       return {{{0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}}};
     case SHAPE_SPHERE:
     case SHAPE_TORUS:
@@ -180,6 +187,7 @@ std::optional<Curvature> curvature(const UnitShape& unit) {
     case SHAPE_PLANE:
     case SHAPE_BOX:
     case SHAPE_DISK:
+    case SHAPE_RECTANGLE:
     case SHAPE_MESH:
     case SHAPE_SDF:
       return std::nullopt;
@@ -208,6 +216,7 @@ double unit_distance(const UnitShape& unit, const dvec3& q) {
     case SHAPE_ROUNDBOX:
       return box_distance(q, dvec3(p.x, p.y, p.z), double(p.w));
     case SHAPE_DISK:
+    case SHAPE_RECTANGLE:
     case SHAPE_MESH:
     case SHAPE_SDF:
       break;

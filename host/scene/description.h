@@ -248,6 +248,11 @@ struct DiskShape {  // in y = 0
   dvec3 half_size() const { return {radius, 0, radius}; }
   bool open() const { return true; }
 };
+struct RectangleShape {  // in y = 0: half of its size along x and z
+  dvec2 half{1, 1};
+  dvec3 half_size() const { return {half.x, 0, half.y}; }
+  bool open() const { return true; }
+};
 struct TorusShape {  // about y
   double major_radius = 1, minor_radius = 0.25;
   dvec3 half_size() const { return {major_radius + minor_radius, minor_radius, major_radius + minor_radius}; }

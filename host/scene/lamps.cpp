@@ -66,25 +66,14 @@ dmat4 placed_along(const LampAxes& axes, const dvec3& middle) {
           glm::dvec4(-glm::normalize(axes.v), 0), glm::dvec4(middle, 1)};
 }
 
-Mesh rectangle_mesh(const dvec2& size) {
-  const float x = static_cast<float>(size.x / 2), z = static_cast<float>(size.y / 2);
-  Mesh mesh;
-  mesh.positions = {{-x, 0, -z}, {-x, 0, z}, {x, 0, z}, {x, 0, -z}};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  mesh.source_vertex_count = 4;
-  return mesh;
-}
-
-Shape lamp_shape(const LightDescription& light, SceneDescription& scene) {
+Shape lamp_shape(const LightDescription& light) {
   switch (light.type) {
     case LightType::sphere:
       return SphereShape{light.radius};
     case LightType::disk:
       return DiskShape{light.radius, 0};
     case LightType::rectangle:
-      scene.meshes.push_back(rectangle_mesh(light.size));
-      scene.meshes.back().name = "lamp";
-      return MeshShape{static_cast<int>(scene.meshes.size()) - 1};
+      return RectangleShape{light.size / 2.0};
     case LightType::ambient:
     case LightType::directional:
     case LightType::point:
@@ -275,7 +264,7 @@ void add_lamps(SceneDescription& scene) {
     material.ambient = material.diffuse = dvec3(0);
     material.emission = light.color * light.intensity;
     material.shadow_opaque = true;
-    const Shape shape = lamp_shape(light, scene);
+    const Shape shape = lamp_shape(light);
     const bool aimed = facts_of(light.type).aimed;
     const dmat4 place = aimed ? placed_along(lamp_axes(light), light.position)
                               : dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, 1, 0),

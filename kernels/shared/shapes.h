@@ -8,17 +8,18 @@
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
-#define SOLIDS(SOLID)                                                                                       \
-  SOLID(SPHERE, Sphere, sphere)        /* radius 1 at the origin */                                         \
-  SOLID(PLANE, Plane, plane)           /* y = 0, inside is y < 0; unbounded */                              \
-  SOLID(BOX, Box, box)                 /* [-1, 1]^3 */                                                      \
-  SOLID(CYLINDER, Cylinder, cylinder)  /* radius 1, y in [-1, 1]; parameters.x: 1 = capped */               \
-  SOLID(CONE, Cone, cone)              /* radius parameters.x at y = -1, parameters.y at y = 1 (>= 0, not   \
-                                          both 0); parameters.z: 1 = capped */                              \
-  SOLID(DISK, Disk, disk)              /* radius 1 in y = 0, normal +y; parameters.x: inner radius          \
-                                          (0 <= x < 1) */                                                   \
-  SOLID(TORUS, Torus, torus)           /* major radius 1 about y, minor radius parameters.x (0 < x < 1) */  \
-  SOLID(ROUNDBOX, RoundBox, round_box) /* half sizes parameters.xyz, edges rounded with radius parameters.w \
+#define SOLIDS(SOLID)                                                                                        \
+  SOLID(SPHERE, Sphere, sphere)          /* radius 1 at the origin */                                        \
+  SOLID(PLANE, Plane, plane)             /* y = 0, inside is y < 0; unbounded */                             \
+  SOLID(BOX, Box, box)                   /* [-1, 1]^3 */                                                     \
+  SOLID(CYLINDER, Cylinder, cylinder)    /* radius 1, y in [-1, 1]; parameters.x: 1 = capped */              \
+  SOLID(CONE, Cone, cone)                /* radius parameters.x at y = -1, parameters.y at y = 1 (>= 0, not  \
+                                            both 0); parameters.z: 1 = capped */                             \
+  SOLID(DISK, Disk, disk)                /* radius 1 in y = 0, normal +y; parameters.x: inner radius         \
+                                            (0 <= x < 1) */                                                  \
+  SOLID(RECTANGLE, Rectangle, rectangle) /* [-1, 1]^2 in y = 0, normal +y */                                 \
+  SOLID(TORUS, Torus, torus)             /* major radius 1 about y, minor radius parameters.x (0 < x < 1) */ \
+  SOLID(ROUNDBOX, RoundBox, round_box) /* half sizes parameters.xyz, edges rounded with radius parameters.w  \
                                           (<= the smallest half size) */
 
 // Instance.shape, and the index of the description's Shape.

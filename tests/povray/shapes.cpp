@@ -73,6 +73,11 @@ struct OpenShape {
   std::string operator()(const DiskShape& s) const {
     return fmt::format("disc {{ 0, y, {}, {} ", text(s.radius), text(s.inner_radius));
   }
+  std::string operator()(const RectangleShape& s) const {  // two triangles
+    const dvec3 a(s.half.x, 0, s.half.y), b(-s.half.x, 0, s.half.y);
+    return fmt::format("mesh {{ triangle {{ {}, {}, {} }} triangle {{ {}, {}, {} }} ", text(a), text(b),
+                       text(-a), text(a), text(-a), text(-b));
+  }
   std::string operator()(const TorusShape& s) const {
     return fmt::format("torus {{ {}, {} sturm ", text(s.major_radius), text(s.minor_radius));
   }

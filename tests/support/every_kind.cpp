@@ -30,8 +30,9 @@ std::vector<Shape> with_every_solid(std::vector<Shape> shapes) {
 std::vector<Shape> solids_of_many_sizes() {
   return with_every_solid({SphereShape{}, BoxShape{}, CylinderShape{1, 1, true}, CylinderShape{1, 1, false},
                            ConeShape{1, 0, 1}, ConeShape{0.4, 1, 1}, ConeShape{1, 0.3, 1, false}, DiskShape{},
-                           DiskShape{1, 0.5}, TorusShape{1, 0.3}, TorusShape{1, 0.6},
-                           RoundBoxShape{{1, 0.6, 0.8}, 0.2}, RoundBoxShape{{1, 1, 0.5}, 0.5}});
+                           DiskShape{1, 0.5}, RectangleShape{{1, 0.4}}, TorusShape{1, 0.3},
+                           TorusShape{1, 0.6}, RoundBoxShape{{1, 0.6, 0.8}, 0.2},
+                           RoundBoxShape{{1, 1, 0.5}, 0.5}});
 }
 
 std::string name_of(const Shape& shape) { return std::string(shape_names.at(shape.index())); }

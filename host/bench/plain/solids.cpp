@@ -93,6 +93,13 @@ void ring(Search& search, float height, float inner, float outer, float side) {
   if (r2 <= outer * outer && r2 >= inner * inner) search.offer(t, {0, side, 0});
 }
 
+void rectangle(Search& search) {
+  if (search.ray.d.y == 0) return;
+  const float t = -search.ray.o.y / search.ray.d.y;
+  const vec3 p = search.at(t);
+  if (std::max(std::abs(p.x), std::abs(p.z)) <= 1) search.offer(t, {0, 1, 0});
+}
+
 void cylinder(Search& search, const float4& parameters) {
   const vec3 flat(1, 0, 1);
   if (const auto t = round_interval(search.ray.o * flat, search.ray.d * flat, 1))
@@ -241,6 +248,9 @@ bool closest_in_solid(u32 shape, const float4& parameters, const Ray& ray, Solid
       break;
     case SHAPE_DISK:
       ring(search, 0, parameters.x, 1, 1);
+      break;
+    case SHAPE_RECTANGLE:
+      rectangle(search);
       break;
     case SHAPE_TORUS:
       torus(search, parameters);

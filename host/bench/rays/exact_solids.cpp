@@ -84,6 +84,13 @@ struct Line {
     if (r <= outer && r >= inner) add(t, dvec3(0, up, 0));
   }
 
+  void rectangle() {
+    if (d.y == 0) return;
+    const double t = -o.y / d.y;
+    const dvec3 p = at(t);
+    if (std::max(std::abs(p.x), std::abs(p.z)) <= 1) add(t, dvec3(0, 1, 0));
+  }
+
   /// The side of a cone of radius middle + slope y, for y in [-1, 1].
   void side(double middle, double slope) {
     const double r = middle + slope * o.y, dr = slope * d.y;
@@ -170,6 +177,9 @@ std::vector<SolidCrossing> solid_crossings(u32 shape, const float4& parameters, 
       break;
     case SHAPE_DISK:
       line.disk(0, x, 1, 1);
+      break;
+    case SHAPE_RECTANGLE:
+      line.rectangle();
       break;
     case SHAPE_TORUS:
       line.torus(x);

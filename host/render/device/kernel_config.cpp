@@ -58,12 +58,12 @@ void define_features(const SceneFeatures& features, const Define& define) {
 /// the arithmetic of every ray. Surface coordinates turn the frame in which layers are sampled.
 bool harmless(const std::string& definition, const KernelDefines& defines) {
   static const std::set<std::string> always{
-      "HAS_ABSORPTION",     "HAS_AREA_LIGHTS", "HAS_BOX",          "HAS_BVH",
-      "HAS_DISK",           "HAS_EMISSION",    "HAS_ENVIRONMENT",  "HAS_FRACTIONAL_EXPONENTS",
-      "HAS_GLOW",           "HAS_LIGHT_TREE",  "HAS_MEDIA",        "HAS_METAL_ROUGH",
-      "HAS_OCCLUSION",      "HAS_PLANE",       "HAS_ROUGH",        "HAS_SECONDARY",
-      "HAS_SHADOW_FILTERS", "HAS_SKY",         "HAS_SOFT_SHADOWS", "HAS_SPHERE",
-      "HAS_TOUCHING",       "SDF_TWO_SIDED"};
+      "HAS_ABSORPTION", "HAS_AREA_LIGHTS",    "HAS_BOX",         "HAS_BVH",
+      "HAS_DISK",       "HAS_EMISSION",       "HAS_ENVIRONMENT", "HAS_FRACTIONAL_EXPONENTS",
+      "HAS_GLOW",       "HAS_LIGHT_TREE",     "HAS_MEDIA",       "HAS_METAL_ROUGH",
+      "HAS_OCCLUSION",  "HAS_PLANE",          "HAS_RECTANGLE",   "HAS_ROUGH",
+      "HAS_SECONDARY",  "HAS_SHADOW_FILTERS", "HAS_SKY",         "HAS_SOFT_SHADOWS",
+      "HAS_SPHERE",     "HAS_TOUCHING",       "SDF_TWO_SIDED"};
   if (definition == "HAS_UV") return defines.at("HAS_LAYERS") == "0";
   return always.contains(definition);
 }

@@ -121,6 +121,15 @@ PlacedShape read_shape(DiskShape disk, JsonObject& object) {
   return {disk, read_center(object) * read_axis(object, "normal")};
 }
 
+PlacedShape read_shape(RectangleShape rectangle, JsonObject& object) {
+  if (const auto size = object.find("size")) {
+    const auto edges = size->items("2 lengths");
+    if (edges.size() != 2) size->wanted("an array of 2 lengths");
+    rectangle.half = dvec2(edges[0].number(above_0), edges[1].number(above_0)) / 2.0;
+  }
+  return {rectangle, read_center(object) * read_axis(object, "normal")};
+}
+
 PlacedShape read_shape(TorusShape torus, JsonObject& object) {
   torus.major_radius = object.number("major_radius", torus.major_radius, above_0);
   const Range range{.low = 0, .high = torus.major_radius, .low_open = true, .high_open = true};
@@ -157,6 +166,7 @@ FormulaField field_of(const PlaneShape&) { return closed_form("plane", "p.y", {}
 FormulaField field_of(const BoxShape& s) { return listed("box", {s.half.x, s.half.y, s.half.z}); }
 FormulaField field_of(const CylinderShape& s) { return listed("cylinder", {s.radius, s.half_height}); }
 std::optional<FormulaField> field_of(const DiskShape&) { return std::nullopt; }  // it has no inside
+std::optional<FormulaField> field_of(const RectangleShape&) { return std::nullopt; }
 FormulaField field_of(const TorusShape& s) { return listed("torus", {s.major_radius, s.minor_radius}); }
 FormulaField field_of(const RoundBoxShape& s) {
   return listed("rounded_box", {s.half.x, s.half.y, s.half.z, s.radius});

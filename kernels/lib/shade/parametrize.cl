@@ -4,6 +4,7 @@
 //   sphere          u longitude, v latitude, both over [0, 1]
 //   cylinder, cone  u longitude, v height; caps as disks
 //   disk            u along x, v along -z (bottom caps: +z), [0, 1] over the square round it
+//   rectangle       u along x, v along -z, both over [0, 1]
 //   plane           u = x, v = -z
 //   torus           u longitude, v the angle round the tube from its outer equator, both over [0, 1]
 //   box, round box  each face from outside: u to the right, v upwards, [0, 1]

@@ -64,6 +64,19 @@ static inline SurfacePoints points_on_disk(float4 parameters, REAL3 p, MASK part
 }
 static inline REAL curvature_of_disk(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
 
+static inline void closest_in_rectangle(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
+                                        SolidHits* hits) {
+  const REAL t = -o.y / d.y;
+  const REAL x = fma(t, d.x, o.x), z = fma(t, d.z, o.z);
+  const MASK within = MASK_OF(d.y != 0.0f) & MASK_OF(real_max(fabs(x), fabs(z)) <= 1.0f);
+  offer(t, up_or_down((REAL)(1.0f)), NO_LANES, active & within, t_min, hits);
+}
+
+static inline SurfacePoints points_on_rectangle(float4 parameters, REAL3 p, MASK part) {
+  return points_in_plane(p, NO_LANES);
+}
+static inline REAL curvature_of_rectangle(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+
 // A cylinder or cone; `growth`: of the radius with the height.
 static inline SurfacePoints on_tube(REAL3 p, float growth) {
   const REAL3 up = all3((float3)(0.0f, 1.0f, 0.0f));

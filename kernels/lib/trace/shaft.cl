@@ -23,6 +23,7 @@ static inline float4 solid_reach(u32 shape, float4 parameters) {
   if (shape == SHAPE_SPHERE) return (float4)(1.0f, 1.0f, 1.0f, 2.0f);
   if (shape == SHAPE_CYLINDER) return (float4)(1.0f);
   if (shape == SHAPE_DISK) return (float4)(1.0f, 0.0f, 1.0f, 1.0f);
+  if (shape == SHAPE_RECTANGLE) return (float4)(1.0f, 0.0f, 1.0f, 0.0f);
   if (shape == SHAPE_ROUNDBOX) return (float4)(parameters.xyz, 0.0f);
   if (shape == SHAPE_BOX) return (float4)(1.0f, 1.0f, 1.0f, 0.0f);
   const float radius = shape == SHAPE_CONE ? fmax(parameters.x, parameters.y) : 1.0f + parameters.x;
@@ -110,8 +111,7 @@ static inline MASK outside_convex(__global const Instance* instance, REAL3 o) {
 
 // Whether the instance is how rays meet the light, which stands before none of its own.
 static inline bool shows_light(const Scene* scene, __global const Instance* instance, u32 light) {
-  if (instance->light != light) return false;
-  return instance->shape != SHAPE_MESH || scene->lights[light].kind == LIGHT_RECTANGLE;
+  return instance->light == light && instance->shape != SHAPE_MESH;
 }
 
 // The instances that the shafts of `lanes` to the light `light` may touch: the lanes that touch only opaque

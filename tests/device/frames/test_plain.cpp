@@ -38,10 +38,10 @@ SceneDescription glass_and_shiny_solids() {
   scene.materials[static_cast<std::size_t>(shiny)].blinn = true;
   scenes::place(scene, PlaneShape{}, floor, glm::translate(glm::dmat4(1), dvec3(0, -1.2, 0)));
   scenes::place(scene, SphereShape{9}, water);
-  const auto shapes =
-      with_every_solid({SphereShape{0.6}, BoxShape{{0.5, 0.4, 0.6}}, CylinderShape{0.4, 0.6, true},
-                        ConeShape{0.6, 0.2, 0.6, true}, DiskShape{0.7, 0.3}, TorusShape{0.5, 0.2},
-                        RoundBoxShape{{0.5, 0.4, 0.6}, 0.2}, CylinderShape{0.4, 0.6, false}});
+  const auto shapes = with_every_solid({SphereShape{0.6}, BoxShape{{0.5, 0.4, 0.6}},
+                                        CylinderShape{0.4, 0.6, true}, ConeShape{0.6, 0.2, 0.6, true},
+                                        DiskShape{0.7, 0.3}, RectangleShape{{0.7, 0.4}}, TorusShape{0.5, 0.2},
+                                        RoundBoxShape{{0.5, 0.4, 0.6}, 0.2}, CylinderShape{0.4, 0.6, false}});
   double x = -3;
   for (const Shape& shape : shapes) {
     const auto placed = glm::rotate(glm::translate(glm::dmat4(1), dvec3(x, 0.3 * x * x / 3 - 0.8, 0)), 0.6,

@@ -48,7 +48,7 @@ __kernel void run(__global const Lit* in, __global Estimate* out, u32 count) {
   for (u32 k = 0; k < SIDE * SIDE; ++k) {
     const float u_x = ((float)(k % SIDE) + unit_float(hash_u32(2u * k + 77u * i))) / SIDE;
     const float u_y = ((float)(k / SIDE) + unit_float(hash_u32(2u * k + 1u + 77u * i))) / SIDE;
-    const LightSamples s = sample_light(&scene, 0, p, u_x, u_y);
+    const LightSamples s = sample_light(&scene, 0, p, u_x, u_y, ALL_LANES);
     const float value = s.radiance.x * max(dot3(s.wi, n), 0.0f) / s.density;
     sum += value;
     squares += value * value;

@@ -69,6 +69,8 @@ std::vector<Chart> charts() {
        {1, 0.25f, 1, 0},
        [](double u, double v) { return about(u, 1 - 0.75 * v, 2 * v - 1); }},
       {"disk", SHAPE_DISK, 0, none, [](double u, double v) { return dvec3(2 * u - 1, 0, 1 - 2 * v); }},
+      {"rectangle", SHAPE_RECTANGLE, 0, none,
+       [](double u, double v) { return dvec3(2 * u - 1, 0, 1 - 2 * v); }},
       {"torus", SHAPE_TORUS, 0, {0.25f, 0, 0, 0}, [](double u, double v) {
          return about(u, 1 + 0.25 * std::cos(2 * pi * v), 0.25 * std::sin(2 * pi * v));
        }}};
@@ -167,7 +169,8 @@ TEST_CASE("who looks at the outside of a solid sees u to the right of v") {
                 along_v = chart.point(u, v + h) - p;
     // Away from the middle of the solid, or of a torus's tube; flat ones are looked at from above.
     dvec3 outside = p;
-    if (chart.shape == SHAPE_PLANE || chart.shape == SHAPE_DISK) outside = {0, 1, 0};
+    if (chart.shape == SHAPE_PLANE || chart.shape == SHAPE_DISK || chart.shape == SHAPE_RECTANGLE)
+      outside = {0, 1, 0};
     if (chart.shape == SHAPE_TORUS) outside -= about(u, 1, 0);
     CHECK(glm::dot(glm::cross(along_u, along_v), outside) > 0);
   }

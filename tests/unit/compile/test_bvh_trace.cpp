@@ -82,8 +82,8 @@ TEST_CASE("the scene BVH finds the nearest of many instances") {
   SceneDescription scene = scene_of(bumpy_sphere(12));
   const std::vector<Shape> shapes =
       with_every_solid({SphereShape{0.5}, BoxShape{{0.2, 0.4, 0.6}}, CylinderShape{0.3, 0.7, true},
-                        ConeShape{0.5, 0.1, 0.4, true}, DiskShape{0.8, 0.2}, TorusShape{0.6, 0.2},
-                        RoundBoxShape{{0.4, 0.5, 0.6}, 0.1}, MeshShape{0}});
+                        ConeShape{0.5, 0.1, 0.4, true}, DiskShape{0.8, 0.2}, RectangleShape{{0.7, 0.5}},
+                        TorusShape{0.6, 0.2}, RoundBoxShape{{0.4, 0.5, 0.6}, 0.1}, MeshShape{0}});
   for (unsigned i = 0; i < 40; ++i) {
     Object object;
     object.shape = shapes[i % shapes.size()];

@@ -44,10 +44,10 @@ void check_distances(const Shape& shape, const dvec3& origin, const dvec3& direc
 
 Bounds instance_box(const CompiledScene& scene) { return scene.figures.box; }
 
-const std::vector<Shape> bounded_shapes =
-    with_every_solid({SphereShape{2}, BoxShape{{1, 2, 3}}, CylinderShape{0.5, 2, true},
-                      CylinderShape{0.5, 2, false}, ConeShape{1, 0.25, 2, true}, ConeShape{0, 3, 1, true},
-                      DiskShape{2, 0.5}, TorusShape{2, 0.5}, RoundBoxShape{{1, 2, 3}, 0.5}, MeshShape{0}});
+const std::vector<Shape> bounded_shapes = with_every_solid(
+    {SphereShape{2}, BoxShape{{1, 2, 3}}, CylinderShape{0.5, 2, true}, CylinderShape{0.5, 2, false},
+     ConeShape{1, 0.25, 2, true}, ConeShape{0, 3, 1, true}, DiskShape{2, 0.5}, RectangleShape{{2, 0.5}},
+     TorusShape{2, 0.5}, RoundBoxShape{{1, 2, 3}, 0.5}, MeshShape{0}});
 
 /// Without an inside.
 bool is_open(const Shape& shape) {
@@ -82,6 +82,8 @@ TEST_CASE("each solid has the size that the description gives it") {
   check_distances(ConeShape{0.5, 2, 1, true}, {1.5, 5, 0}, {0, -1, 0}, {4, 5 - 1.0 / 3});
   check_distances(DiskShape{2, 0.5}, {1, 3, 0}, {0, -1, 0}, {3});
   check_distances(DiskShape{2, 0.5}, {0.25, 3, 0}, {0, -1, 0}, {});
+  check_distances(RectangleShape{{2, 0.5}}, {1.9, 3, -0.4}, {0, -1, 0}, {3});
+  check_distances(RectangleShape{{2, 0.5}}, {1.9, 3, -0.6}, {0, -1, 0}, {});
   check_distances(TorusShape{2, 0.5}, {-5, 0, 0}, {1, 0, 0}, {2.5, 3.5, 6.5, 7.5});
   check_distances(TorusShape{2, 0.5}, {2, 5, 0}, {0, -1, 0}, {4.5, 5.5});
   check_distances(RoundBoxShape{{1, 2, 3}, 0.5}, {0, 0, -5}, {0, 0, 1}, {2, 8});

@@ -319,6 +319,8 @@ TEST_CASE("bad objects are refused with their place") {
              false),
       object(R"({"type": "cone", "material": "m", "bottom_radius": 0})", "", {"\"top_radius\"", "both 0"},
              false),
+      object(R"({"type": "rectangle", "material": "m", "size": [1, 2, 3]})", "/size",
+             {"an array of 2 lengths"}),
       object(R"({"type": "disk", "material": "m", "inner_radius": 1})", "/inner_radius",
              {"below 1", "found 1"}, false),
       object(R"({"type": "torus", "material": "m", "minor_radius": 2})", "/minor_radius",

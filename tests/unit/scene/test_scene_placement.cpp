@@ -95,6 +95,8 @@ TEST_CASE("solids are read with their sizes") {
       shape<DiskShape>(R"({"type": "disk", "material": "m", "radius": 2, "inner_radius": 1.5})");
   CHECK(disk.radius == 2);
   CHECK(disk.inner_radius == 1.5);
+  const auto rectangle = shape<RectangleShape>(R"({"type": "rectangle", "material": "m", "size": [3, 0.5]})");
+  CHECK(rectangle.half == dvec2(1.5, 0.25));
   const auto torus = shape<TorusShape>(R"({"type": "torus", "material": "m", "major_radius": 2})");
   CHECK(torus.major_radius == 2);
   CHECK(torus.minor_radius == 0.5);

@@ -28,6 +28,9 @@ struct ShapeText {
   std::string operator()(const DiskShape& s) const {
     return fmt::format("disk {} {}", s.radius, s.inner_radius);
   }
+  std::string operator()(const RectangleShape& s) const {
+    return fmt::format("rectangle {} {}", s.half.x, s.half.y);
+  }
   std::string operator()(const TorusShape& s) const {
     return fmt::format("torus {} {}", s.major_radius, s.minor_radius);
   }

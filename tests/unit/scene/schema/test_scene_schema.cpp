@@ -75,7 +75,7 @@ const std::string everything = R"({
     {"type": "thicken", "amount": 0.1, "field": {"type": "fractal", "formula": "menger"}, "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}},
     {"type": "native", "code": "return p.x;", "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}},
     {"type": "shell", "amount": 0.1, "field": {"type": "native", "code": "return p.x;"}, "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}}, {"type": "plane"}, {"type": "box"}, {"type": "cylinder"}, {"type": "cone"},
-    {"type": "disk"}, {"type": "torus"}, {"type": "round_box"}, {"type": "mesh", "mesh": "t"},
+    {"type": "disk"}, {"type": "rectangle", "size": [1, 2]}, {"type": "torus"}, {"type": "round_box"}, {"type": "mesh", "mesh": "t"},
     {"type": "box", "min": [0, 0, 0], "max": [1, 1, 1]}, {"type": "cone", "from": [0, 0, 0], "to": [1, 1, 1]},
     {"type": "cylinder", "from": [0, 0, 0], "to": [1, 1, 1]},
     {"type": "model", "file": "tetra.ply", "transform": [{"translate": [0, 0, 0]}, {"scale": 2}, {"scale": [1, 2, 3]},
