@@ -99,8 +99,9 @@ static inline u32 owen_hash(u32 x, u32 seed) {
 
 // Of the index `order`, which may be a vector.
 #define SOBOL_COLUMN(bit, column) ((column) & (0u - ((order >> (bit)) & 1u)))
-#define SOBOL_COLUMNS(bit, a, b, c, d) \
-  (SOBOL_COLUMN(bit, a) ^ SOBOL_COLUMN(bit + 1, b) ^ SOBOL_COLUMN(bit + 2, c) ^ SOBOL_COLUMN(bit + 3, d))
+#define SOBOL_COLUMNS(bit, a, b, c, d)                                              \
+  (SOBOL_COLUMN(bit, a) ^ SOBOL_COLUMN((bit) + 1, b) ^ SOBOL_COLUMN((bit) + 2, c) ^ \
+   SOBOL_COLUMN((bit) + 3, d))
 static inline u32 sobol_pair_01(u32 order) { return SOBOL_PAIR_01(SOBOL_COLUMNS); }
 static inline u32 sobol_pair_23(u32 order) { return SOBOL_PAIR_23(SOBOL_COLUMNS); }
 
