@@ -13,8 +13,8 @@ SUNDOG_SHARED_BEGIN
 // has first, for each row and one more, the cosine to `up` of its border, or the density of its directions,
 // per steradian, over luminance and times the sine to `up`; then the running sums of the rows' light, from 0
 // to 1, then for each row those of its cells. `environment_cutpoints` has first for the rows, then for the
-// cells of each row, n words for n sums' steps: word k has the first and, above CUTPOINT_SHIFT, the last step
-// that a number in [k, k + 1) / n may lie in.
+// cells of each row, a word for every four steps: of n words word k has the first and, above CUTPOINT_SHIFT,
+// the last step that a number in [k, k + 1) / n may lie in.
 typedef struct Environment {
   float4 right, up, ahead;  // unit, at right angles; up.w: CELLS_*
   u32 width, height;        // in pixels
@@ -23,6 +23,7 @@ typedef struct Environment {
 SUNDOG_SHARED_SIZE(Environment, 64)
 
 #define CUTPOINT_SHIFT 16u
+#define CUTPOINTS_OF(steps) (((steps) + 3u) / 4u)  // words
 #define CELLS_ARE_PIXELS 0.0f
 #define CELLS_BETWEEN_PIXELS 1.0f
 

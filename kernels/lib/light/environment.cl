@@ -37,13 +37,33 @@ NEVER_INLINE REAL3 environment_at(const Scene* scene, REAL x, REAL y, MASK lanes
   return light;
 }
 
+// Running sums: where they and their words begin, and how many steps they have.
+typedef struct RunningSums {
+  u32 first, words, count;
+} RunningSums;
+
+static inline RunningSums sums_of_rows(__global const Environment* e) {
+  const RunningSums sums = {e->rows + 1u, 0u, e->rows};
+  return sums;
+}
+static inline RunningSums sums_of_cells(__global const Environment* e, u32 row) {
+  const RunningSums sums = {row * (e->columns + 1u) + 2u * (e->rows + 1u),
+                            row * CUTPOINTS_OF(e->columns) + CUTPOINTS_OF(e->rows), e->columns};
+  return sums;
+}
+
+// The word for u in [0, 1).
+static inline __global const u32* word_of(const Scene* scene, RunningSums sums, float u) {
+  const u32 words = CUTPOINTS_OF(sums.count);
+  return scene->environment_cutpoints + sums.words + min((u32)(u * (float)words), words - 1u);
+}
+
 // The last step that begins at or before u, one that has light, for u in [0, 1); `place`: where in it u lies.
 // Found between cutpoints (Chen and Asau 1974, "On Generating Random Variates from an Empirical
 // Distribution"), several sums at once.
-static inline u32 choose_step(const Scene* scene, u32 first, u32 cutpoints, u32 count, float u, float* share,
-                              float* place) {
-  __global const float* sums = scene->environment_shares + first;
-  const u32 word = scene->environment_cutpoints[cutpoints + min((u32)(u * (float)count), count - 1u)];
+static inline u32 choose_step(const Scene* scene, RunningSums of, float u, float* share, float* place) {
+  __global const float* sums = scene->environment_shares + of.first;
+  const u32 word = *word_of(scene, of, u);
   u32 low = word & ((1u << CUTPOINT_SHIFT) - 1u), high = word >> CUTPOINT_SHIFT;
   while (high - low >= LANES) {
     const u32 middle = (low + high + 1u) >> 1;
@@ -65,33 +85,57 @@ typedef struct ChosenCells {
   REAL corner[4];
 } ChosenCells;
 
+// The rows of pixels above and below the middle of a row of cells between pixels.
+static inline __global const float4* pixels_above(const Scene* scene, u32 row) {
+  return scene->environment + (max(row, 1u) - 1u) * scene->environments->width;
+}
+static inline __global const float4* pixels_below(const Scene* scene, u32 row) {
+  return scene->environment + min(row, scene->environments->height - 1u) * scene->environments->width;
+}
+
+static inline void find_corners(const Scene* scene, MASK lanes, ChosenCells* cells) {
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits), row = (u32)MASK_LANE(cells->row, i),
+              right = (u32)MASK_LANE(cells->column, i),
+              left = (right ? right : scene->environments->width) - 1u;
+    __global const float4 *above = pixels_above(scene, row), *below = pixels_below(scene, row);
+    REAL_LANE(cells->corner[0], i) = above[left].w;
+    REAL_LANE(cells->corner[1], i) = above[right].w;
+    REAL_LANE(cells->corner[2], i) = below[left].w;
+    REAL_LANE(cells->corner[3], i) = below[right].w;
+  }
+}
+
+// A step after the other for all lanes, so that what one needs from memory comes while others are at work.
 NEVER_INLINE void choose_cells(const Scene* scene, REAL u_x, REAL u_y, MASK lanes, ChosenCells* cells) {
   __global const Environment* e = scene->environments;
-  const u32 rows = e->rows, columns = e->columns, width = e->width, height = e->height;
+  const RunningSums rows = sums_of_rows(e);
   const bool blended = e->up.w == CELLS_BETWEEN_PIXELS;
   cells->column = cells->row = NO_LANES;
   cells->share = cells->across = cells->down = (REAL)(0.0f);
   for (u32 i = 0; i < 4u; ++i) cells->corner[i] = (REAL)(0.0f);
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    float row_share, share, across, down;
-    const u32 row = choose_step(scene, rows + 1u, 0u, rows, REAL_LANE(u_y, i), &row_share, &down);
-    const u32 column = choose_step(scene, row * (columns + 1u) + 2u * (rows + 1u), row * columns + rows,
-                                   columns, REAL_LANE(u_x, i), &share, &across);
+    float share, down;
+    const u32 row = choose_step(scene, rows, REAL_LANE(u_y, i), &share, &down);
+    FETCH_ROW(word_of(scene, sums_of_cells(e, row), REAL_LANE(u_x, i)));
     MASK_LANE(cells->row, i) = (int)row;
-    MASK_LANE(cells->column, i) = (int)column;
-    REAL_LANE(cells->share, i) = share * row_share;
-    REAL_LANE(cells->across, i) = across;
+    REAL_LANE(cells->share, i) = share;
     REAL_LANE(cells->down, i) = down;
-    if (!blended) continue;
-    const u32 left = column ? column - 1u : width - 1u;
-    __global const float4 *top = scene->environment + max(row, 1u) * width - width,
-                          *bottom = scene->environment + min(row, height - 1u) * width;
-    REAL_LANE(cells->corner[0], i) = top[left].w;
-    REAL_LANE(cells->corner[1], i) = top[column].w;
-    REAL_LANE(cells->corner[2], i) = bottom[left].w;
-    REAL_LANE(cells->corner[3], i) = bottom[column].w;
   }
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits), row = (u32)MASK_LANE(cells->row, i);
+    float share, across;
+    const u32 column = choose_step(scene, sums_of_cells(e, row), REAL_LANE(u_x, i), &share, &across);
+    if (blended) {
+      FETCH_ROW(pixels_above(scene, row) + column);
+      FETCH_ROW(pixels_below(scene, row) + column);
+    }
+    MASK_LANE(cells->column, i) = (int)column;
+    REAL_LANE(cells->share, i) *= share;
+    REAL_LANE(cells->across, i) = across;
+  }
+  if (blended) find_corners(scene, lanes, cells);
 }
 
 // The share of steps of running sums that begin at `first`.
