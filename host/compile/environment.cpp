@@ -194,7 +194,8 @@ void step_to(std::span<const float> sums, double u, std::size_t& step) {
 /// For running sums their words, as shared/environment.h has them. A device's product of a number and a count
 /// may round over the border of a word: the words reach a little further.
 void append_cutpoints(std::span<const float> sums, std::vector<u32>& cutpoints) {
-  const double count = CUTPOINTS_OF(static_cast<u32>(sums.size() - 1)), slack = 1e-6, below_one = 1 - 0x1p-24;
+  const u32 words = CUTPOINTS_OF(static_cast<u32>(sums.size() - 1));
+  const double count = words, slack = 1e-6, below_one = 1 - 0x1p-24;
   std::size_t first = 0, last = 0;
   for (double k = 0; k < count; ++k) {
     step_to(sums, k / count * (1 - slack), first);
