@@ -15,7 +15,6 @@
 #include "base/arguments.h"
 #include "base/file.h"
 #include "base/image_io.h"
-#include "parse_arguments.h"
 #include "run_program.h"
 #include "scene/formula/list.h"
 #include "stb/stb_easy_font.h"
@@ -191,7 +190,7 @@ int main(int argc, char** argv) {
   app.add_option("--samples", sheet.samples, "samples a pixel (default 9)")->range(1, 4096);
   bool bare = false;
   app.add_flag("--no-names", bare, "the surfaces alone, without their names");
-  parse_or_exit(app, argc, argv);
+  app.parse_or_exit(argc, argv);
   sheet.names = !bare;
   try {
     make(sheet);

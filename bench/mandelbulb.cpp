@@ -16,7 +16,6 @@
 #include "compile/fields/sdf.h"
 #include "device/device.h"
 #include "mandelbulb_peer.h"
-#include "parse_arguments.h"
 #include "scene/formula/list.h"
 
 using namespace sundog;
@@ -219,7 +218,7 @@ int main(int argc, char** argv) {
   app.add_flag("--exact", options.exact,
                "the kernels use the derivative that is a proven bound (their picture then differs, and is "
                "not held against)");
-  parse_or_exit(app, argc, argv);
+  app.parse_or_exit(argc, argv);
   try {
     return run(options);
   } catch (const std::exception& error) {

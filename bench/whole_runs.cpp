@@ -8,7 +8,6 @@
 
 #include "base/arguments.h"
 #include "base/file.h"
-#include "parse_arguments.h"
 
 namespace sundog {
 
@@ -21,7 +20,7 @@ int run_whole_runs(const std::string& about, int argc, char** argv, WholeRuns& o
   app.add_option("--device", options.device, "sundog's OpenCL device");
   app.add_option("--folder", options.folder, "for scenes, pictures and caches");
   app.add_option("--json", options.json, "file for the figures");
-  parse_or_exit(app, argc, argv);
+  app.parse_or_exit(argc, argv);
   try {
     options.folder = fs::absolute(options.folder).string();
     fs::create_directories(options.folder);

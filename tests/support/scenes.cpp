@@ -40,6 +40,13 @@ int add(SceneDescription& scene, const MaterialDescription& material) {
   return static_cast<int>(scene.materials.size()) - 1;
 }
 
+/// Whether many scenes of tests have the same general kernels: what these have is in most of them.
+bool shares_kernels(const CompiledScene& scene) {
+  const SceneFeatures& has = scene.features;
+  return scene.field_source.empty() && scene.pattern_source.empty() && !has.maps && !has.fog && !has.lens &&
+         !has.camera_motion && !has.object_motion && !has.dispersion && !has.layers;
+}
+
 MaterialDescription dark() {
   MaterialDescription material;
   material.ambient = material.diffuse = material.specular = {0, 0, 0};
@@ -86,7 +93,10 @@ void place(SceneDescription& scene, Shape shape, int material, const glm::dmat4&
 
 RenderResult render_on(const DeviceInfo& device, const SceneDescription& scene,
                        const RenderOptions& options) {
-  return render(compile(scene), {device}, options);
+  const CompiledScene compiled = compile(scene);
+  RenderOptions chosen = options;
+  if (device.native_vector_width > 1 && shares_kernels(compiled)) chosen.kernels = KernelChoice::general;
+  return render(compiled, {device}, chosen);
 }
 
 glm::dvec3 pixel_on(const DeviceInfo& device, const SceneDescription& scene) {

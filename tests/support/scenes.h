@@ -32,7 +32,9 @@ int add_mirror(sundog::SceneDescription& scene, double reflection, glm::dvec3 gl
 void place(sundog::SceneDescription& scene, sundog::Shape shape, int material,
            const glm::dmat4& world_from_object = glm::dmat4(1));
 
-/// Renders on one device.
+/// Renders on one device. Scenes without fields, textures, fog, lens and motion are drawn by general kernels,
+/// which they share: building a scene's own takes longer than drawing it. They draw the same bits (a test
+/// renders scenes both ways).
 sundog::RenderResult render_on(const sundog::DeviceInfo& device, const sundog::SceneDescription& scene,
                                const sundog::RenderOptions& options = {});
 

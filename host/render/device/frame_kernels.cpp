@@ -114,7 +114,8 @@ KernelConfig choose_config(const Device& device, const Integrator& integrator, K
 void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning, const WorkGroup& asked,
                    bool aovs, FrameKernels& kernels, RenderTimes& times, KernelUpdate& update) {
   const Integrator& integrator = *find_integrator(scene.integrator);
-  KernelConfig config = make_kernel_config(scene, device.info(), tuning);
+  KernelConfig config = kernels.only_general ? general_config(scene, device.info(), tuning)
+                                             : make_kernel_config(scene, device.info(), tuning);
   if (kernels.counts_rays) config.defines["HAS_RAY_COUNTS"] = "1";
   kernels.wanted.reset();
   kernels.is_draft = false;

@@ -29,18 +29,19 @@ struct FrameKernels {
   SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch> trace_photons;  // only with caustics
   bool wants_all_aovs = false, has_all_aovs = false;  // of first_surfaces: all vectors of AOVs
   bool counts_rays = false;                           // of the integrator: those of each pixel
-  SceneKernel<Buffer<u32>> find_media;                // only where the camera has been inside a solid
-  std::string entry;                                  // of the integrator
-  bool camera_inside = false;                         // tables.camera_media are not those of the outside
-  unsigned most_run = 1;                              // items that a work-item of the integrator can take
-  std::size_t most_group = 0;                         // the largest work-group that they allow; 0: unknown
-  std::vector<std::string> notes;                     // why a cache could not be used
-  KernelBuilder* builder = nullptr;                   // builds while other kernels draw; may be null
-  std::vector<KernelConfig> known;                    // that this device has built
-  std::optional<KernelConfig> wanted;                 // being built, while others stand in
-  bool is_draft = false;                              // those that stand in round otherwise
-  std::vector<KernelConfig> general;                  // with a builder: those that stand in for the scene's
-  std::vector<KernelConfig> built_general;            // those of them that are known to be built
+  bool only_general = false;                // general_config() even where the scene's could be built
+  SceneKernel<Buffer<u32>> find_media;      // only where the camera has been inside a solid
+  std::string entry;                        // of the integrator
+  bool camera_inside = false;               // tables.camera_media are not those of the outside
+  unsigned most_run = 1;                    // items that a work-item of the integrator can take
+  std::size_t most_group = 0;               // the largest work-group that they allow; 0: unknown
+  std::vector<std::string> notes;           // why a cache could not be used
+  KernelBuilder* builder = nullptr;         // builds while other kernels draw; may be null
+  std::vector<KernelConfig> known;          // that this device has built
+  std::optional<KernelConfig> wanted;       // being built, while others stand in
+  bool is_draft = false;                    // those that stand in round otherwise
+  std::vector<KernelConfig> general;        // with a builder: those that stand in for the scene's
+  std::vector<KernelConfig> built_general;  // those of them that are known to be built
 };
 
 /// Builds the integrator's kernel, with `aovs` that of the AOVs too, uploads the scene and finds out which

@@ -23,9 +23,9 @@ constexpr const char* fields_file = "generated/sdf.cl";
 // A field's own flags decide within those of the kernel.
 const std::string all_field_flags = std::to_string(SDF_SMOOTH | SDF_CUT_SPHERE);
 
-// General kernels have room for the rays of so many levels; drafts for all that a kernel can have, and for
-// any BVH.
-constexpr unsigned general_depth = 12, draft_depth = 32, draft_bvh_stack = 128;
+// General kernels have room for the rays of so many levels, and for the BVHs of most scenes; drafts for all
+// that a kernel can have, and for any BVH.
+constexpr unsigned general_depth = 12, general_bvh_stack = 64, draft_depth = 32, draft_bvh_stack = 128;
 
 /// Shadow rays of one surface that wait at a time: a light each, as far as that is a moderate number, and
 /// rounded up, so that similar scenes share their kernels.
@@ -109,6 +109,11 @@ KernelConfig deep_config(const CompiledScene& scene, const DeviceInfo& device, c
   return make_kernel_config(deep, device, tuning);
 }
 
+void widen(KernelConfig& config, const char* room, unsigned least) {
+  std::string& value = config.defines.at(room);
+  if (std::stoul(value) < least) value = std::to_string(least);
+}
+
 }  // namespace
 
 bool interprets(const KernelConfig& config) {
@@ -157,6 +162,7 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
     const bool of_fields = name == "HAS_OCCLUSION" || name == "HAS_SOFT_SHADOWS" || name == "SDF_TWO_SIDED";
     if (harmless(name, config.defines) && (fields || !of_fields)) value = "1";
   }
+  widen(config, "BVH_STACK", general_bvh_stack);
   return config;
 }
 
@@ -166,12 +172,8 @@ KernelConfig draft_config(const CompiledScene& scene, const DeviceInfo& device, 
     if (has_no_use(name, config.defines)) value = "1";
     if (is_mask(name)) value = "65535";
   }
-  const auto widen = [&](const char* name, unsigned least) {
-    std::string& value = config.defines.at(name);
-    if (std::stoul(value) < least) value = std::to_string(least);
-  };
-  widen("BVH_STACK", draft_bvh_stack);
-  widen("TEXTURE_STACK", MOST_TEXTURE_STACK);
+  widen(config, "BVH_STACK", draft_bvh_stack);
+  widen(config, "TEXTURE_STACK", MOST_TEXTURE_STACK);
   config.defines["SDF_FLAGS"] = all_field_flags;
   config.generated[fields_file] = interpreting_source;
   config.has_programs = true;

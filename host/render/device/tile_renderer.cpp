@@ -56,7 +56,8 @@ bool makes_aovs(const CompiledScene& scene, const RenderOptions& options) {
 
 FrameKernels kernels_with(const RenderOptions& options, KernelBuilder* builder) {
   FrameKernels none;
-  none.builder = options.general_kernels ? builder : nullptr;
+  none.builder = options.kernels == KernelChoice::own_when_built ? builder : nullptr;
+  none.only_general = options.kernels == KernelChoice::general;
   none.wants_all_aovs = aov_vectors(options.aovs) == all_aov_vectors;
   none.counts_rays = counts_rays(options.aovs);
   return none;
@@ -98,7 +99,8 @@ void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions&
   asked_ = options.work_group;
   samples_ = scene.info.samples;
   photons_ = PhotonMaps(scene);
-  kernels_.builder = options.general_kernels ? builder_ : nullptr;
+  kernels_.builder = options.kernels == KernelChoice::own_when_built ? builder_ : nullptr;
+  kernels_.only_general = options.kernels == KernelChoice::general;
   kernels_.wants_all_aovs = aov_vectors(options.aovs) == all_aov_vectors;
   kernels_.counts_rays = counts_rays(options.aovs);
   kernels_.notes.clear();

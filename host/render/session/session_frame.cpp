@@ -18,7 +18,7 @@ RenderOptions options_of(const SessionSettings& settings) {
   options.tuning = settings.tuning;
   options.split = settings.split;
   options.tile = settings.tile;
-  options.general_kernels = settings.general_kernels;
+  options.kernels = settings.general_kernels ? KernelChoice::own_when_built : KernelChoice::own;
   return options;
 }
 

@@ -22,6 +22,10 @@ struct Split {
   std::vector<double> shares;  // of a fixed split; empty: by the devices' estimates
 };
 
+/// The kernels that a scene is drawn with: its own; its own, but others that draw the same bits may stand in
+/// while they are built; or always general ones, which most scenes share, so that few are built.
+enum class KernelChoice { own, own_when_built, general };
+
 /// Part `index` (from 1) of `count`.
 struct PartOfFrame {
   int index = 1, count = 1;
@@ -35,7 +39,7 @@ struct RenderProgress {
 struct RenderOptions {
   WorkGroup work_group;
   std::function<Tuning(const DeviceInfo&)> tuning;  // of each device; empty: the defaults
-  bool general_kernels = false;  // those that draw the same bits may stand in while the scene's are built
+  KernelChoice kernels = KernelChoice::own;
   int tile = 0;  // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
   Split split;
   PartOfFrame part;               // what to render of the frame

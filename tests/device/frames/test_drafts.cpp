@@ -57,7 +57,7 @@ TEST_CASE("drafts draw the shipped scenes but for rounding, and give way to the 
   LaunchWatch watch;
   RenderTimes times;
   RenderOptions options, own_options;
-  options.general_kernels = true;
+  options.kernels = KernelChoice::own_when_built;
   TileRenderer renderer(device, first, options, times, watch, &builder);
   TileRenderer own(own_device, first, own_options, times, watch, nullptr);
   const Integrator& integrator = *find_integrator(first.integrator);

@@ -6,11 +6,13 @@
 #include <thread>
 
 #include "catch.h"
+#include "compile/compiled_scene.h"
 #include "device/choice.h"
 #include "devices.h"
 #include "new_formula.h"
 #include "render/device/kernel_config.h"
 #include "same_bits.h"
+#include "scene/integrators.h"
 #include "scene/load.h"
 #include "scenes.h"
 #include "test_meshes.h"
@@ -39,6 +41,16 @@ void wait_until_prepared(RenderSession& session) {
   for (int i = 0; i < 8000 && !session.snapshot(false).prepared; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(25));
   REQUIRE(session.snapshot(false).prepared);
+}
+
+/// Until the session has built these kernels of the scene.
+void wait_for_kernels(const DeviceInfo& info, const CompiledScene& scene, const KernelConfig& kernels) {
+  const Device device(info);
+  const auto built = [&] {
+    return device.has(find_integrator(scene.integrator)->entry, kernels.defines, kernels.generated);
+  };
+  for (int i = 0; i < 2000 && !built(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  REQUIRE(built());
 }
 
 /// The field less a part of itself.
@@ -211,7 +223,8 @@ TEST_CASE("general kernels of paths draw the same bits as a scene's own, after m
   SceneDescription scene = scenes::shipped_small("cornell_path");
   scene.render.samples = 2;
   check_settled(session, scene, device, true);
-  wait_until_prepared(session);
+  const CompiledScene first = compile(scene);
+  wait_for_kernels(device, first, general_config(first, device));
   // Kernels that no scene that ships has: of an odd highlight, a glass that absorbs, and lamps among many.
   scene.materials.back().exponent = 7.5;
   scene.materials.back().reflection = dvec3(0.2);
@@ -221,7 +234,8 @@ TEST_CASE("general kernels of paths draw the same bits as a scene's own, after m
   scene.lights.back().position = dvec3(0.5, 0.5, 0.5);
   check_settled(session, scene, device, true);
   CHECK(session.snapshot().work.kernels_built == 0);
-  wait_until_prepared(session);
+  const CompiledScene edited = compile(scene);
+  wait_for_kernels(device, edited, make_kernel_config(edited, device));
   check_settled(session, scene, device, true);
 }
 

@@ -19,7 +19,7 @@ TEST_CASE("a formula's own kernel takes over from the interpreter between tiles,
   LaunchWatch watch;
   RenderTimes times;
   RenderOptions options;
-  options.general_kernels = true;
+  options.kernels = KernelChoice::own_when_built;
   const CompiledScene first = compile(scenes::shipped_small("mandelbulb"));
   CompiledScene other = first;
   const CompiledScene formula = compile(new_formula("length(p) - 1 + 0.1 * sin(9 * p.y)"));
