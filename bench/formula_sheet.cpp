@@ -15,6 +15,7 @@
 #include "base/arguments.h"
 #include "base/file.h"
 #include "base/image_io.h"
+#include "parse_arguments.h"
 #include "run_program.h"
 #include "scene/formula/list.h"
 #include "stb/stb_easy_font.h"
@@ -190,7 +191,7 @@ int main(int argc, char** argv) {
   app.add_option("--samples", sheet.samples, "samples a pixel (default 9)")->range(1, 4096);
   bool bare = false;
   app.add_flag("--no-names", bare, "the surfaces alone, without their names");
-  app.parse_or_exit(argc, argv);
+  parse_or_exit(app, argc, argv);
   sheet.names = !bare;
   try {
     make(sheet);

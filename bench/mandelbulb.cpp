@@ -16,6 +16,7 @@
 #include "compile/fields/sdf.h"
 #include "device/device.h"
 #include "mandelbulb_peer.h"
+#include "parse_arguments.h"
 #include "scene/formula/list.h"
 
 using namespace sundog;
@@ -218,7 +219,7 @@ int main(int argc, char** argv) {
   app.add_flag("--exact", options.exact,
                "the kernels use the derivative that is a proven bound (their picture then differs, and is "
                "not held against)");
-  app.parse_or_exit(argc, argv);
+  parse_or_exit(app, argc, argv);
   try {
     return run(options);
   } catch (const std::exception& error) {

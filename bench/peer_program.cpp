@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "parse_arguments.h"
 
 namespace sundog {
 
@@ -22,7 +23,7 @@ void add_peer_options(Arguments& app, PeerOptions& options) {
 
 int run_peer_program(Arguments& app, int argc, char** argv, const PeerOptions& options,
                      const std::function<nlohmann::json(const std::string& model)>& measure) {
-  app.parse_or_exit(argc, argv);
+  parse_or_exit(app, argc, argv);
   try {
     nlohmann::json results = nlohmann::json::array();
     for (const std::string& model : options.models) results.push_back(measure(model));

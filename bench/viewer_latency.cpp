@@ -22,6 +22,7 @@
 #include "base/pixels/preview.h"
 #include "base/pixels/quick_png.h"
 #include "device/devices.h"
+#include "parse_arguments.h"
 #include "render/device/tuning.h"
 #include "render/session/render_session.h"
 #include "scene/document.h"
@@ -238,7 +239,7 @@ int main(int argc, char** argv) {
   app.add_option("--samples", options.samples, "of a pixel")->range(1, 65536);
   app.add_option("--repeats", options.repeats, "edits of each kind")->range(1, 10000);
   app.add_option("--json", options.json, "file for the figures");
-  app.parse_or_exit(argc, argv);
+  parse_or_exit(app, argc, argv);
   try {
     const json rows = measure(options);
     if (!options.json.empty()) write_file(options.json, rows.dump(2) + "\n");

@@ -8,6 +8,7 @@
 
 #include "base/arguments.h"
 #include "base/file.h"
+#include "parse_arguments.h"
 
 namespace sundog {
 
@@ -20,7 +21,7 @@ int run_whole_runs(const std::string& about, int argc, char** argv, WholeRuns& o
   app.add_option("--device", options.device, "sundog's OpenCL device");
   app.add_option("--folder", options.folder, "for scenes, pictures and caches");
   app.add_option("--json", options.json, "file for the figures");
-  app.parse_or_exit(argc, argv);
+  parse_or_exit(app, argc, argv);
   try {
     options.folder = fs::absolute(options.folder).string();
     fs::create_directories(options.folder);

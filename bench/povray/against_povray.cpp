@@ -20,6 +20,7 @@
 #include "bench_scenes.h"
 #include "compile/compiled_scene.h"
 #include "device/devices.h"
+#include "parse_arguments.h"
 #include "povray_from_scene.h"
 #include "povray_run.h"
 #include "scene/load.h"
@@ -243,7 +244,7 @@ int main(int argc, char** argv) {
   app.add_flag("--media", options.media,
                "absorption as POV-Ray's media: right everywhere, but slower than fading");
   app.add_flag("--wall", options.wall, "wall clock; without it processor time over threads");
-  app.parse_or_exit(argc, argv);
+  parse_or_exit(app, argc, argv);
   if (side > 0) options.width = options.height = side;
   try {
     return sundog::run(options);

@@ -19,6 +19,7 @@
 #include "bench_scenes.h"
 #include "compile/compiled_scene.h"
 #include "device/devices.h"
+#include "parse_arguments.h"
 #include "povray_from_scene.h"
 #include "povray_run.h"
 #include "render/session/render_session.h"
@@ -279,7 +280,7 @@ int main(int argc, char** argv) {
       "--one-frame", options.one_frame,
       "time a single frame of sundog's; without it the mean of as many as take as long as POV-Ray's run");
   app.add_flag("--wall", options.wall, "wall clock; without it processor time over threads");
-  app.parse_or_exit(argc, argv);
+  parse_or_exit(app, argc, argv);
   sundog::keep_freed_memory();  // as the command line does
   try {
     return sundog::run(options);

@@ -2,7 +2,6 @@
 #include "base/arguments.h"
 
 #include <CLI/CLI.hpp>
-#include <cstdlib>
 
 namespace sundog {
 
@@ -37,14 +36,6 @@ Arguments* Arguments::add_subcommand(const std::string& name, const std::string&
 
 void Arguments::require_subcommand(int count) { app_->require_subcommand(count); }
 void Arguments::callback(std::function<void()> call) { app_->callback(std::move(call)); }
-
-void Arguments::parse_or_exit(int argc, const char* const* argv) {
-  try {
-    app_->parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    std::exit(app_->exit(error));
-  }
-}
 
 Option* Arguments::keep(CLI::Option* option) {
   options_.push_back(std::make_unique<Option>(option));

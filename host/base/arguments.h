@@ -46,9 +46,6 @@ class Arguments {
   Option* add_option(const std::string& name, T& target, const std::string& help = "");
   Option* add_flag(const std::string& name, bool& target, const std::string& help);
 
-  /// Of a program: reads its command line, or prints help or an error and ends the program.
-  void parse_or_exit(int argc, const char* const* argv);
-
   /// The library's own, for what is not here.
   CLI::App& parser() { return *app_; }
 
