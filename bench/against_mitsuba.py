@@ -10,8 +10,10 @@ means   the whole and 4x4 regions of both converged pictures, three channels eac
 errors  the root mean square error, of linear colour within 0..1, at each of --counts samples, against both programs' pictures together, whose noise
         is taken off (Mitsuba under a sky against its own: its rows of texels lie elsewhere); and the samples that reach 0.02, by a line through two
         points in logarithms
-times   samples a second at --samples, and the seconds of pictures of as many samples as reach 0.02. All ways take turns, one thread each: medians,
-        and the range of the ratios of single rounds. Only an idle machine's count
+times   samples a second at --samples, and the seconds of pictures of as many samples as reach 0.02, the fastest way of each program against the
+        other's. All ways take turns, one thread each: medians, and the range of the ratios of single rounds. Only an idle machine's count
+
+Where a lamp shines through glass, `sundog caustics` has photons too: its error holds what their radius blurs.
 
 A FILE of --json that is there already is kept but for the parts that are made; `times` needs `errors`, there or made. --pictures DIR keeps the
 converged pictures for the next run. Within a minute: --scenes cornell --samples 16 --converged 64 --counts 4,16 --rounds 1.
@@ -32,8 +34,9 @@ import figures
 import peer_scenes
 import programs
 
-WAYS = {"sundog sobol": ("sundog", "sobol"), "sundog independent": ("sundog", "independent"),
+WAYS = {"sundog sobol": ("sundog", "sobol"), "sundog independent": ("sundog", "independent"), "sundog caustics": ("sundog", "sobol"),
         "Mitsuba independent": ("mitsuba", "independent"), "Mitsuba multijitter": ("mitsuba", "multijitter")}
+WITH_CAUSTICS = ("glass",)  # scenes whose lamp shines through glass
 PASS = 256  # samples of Mitsuba's passes, for its memory
 PARTS = ("means", "errors", "times")
 
@@ -43,6 +46,7 @@ class Bench:
 
     def __init__(self, name, folder, args, mi):
         self.name, self.args = name, args
+        self.ways = {way: of for way, of in WAYS.items() if way != "sundog caustics" or name in WITH_CAUSTICS}
         self.sundog = programs.Sundog(name, folder, args.sundog, args.device)
         self.mitsuba = programs.Mitsuba(name, folder, mi, same_radiance=False)
         self.same = programs.Mitsuba(name, folder, mi, same_radiance=True)
@@ -51,7 +55,7 @@ class Bench:
         """The picture, its seconds, and the samples that it has."""
         program, sampler = WAYS[way]
         if program == "sundog":
-            return *self.sundog.render(sampler, samples), samples
+            return *self.sundog.render(sampler, samples, caustics=way == "sundog caustics"), samples
         return *self.mitsuba.render(sampler, samples, seed), self.mitsuba.samples_made(sampler)
 
     def stored(self, key, samples, make):
@@ -91,7 +95,7 @@ def measure_errors(bench, ours, theirs, of_file):
     both = figures.Reference(ours, theirs)
     own = both if of_file is theirs else figures.Reference(of_file)
     found = {}
-    for way, (program, _) in WAYS.items():
+    for way, (program, _) in bench.ways.items():
         reference = both if program == "sundog" else own
         points = []
         for count in bench.args.counts:
@@ -121,19 +125,18 @@ def ratios(base, other):
 
 def measure_times(bench, errors):
     pixels = peer_scenes.SIZE**2
-    seconds, made = take_turns(bench, dict.fromkeys(WAYS, bench.args.samples))
-    rates = {way: pixels * made[way] / statistics.median(seconds[way]) for way in WAYS}
+    seconds, made = take_turns(bench, dict.fromkeys(bench.ways, bench.args.samples))
+    rates = {way: pixels * made[way] / statistics.median(seconds[way]) for way in bench.ways}
     counts = {way: max(1, round(found["samples_to_error"])) for way, found in errors["ways"].items()
               if found["samples_to_error"] <= bench.args.most_samples}
     until, reached = take_turns(bench, counts)
     result = {"load_average": os.getloadavg()[0], "samples": made, "seconds": seconds, "samples_a_second": rates,
               "rate_against_mitsuba": ratios(seconds["sundog sobol"], seconds["Mitsuba independent"]),
               "until_error": {way: {"samples": reached[way], "seconds": until[way], "median": statistics.median(until[way])} for way in counts}}
-    peers = [way for way in counts if WAYS[way][0] == "mitsuba"]
-    if peers and "sundog sobol" in counts:
-        best = min(peers, key=lambda way: result["until_error"][way]["median"])
-        result["best_peer"] = best
-        result["times_faster_to_error"] = ratios(until["sundog sobol"], until[best])
+    ours, theirs = ([way for way in counts if WAYS[way][0] == program] for program in ("sundog", "mitsuba"))
+    if ours and theirs:
+        own, peer = (min(ways, key=lambda way: result["until_error"][way]["median"]) for ways in (ours, theirs))
+        result |= {"best_own": own, "best_peer": peer, "times_faster_to_error": ratios(until[own], until[peer])}
     return result
 
 
@@ -164,7 +167,7 @@ def tell_times(t):
         return f"{r['median']:.2f} ({r['least']:.2f}..{r['greatest']:.2f})"
     print(f"          samples a second, sundog sobol over Mitsuba independent: {told(t['rate_against_mitsuba'])} times")
     if "best_peer" in t:
-        print(f"          time to {figures.ERROR}, {t['best_peer']} over sundog sobol: {told(t['times_faster_to_error'])} times")
+        print(f"          time to {figures.ERROR}, {t['best_peer']} over {t['best_own']}: {told(t['times_faster_to_error'])} times")
 
 
 def describe_run(args, mi):

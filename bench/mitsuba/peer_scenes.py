@@ -127,11 +127,12 @@ def sundog_object(kind, numbers, material):
     return thing | numbers
 
 
-def sundog_scene(name, samples, sampler):
+def sundog_scene(name, samples, sampler, caustics=False):
     materials, media = sundog_materials()
     scene = {"camera": camera_of(name), "image": {"width": SIZE, "height": SIZE}, "media": media, "materials": materials,
              "objects": [sundog_object(*thing) for thing in OBJECTS[name]],
-             "render": {"integrator": "path", "max_depth": DEPTH, "samples": samples, "sampler": sampler}}
+             "render": {"integrator": "path", "max_depth": DEPTH, "samples": samples, "sampler": sampler,
+                        "caustics": caustics}}
     if name == "textured":
         scene["meshes"] = {"barrel": {"file": "mesh.obj"}}
         scene["textures"] = {"barrel": {"type": "image", "file": "diffuse.png", "filter": "bilinear"}}

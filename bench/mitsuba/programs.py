@@ -23,10 +23,10 @@ class Sundog:
     def __init__(self, name, folder, program, device):
         self.name, self.folder, self.program, self.device = name, folder, program, device
 
-    def render(self, sampler, samples):
+    def render(self, sampler, samples, caustics=False):
         scene, out, stats = (os.path.join(self.folder, self.name + end) for end in (".json", ".pfm", ".stats.json"))
         with open(scene, "w") as file:
-            json.dump(sundog_scene(self.name, samples, sampler), file)
+            json.dump(sundog_scene(self.name, samples, sampler, caustics), file)
         subprocess.run([self.program, "render", scene, "-o", out, "--stats", stats, "--quiet", "--device", self.device], check=True)
         with open(stats) as file:
             return read_pfm(out), json.load(file)["seconds"]["render"]
