@@ -10,6 +10,7 @@
 
 #include "assets.h"
 #include "devices.h"
+#include "scenes.h"
 
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
@@ -54,6 +55,7 @@ int main(int argc, char** argv) {
   if (const auto assets = assets_directory(); assets.empty())
     std::printf("no test assets (SUNDOG_ASSETS or ../shared/assets): the tests of real models did without\n");
   const int status = Catch::Session().run(argc, argv);
+  scenes::close_sessions();
 #ifdef __SANITIZE_ADDRESS__
   // Before the end of the process: drivers keep some memory as long as it lives (PoCL a compiler for each
   // device) and only free the table that leads to it.

@@ -1,8 +1,11 @@
 #include "scenes.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "catch.h"
+#include "devices.h"
+#include "render/session/render_session.h"
 #include "scene/load.h"
 
 namespace scenes {
@@ -45,6 +48,26 @@ bool shares_kernels(const CompiledScene& scene) {
   const SceneFeatures& has = scene.features;
   return scene.field_source.empty() && scene.pattern_source.empty() && !has.maps && !has.fog && !has.lens &&
          !has.camera_motion && !has.object_motion && !has.dispersion && !has.layers;
+}
+
+/// One for each of test_devices(), in that order. They stay open, so that a process loads each kernel once.
+std::vector<std::unique_ptr<RenderSession>>& open_sessions() {
+  static std::vector<std::unique_ptr<RenderSession>> sessions;
+  return sessions;
+}
+
+/// The session of one of test_devices(); null for others: sub-devices, and those with settings of their own.
+RenderSession* session_on(const DeviceInfo& device) {
+  const std::vector<DeviceInfo>& devices = test_devices();
+  const auto same = [&](const DeviceInfo& one) {
+    return one.label() == device.label() && one.environment == device.environment;
+  };
+  const auto found = std::ranges::find_if(devices, same);
+  if (found == devices.end()) return nullptr;
+  open_sessions().resize(devices.size());
+  auto& session = open_sessions()[static_cast<std::size_t>(found - devices.begin())];
+  if (!session) session = std::make_unique<RenderSession>(std::vector{*found});
+  return session.get();
 }
 
 MaterialDescription dark() {
@@ -93,11 +116,14 @@ void place(SceneDescription& scene, Shape shape, int material, const glm::dmat4&
 
 RenderResult render_on(const DeviceInfo& device, const SceneDescription& scene,
                        const RenderOptions& options) {
-  const CompiledScene compiled = compile(scene);
+  const auto compiled = std::make_shared<const CompiledScene>(compile(scene));
   RenderOptions chosen = options;
-  if (device.native_vector_width > 1 && shares_kernels(compiled)) chosen.kernels = KernelChoice::general;
-  return render(compiled, {device}, chosen);
+  if (device.native_vector_width > 1 && shares_kernels(*compiled)) chosen.kernels = KernelChoice::general;
+  RenderSession* session = session_on(device);
+  return session ? session->render(compiled, chosen) : render(compiled, {device}, chosen);
 }
+
+void close_sessions() { open_sessions().clear(); }
 
 glm::dvec3 pixel_on(const DeviceInfo& device, const SceneDescription& scene) {
   const auto pixel = [&](const SceneDescription& of) {

@@ -32,11 +32,14 @@ int add_mirror(sundog::SceneDescription& scene, double reflection, glm::dvec3 gl
 void place(sundog::SceneDescription& scene, sundog::Shape shape, int material,
            const glm::dmat4& world_from_object = glm::dmat4(1));
 
-/// Renders on one device. Scenes without fields, textures, fog, lens and motion are drawn by general kernels,
-/// which they share: building a scene's own takes longer than drawing it. They draw the same bits (a test
-/// renders scenes both ways).
+/// Renders on one device, which stays open for the next scene. Scenes without fields, textures, fog, lens and
+/// motion are drawn by general kernels, which they share: building a scene's own takes longer than drawing
+/// it. They draw the same bits (a test renders scenes both ways).
 sundog::RenderResult render_on(const sundog::DeviceInfo& device, const sundog::SceneDescription& scene,
                                const sundog::RenderOptions& options = {});
+
+/// Lets go of the devices: to be called before the process ends.
+void close_sessions();
 
 /// The one pixel of a line_of_sight scene, RGB. Fails where the compact tracer's is another but for rounding.
 glm::dvec3 pixel_on(const sundog::DeviceInfo& device, const sundog::SceneDescription& scene);
