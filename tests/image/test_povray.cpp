@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "base/environment.h"
 #include "base/image_compare.h"
@@ -18,6 +19,7 @@
 #include "povray_run.h"
 #include "render/render.h"
 #include "scene/load.h"
+#include "scenes.h"
 
 using namespace sundog;
 
@@ -38,14 +40,24 @@ Image clamped(Image image) {
 }
 
 SceneDescription load(const std::string& scene_name, std::vector<std::string> overrides) {
-  for (const char* common : {"/image/width=320", "/image/height=240", "/render/samples=1", "/render/cutoff=0",
+  for (const char* common : {"/image/width=192", "/image/height=144", "/render/samples=1", "/render/cutoff=0",
                              "/render/max_depth=7"})
     overrides.emplace_back(common);
-  return load_scene(std::filesystem::path(SUNDOG_SOURCE_DIR) / "scenes" / (scene_name + ".json"), overrides);
+  SceneDescription scene =
+      load_scene(std::filesystem::path(SUNDOG_SOURCE_DIR) / "scenes" / (scene_name + ".json"), overrides);
+  // Below what everything stands on lie the shapes of all scenes: the same kernels draw them.
+  const glm::dmat4 below = glm::translate(glm::dmat4(1), {0, -3, 0});
+  scenes::place(scene, CylinderShape{0.1, 0.1}, scene.objects.front().material, below);
+  scenes::place(scene, RoundBoxShape{{0.1, 0.1, 0.1}, 0.02}, scene.objects.front().material, below);
+  return scene;
 }
 
-Image our_picture(const SceneDescription& scene) {
-  return clamped(render(compile(scene), select_devices(enumerate_devices(plain_environment()), {})).image);
+/// General kernels draw the bits of the scene's own, and several scenes share them.
+Image our_picture(const SceneDescription& scene, KernelChoice kernels = KernelChoice::general) {
+  RenderOptions options;
+  options.kernels = kernels;
+  return clamped(
+      render(compile(scene), select_devices(enumerate_devices(plain_environment()), {}), options).image);
 }
 
 Pictures render_both(const std::string& scene_name, const std::string& name,
@@ -136,7 +148,7 @@ TEST_CASE("a quaternion Julia set is POV-Ray's julia_fractal: the same outlines 
       file,
       {"/image/width=240", "/image/height=240", "/objects/0/detail=0.1", "/objects/0/least_threshold=1e-6"});
   const Pictures pictures{
-      "julia", our_picture(scene),
+      "julia", our_picture(scene, KernelChoice::own),
       povray::run(povray::from_scene(scene, povray::Absorption::media), 240, 240, 2, folder, "julia").image};
   const ImageDifference d = report(pictures);
   const glm::dvec3 sky = scene.image.background_top;

@@ -43,12 +43,14 @@ TEST_CASE("ray counts of the Standard Procedural Databases are the published one
     return;
   }
   const auto device = select_devices(enumerate_devices(plain_environment()), {});
+  RenderOptions options;
+  options.kernels = KernelChoice::general;  // several of the scenes share them
   for (const Published& p : published) {
     const SceneDescription scene =
         load_scene(assets / "reference" / "spd" / (std::string(p.name) + ".nff.gz"),
                    {"/image/width=513", "/image/height=513", "/render/max_depth=5", "/render/cutoff=0",
                     "/render/samples=1"});
-    const RayCounts counts = render(compile(scene), device).counts;
+    const RayCounts counts = render(compile(scene), device, options).counts;
     CHECK(counts[COUNT_PRIMARY] == 513u * 513u);
     check_count(p.name, "eye hits", counts[COUNT_PRIMARY_HIT], p.eye_hits);
     check_count(p.name, "reflection", counts[COUNT_REFLECTION], p.reflection);
