@@ -42,6 +42,9 @@ TEST_CASE("pip installs the Python package, which renders, stops for Ctrl-C and 
       run_command({python, "-m", "pip", "install", "--quiet", "--no-build-isolation", SUNDOG_SOURCE_DIR,
                    "--config-settings=cmake.define.sundog_DIR=" + config,
                    "--config-settings=cmake.define.CMAKE_CXX_FLAGS_RELEASE=-O0",
+                   // Most of nanobind's sources are headers: in one each is read once.
+                   "--config-settings=cmake.define.CMAKE_UNITY_BUILD=ON",
+                   "--config-settings=cmake.define.CMAKE_UNITY_BUILD_BATCH_SIZE=0",
                    "--config-settings=build-dir=" + (folder / "build").string()},
                   patient);
   CAPTURE(built.out, built.err);
