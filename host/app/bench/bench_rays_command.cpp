@@ -22,6 +22,7 @@ namespace {
 
 struct RaysOptions : BenchOptions {
   std::string size = "1024", kinds;
+  bool no_times = false;
 };
 
 /// Which rays are timed.
@@ -35,7 +36,7 @@ struct RayTimes {
   std::string kind;
   std::size_t rays = 0;
   HitCheck check;
-  Spread mrays;
+  std::optional<Spread> mrays;         // none where only the answers are checked
   std::optional<Spread> kernel_mrays;  // by the device's events, where the driver gives times
 };
 
@@ -81,6 +82,7 @@ RayTimes time_rays(const std::string& name, const CompiledScene& scene, const Ra
     rates.push_back(millions / clock.seconds());
     if (kernel_seconds > 0) kernel_rates.push_back(millions / kernel_seconds);
   }
+  if (rates.empty()) return times;
   times.mrays = spread(rates);
   if (kernel_rates.size() == rates.size()) times.kernel_mrays = spread(kernel_rates);
   return times;
@@ -93,7 +95,7 @@ std::vector<RayTimes> time_scene(const CompiledScene& scene, Device& device, con
   std::vector<RayTimes> times;
   for (const RaySet& set : frame_rays(scene, scene_viewpoint(scene), wanted.size, trace, wanted.kinds)) {
     show_step(options, fmt::format("{}: {} rays", name, set.kind));
-    times.push_back(time_rays(name, scene, set, tracer, options.repeat));
+    times.push_back(time_rays(name, scene, set, tracer, options.no_times ? 0 : options.repeat));
   }
   return times;
 }
@@ -111,17 +113,18 @@ void add_rows(Report& report, const std::string& scene, const DeviceInfo& device
   BarPlot bars{table.title, "Mrays/s", {}};
   for (const RayTimes& t : times) {
     const double hits = 100.0 * static_cast<double>(t.check.hits) / static_cast<double>(t.rays);
-    const Cell kernel = t.kernel_mrays ? Cell(*t.kernel_mrays) : Cell();
+    const Cell rate = t.mrays ? Cell(*t.mrays) : Cell(),
+               kernel = t.kernel_mrays ? Cell(*t.kernel_mrays) : Cell();
     const std::string checked = fmt::format("{}, {} by rounding", t.check.checked, t.check.rounded);
-    table.rows.push_back({t.kind, static_cast<double>(t.rays), hits, t.mrays, kernel, checked});
-    bars.bars.push_back({t.kind, t.mrays, fmt::format("{} rays", t.rays)});
+    table.rows.push_back({t.kind, static_cast<double>(t.rays), hits, rate, kernel, checked});
+    if (t.mrays) bars.bars.push_back({t.kind, *t.mrays, fmt::format("{} rays", t.rays)});
     const auto number = [](std::size_t n) { return static_cast<double>(n); };
     report.measurements.rows.push_back({scene, device.label(), t.kind, number(t.rays), number(t.check.hits),
                                         number(t.check.checked), number(t.check.rounded),
-                                        number(t.check.differ), t.mrays, tracer, kernel});
+                                        number(t.check.differ), rate, tracer, kernel});
   }
   report.parts.emplace_back(std::move(table));
-  report.parts.emplace_back(std::move(bars));
+  if (!bars.bars.empty()) report.parts.emplace_back(std::move(bars));
 }
 
 /// What the report says of a scene before any time.
@@ -156,18 +159,17 @@ int bench_rays(const RaysOptions& options) {
       add_rows(report, name, info, tracer, time_scene(scene, device, options, wanted, name));
     }
   }
-  report.notes.push_back(fmt::format(
-      "Median of {} launches by the wall clock, each waited for; `kernel` is by the device's "
-      "events, if its driver "
-      "gives times. Shadow rays ask for any hit, the others for the nearest. Distance fields are "
-      "marched, not "
-      "traced, and left out; `bench threads` and `bench devices` time their frames. Every answer "
-      "is checked by the "
-      "host's own tracer and, where the two differ, in double precision. `by rounding` counts "
-      "the answers that "
-      "differ and where both are right; where the plain tracer is wrong for one ray in a thousand, "
-      "nothing is timed.",
-      options.repeat));
+  if (!options.no_times)
+    report.notes.push_back(fmt::format(
+        "Median of {} launches by the wall clock, each waited for; `kernel` is by the device's events, if "
+        "its driver gives times. Shadow rays ask for any hit, the others for the nearest. Distance fields "
+        "are "
+        "marched, not traced, and left out; `bench threads` and `bench devices` time their frames.",
+        options.repeat));
+  report.notes.emplace_back(
+      "Every answer is checked by the host's own tracer and, where the two differ, in double precision. `by "
+      "rounding` counts the answers that differ and where both are right; where the plain tracer is wrong "
+      "for one ray in a thousand, nothing is timed.");
   return publish(report, options);
 }
 
@@ -181,6 +183,7 @@ void add_bench_rays(Arguments& bench, Command& chosen) {
   value(app, "--size", "N", options->size, "pixels a side of the camera's rays (default 1024)");
   value(app, "--kinds", "NAMES", options->kinds,
         fmt::format("some of {} (default all)", fmt::join(ray_kinds, ",")));
+  app->add_flag("--no-times", options->no_times, "only check the answers");
   app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_rays(*options); }}; });
 }
 

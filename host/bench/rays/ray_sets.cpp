@@ -82,15 +82,16 @@ void glass_children(const CompiledScene& scene, const std::vector<Ray>& rays, co
 
 RaySet glass_rays(const CompiledScene& scene, std::vector<Ray> rays, std::vector<Hit> hits,
                   const TraceFunction& trace) {
+  constexpr int surfaces = 5;
   RaySet set{.kind = "glass"};
-  for (int surface = 0; surface < 5; ++surface) {
+  for (int surface = 1; surface <= surfaces; ++surface) {
     std::vector<Ray> reflected, refracted;
     glass_children(scene, rays, hits, false, reflected, refracted);
     rays = std::move(refracted);
     rays.insert(rays.end(), reflected.begin(), reflected.end());
     if (rays.empty()) break;
     set.rays.insert(set.rays.end(), rays.begin(), rays.end());
-    hits = trace(rays);
+    if (surface < surfaces) hits = trace(rays);
   }
   return set;
 }
