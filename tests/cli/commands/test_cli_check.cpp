@@ -75,23 +75,23 @@ TEST_CASE("check passes a sound device, and a driver that crashes is a line besi
 
 TEST_CASE("check finds a device whose picture is wrong, and one whose kernels do not build") {
   const TemporaryFolder folder;
-  fs::copy(SUNDOG_SOURCE_DIR "/kernels", folder.path(),
-           fs::copy_options::recursive | fs::copy_options::overwrite_existing);
-  const std::string optics = sundog::read_file(folder / "lib/core/optics.cl");
+  copy_frame_kernels(folder.path());
   int status = -1;
   SECTION("wrong") {
-    std::string bent = optics;
+    const fs::path file = folder / "lib/core/optics.cl";
+    std::string bent = sundog::read_file(file);
     const std::size_t at = bent.find("cos_i / eta - cos_t");
     REQUIRE(at != std::string::npos);
     bent.replace(at, 19, "cos_i / eta - 0.9f * cos_t");
-    folder.write("lib/core/optics.cl", bent);
+    sundog::write_file(file, bent);
     const json row = row_of(check({pocl}, status, folder.path().string()), "Portable");
     CHECK(status == 6);
     CHECK(row.at("status") == "differs");
     CHECK(row.at("differing") > 20);
   }
   SECTION("broken") {
-    folder.write("lib/core/optics.cl", optics + "\nthis is no kernel\n");
+    const fs::path file = folder / "lib/core/optics.cl";
+    sundog::write_file(file, sundog::read_file(file) + "\nthis is no kernel\n");
     const json row = row_of(check({pocl}, status, folder.path().string()), "Portable");
     CHECK(status == 4);
     CHECK(row.at("status") == "failed");

@@ -12,8 +12,16 @@
 
 using namespace sundog;
 
+namespace {
+
+struct BuildFolder : FaultyFolder {
+  BuildFolder() { scene = write("least.json", least_scene).string(); }
+};
+
+}  // namespace
+
 TEST_CASE("a kernel cache that is corrupt or cannot be written costs time only") {
-  FaultyFolder folder;
+  BuildFolder folder;
   const std::string plain = folder.plain();
   folder.options.environment["XDG_CACHE_HOME"] = folder.file("cache");
   folder.options.environment["POCL_CACHE_DIR"] = folder.file("pocl");
@@ -92,7 +100,7 @@ class OneCore {
 
 TEST_CASE("where PoCL has no room to write, the message tells the folder and the mend") {
   const OneCore one_core;
-  FaultyFolder folder;
+  BuildFolder folder;
   std::filesystem::create_directories(folder / "temporary");
   folder.options.environment["XDG_CACHE_HOME"] = folder.file("cache");
   folder.options.environment["POCL_CACHE_DIR"] = "";
@@ -136,7 +144,7 @@ TEST_CASE("where the cache cannot be written, Mesa keeps kernels among the tempo
 TEST_CASE(
     "a program of which the driver makes no kernels is built again without optimisation, and both logs are "
     "kept") {
-  FaultyFolder folder;
+  BuildFolder folder;
   folder.size = "32x24";
   folder.options.environment["SUNDOG_BUILD_LOG"] = folder.file("logs");
   const std::vector<std::string> one = {"--device", "!0:0"};
@@ -159,7 +167,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a program that was built without optimisation is not kept for the next run") {
-  FaultyFolder folder;
+  BuildFolder folder;
   folder.size = "32x24";
   folder.options.environment["XDG_CACHE_HOME"] = folder.file("cache");
   const std::vector<std::string> one = {"--device", "!0:0"};

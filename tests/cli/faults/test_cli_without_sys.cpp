@@ -69,7 +69,7 @@ TEST_CASE("without /sys PoCL has its device, with the machine's processors and m
 }
 
 TEST_CASE("without /sys a picture has the bits that it has with it, and check names the mend") {
-  const Hidden hidden;
+  Hidden hidden;
   if (hidden.command.empty()) return;
   const CliFolder folder;
   const CommandResult result = hidden.run({"render", folder.scene, "-o", folder.file("hidden.pfm")});
@@ -77,6 +77,8 @@ TEST_CASE("without /sys a picture has the bits that it has with it, and check na
   REQUIRE(result.status == 0);
   REQUIRE(run_sundog({"render", folder.scene, "-o", folder.file("usual.pfm")}, hidden.options).status == 0);
   CHECK(sundog::read_file(folder / "hidden.pfm") == sundog::read_file(folder / "usual.pfm"));
+  copy_frame_kernels(folder / "kernels");
+  hidden.options.environment["SUNDOG_KERNEL_DIR"] = folder.file("kernels");
   const CommandResult check = hidden.run({"check"});
   CAPTURE(check.out);
   CHECK(check.status == 0);

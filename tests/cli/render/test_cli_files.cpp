@@ -80,7 +80,8 @@ TEST_CASE("the cache is the user's own: made for him alone, and not used where o
   fs::create_directory(folder / "cache");
   CommandOptions options;
   options.environment["XDG_CACHE_HOME"] = folder.file("cache");
-  const std::vector<std::string> command = {"render", folder.scene, "-o", folder.file("a.png"), "--quiet"};
+  const std::vector<std::string> command = {"render", folder.write("least.json", least_scene).string(), "-o",
+                                            folder.file("a.png"), "--quiet"};
   const fs::path own = folder / "cache/sundog";
   REQUIRE(run_sundog(command, options).status == 0);
   for (const fs::path& made : {own, own / "kernels"}) CHECK(mode(made) == fs::perms::owner_all);
