@@ -17,7 +17,7 @@ TEST_CASE("the examples build and run from an installed tree") {
   must({"cmake", "-G", "Ninja", "-S", (folder / "examples").string(), "-B", build,
         "-DCMAKE_PREFIX_PATH=" + prefix.string()});
   must({"cmake", "--build", build, "--parallel", "2"});
-  const std::string scene = shipped_scene("julia").string();
+  const std::string scene = shipped_scene("spheres").string();
   // A scene in 640x480 is too much for a test.
   sundog::Scene small = sundog::Scene::load(scene);
   small.set_size(40, 30);
