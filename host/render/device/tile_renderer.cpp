@@ -51,7 +51,7 @@ LaunchLimits limits_of(const DeviceInfo& device, const FrameKernels& kernels) {
 }
 
 bool makes_aovs(const CompiledScene& scene, const RenderOptions& options) {
-  return !options.aovs.empty() || needs_surfaces(scene.sampling);
+  return show_surfaces(options.aovs) || needs_surfaces(scene.sampling);
 }
 
 FrameKernels kernels_with(const RenderOptions& options, KernelBuilder* builder) {

@@ -71,7 +71,7 @@ class TileRenderer {
     return request.in_pass ? request.sample_count : samples_;
   }
   bool wants_aovs(const TileRequest& request) const {
-    return request.in_pass ? request.surfaces : !options_->aovs.empty();
+    return request.in_pass ? request.surfaces : show_surfaces(options_->aovs);
   }
 
   Device& device_;

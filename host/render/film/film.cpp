@@ -16,7 +16,7 @@ Film::Film(int width_, int height_, bool with_aovs, std::size_t vectors_)
 }
 
 Film Film::with_aovs(int width, int height, const std::vector<std::string>& names) {
-  Film film(width, height, !names.empty(), aov_vectors(names));
+  Film film(width, height, show_surfaces(names), aov_vectors(names));
   if (counts_rays(names)) film.rays.resize(film.done.size());
   return film;
 }
@@ -106,6 +106,10 @@ const std::vector<std::string>& aov_names() {
   return names;
 }
 
+bool show_surfaces(const std::vector<std::string>& names) {
+  return std::ranges::any_of(names, [](const std::string& name) { return find_place(name) != nullptr; });
+}
+
 std::size_t aov_vectors(const std::vector<std::string>& names) {
   std::size_t vectors = few_aov_vectors;
   for (const std::string& name : names)
@@ -117,7 +121,7 @@ std::size_t aov_vectors(const std::vector<std::string>& names) {
 bool counts_rays(const std::vector<std::string>& names) { return std::ranges::count(names, "rays") > 0; }
 
 std::size_t film_bytes(const std::vector<std::string>& names) {
-  const std::size_t aovs = names.empty() ? 0 : sizeof(float4) * aov_vectors(names);
+  const std::size_t aovs = show_surfaces(names) ? sizeof(float4) * aov_vectors(names) : 0;
   return sizeof(float4) + sizeof(float) + 1 + aovs + (counts_rays(names) ? sizeof(u32) : 0);
 }
 

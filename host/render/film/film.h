@@ -40,8 +40,8 @@ inline float seen_light(const Color& color) {
   return std::max(color.r + color.g + color.b, darkest);
 }
 
-/// width * height pixels, row 0 at the top. `aovs` holds `vectors` float4 a pixel when the frame has AOVs,
-/// else nothing.
+/// width * height pixels, row 0 at the top. `aovs` holds `vectors` float4 a pixel when the frame has AOVs
+/// of surfaces, else nothing.
 struct Film {
   int width = 0, height = 0;
   std::size_t vectors = few_aov_vectors;
@@ -81,7 +81,10 @@ void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_
 /// The AOVs `render` can make.
 const std::vector<std::string>& aov_names();
 
-/// The vectors a pixel that these AOVs want.
+/// Whether they show the pixels' first surfaces. The others come of the samples.
+bool show_surfaces(const std::vector<std::string>& names);
+
+/// The vectors a pixel that these AOVs want, where they show surfaces.
 std::size_t aov_vectors(const std::vector<std::string>& names);
 
 /// Whether they want the rays of each pixel to be counted.
