@@ -1,4 +1,6 @@
 // One frame on devices of different drivers: PoCL and, where Mesa is installed, llvmpipe.
+#include <glm/gtc/matrix_transform.hpp>
+
 #include "base/image_compare.h"
 #include "catch.h"
 #include "compile/compiled_scene.h"
@@ -22,7 +24,11 @@ SceneDescription glass_over_a_floor() {
   point.position = {-4, 6, 5};
   scene.lights.push_back(point);
   scenes::place(scene, PlaneShape{}, scenes::add_white(scene), glm::dmat4(1));
-  scenes::place(scene, SphereShape{0.9}, scenes::add_dielectric(scene, 1.5));
+  const int glass = scenes::add_dielectric(scene, 1.5);
+  scenes::place(scene, SphereShape{0.9}, glass);
+  // Bounded things for a tree, so that test_session's scene has the same kernel on llvmpipe.
+  for (const double x : {-1.4, 1.5})
+    scenes::place(scene, SphereShape{0.3}, glass, glm::translate(glm::dmat4(1), glm::dvec3(x, 0.3, 0.8)));
   return scene;
 }
 
