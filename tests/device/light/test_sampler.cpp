@@ -146,7 +146,8 @@ TEST_CASE("blue noise errs less than Sobol's sequence of each pixel once it is b
   const auto picture = [&](u32 sampler, int samples) {
     scene.render.sampler = sampler;
     scene.render.samples = samples;
-    return scenes::render_on(info, scene).image;
+    if (sampler == SAMPLER_SOBOL) return scenes::render_on(info, scene).image;
+    return render(compile(scene), {info}).image;  // its own kernels take less to build than general ones
   };
   const Image right = picture(SAMPLER_SOBOL, 256);
   const auto error = [&](const Image& image) {  // of means of 4x4 pixels

@@ -2,6 +2,7 @@
 // The scenes share their kernels: each is one triangle under one ambient and one directional light.
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
 #include "catch.h"
@@ -131,12 +132,24 @@ TEST_CASE("near and far clip by depth along the view, the same in every pixel") 
     }
 }
 
-TEST_CASE("fog takes exp(-density d) of what lies behind it and adds the rest in its own colour") {
-  const dvec3 glow{0.2, 0.9, 0.4}, fog{0.7, 0.3, 0.1};
+namespace {
+
+/// The triangle in fog, and a ball of glass at the place.
+SceneDescription foggy_triangle(const dvec3& glow, const dvec3& fog, const dvec3& ball) {
   SceneDescription scene = one_triangle({0, 0, 1}, 0);
   scene.fog = {fog, 0.13, {}};
-  scene.image.background_bottom = scene.image.background_top = {1, 1, 1};
   material_of(scene).ambient = glow;
+  scenes::place(scene, SphereShape{20}, scenes::add_dielectric(scene, 1.5, {0, 0, 0}, 0),
+                glm::translate(glm::dmat4(1), ball));
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("fog takes exp(-density d) of what lies behind it and adds the rest in its own colour") {
+  const dvec3 glow{0.2, 0.9, 0.4}, fog{0.7, 0.3, 0.1};
+  SceneDescription scene = foggy_triangle(glow, fog, {900, 0, 0});
+  scene.image.background_bottom = scene.image.background_top = {1, 1, 1};
   const double clear = std::exp(-0.13 * 5);
   for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label()) {
       check_color(device, scene, clear * glow + (1 - clear) * fog);
@@ -148,10 +161,7 @@ TEST_CASE("fog takes exp(-density d) of what lies behind it and adds the rest in
 
 TEST_CASE("there is no fog inside of things") {
   const dvec3 glow{0.2, 0.9, 0.4};
-  SceneDescription scene = one_triangle({0, 0, 1}, 0);
-  scene.fog = {{0.7, 0.3, 0.1}, 0.13, {}};
-  material_of(scene).ambient = glow;
-  scenes::place(scene, SphereShape{20}, scenes::add_dielectric(scene, 1.5, {0, 0, 0}, 0));
+  const SceneDescription scene = foggy_triangle(glow, {0.7, 0.3, 0.1}, {0, 0, 0});
   for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label())
   check_color(device, scene, glow);
 }

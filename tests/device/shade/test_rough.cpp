@@ -24,7 +24,7 @@ SceneDescription furnace(int material(SceneDescription&), double roughness, cons
   SceneDescription scene = scenes::line_of_sight({0, 0, 4}, at);
   scene.image.width = scene.image.height = 12;
   scene.render.samples = 16;
-  scene.render.max_depth = 24;
+  scene.render.max_depth = 12;
   scene.image.background_bottom = scene.image.background_top = {1, 1, 1};
   scenes::place(scene, SphereShape{1}, material(scene));
   scene.materials.back().roughness = roughness;
