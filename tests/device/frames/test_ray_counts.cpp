@@ -54,6 +54,7 @@ TEST_CASE("rays of all pixels are those of the statistics, the same for every ti
         const RenderResult whole = scenes::render_on(device, scene, with_rays());
         const Image& rays = whole.aovs.at("rays");
         CHECK(sum_of(rays) == all_rays(whole.counts));
+        CHECK_FALSE(whole.devices.at(0).kernels.contains("first_surfaces"));  // no AOV shows them
         const Image& samples = whole.aovs.at("samples");
         bool each = true, more = false;
         for (std::size_t i = 0; i < rays.data.size(); ++i) {
