@@ -163,13 +163,12 @@ int bench_rays(const RaysOptions& options) {
     report.notes.push_back(fmt::format(
         "Median of {} launches by the wall clock, each waited for; `kernel` is by the device's events, if "
         "its driver gives times. Shadow rays ask for any hit, the others for the nearest. Distance fields "
-        "are "
-        "marched, not traced, and left out; `bench threads` and `bench devices` time their frames.",
+        "are marched, not traced, and left out; `bench threads` and `bench devices` time their frames.",
         options.repeat));
   report.notes.emplace_back(
-      "Every answer is checked by the host's own tracer and, where the two differ, in double precision. `by "
-      "rounding` counts the answers that differ and where both are right; where the plain tracer is wrong "
-      "for one ray in a thousand, nothing is timed.");
+      "Every answer is checked by the host's own tracer and, where the two differ, in double precision. "
+      "`by rounding` counts the answers that differ and where both are right; where the plain tracer is "
+      "wrong for one ray in a thousand, nothing is timed.");
   return publish(report, options);
 }
 
