@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 #include <numbers>
 
+#include "compile/lattice_turns.h"
 #include "shared/lobe_energy.h"
 
 namespace sundog {
@@ -21,15 +22,6 @@ double smith_lambda(double cosine, double alpha) {
   return (std::sqrt(1 + alpha * alpha * (1 - square) / square) - 1) / 2;
 }
 
-/// As kernels/lib/shade/rough.cl has it, about +z, for a viewer in the plane y = 0.
-dvec3 visible_normal(const dvec3& wo, double alpha, double u, double v) {
-  const dvec3 stretched = glm::normalize(dvec3(alpha * wo.x, 0, wo.z));
-  const double z = (1 - v) * (1 + stretched.z) - stretched.z, angle = 2 * std::numbers::pi * u;
-  const double side = std::sqrt(std::max(1 - z * z, 0.0));
-  const dvec3 h = dvec3(side * std::cos(angle), side * std::sin(angle), z) + stretched;
-  return glm::normalize(dvec3(alpha * h.x, alpha * h.y, std::max(h.z, 1e-6)));
-}
-
 // Places of a Fibonacci lattice, which is as even along the sum of its axes as along each: edges where light
 // begins to be sent through cut no whole row of it.
 constexpr int draws = 377, lattice_turn = 233;
@@ -37,8 +29,21 @@ constexpr int draws = 377, lattice_turn = 233;
 // What white lobes are let to lose, so that none returns more than all light between the tables' places.
 constexpr double gain_margin = 0.0015, glass_margin = 0.005;
 
-dvec3 drawn_normal(const dvec3& wo, double alpha, int i) {
-  return visible_normal(wo, alpha, double(i * lattice_turn % draws) / draws, (i + 0.5) / draws);
+/// Normals of facets about +z, each drawn by what a viewer in the plane y = 0 sees of it.
+using Normals = std::array<dvec3, draws>;
+
+/// As kernels/lib/shade/rough.cl has them.
+Normals visible_normals(const dvec3& wo, double alpha) {
+  const auto& turns = lattice_turns<draws, lattice_turn>();
+  const dvec3 stretched = glm::normalize(dvec3(alpha * wo.x, 0, wo.z));
+  Normals normals;
+  for (std::size_t i = 0; i < draws; ++i) {
+    const double v = (double(i) + 0.5) / draws;
+    const double z = (1 - v) * (1 + stretched.z) - stretched.z, side = std::sqrt(std::max(1 - z * z, 0.0));
+    const dvec3 h = dvec3(side * turns[i].cosine, side * turns[i].sine, z) + stretched;
+    normals[i] = glm::normalize(dvec3(alpha * h.x, alpha * h.y, std::max(h.z, 1e-6)));
+  }
+  return normals;
 }
 
 double alpha_of(u32 row, u32 rows) {
@@ -51,16 +56,26 @@ double cosine_of(u32 column, u32 columns, double alpha) {
 }
 
 /// Between the columns of a row of the tables, as kernels read it.
-template <typename Row>
-double in_row(const Row& row, u32 columns, double cosine, double alpha) {
+struct ColumnPlace {
+  u32 left;
+  double to_next;
+};
+
+ColumnPlace place_of(double cosine, double alpha, u32 columns) {
   const double x = LOBE_COLUMN(cosine, alpha) * (columns - 1);
   const u32 left = std::min(static_cast<u32>(x), columns - 2);
-  return std::lerp(double(row[left]), double(row[left + 1]), x - left);
+  return {left, x - left};
 }
 
-/// Light that comes from the cosine `from` and the part of it that is sent on.
+template <typename Row>
+double in_row(const Row& row, const ColumnPlace& at) {
+  return std::lerp(double(row[at.left]), double(row[at.left + 1]), at.to_next);
+}
+
+/// Light that comes from the cosine at `from` and the part of it that is sent on.
 struct Sent {
-  double from, part;
+  ColumnPlace from;
+  double part;
 };
 
 /// A white lobe's light by visible normals, each with the same weight.
@@ -68,10 +83,12 @@ std::vector<Sent> sent_to(double cosine, double alpha) {
   const dvec3 wo(std::sqrt(1 - cosine * cosine), 0, cosine);
   const double lambda_o = smith_lambda(cosine, alpha);
   std::vector<Sent> sent;
-  for (int i = 0; i < draws; ++i) {
-    const dvec3 h = drawn_normal(wo, alpha, i);
+  sent.reserve(draws);
+  for (const dvec3& h : visible_normals(wo, alpha)) {
     const double out = (2 * glm::dot(wo, h) * h - wo).z;
-    if (out > 0) sent.push_back({out, (1 + lambda_o) / (1 + lambda_o + smith_lambda(out, alpha))});
+    if (out > 0)
+      sent.push_back(
+          {place_of(out, alpha, LOBE_STEPS), (1 + lambda_o) / (1 + lambda_o + smith_lambda(out, alpha))});
   }
   return sent;
 }
@@ -94,7 +111,7 @@ Row gains_of(double alpha) {
     Row next;
     for (u32 column = 0; column < LOBE_STEPS; ++column) {
       double sum = 0;
-      for (const Sent& one : sent[column]) sum += one.part * in_row(gains, LOBE_STEPS, one.from, alpha);
+      for (const Sent& one : sent[column]) sum += one.part * in_row(gains, one.from);
       next[column] = std::sqrt(gains[column] * draws / sum);
     }
     gains = next;
@@ -123,12 +140,10 @@ double reflectance(double c, double eta, double& bent) {
 
 /// The part of light that a white interface's facets reflect or transmit to a viewer without a second
 /// meeting.
-double glass_energy(double cosine, double alpha, double eta) {
-  const dvec3 wo(std::sqrt(1 - cosine * cosine), 0, cosine);
-  const double seen = 1 + smith_lambda(cosine, alpha);
+double glass_energy(const dvec3& wo, const Normals& normals, double alpha, double eta) {
+  const double seen = 1 + smith_lambda(wo.z, alpha);
   double sum = 0;
-  for (int i = 0; i < draws; ++i) {
-    const dvec3 h = drawn_normal(wo, alpha, i);
+  for (const dvec3& h : normals) {
     const double c = std::clamp(glm::dot(wo, h), 0.0, 1.0);
     double bent = 0;
     const double f = reflectance(c, eta, bent);
@@ -145,7 +160,7 @@ double mean_lost(const float* row, double alpha) {
   double sum = 0;
   for (int i = 0; i < places; ++i) {
     const double s = (i + 0.5) / places, cosine = s * s * s;
-    sum += (1 - in_row(row, GLASS_STEPS, cosine, alpha)) * 2 * cosine * 3 * s * s;
+    sum += (1 - in_row(row, place_of(cosine, alpha, GLASS_STEPS))) * 2 * cosine * 3 * s * s;
   }
   return std::max(sum / places, 0.0);
 }
@@ -181,14 +196,15 @@ void add_further(std::vector<float>& table) {
 
 void add_glass(std::vector<float>& table) {
   table.resize(LOBE_GLASS + GLASS_INDICES * 2 * GLASS_STEPS * GLASS_STEPS);
-  tbb::parallel_for(0u, GLASS_INDICES * 2 * GLASS_STEPS, [&](u32 i) {
-    const u32 index = i / (2 * GLASS_STEPS), side = i / GLASS_STEPS % 2, row = i % GLASS_STEPS;
-    const double less = less_of(index), eta = side == 0 ? 1 / (1 - less) : 1 - less;
-    const double alpha = alpha_of(row, GLASS_STEPS);
-    for (u32 column = 0; column < GLASS_STEPS; ++column) {
-      const double cosine = cosine_of(column, GLASS_STEPS, alpha);
-      const double lost = 1 - glass_energy(cosine, alpha, eta);
-      table[LOBE_GLASS + i * GLASS_STEPS + column] =
+  tbb::parallel_for(0u, GLASS_STEPS * GLASS_STEPS, [&](u32 place) {
+    const u32 row = place / GLASS_STEPS, column = place % GLASS_STEPS;
+    const double alpha = alpha_of(row, GLASS_STEPS), cosine = cosine_of(column, GLASS_STEPS, alpha);
+    const dvec3 wo(std::sqrt(1 - cosine * cosine), 0, cosine);
+    const Normals normals = visible_normals(wo, alpha);
+    for (u32 i = 0; i < GLASS_INDICES * 2; ++i) {
+      const double less = less_of(i / 2), eta = i % 2 == 0 ? 1 / (1 - less) : 1 - less;
+      const double lost = 1 - glass_energy(wo, normals, alpha, eta);
+      table[LOBE_GLASS + (i * GLASS_STEPS + row) * GLASS_STEPS + column] =
           static_cast<float>(1 - std::max(lost - glass_margin, lost / 2));
     }
   });

@@ -12,7 +12,6 @@ namespace sundog {
 namespace {
 
 constexpr std::size_t steps = LAYER_GRID_STEPS;
-using GainGrid = std::array<FacetGains, steps>;
 
 FacetWidths widths_at(double step, double anisotropy) {
   return wide_enough(facet_widths(step / (steps - 1), anisotropy));
@@ -29,6 +28,17 @@ const GainGrid& round_gains() {
   // Its own tasks alone run meanwhile: another's might ask for the grid.
   static const GainGrid grid = tbb::this_task_arena::isolate([] { return make_gains(0); });
   return grid;
+}
+
+/// As the kernels ask.
+bool is_round(double anisotropy) { return float(1 - anisotropy) == 1; }
+
+/// The gains of one anisotropy, which the materials of a scene share.
+const GainGrid& gain_grid(double anisotropy, LayerRows& rows) {
+  if (is_round(anisotropy)) return round_gains();
+  const auto found = rows.gains.find(anisotropy);
+  return found != rows.gains.end() ? found->second
+                                   : rows.gains.emplace(anisotropy, make_gains(anisotropy)).first->second;
 }
 
 /// Between a step and the next, as the kernels have it.
@@ -92,9 +102,7 @@ BaseInterface base_interface(const FacetWidths& widths, const FacetGains& gains,
 u32 add_layer_grid(double anisotropy, const BaseSurroundings& around, LayerRows& rows) {
   const auto [found, added] = rows.grids.try_emplace(grid_key(anisotropy, around), u32(rows.values.size()));
   if (!added) return found->second;
-  const bool round = float(1 - anisotropy) == 1;  // as the kernels ask
-  const GainGrid own = round ? GainGrid{} : make_gains(anisotropy);
-  const GainGrid& gains = round ? round_gains() : own;
+  const GainGrid& gains = gain_grid(anisotropy, rows);
   const std::array<BaseInterface, steps> made = make_steps(anisotropy, gains, around);
   std::vector<float>& to = rows.values;
   for (const BaseInterface& step : made)
@@ -102,7 +110,7 @@ u32 add_layer_grid(double anisotropy, const BaseSurroundings& around, LayerRows&
       to.push_back(float(number));
   for (std::size_t i = 0; i < steps; ++i) {
     to.insert(to.end(), made[i].past.begin(), made[i].past.end());
-    for (std::size_t row = 0; row < (round ? 1 : LAYER_TURNS); ++row)
+    for (std::size_t row = 0; row < (is_round(anisotropy) ? 1 : LAYER_TURNS); ++row)
       to.insert(to.end(), gains[i][row].begin(), gains[i][row].end());
   }
   return found->second;

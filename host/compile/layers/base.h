@@ -1,6 +1,7 @@
 // The interface of a layered material's base: what it leaves for the ground, at one roughness, and at a grid
 // of them where a texture gives the roughness.
 #pragma once
+#include <array>
 #include <map>
 #include <vector>
 
@@ -27,10 +28,15 @@ BaseInterface base_interface(const FacetWidths& widths, const FacetGains& gains,
 /// Widths that the kernels take: none is below LEAST_LAYER_ALPHA.
 FacetWidths wide_enough(const FacetWidths& widths);
 
-/// The table layer_rows while it is made: materials whose grids are the same share one.
+/// Of each step of a grid.
+using GainGrid = std::array<FacetGains, LAYER_GRID_STEPS>;
+
+/// The table layer_rows while it is made: materials whose grids are the same share one, those of the same
+/// anisotropy its gains.
 struct LayerRows {
   std::vector<float> values;
   std::map<std::vector<double>, u32> grids;
+  std::map<double, GainGrid> gains;
 };
 
 /// The first number of the grid (shared/layers.h) of facets of this anisotropy, which is added unless it is

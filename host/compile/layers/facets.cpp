@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "compile/lattice_turns.h"
+
 namespace sundog {
 namespace {
 
@@ -22,47 +24,73 @@ double hidden_by(const dvec3& w, const FacetWidths& a) {
   return (std::sqrt(1 + stretched / std::max(w.z * w.z, 1e-12)) - 1) / 2;
 }
 
-dvec3 facet_seen_from(const dvec3& wo, const FacetWidths& a, double u, double v) {
-  const dvec3 stretched = glm::normalize(dvec3(a.x * wo.x, a.y * wo.y, wo.z));
+/// `stretched`: the viewer above round facets of the slope 1.
+dvec3 facet_seen_from(const dvec3& stretched, const FacetWidths& a, const LatticeTurn& turn, double v) {
   const double z = (1 - v) * (1 + stretched.z) - stretched.z, side = std::sqrt(std::max(1 - z * z, 0.0));
-  const double turn = 2 * std::numbers::pi * u;
-  const dvec3 h = dvec3(side * std::cos(turn), side * std::sin(turn), z) + stretched;
+  const dvec3 h = dvec3(side * turn.cosine, side * turn.sine, z) + stretched;
   return glm::normalize(dvec3(a.x * h.x, a.y * h.y, std::max(h.z, 1e-6)));
+}
+
+/// Where gains have a direction: from this row and column the parts of the way to the next.
+struct GainPlace {
+  unsigned row, column;
+  double to_next_row, to_next_column;
+};
+
+/// `one_row`: all rows of the gains are equal, so the first serves.
+GainPlace place_of(const dvec3& w, bool one_row) {
+  const double x = std::clamp(w.z, 0.0, 1.0) * (LAYER_STEPS - 1);
+  const unsigned column = std::min(static_cast<unsigned>(x), LAYER_STEPS - 2);
+  if (one_row) return {0, column, 0, x - double(column)};
+  const double along = w.x * w.x, flat = std::max(along + w.y * w.y, 1e-12);
+  const double y = along / flat * (LAYER_TURNS - 1);
+  const unsigned row = std::min(static_cast<unsigned>(y), LAYER_TURNS - 2);
+  return {row, column, y - double(row), x - double(column)};
+}
+
+/// std::lerp for positive a and b and t from 0 to 1, without its branches.
+double between(double a, double b, double t) {
+  const double x = a + t * (b - a), bounded = b > a ? std::min(x, b) : std::max(x, b);
+  return t == 1 ? b : bounded;
+}
+
+double gain_at(const FacetGains& gains, const GainPlace& at) {
+  const auto in_row = [&](const AlbedoRow& row) {
+    return between(row[at.column], row[at.column + 1], at.to_next_column);
+  };
+  const double first = in_row(gains[at.row]);
+  return at.to_next_row == 0 ? first : between(first, in_row(gains[at.row + 1]), at.to_next_row);
 }
 
 /// Light of white facets, each drawn with the same weight: where it comes from, the part that is sent on, and
 /// the cosine to the facet.
 struct SentLight {
-  dvec3 from;
+  GainPlace from;
   double part, cosine;
 };
 
-std::vector<SentLight> light_sent_to(const dvec3& wo, const FacetWidths& a) {
+std::vector<SentLight> light_sent_to(const dvec3& wo, const FacetWidths& a, bool one_row) {
+  const auto& turns = lattice_turns<facet_draws, facet_turn>();
   std::vector<SentLight> sent;
+  sent.reserve(facet_draws);
   const double seen = 1 + hidden_by(wo, a);
+  const dvec3 stretched = glm::normalize(dvec3(a.x * wo.x, a.y * wo.y, wo.z));
   for (int i = 0; i < facet_draws; ++i) {
-    const double u = double(i * facet_turn % facet_draws) / facet_draws;
-    const dvec3 h = facet_seen_from(wo, a, u, (i + 0.5) / facet_draws);
+    const dvec3 h =
+        facet_seen_from(stretched, a, turns[static_cast<std::size_t>(i)], (i + 0.5) / facet_draws);
     const double c = std::clamp(glm::dot(wo, h), 0.0, 1.0);
     const dvec3 wi = 2 * c * h - wo;
-    if (wi.z > 0) sent.push_back({wi, seen / (seen + hidden_by(wi, a)), c});
+    if (wi.z > 0) sent.push_back({place_of(wi, one_row), seen / (seen + hidden_by(wi, a)), c});
   }
   return sent;
 }
 
-double gain_for(const FacetGains& gains, const dvec3& w) {
-  const double along = w.x * w.x, flat = std::max(along + w.y * w.y, 1e-12);
-  const double y = along / flat * (LAYER_TURNS - 1);
-  const auto row = std::min(static_cast<std::size_t>(y), std::size_t{LAYER_TURNS - 2});
-  return std::lerp(at_cosine(gains[row], w.z), at_cosine(gains[row + 1], w.z), y - double(row));
-}
-
 double turn_of_row(std::size_t row) { return std::acos(std::sqrt(double(row) / (LAYER_TURNS - 1))); }
 
-double white_returned(const FacetGains& gains, const dvec3& wo, const std::vector<SentLight>& sent) {
+double white_returned(const FacetGains& gains, const GainPlace& wo, const std::vector<SentLight>& sent) {
   double sum = 0;
-  for (const SentLight& one : sent) sum += one.part * gain_for(gains, one.from);
-  return sum * gain_for(gains, wo) / facet_draws;
+  for (const SentLight& one : sent) sum += one.part * gain_at(gains, one.from);
+  return sum * gain_at(gains, wo) / facet_draws;
 }
 
 }  // namespace
@@ -76,19 +104,21 @@ double interface_reflects(double c, const Interface& interface) {
 }
 
 FacetGains facet_gains(const FacetWidths& widths) {
-  const std::size_t turns = widths.x == widths.y ? 1 : LAYER_TURNS;
+  const bool one_row = widths.x == widths.y;
+  const std::size_t turns = one_row ? 1 : LAYER_TURNS;
   std::vector<std::vector<SentLight>> sent(turns * LAYER_STEPS);
   const auto viewer_of = [](std::size_t i) {
     return viewer(layer_cosine(i % LAYER_STEPS), turn_of_row(i / LAYER_STEPS));
   };
   tbb::parallel_for(std::size_t{0}, sent.size(),
-                    [&](std::size_t i) { sent[i] = light_sent_to(viewer_of(i), widths); });
+                    [&](std::size_t i) { sent[i] = light_sent_to(viewer_of(i), widths, one_row); });
   FacetGains gains;
   for (AlbedoRow& row : gains) row.fill(1);
   for (int round = 0; round < 12; ++round) {
     FacetGains next = gains;
     tbb::parallel_for(std::size_t{0}, sent.size(), [&](std::size_t i) {
-      next[i / LAYER_STEPS][i % LAYER_STEPS] /= std::sqrt(white_returned(gains, viewer_of(i), sent[i]));
+      const GainPlace wo = place_of(viewer_of(i), one_row);
+      next[i / LAYER_STEPS][i % LAYER_STEPS] /= std::sqrt(white_returned(gains, wo, sent[i]));
     });
     gains = next;
     for (std::size_t row = turns; row < LAYER_TURNS; ++row) gains[row] = gains[0];
@@ -98,21 +128,23 @@ FacetGains facet_gains(const FacetWidths& widths) {
 
 FacetAlbedo facet_albedo(const FacetWidths& widths, const FacetGains& gains, const Interface& interface) {
   const std::size_t turns = widths.x == widths.y ? 1 : 4;
+  const bool one_row = std::ranges::all_of(gains, [&](const AlbedoRow& row) { return row == gains[0]; });
   FacetAlbedo albedo{};
   AlbedoRow most{};
   tbb::parallel_for(std::size_t{0}, std::size_t{LAYER_STEPS}, [&](std::size_t i) {
     for (std::size_t k = 0; k < turns; ++k) {
       const dvec3 wo =
           viewer(layer_cosine(i), turns == 1 ? 0 : std::numbers::pi / 2 * double(k) / double(turns - 1));
-      const std::vector<SentLight> sent = light_sent_to(wo, widths);
-      const double gain_o = gain_for(gains, wo);
+      const std::vector<SentLight> sent = light_sent_to(wo, widths, one_row);
+      const GainPlace place = place_of(wo, one_row);
+      const double gain_o = gain_at(gains, place);
       double sum = 0;
       for (const SentLight& one : sent) {
         const double f = interface_reflects(one.cosine, interface);
-        sum += one.part * f * (1 + f * (gain_o * gain_for(gains, one.from) - 1));
+        sum += one.part * f * (1 + f * (gain_o * gain_at(gains, one.from) - 1));
       }
       albedo.of_interface[i] = std::max(albedo.of_interface[i], sum / facet_draws);
-      most[i] = std::max(most[i], white_returned(gains, wo, sent));
+      most[i] = std::max(most[i], white_returned(gains, place, sent));
     }
   });
   albedo.scale = 1 / std::max(1.0, *std::ranges::max_element(most));

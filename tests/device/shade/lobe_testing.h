@@ -69,6 +69,11 @@ __kernel void run(__global const Material* materials, __global const Medium* med
 }
 )";
 
+inline const std::vector<float>& lobe_energy() {
+  static const std::vector<float> energy = make_lobe_energy({.gains = true, .glass = true});
+  return energy;
+}
+
 struct Lobe {
   dvec3 wi, value;
   double density;
@@ -91,19 +96,19 @@ class Tester {
                     .kernel<Buffer<Material>, Buffer<Medium>, Buffer<float>, Buffer<Layers>, Buffer<float>,
                             Buffer<float4>, Buffer<float>, float4, float4, u32>("run")),
         mapped_(mapped),
-        energy_(device_.upload<float>(make_lobe_energy({.gains = true, .glass = true}))),
+        energy_(device_.upload<float>(lobe_energy())),
         layers_(device_.upload<Layers>(std::vector{Layers{}})),
         layer_rows_(device_.upload<float>(std::vector{0.f})) {}
 
   /// From now on materials have these layers; where they are mapped, with textures of one value that give
   /// metalness and roughness.
   Layers set_layers(const OpenPbr& values) {
-    LayerRows rows;
+    rows_.values.clear(), rows_.grids.clear();  // its gains serve again
     MaterialTextures textures;
     if (mapped_) textures.metalness = textures.roughness = 0;
-    const Layers layers = make_layers(values, textures, rows);
+    const Layers layers = make_layers(values, textures, rows_);
     layers_ = device_.upload<Layers>(std::vector{layers});
-    layer_rows_ = device_.upload<float>(rows.values);
+    layer_rows_ = device_.upload<float>(rows_.values);
     set_base(values.base_metalness, values.specular_roughness, values.transmission_weight);
     return layers;
   }
@@ -146,6 +151,7 @@ class Tester {
          Buffer<float>, float4, float4, u32>
       kernel_;
   bool mapped_;
+  LayerRows rows_;
   float4 base_{};
   Buffer<float> energy_;
   Buffer<Layers> layers_;
