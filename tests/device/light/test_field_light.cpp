@@ -1,5 +1,6 @@
 // What fields do to light, in closed form beside a wall x = 0 and a floor: occlusion, soft shadows, glow and
-// the colours of the orbit. The scenes share their kernels: each field has all of it, some without effect.
+// the colours of the orbit. The scenes share their kernels: all fields have one formula, and each has all of
+// these, some without effect.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,9 +20,9 @@ using namespace sundog;
 namespace {
 
 struct Wanted {
-  std::string distance = "p.x";
-  double occlusion = 1e-3;  // reach
-  double soft_shadow = 1;   // hardness
+  double wall = 0, ground = -9;  // faces of the field at x = wall and at y = ground
+  double occlusion = 1e-3;       // reach
+  double soft_shadow = 1;        // hardness
   std::string glow = "[0, 0, 0]";
   std::string color_by = "radius", coloring = R"("palette": [[1, 1, 1]])";
   std::string transform;  // of the field
@@ -32,13 +33,14 @@ struct Wanted {
 
 SceneDescription scene_of(const Wanted& wanted) {
   const std::string text = fmt::format(
-      R"({{"image": {{"width": 1, "height": 1}}, "camera": {{{}, "up": [0, 0, 1], "fov": 1}},
+      R"x({{"image": {{"width": 1, "height": 1}}, "camera": {{{}, "up": [0, 0, 1], "fov": 1}},
     "lights": [{}], "materials": {{"white": {{"color": [1, 1, 1], "ambient": 1, "diffuse": 1}}}},
-    "objects": [{{"type": "formula", "distance": "{}", "material": "white", "occlusion": {}, "soft_shadow": {},
+    "objects": [{{"type": "formula", "distance": "min(p.x - wall, p.y - ground)",
+      "parameters": {{"wall": {}, "ground": {}}}, "material": "white", "occlusion": {}, "soft_shadow": {},
       "interval": {{"min": [-1.4, -1.4, -1.4], "max": [1.4, 1.4, 1.4]}},
-      "glow": {{"color": {}, "width": 0.2}}, "coloring": {{"by": "{}", {}}}, "transform": [{}]}}{}]}})",
-      wanted.camera, wanted.lights, wanted.distance, wanted.occlusion, wanted.soft_shadow, wanted.glow,
-      wanted.color_by, wanted.coloring, wanted.transform, wanted.floor);
+      "glow": {{"color": {}, "width": 0.2}}, "coloring": {{"by": "{}", {}}}, "transform": [{}]}}{}]}})x",
+      wanted.camera, wanted.lights, wanted.wall, wanted.ground, wanted.occlusion, wanted.soft_shadow,
+      wanted.glow, wanted.color_by, wanted.coloring, wanted.transform, wanted.floor);
   const nlohmann::json document = parse_json(text, "test.json");
   const JsonContext context{"test.json"};
   return read_scene(JsonValue(document, context));
@@ -48,20 +50,21 @@ SceneDescription scene_of(const Wanted& wanted) {
 // same.
 const std::string floor_below = R"(, {"type": "plane", "material": "white"})";
 
-/// A picture of a field that is put together, and of the solid that it is.
-void check_same(const DeviceInfo& device, const std::string& field, const std::string& solids) {
+/// Checks that the picture about x = `at` is the same of fields that are put together and of the solids that
+/// they are.
+void check_same(const DeviceInfo& device, double at, const std::string& fields, const std::string& solids) {
   const auto picture = [&](const std::string& objects) {
     const std::string text = fmt::format(
         R"({{"image": {{"width": 24, "height": 24, "background": [0, 0, 1]}},
-      "camera": {{"position": [1, 2, 5], "target": [0, 0, 0], "fov": 30}},
+      "camera": {{"position": [{}, 2, 5], "target": [{}, 0, 0], "fov": 30}},
       "lights": [{{"type": "directional", "direction": [-1, -2, -3]}}],
       "materials": {{"white": {{"color": [1, 1, 1], "diffuse": 1}}}}, "objects": [{}]}})",
-        objects);
+        at + 1, at, objects);
     const nlohmann::json document = parse_json(text, "test.json");
     const JsonContext context{"test.json"};
     return scenes::render_on(device, read_scene(JsonValue(document, context))).image;
   };
-  const ImageDifference difference = compare_images(picture(field), picture(solids), 0.02);
+  const ImageDifference difference = compare_images(picture(fields), picture(solids), 0.02);
   CHECK(difference.over_tolerance < 12);  // of 576: outlines
 }
 
@@ -81,7 +84,7 @@ double openness(double a, double reach) {
 
 TEST_CASE("ambient light in a corner is less by what the wall takes of five points up to the reach") {
   Wanted corner;
-  corner.distance = "min(p.x, p.y)";
+  corner.ground = 0;
   corner.floor = R"(, {"type": "plane", "material": "white", "point": [0, -9, 0]})";
   on_picture_devices([&](const DeviceInfo& device) {
     for (const double reach : {0.2, 0.5, 0.7}) {
@@ -136,7 +139,7 @@ TEST_CASE("a ray that passes a glowing field gathers exp(-d / width) of its colo
 
 TEST_CASE("a field's colour is the palette at its trap, blended between the stops and round to the first") {
   Wanted floor;
-  floor.distance = "p.y";
+  floor.wall = -9, floor.ground = 0;
   floor.floor = R"(, {"type": "plane", "material": "white", "point": [0, -9, 0]})";
   on_picture_devices([&](const DeviceInfo& device) {
     for (const double a : {0.25, 0.45}) {
@@ -158,7 +161,7 @@ TEST_CASE("a field's colour is the palette at its trap, blended between the stop
 TEST_CASE(
     "the trap of a closed form is its distance from the origin, the nearest plane or the nearest axis") {
   Wanted floor;
-  floor.distance = "p.y - 0.3";
+  floor.wall = -9, floor.ground = 0.3;
   floor.floor = R"(, {"type": "plane", "material": "white", "point": [0, -9, 0]})";
   floor.camera = R"("position": [0.45, 1.2, 0.2], "target": [0.45, 0.3, 0.2])";
   floor.coloring = R"("palette": [[0, 0, 0], [1, 1, 1]])";  // below a half, twice the trap
@@ -174,22 +177,27 @@ TEST_CASE(
 }
 
 TEST_CASE("repeated, thickened and hollow fields have the sizes that they are given") {
+  // Far apart in one scene, so that the fields are one program.
+  constexpr double thick = 20, hollow = -20;
   const std::string ball = R"({"type": "formula", "distance": "length(p) - 0.4"})";
-  const std::string box = R"("interval": {"min": [-3, -3, -3], "max": [3, 3, 3]}, "material": "white")";
+  const auto placed = [](double x) {
+    return fmt::format(
+        R"("interval": {{"min": [-3, -3, -3], "max": [3, 3, 3]}}, "material": "white",
+          "transform": [{{"translate": [{}, 0, 0]}}])",
+        x);
+  };
+  const std::string fields = fmt::format(
+      R"({{"type": "repeat", "field": {0}, "period": [1, 0, 0], "count": [1, 0, 0], {1}}},
+      {{"type": "thicken", "field": {0}, "amount": 0.3, {2}}}, {{"type": "shell", "field": {0}, "amount": 0.3, {3}}})",
+      ball, placed(0), placed(thick), placed(hollow));
   const auto sphere = [](double x, double radius) {
     return fmt::format(R"({{"type": "sphere", "center": [{}, 0, 0], "radius": {}, "material": "white"}})", x,
                        radius);
   };
   on_picture_devices([&](const DeviceInfo& device) {
-    if (!is_quick(device)) return;  // a program each
-    check_same(
-        device,
-        fmt::format(R"({{"type": "repeat", "field": {}, "period": [1, 0, 0], "count": [1, 0, 0], {}}})", ball,
-                    box),
-        sphere(-1, 0.4) + ", " + sphere(0, 0.4) + ", " + sphere(1, 0.4));
-    check_same(device, fmt::format(R"({{"type": "thicken", "field": {}, "amount": 0.3, {}}})", ball, box),
-               sphere(0, 0.7));
-    check_same(device, fmt::format(R"({{"type": "shell", "field": {}, "amount": 0.3, {}}})", ball, box),
-               sphere(0, 0.55));
+    if (!is_quick(device)) return;
+    check_same(device, 0, fields, sphere(-1, 0.4) + ", " + sphere(0, 0.4) + ", " + sphere(1, 0.4));
+    check_same(device, thick, fields, sphere(thick, 0.7));
+    check_same(device, hollow, fields, sphere(hollow, 0.55));
   });
 }

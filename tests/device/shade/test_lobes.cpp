@@ -18,6 +18,30 @@ void returns_all(const std::vector<Lobe>& drawn) {
   CHECK(mean > 0.985 - noise);
 }
 
+/// A lobe that is drawn, with the index of refraction behind the surface and the direction to the viewer.
+struct Drawn {
+  Material material;
+  double index;
+  dvec3 wo;
+};
+
+/// The weights of many samples on the first device. The other devices draw fewer, which are the first
+/// device's.
+std::vector<Lobe> many_drawn(const DeviceInfo& info, const Drawn& from, u32 draws) {
+  Tester& first = tester_on(test_devices().front());
+  if (info.label() == test_devices().front().label())
+    return first.draw(from.material, from.index, from.wo, draws);
+  const std::vector<Lobe> wanted = first.draw(from.material, from.index, from.wo),
+                          found = tester_on(info).draw(from.material, from.index, from.wo);
+  std::size_t apart = 0;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    apart += glm::distance(found[i].wi, wanted[i].wi) > 1e-2 ||
+             std::abs(found[i].value.x - wanted[i].value.x) > 1e-2;
+  CHECK(apart < found.size() / 500);  // by rounding, where another lobe is chosen
+  CHECK(mean_weight(found) == Approx(mean_weight(wanted)).epsilon(1e-3));
+  return {};
+}
+
 }  // namespace
 
 TEST_CASE("a white rough mirror returns all light and no more, a grey one no more than smooth") {
@@ -36,17 +60,17 @@ TEST_CASE("a white rough mirror returns all light and no more, a grey one no mor
 
 TEST_CASE("white rough glass returns all light and no more at every roughness and index, from either side") {
   on_every_device([](const DeviceInfo& info) {
-    Tester& tester = tester_on(info);
     for (const double index : {1.05, 1.2, 1.45, 3.5})
       for (const double roughness : {0.03, 0.1, 0.2, 0.45, 1.0})
         for (const double cosine : {0.9, 0.2, -0.9, -0.4}) {
           INFO(index << ", " << roughness << " at " << cosine);
           const dvec3 wo = cosine > 0 ? at_cosine(cosine) : -at_cosine(-cosine);
-          returns_all(tester.draw(rough_glass(roughness), index, wo, 16 * count));
+          const auto drawn = many_drawn(info, {rough_glass(roughness), index, wo}, 16 * count);
+          if (!drawn.empty()) returns_all(drawn);
         }
     Material tinted = rough_glass(0.8);
     tinted.transmission = {0.5f, 0.5f, 0.5f, 0};
-    const double mean = mean_weight(tester.draw(tinted, 1.5, at_cosine(0.7)));
+    const double mean = mean_weight(tester_on(info).draw(tinted, 1.5, at_cosine(0.7)));
     CHECK(mean < 0.55);
     CHECK(mean > 0.4);
   });

@@ -51,6 +51,16 @@ surfaces::Point at(double x, double run, double light = 0) {
   return point;
 }
 
+/// A ball and a box far above, which shine by next to nothing: with them a relief has the kernels of
+/// floor_with_things().
+void add_things_far_above(SceneDescription& scene) {
+  const int material = scenes::add_white(scene);
+  scene.materials.back().emission = dvec3(1e-6);
+  const glm::dmat4 above = glm::translate(glm::dmat4(1), dvec3(0, 50, 0));
+  scenes::place(scene, SphereShape{0.01}, material, above);
+  scenes::place(scene, BoxShape{dvec3(0.01)}, material, above);
+}
+
 /// High for u below 1/2, low beyond.
 SceneDescription wall_plane() {
   std::vector<std::uint8_t> texels(16, 0);
@@ -250,6 +260,7 @@ SceneDescription seen_slope() {
   scene.camera.up = {0, 1, 0};
   scene.camera.fov = 12;
   scene.image.width = scene.image.height = 16;
+  add_things_far_above(scene);
   return scene;
 }
 
@@ -311,6 +322,7 @@ TEST_CASE("a relief's walls throw their shadows on what stands among them") {
   sun.type = LightType::directional;
   sun.direction = {1, -1, 0};
   scene.lights = {sun};
+  add_things_far_above(scene);
   RenderOptions options;
   options.aovs = {"position"};
   on_picture_devices([&](const DeviceInfo& info) {
