@@ -164,8 +164,10 @@ TEST_CASE("a visible lamp does not block its own light") {
     const JsonContext context{"test.json"};
     return compile(read_scene(JsonValue(document, context)));
   };
+  RenderOptions options;
+  options.kernels = KernelChoice::general;  // which both share with other tests
   on_picture_devices([&](const DeviceInfo& device) {
-    CHECK(render(scene_with(true), {device}).counts[COUNT_SHADOW] == 0);
-    CHECK(render(scene_with(false), {device}).counts[COUNT_SHADOW] == 0);
+    CHECK(render(scene_with(true), {device}, options).counts[COUNT_SHADOW] == 0);
+    CHECK(render(scene_with(false), {device}, options).counts[COUNT_SHADOW] == 0);
   });
 }

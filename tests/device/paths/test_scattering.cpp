@@ -23,6 +23,12 @@ double integral(double length, const std::function<double(double)>& f) {
   return sum * length / count;
 }
 
+/// A small mesh far from all that is seen: with it a scene has the kernels of the closed room.
+void place_far_mesh(SceneDescription& scene) {
+  scenes::place(scene, MeshShape{add_room(scene)}, add_matte(scene, 0),
+                glm::scale(glm::translate(glm::dmat4(1), {0, 0, -1000}), dvec3(0.01)));
+}
+
 }  // namespace
 
 TEST_CASE("a closed room that shines stays as bright in a white medium, and darkens by what one absorbs") {
@@ -65,6 +71,7 @@ TEST_CASE("light that fog scatters once towards the camera is what quadrature ha
     scene.render.max_depth = 1;
     scenes::place(scene, BoxShape{{10, 10, 0.1}}, add_matte(scene, 0),
                   glm::translate(glm::dmat4(1), {0, 0, length + 0.1}));
+    place_far_mesh(scene);
     return scene;
   };
   const auto scattered = [&](double t, const dvec3& to, double distance) {
@@ -116,6 +123,7 @@ TEST_CASE("all ways of finding light agree about what a cloud sends back, and so
       scene.media.back().scattering = {2, 3, 4};
       scene.media.back().anisotropy = 0.8;
       scenes::place(scene, PlaneShape{}, add_matte(scene, 0.5), glm::translate(glm::dmat4(1), {0, -1.5, 0}));
+      place_far_mesh(scene);
       scene.lights.push_back(lamp(LightType::sphere, {2, 2, -1}, 10));
       scene.lights.back().radius = 0.8;
       scene.lights.push_back(lamp(LightType::rectangle, {0, 3, 1}, 4));

@@ -35,6 +35,12 @@ SceneDescription lit_room(const std::string& integrator, const std::string& valu
   document["materials"]["floor"] = {{"color", {0.5, 0.5, 0.5}}};
   document["materials"]["m"] =
       parse_json(R"({"type": "openpbr", "base_color": [0.9, 0.6, 0.3], )" + values + "}", "test.json");
+  if (integrator == "path") {  // under the floor: with it paths of all pairs have the same two kernels
+    document["materials"]["glass"] =
+        parse_json(R"({"type": "openpbr", "specular_ior": 1.2, "transmission_weight": 0.9})", "test.json");
+    document["objects"].push_back(parse_json(
+        R"({"type": "sphere", "radius": 0.1, "center": [0, -9, 0], "material": "glass"})", "test.json"));
+  }
   const JsonContext context{"test.json"};
   return read_scene(JsonValue(document, context));
 }

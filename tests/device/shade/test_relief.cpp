@@ -228,7 +228,7 @@ TEST_CASE("patterns have their values near by, and their means far away") {
 }
 
 TEST_CASE("a formula gives a pattern: a number that mixes two colours, a colour, or a height") {
-  SceneDescription scene = white_plane();
+  SceneDescription scene = scenes::line_of_sight({0.3, 5, 0.2}, {0.3, 0, 0.2}, {0, 0, 1});
   const auto add_formula = [&](const std::string& text, std::vector<FormulaParameter> parameters) {
     const int index = add_pattern(scene, TEXTURE_FORMULA, 0.5);
     scene.textures.back().formula = {text, std::move(parameters)};
@@ -242,7 +242,16 @@ TEST_CASE("a formula gives a pattern: a number that mixes two colours, a colour,
   const int color = add_formula("fract(p + shift)", {shift});
   const int bad = add_formula("x = exp(400 * p.x)\nx * x", {});
   const int height = add_formula("0.25 * p.x", {});
-  MaterialDescription& m = scene.materials[0];
+  // Balls under the plane have all of the textures, so that the kernels are the same whichever the plane has.
+  for (const int texture : {number, color, bad}) {
+    scenes::place(scene, SphereShape{0.1}, scenes::add_white(scene),
+                  glm::translate(glm::dmat4(1), dvec3(0, -9, 0)));
+    scene.materials.back().emission = dvec3(1);
+    scene.materials.back().textures.emission = texture;
+    scene.materials.back().textures.height = height;
+  }
+  scenes::place(scene, PlaneShape{}, scenes::add_white(scene));
+  MaterialDescription& m = scene.materials.back();
   m.ambient = m.diffuse = dvec3(0);
   m.emission = dvec3(1);
   on_picture_devices([&](const DeviceInfo& info) {
