@@ -7,6 +7,7 @@
 
 #include "compile/compiled_scene.h"
 #include "path_testing.h"
+#include "render/device/kernel_config.h"
 #include "render/device/photon_maps.h"
 #include "same_bits.h"
 #include "temporary_folder.h"
@@ -103,7 +104,10 @@ dvec3 landed_flux(const DeviceInfo& info, const SceneDescription& scene) {
   REQUIRE(compiled.features.caustics);
   Device device(info);
   RenderTimes times;
-  FrameKernels kernels = build_frame_kernels(device, compiled, {}, {}, false, times);
+  FrameKernels kernels;  // without the integrator's, which takes as long to build
+  kernels.config = make_kernel_config(compiled, info, {});
+  kernels.tables = upload_scene(device, compiled);
+  add_photon_tracer(device, kernels, times);
   PhotonMaps maps(compiled);
   LaunchWatch watch;
   REQUIRE(maps.prepare({device, kernels, watch}, {}, 0, 1));
