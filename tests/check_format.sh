@@ -11,7 +11,7 @@ if [[ -z $format ]]; then
   echo "check_format: no clang-format 19 here, so the format is not checked. On Debian or Ubuntu: apt-get install clang-format-19" >&2
   exit 0
 fi
-find host include examples python kernels tests bench -name '*.cpp' -o -name '*.h' -o -name '*.hpp' -o -name '*.c' -o -name '*.cl' | sort | xargs "$format" --dry-run -Werror || {
+find host include examples python kernels tests bench -name '*.cpp' -o -name '*.h' -o -name '*.hpp' -o -name '*.c' -o -name '*.cl' | sort | xargs -P "$(nproc)" -n 100 "$format" --dry-run -Werror || {
   echo "check_format: mend it with: $format -i FILE..." >&2
   exit 1
 }
