@@ -32,11 +32,21 @@ void write_edited(const fs::path& file) {
   write_file(file, text.replace(at, line.size(), "\"z = abs(z + shift) - 2 * shift\""));
 }
 
+/// One sample a pixel: the scenes of paths have many.
 void time_start(const WholeRuns& options, const std::string& scene, const fs::path& caches, Start& start) {
   const fs::path folder = options.folder;
-  const std::vector<std::string> command{
-      SUNDOG_BINARY, "render",       scene,     "--size", fmt::format("{0}x{0}", options.size),
-      "--device",    options.device, "--quiet", "-o",     (folder / (start.name + ".png")).string()};
+  const std::vector<std::string> command{SUNDOG_BINARY,
+                                         "render",
+                                         scene,
+                                         "--size",
+                                         fmt::format("{0}x{0}", options.size),
+                                         "--device",
+                                         options.device,
+                                         "--quiet",
+                                         "--samples",
+                                         "1",
+                                         "-o",
+                                         (folder / (start.name + ".png")).string()};
   const Elapsed used = run_program(
       {command,
        (folder / (start.name + ".log")).string(),
@@ -48,15 +58,14 @@ void time_start(const WholeRuns& options, const std::string& scene, const fs::pa
 /// One run of each, so that a machine's moods touch all alike.
 void time_round(const WholeRuns& options, std::vector<Start>& starts) {
   const fs::path folder = options.folder, edited = folder / "edited.json";
-  const fs::path of_spheres = folder / "caches_spheres", of_formula = folder / "caches_formula";
-  fs::remove_all(of_spheres);
-  fs::remove_all(of_formula);
   write_edited(edited);
-  time_start(options, shipped("spheres"), of_spheres, starts[0]);
-  time_start(options, shipped("spheres"), of_spheres, starts[1]);
-  time_start(options, shipped("formula"), of_formula, starts[2]);
-  time_start(options, shipped("formula"), of_formula, starts[3]);
-  time_start(options, edited.string(), of_formula, starts[4]);
+  std::size_t next = 0;
+  for (const char* scene : {"spheres", "cornell_path", "glass_path", "formula"}) {
+    const fs::path caches = folder / fmt::format("caches_{}", scene);
+    fs::remove_all(caches);
+    for (int run = 0; run < 2; ++run) time_start(options, shipped(scene), caches, starts.at(next++));
+  }
+  time_start(options, edited.string(), folder / "caches_formula", starts.at(next));
 }
 
 nlohmann::json report(const WholeRuns& options, const std::vector<Start>& starts) {
@@ -79,11 +88,16 @@ nlohmann::json report(const WholeRuns& options, const std::vector<Start>& starts
 int main(int argc, char** argv) {
   WholeRuns options{.folder = "start_up"};
   const auto measure = [&] {
-    std::vector<Start> starts{{"spheres_cold", "scenes/spheres.json, no kernel in any cache", {}, {}},
-                              {"spheres_warm", "its kernels cached", {}, {}},
-                              {"formula_cold", "scenes/formula.json, no kernel in any cache", {}, {}},
-                              {"formula_warm", "its kernels cached", {}, {}},
-                              {"formula_edited", "another map in it, all else cached", {}, {}}};
+    std::vector<Start> starts{
+        {"spheres_cold", "scenes/spheres.json, no kernel in any cache", {}, {}},
+        {"spheres_warm", "its kernels cached", {}, {}},
+        {"cornell_cold", "scenes/cornell_path.json, no kernel in any cache", {}, {}},
+        {"cornell_warm", "its kernels cached", {}, {}},
+        {"glass_cold", "scenes/glass_path.json with photons, no kernel in any cache", {}, {}},
+        {"glass_warm", "its kernels cached", {}, {}},
+        {"formula_cold", "scenes/formula.json, no kernel in any cache", {}, {}},
+        {"formula_warm", "its kernels cached", {}, {}},
+        {"formula_edited", "another map in it, all else cached", {}, {}}};
     for (int i = 0; i < options.repeats; ++i) time_round(options, starts);
     return report(options, starts);
   };
