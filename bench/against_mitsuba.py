@@ -34,8 +34,10 @@ import figures
 import peer_scenes
 import programs
 
-WAYS = {"sundog sobol": ("sundog", "sobol"), "sundog independent": ("sundog", "independent"), "sundog caustics": ("sundog", "sobol"),
-        "Mitsuba independent": ("mitsuba", "independent"), "Mitsuba multijitter": ("mitsuba", "multijitter")}
+# The program, its sampler, and whether with photons.
+WAYS = {"sundog sobol": ("sundog", "sobol", False), "sundog independent": ("sundog", "independent", False),
+        "sundog caustics": ("sundog", "sobol", True), "Mitsuba independent": ("mitsuba", "independent", False),
+        "Mitsuba multijitter": ("mitsuba", "multijitter", False)}
 WITH_CAUSTICS = ("glass",)  # scenes whose lamp shines through glass
 PASS = 256  # samples of Mitsuba's passes, for its memory
 PARTS = ("means", "errors", "times")
@@ -46,16 +48,16 @@ class Bench:
 
     def __init__(self, name, folder, args, mi):
         self.name, self.args = name, args
-        self.ways = {way: of for way, of in WAYS.items() if way != "sundog caustics" or name in WITH_CAUSTICS}
+        self.ways = [way for way, (_, _, caustics) in WAYS.items() if not caustics or name in WITH_CAUSTICS]
         self.sundog = programs.Sundog(name, folder, args.sundog, args.device)
         self.mitsuba = programs.Mitsuba(name, folder, mi, same_radiance=False)
         self.same = programs.Mitsuba(name, folder, mi, same_radiance=True)
 
     def render(self, way, samples, seed=0):
         """The picture, its seconds, and the samples that it has."""
-        program, sampler = WAYS[way]
+        program, sampler, caustics = WAYS[way]
         if program == "sundog":
-            return *self.sundog.render(sampler, samples, caustics=way == "sundog caustics"), samples
+            return *self.sundog.render(sampler, samples, caustics), samples
         return *self.mitsuba.render(sampler, samples, seed), self.mitsuba.samples_made(sampler)
 
     def stored(self, key, samples, make):
@@ -95,8 +97,8 @@ def measure_errors(bench, ours, theirs, of_file):
     both = figures.Reference(ours, theirs)
     own = both if of_file is theirs else figures.Reference(of_file)
     found = {}
-    for way, (program, _) in bench.ways.items():
-        reference = both if program == "sundog" else own
+    for way in bench.ways:
+        reference = both if WAYS[way][0] == "sundog" else own
         points = []
         for count in bench.args.counts:
             image, _, samples = bench.render(way, count, seed=count)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <utility>
 
 #include "base/clock.h"
 #include "base/environment.h"
@@ -54,13 +55,14 @@ bool makes_aovs(const CompiledScene& scene, const RenderOptions& options) {
   return show_surfaces(options.aovs) || needs_surfaces(scene.sampling);
 }
 
-FrameKernels kernels_with(const RenderOptions& options, KernelBuilder* builder) {
-  FrameKernels none;
-  none.builder = options.kernels == KernelChoice::own_when_built ? builder : nullptr;
-  none.only_general = options.kernels == KernelChoice::general;
-  none.wants_all_aovs = aov_vectors(options.aovs) == all_aov_vectors;
-  none.counts_rays = counts_rays(options.aovs);
-  return none;
+/// The kernels with what a frame wants of them from now on.
+FrameKernels wanted_by(const RenderOptions& options, KernelBuilder* builder, FrameKernels kernels) {
+  kernels.builder = options.kernels == KernelChoice::own_when_built ? builder : nullptr;
+  kernels.only_general = options.kernels == KernelChoice::general;
+  kernels.wants_all_aovs = aov_vectors(options.aovs) == all_aov_vectors;
+  kernels.counts_rays = counts_rays(options.aovs);
+  kernels.notes.clear();
+  return kernels;
 }
 
 /// What a failed launch may be answered with; nothing when smaller launches would not help.
@@ -82,7 +84,7 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
       samples_(scene.info.samples),
       tuning_(tuning_of(options, device.info())),
       asked_(options.work_group),
-      kernels_(kernels_with(options, builder)),
+      kernels_(wanted_by(options, builder, {})),
       update_(
           update_frame_kernels(device, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times)),
       photons_(scene),
@@ -99,11 +101,7 @@ void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions&
   asked_ = options.work_group;
   samples_ = scene.info.samples;
   photons_ = PhotonMaps(scene);
-  kernels_.builder = options.kernels == KernelChoice::own_when_built ? builder_ : nullptr;
-  kernels_.only_general = options.kernels == KernelChoice::general;
-  kernels_.wants_all_aovs = aov_vectors(options.aovs) == all_aov_vectors;
-  kernels_.counts_rays = counts_rays(options.aovs);
-  kernels_.notes.clear();
+  kernels_ = wanted_by(options, builder_, std::move(kernels_));
   update_ =
       update_frame_kernels(device_, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times);
   const bool same_scene = update_.uploads.bytes == 0 && !update_.uploads.numbers;

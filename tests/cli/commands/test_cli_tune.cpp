@@ -1,9 +1,9 @@
 // `sundog tune`: what is found is kept, shown, used, taken along and forgotten.
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "base/cache_folder.h"
+#include "base/environment.h"
 #include "base/file.h"
 #include "catch.h"
 #include "cli_scene.h"
@@ -16,11 +16,10 @@ namespace {
 /// A cache of its own for results, with the kernels of the user's.
 struct TuneFolder : CliFolder {
   TuneFolder() {
-    const char *cache = std::getenv("XDG_CACHE_HOME"), *home = std::getenv("HOME");
-    const fs::path all = cache && *cache ? fs::path(cache) : fs::path(home ? home : "") / ".cache";
-    sundog::make_cache_folder(all / "sundog/kernels");
+    const fs::path kernels = sundog::plain_environment()->cache / "kernels";
+    sundog::make_cache_folder(kernels);
     fs::create_directories(*this / "cache/sundog");
-    fs::create_directory_symlink(all / "sundog/kernels", *this / "cache/sundog/kernels");
+    fs::create_directory_symlink(kernels, *this / "cache/sundog/kernels");
   }
   CommandResult run(std::vector<std::string> arguments, CommandOptions options = {}) const {
     options.environment["XDG_CACHE_HOME"] = (*this / "cache").string();
