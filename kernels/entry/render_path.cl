@@ -1,6 +1,6 @@
 // One stage: the path-traced image of a rectangle of pixels, by unidirectional paths (Kajiya 1986, "The
-// Rendering Equation"). A work-item takes TILE_W x TILE_H pixels of several items, a pixel a lane; a lane
-// whose path has ended takes its pixel's next sample, then the same place of the next item, so lanes are
+// Rendering Equation"). A work-item makes TILE_W x TILE_H pixels of several items, a path a lane. A lane
+// whose path has ended takes its pixel's next sample, then the first pixel that no lane has taken: lanes are
 // seldom idle, and a pixel's samples stay in their order. Shadow rays see what paths that meet lights by
 // chance would.
 #define SHADOWS_AS_PATHS 1
@@ -11,27 +11,41 @@
 #include "lib/pathtracer/steps.cl"
 #include "shared/launch.h"
 
+#define NO_PLACE (-1)
+
 // What a work-item's lanes are at.
 typedef struct LaneWork {
-  u32 end;            // of the items
-  u32 item[BATCH];    // where the lane's pixel is
-  u32 next[BATCH];    // sample that the lane takes next
-  float sign[BATCH];  // what the sample counts that it is at
+  u32 untaken, end;  // pixels that no lane has taken yet: BATCH an item
+  LaneSamples at;    // the lanes' pixels of the image, and the samples that they take next
+  MASK place;        // the same pixels in the rectangle, or NO_PLACE
+  float sign[BATCH];  // what the sample counts that the lane is at
 } LaneWork;
 
-// The lane takes its pixel's next sample, or the first one of the next pixel that is there.
-static inline void take_sample(const Launch* launch, __global const u32* restrict pixels, u32 lane,
-                               LaneWork* work, BegunSamples* begun, u32* counts,
-                               __global u32* restrict ray_counts) {
-  const u32 first = launch->first_sample, last = first + launch->sample_count;
-  for (; work->item[lane] < work->end; work->item[lane] += 1u, work->next[lane] = first) {
-    const u32 item = work->item[lane], sample = work->next[lane];
-    if (sample >= last) {
-      add_lane_rays(launch, lane_pixel(launch, item, lane), lane, counts, ray_counts);
-      continue;
-    }
-    if (!begin_sample(launch, pixels, item, lane, sample, begun)) continue;
-    work->next[lane] = sample + 1u;
+static inline LaneWork begin_work(const Launch* launch, u32 first, u32 end) {
+  LaneWork work;
+  work.untaken = first * BATCH;
+  work.end = end * BATCH;
+  work.at.x = work.at.y = NO_LANES;
+  work.at.sample = (MASK)((int)(launch->first_sample + launch->sample_count));
+  work.place = (MASK)(NO_PLACE);
+  return work;
+}
+
+// The lane is done with its pixel and takes another, if there is one.
+static inline void take_pixel(const Launch* launch, __global const u32* restrict pixels, u32 lane,
+                              LaneWork* work, u32* counts, __global u32* restrict ray_counts) {
+  const int done = MASK_LANE(work->place, lane);
+  if (done != NO_PLACE) add_lane_rays(launch, (u32)done, lane, counts, ray_counts);
+  MASK_LANE(work->place, lane) = NO_PLACE;
+  while (work->untaken < work->end) {
+    const u32 taken = work->untaken++;
+    const uint2 at = lane_pixel(launch, taken / BATCH, taken % BATCH);
+    uint2 pixel;
+    if (!image_pixel(launch, pixels, at, &pixel)) continue;
+    MASK_LANE(work->at.x, lane) = (int)pixel.x;
+    MASK_LANE(work->at.y, lane) = (int)pixel.y;
+    MASK_LANE(work->at.sample, lane) = (int)launch->first_sample;
+    MASK_LANE(work->place, lane) = (int)(at.y * launch->width + at.x);
     return;
   }
 }
@@ -41,10 +55,12 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
                                   __global const u32* restrict pixels, MediaStack around, MASK idle,
                                   LaneWork* work, Walks* walks, SceneRays* rays, u32* counts,
                                   __global u32* restrict ray_counts) {
-  BegunSamples begun = no_samples();
-  for (u32 bits = lane_bits(idle); bits; bits &= bits - 1u)
-    take_sample(launch, pixels, lowest_bit(bits), work, &begun, counts, ray_counts);
+  const int end = (int)(launch->first_sample + launch->sample_count);
+  for (u32 bits = lane_bits(idle & MASK_OF(work->at.sample == end)); bits; bits &= bits - 1u)
+    take_pixel(launch, pixels, lowest_bit(bits), work, counts, ray_counts);
+  const BegunSamples begun = {work->at, idle & MASK_OF(work->at.sample < end)};
   if (!any_lane(begun.lanes)) return NO_LANES;
+  work->at.sample -= begun.lanes;
   const SceneRays first = begun_rays(scene, &begun, around, work->sign);
   const Walks fresh = start_walks(scene, &begun.at, begun.lanes);
   join_rays(rays, &first, begun.lanes);
@@ -60,12 +76,7 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
   u32 counts[ALL_COUNTS];
   for (u32 i = 0; i < ALL_COUNTS; ++i) counts[i] = 0;
   for (u32 item = first; item < end; ++item) begin_film(launch, item, film, weights, ray_counts);
-  LaneWork work;
-  work.end = end;
-  for (u32 lane = 0; lane < BATCH; ++lane) {
-    work.item[lane] = first;
-    work.next[lane] = launch->first_sample;
-  }
+  LaneWork work = begin_work(launch, first, end);
   const LaneSamples nowhere = {NO_LANES, NO_LANES, NO_LANES};
   const Rays none = camera_rays(scene->info, (REAL)(0.0f), (REAL)(0.0f));
   Walks walks = start_walks(scene, &nowhere, NO_LANES);
@@ -86,7 +97,7 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
     for (u32 bits = lane_bits(over); bits; bits &= bits - 1u) {
       const u32 lane = lowest_bit(bits);
       const float4 radiance = (float4)(get3(&seen, lane), MASK_LANE(walks.met, lane) ? 1.0f : 0.0f);
-      store_lane(launch, work.item[lane], lane, radiance, work.sign[lane], film, weights, counts);
+      store_sample((u32)MASK_LANE(work.place, lane), radiance, work.sign[lane], film, weights, counts);
     }
   }
   counts[COUNT_MARCH_LEFT] = 0u;

@@ -11,23 +11,6 @@ typedef struct BegunSamples {
   MASK lanes;  // those that have a sample
 } BegunSamples;
 
-static inline BegunSamples no_samples(void) {
-  const BegunSamples none = {{NO_LANES, NO_LANES, NO_LANES}, NO_LANES};
-  return none;
-}
-
-// The lane begins with sample `sample` of its pixel. Returns whether it has one.
-static inline bool begin_sample(const Launch* launch, __global const u32* restrict pixels, u32 item, u32 lane,
-                                u32 sample, BegunSamples* begun) {
-  uint2 pixel;
-  if (!image_pixel(launch, pixels, lane_pixel(launch, item, lane), &pixel)) return false;
-  MASK_LANE(begun->at.x, lane) = (int)pixel.x;
-  MASK_LANE(begun->at.y, lane) = (int)pixel.y;
-  MASK_LANE(begun->at.sample, lane) = (int)sample;
-  MASK_LANE(begun->lanes, lane) = -1;
-  return true;
-}
-
 // The rays of the samples; signs[lane] becomes what the lane's sample counts.
 static inline SceneRays begun_rays(const Scene* scene, const BegunSamples* begun, MediaStack around,
                                    float* signs) {

@@ -24,10 +24,10 @@ static inline void note_own_rays(MASK lanes, u32* counts) {
   float* own = (float*)(counts + COUNTERS);
   write_lanes(own, AS_REAL(AS_MASK(read_lanes(own)) - lanes));
 }
-// Adds the rays of a lane, whose pixel of the rectangle is `at`, and forgets them.
-static inline void add_lane_rays(const Launch* launch, uint2 at, u32 lane, u32* counts,
+// Adds the rays of a lane to those of the rectangle's pixel `place`, and forgets them.
+static inline void add_lane_rays(const Launch* launch, u32 place, u32 lane, u32* counts,
                                  __global u32* restrict rays) {
-  if (launch->counts_rays) rays[at.y * launch->width + at.x] += counts[COUNTERS + lane];
+  if (launch->counts_rays) rays[place] += counts[COUNTERS + lane];
   counts[COUNTERS + lane] = 0u;
 }
 static inline void add_ray_counts(const Launch* launch, __global const u32* restrict pixels, u32 item,
@@ -35,7 +35,8 @@ static inline void add_ray_counts(const Launch* launch, __global const u32* rest
   for (u32 lane = 0; lane < BATCH; ++lane) {
     const uint2 at = lane_pixel(launch, item, lane);
     uint2 pixel;
-    if (image_pixel(launch, pixels, at, &pixel)) add_lane_rays(launch, at, lane, counts, rays);
+    if (image_pixel(launch, pixels, at, &pixel))
+      add_lane_rays(launch, at.y * launch->width + at.x, lane, counts, rays);
   }
 }
 #else

@@ -98,22 +98,20 @@ static inline void begin_film(const Launch* launch, u32 item, __global float4* r
   }
 }
 
-// Adds the light of a sample to film and weights, of the pixel that lane `lane` stands for; `sign` is what
-// the sample counts.
-static inline void store_lane(const Launch* launch, u32 item, u32 lane, float4 radiance, float sign,
-                              __global float4* restrict film, __global float* restrict weights, u32* counts) {
+// Adds the light of a sample to film and weights of the rectangle's pixel `place`; `sign` is what the sample
+// counts.
+static inline void store_sample(u32 place, float4 radiance, float sign, __global float4* restrict film,
+                                __global float* restrict weights, u32* counts) {
   const float3 zero = radiance.xyz * 0.0f;  // NaN where one is not finite
   if (zero.x + zero.y + zero.z != 0.0f) {
     counts[COUNT_NON_FINITE] += 1u;
     return;
   }
-  const uint2 at = lane_pixel(launch, item, lane);
-  const u32 pixel = at.y * launch->width + at.x;
-  film[pixel] += HAS_FILTER ? sign * radiance : radiance;
-  weights[pixel] += HAS_FILTER ? sign : 1.0f;
+  film[place] += HAS_FILTER ? sign * radiance : radiance;
+  weights[place] += HAS_FILTER ? sign : 1.0f;
 }
 
-// The same for all lanes of `lanes`; arrays by lane.
+// The same for the pixels of all lanes of `lanes`; arrays by lane.
 static inline void store_lanes(const Launch* launch, u32 item, MASK lanes, const float4* radiance,
                                const float* signs, __global float4* restrict film,
                                __global float* restrict weights, u32* counts) {
@@ -122,9 +120,11 @@ static inline void store_lanes(const Launch* launch, u32 item, MASK lanes, const
   for (u32 lane = 0; lane < BATCH; ++lane) zero += radiance[lane] * 0.0f;
   uint2 corner;
   if (HAS_FILTER || zero.x + zero.y + zero.z != 0.0f || !is_whole_tile(launch, item, &corner)) {
-    for (u32 lane = 0; lane < BATCH; ++lane)
-      if (MASK_LANE(lanes, lane))
-        store_lane(launch, item, lane, radiance[lane], signs[lane], film, weights, counts);
+    for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+      const u32 lane = lowest_bit(bits);
+      const uint2 at = lane_pixel(launch, item, lane);
+      store_sample(at.y * launch->width + at.x, radiance[lane], signs[lane], film, weights, counts);
+    }
     return;
   }
   const REAL share = TO_REAL(-lanes);
