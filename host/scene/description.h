@@ -88,7 +88,7 @@ struct RenderSettings {
       0;                 // rays to lights with an extent that each surface chooses, 0..1024; 0: to each light
   double cutoff = 1e-3;  // throughput below which a ray ends, [0, 1]
   std::string integrator = "whitted";
-  int roulette = 5;                   // path: ray from which on paths end by chance, 1..65; 65: none
+  int roulette = 2;                   // path: ray from which on paths end by chance, 1..65; 65: none
   u32 light_strategy = STRATEGY_MIS;  // path: a STRATEGY_* constant
   std::vector<Guide> guides;          // path
   bool caustics = false;              // path: photons bring the light behind glass and mirrors

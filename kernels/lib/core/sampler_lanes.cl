@@ -97,10 +97,11 @@ typedef struct FourNumbers {
   REAL x, y, z, w;
 } FourNumbers;
 
-// Those of the four that `first` and `later` ask for: the first two and the two behind them.
+// Those of the four that `first` and `later` ask for: the first two and the two behind them; else one half.
 static inline FourNumbers chosen_lanes(const LaneSamples* at, MASK dimension, bool first, bool later) {
   const LANE_U32 own = AS_LANE_U32(dimension);
-  FourNumbers u;
+  const REAL half_way = (REAL)(0.5f);
+  FourNumbers u = {half_way, half_way, half_way, half_way};
   if ((SAMPLER == SAMPLER_BLUE_NOISE) | (SAMPLER == SAMPLER_INDEPENDENT)) {
     if (first) unlinked_pair(at, own, &u.x, &u.y);
     if (later) unlinked_pair(at, own + 2u, &u.z, &u.w);
@@ -122,8 +123,11 @@ static inline FourNumbers chosen_lanes(const LaneSamples* at, MASK dimension, bo
   return u;
 }
 
-NEVER_INLINE FourNumbers sample_lanes(const LaneSamples* at, MASK dimension) {
-  return chosen_lanes(at, dimension, true, true);
+NEVER_INLINE FourNumbers wanted_lanes(const LaneSamples* at, MASK dimension, bool first, bool later) {
+  return chosen_lanes(at, dimension, first, later);
+}
+static inline FourNumbers sample_lanes(const LaneSamples* at, MASK dimension) {
+  return wanted_lanes(at, dimension, true, true);
 }
 
 // Two of the four: the first two, or with `later` those behind them.

@@ -92,8 +92,7 @@ NEVER_INLINE MASK step_photons(const Scene* scene, Photons* photons, SceneRays* 
   follow_hero(&walks->wavelengths, &at.bsdf);
   const REAL3 wo = negate3(rays->d);
   const Lobes lobes = make_lobes(scene, &at.bsdf, wo, hit);
-  const FourNumbers u = sample_lanes(
-      &walks->at, (walks->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + BOUNCE_DIRECTION));
+  const FourNumbers u = sample_lanes(&walks->at, dimension_here(walks, BOUNCE_DIRECTION));
   const BsdfSamples sample = sample_lobes(scene, &at.bsdf, &lobes, wo, u.z, u.x, u.y, hit);
   const MASK perfect = hit & sample.specular, some = MASK_OF(greatest3(sample.weight) > 0.0f);
   // On a surface that scatters and mirrors, chance decides which of the two the photon represents.

@@ -7,13 +7,22 @@
 #include "lib/pathtracer/next_event.cl"
 #include "lib/pathtracer/walk_state.cl"
 
-// Paths of `lanes` that continue after Russian roulette: they stand for those that end.
-// What refraction took from the radiance comes back when the ray leaves the medium, and says nothing of its
+// Paths with at least this part of the light that they began with never end by chance. Others continue with
+// it: those that remain would else bring much light each, seldom, which is more noise than their time is
 // worth.
-static inline MASK play_roulette(const Scene* scene, Walks* walks, REAL u, MASK lanes) {
-  const MASK playing = lanes & MASK_OF(walks->depth >= (int)scene->info->roulette_depth);
+#define LEAST_WORTH (1.0f / 3.0f)
+
+// Paths of `lanes` that continue after Russian roulette, by the numbers of `dimension`: they stand for those
+// that end. What refraction took from the radiance comes back when the ray leaves the medium, and says
+// nothing of its worth.
+static inline MASK play_roulette(const Scene* scene, Walks* walks, MASK dimension, MASK lanes) {
+  const REAL one = (REAL)(1.0f);
   const REAL worth = carry_worth(walks->throughput) * walks->spread;
-  const REAL chance = select((REAL)(1.0f), real_min(worth, (REAL)(0.95f)), playing);
+  const MASK playing =
+      lanes & MASK_OF(walks->depth >= (int)scene->info->roulette_depth) & MASK_OF(worth < LEAST_WORTH);
+  if (!any_lane(playing)) return lanes;
+  const REAL u = wanted_lanes(&walks->at, dimension, false, true).w;
+  const REAL chance = select(one, worth * (1.0f / LEAST_WORTH), playing);
   walks->throughput = carry_scale(walks->throughput, 1.0f / real_max(chance, (REAL)(1e-20f)));
   return lanes & MASK_OF(u < chance);
 }
@@ -151,8 +160,8 @@ NEVER_INLINE Carried light_on_stretch(const Scene* scene, const Walks* walks, co
 // The paths of `lanes` are scattered at the distances `at` of their stretches. Returns those that continue.
 static inline MASK turn_on_stretch(const Scene* scene, Walks* walks, const BegunRays* begun, SceneRays* rays,
                                    const Stretches* s, REAL at, MASK lanes, u32* counts) {
-  const FourNumbers u = sample_lanes(
-      &walks->at, (walks->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + BOUNCE_DIRECTION));
+  const MASK dimension = dimension_here(walks, BOUNCE_DIRECTION);
+  const FourNumbers u = wanted_lanes(&walks->at, dimension, true, false);
   const REAL density = free_density(s, at), cosine = phase_cosine(s->g, u.x);
   const Carried left = carry_scale(scattered_at(walks, s, at), 1.0f / real_max(density, (REAL)(1e-30f)));
   walks->throughput = carry_select(walks->throughput, left, lanes);
@@ -165,7 +174,7 @@ static inline MASK turn_on_stretch(const Scene* scene, Walks* walks, const Begun
   MASK going = lanes & MASK_OF(carry_greatest(walks->throughput) > 0.0f);
   const MASK allowed = going & MASK_OF(walks->depth <= (int)scene->info->max_depth);
   counts[COUNT_DEPTH_LIMIT] += lane_count(going & ~allowed);
-  going = play_roulette(scene, walks, u.w, allowed);
+  going = play_roulette(scene, walks, dimension, allowed);
   walks->depth -= lanes;
   counts[COUNT_REFLECTION] += lane_count(going);
   note_own_rays(going, counts);

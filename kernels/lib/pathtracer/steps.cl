@@ -14,8 +14,10 @@
 NEVER_INLINE MASK scatter(const Scene* scene, const Encounters* met, const Shading* at, const Lobes* lobes,
                           Walks* walks, SceneRays* rays, MASK lanes, u32* counts) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
-  const FourNumbers u = sample_lanes(
-      &walks->at, (walks->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + BOUNCE_DIRECTION));
+  const MASK dimension = dimension_here(walks, BOUNCE_DIRECTION);
+  // Matte surfaces have one lobe.
+  const bool chooses = HAS_GUIDES || any_lane(lanes & MASK_OF(lobes->matte != lobes->all));
+  const FourNumbers u = wanted_lanes(&walks->at, dimension, true, chooses);
   const REAL3 wo = negate3(rays->d);
   const BsdfSamples sample =
       sample_guided(scene, &at->bsdf, lobes, at->s.p, wo, u.z, u.x, u.y, lanes, &walks->spread);
@@ -42,7 +44,7 @@ NEVER_INLINE MASK scatter(const Scene* scene, const Encounters* met, const Shadi
   note_gathered(walks, sample.specular, turns);
   MASK going = some & MASK_OF(walks->depth <= (int)scene->info->max_depth);
   counts[COUNT_DEPTH_LIMIT] += lane_count(some & ~going);
-  going = play_roulette(scene, walks, u.w, going);
+  going = play_roulette(scene, walks, dimension, going);
   walks->depth -= lanes;
   counts[COUNT_REFRACTION] += lane_count(going & below);
   counts[COUNT_REFLECTION] += lane_count(going & ~below);
@@ -91,8 +93,9 @@ NEVER_INLINE MASK step_walks(const Scene* scene, Walks* walks, SceneRays* rays, 
     const Lobes lobes = make_lobes(scene, &at.bsdf, negate3(rays->d), scattering);
     const MASK open = scattering & scatters(&lobes);
     if (scene->info->light_count && any_lane(open)) {
-      const FourNumbers u = sample_lanes(&walks->at, (walks->depth - 1) * (int)DIMENSIONS_A_BOUNCE +
-                                                         (int)(DIMENSION_BOUNCE + BOUNCE_LIGHT_POINT));
+      const bool chooses = HAS_LIGHT_TREE || scene->info->light_count > 1u;
+      const FourNumbers u =
+          wanted_lanes(&walks->at, dimension_here(walks, BOUNCE_LIGHT_POINT), true, chooses);
       Carried chosen = next_event(scene, walks, rays, &met, &at, &lobes, &u, open, counts);
       keep_hero(scene, &at, &lobes.split, walks, &chosen, open);
       light = carry_add(light, chosen);

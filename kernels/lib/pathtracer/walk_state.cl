@@ -104,6 +104,11 @@ static inline void note_gathered(Walks* walks, MASK specular, MASK turns) {}
 static inline MASK found_by_photons(const Walks* walks) { return NO_LANES; }
 #endif
 
+// The first dimension of the numbers from `offset` (BOUNCE_...) on of the surfaces that the rays meet.
+static inline MASK dimension_here(const Walks* walks, u32 offset) {
+  return (walks->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + offset);
+}
+
 // Light of a colour that a path has met, as it gets to the camera.
 static inline Carried carried_color(const Walks* walks, REAL3 color) {
   return carry_multiply(walks->throughput, carry_color(&walks->wavelengths, color));
