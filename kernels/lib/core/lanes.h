@@ -235,11 +235,18 @@ static inline REAL real_inverse(REAL x) {
   const REAL y = rough_inverse(x);
   return fma(y, fma(-x, y, (REAL)(1.0f)), y);
 }
+// 1 / x as division rounds it, for the same x; 1 ulp off where all bits of x's mantissa are set (Markstein
+// 1990, "Computation of Elementary Functions on the IBM RISC System/6000 Processor").
+static inline REAL rounded_inverse(REAL x) {
+  const REAL y = real_inverse(x);
+  return fma(fma(-x, y, (REAL)(1.0f)), y, y);
+}
 #else
 static inline REAL rough_rsqrt(REAL x) { return 1.0f / sqrt(x); }
 static inline REAL rough_inverse(REAL x) { return 1.0f / x; }
 static inline REAL real_rsqrt(REAL x) { return 1.0f / sqrt(x); }
 static inline REAL real_inverse(REAL x) { return 1.0f / x; }
+static inline REAL rounded_inverse(REAL x) { return 1.0f / x; }
 #endif
 // x^(-n/2), n constant; n ulp. With y the rough root and e = 1 - x y^2 it is y^n (1 - e)^(-n/2).
 static inline REAL inverse_root_power(REAL x, int n) {

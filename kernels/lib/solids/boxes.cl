@@ -17,7 +17,7 @@ static inline BoxRay make_box_ray(REAL3 o, REAL3 d) {
   BoxRay ray;
   ray.o = o;
   ray.d = d;
-  ray.inverse = real3(1.0f / d.x, 1.0f / d.y, 1.0f / d.z);
+  ray.inverse = real3(rounded_inverse(d.x), rounded_inverse(d.y), rounded_inverse(d.z));
   ray.flat = any_lane(FLAT(real_min(fabs(d.x), real_min(fabs(d.y), fabs(d.z)))));
   return ray;
 }
@@ -61,14 +61,24 @@ static inline BoxSpan box_span(const BoxRay* ray, float3 h) {
   return box;
 }
 
-// Unit normals along axes, with the direction's sign, or of the lanes of `against` against it.
-static inline REAL axis_normal(MASK here, REAL d, MASK against) {
-  const MASK sign = (AS_MASK(d) ^ against) & (int)0x80000000;
-  return select((REAL)(0.0f), AS_REAL(sign | as_int(1.0f)), here);
+// A face across an axis with its normal's sign, that of d, as the part of a hit until finish_faces().
+#define BOX_FACE 0x100
+#define BOX_AXIS 3
+static inline MASK axis_face(int axis, REAL d) {
+  return (AS_MASK(d) & (int)0x80000000) | (MASK)(BOX_FACE | axis);
 }
-static inline REAL3 axis_normals(MASK axis, REAL3 d, MASK against) {
-  return real3(axis_normal(MASK_OF(axis == 0), d.x, against), axis_normal(MASK_OF(axis == 1), d.y, against),
-               axis_normal(MASK_OF(axis == 2), d.z, against));
+
+// Unit normals of the faces among hits of `lanes`; their parts become their axes.
+static inline REAL axis_normal(MASK here, MASK face) {
+  return select((REAL)(0.0f), AS_REAL((face & (int)0x80000000) | as_int(1.0f)), here);
+}
+static inline void finish_faces(MASK lanes, SolidHits* hits) {
+  if (!HAS_BOX) return;
+  const MASK face = hits->part, faces = lanes & MASK_OF((face & BOX_FACE) != 0), axis = face & BOX_AXIS;
+  const REAL3 normal = real3(axis_normal(MASK_OF(axis == 0), face), axis_normal(MASK_OF(axis == 1), face),
+                             axis_normal(MASK_OF(axis == 2), face));
+  hits->ng = select3(hits->ng, normal, faces);
+  hits->part = select(face, axis, faces);
 }
 
 // A box with these half sizes; the face is the one that p is nearest to.
@@ -93,13 +103,13 @@ static inline void closest_in_box(float4 parameters, REAL3 o, REAL3 d, REAL t_mi
   const BoxRay ray = make_box_ray(o, d);
   const BoxSpan box = box_span(&ray, (float3)(1.0f));
   active &= box.span.crosses;
-  if (!any_lane(active)) return;
   const MASK enters = MASK_OF(box.span.enter > t_min);
   const REAL t = select(box.span.leave, box.span.enter, enters);
   const MASK along_x = MASK_OF(select(box.leaves.x, box.enters.x, enters) == t),
              along_y = MASK_OF(select(box.leaves.y, box.enters.y, enters) == t);
-  const MASK axis = select(select((MASK)(2), (MASK)(1), along_y), (MASK)(0), along_x);
-  offer(t, axis_normals(axis, d, enters), axis, active, t_min, hits);
+  const MASK across = select(axis_face(2, d.z), axis_face(1, d.y), along_y);
+  const MASK face = select(across, axis_face(0, d.x), along_x) ^ (enters & (int)0x80000000);
+  offer_face(t, face, active, t_min, hits);
 }
 
 static inline SurfacePoints points_on_box(float4 parameters, REAL3 p, MASK part) {

@@ -20,6 +20,14 @@ static inline void offer(REAL t, REAL3 ng, MASK part, MASK valid, REAL t_min, So
   hits->found |= nearer;
 }
 
+// The same of a box's face: axis_face(), from which finish_faces() makes the normal.
+static inline void offer_face(REAL t, MASK face, MASK valid, REAL t_min, SolidHits* hits) {
+  const MASK nearer = valid & MASK_OF(t > t_min) & MASK_OF(t <= hits->t);
+  hits->t = select(hits->t, t, nearer);
+  hits->part = select(hits->part, face, nearer);
+  hits->found |= nearer;
+}
+
 static inline REAL3 up_or_down(REAL side) { return real3((REAL)(0.0f), side, (REAL)(0.0f)); }
 
 // Where a line enters and leaves something.

@@ -137,44 +137,65 @@ static inline Hits select_hits(const Hits* a, const Hits* b, MASK m) {
   return hits;
 }
 
-// Solids of one shape, `index` a lane, in (t_min, hits->t] for the lanes of `active`; object-space rays. Of
-// equal distances the lower index counts. With `any` only the instance is set.
-ALWAYS_INLINE void offer_solids(u32 shape, float4 parameters, MASK index, REAL3 o, REAL3 d, REAL t_min,
-                                MASK active, bool any, Hits* hits) {
-  const REAL zero = (REAL)(0.0f);
-  SolidHits solid = {hits->t, hits->ng, NO_LANES, NO_LANES};
-  closest_in_solid(shape, parameters, o, d, t_min, active, &solid);
-  const MASK earlier = MASK_OF(hits->instance != (int)NO_INSTANCE) & MASK_OF(hits->instance <= index);
-  const MASK found = solid.found & ~(earlier & MASK_OF(solid.t == hits->t));
-  if (!any_lane(found)) return;
-  hits->instance = select(hits->instance, index, found);
-  if (any) return;
-  hits->t = select(hits->t, solid.t, found);
-  hits->u = select(hits->u, zero, found);
-  hits->v = select(hits->v, zero, found);
-  hits->prim = select(hits->prim, solid.part, found);
-  hits->ng = select3(hits->ng, solid.ng, found);
+// What solids offer is in (t_min, t], where t is the distance of the hit so far, and of equal distances the
+// lower index counts: after a hit by an index up to `index` the end is the number below its distance. Rays
+// do not begin before 0, so these numbers are neighbours as integers are.
+static inline REAL number_below(REAL t) { return AS_REAL(AS_MASK(t) - 1); }
+static inline REAL number_above(REAL t) { return AS_REAL(AS_MASK(t) + 1); }
+static inline SolidHits begin_solids(const Hits* hits, MASK index) {
+  const MASK earlier = hit_anything(hits) & MASK_OF(hits->instance <= index);
+  const SolidHits solid = {select(hits->t, number_below(hits->t), earlier), hits->ng, NO_LANES, NO_LANES};
+  return solid;
 }
 
-// The instances [first, last), all solids, for the lanes of `active`; world-space rays. With `any`, lanes
-// that have found something are done. The loop stands in the function, so that rays and hits stay in
-// registers.
+// The lanes of `found` take what solids have offered, but for the instance, which they have.
+static inline void take_solids(SolidHits* solid, MASK found, Hits* hits) {
+  const REAL zero = (REAL)(0.0f);
+  finish_faces(found, solid);
+  hits->t = select(hits->t, solid->t, found);
+  hits->u = select(hits->u, zero, found);
+  hits->v = select(hits->v, zero, found);
+  hits->prim = select(hits->prim, solid->part, found);
+  hits->ng = select3(hits->ng, solid->ng, found);
+}
+
+// Solids of one shape, `index` a lane, in (t_min, hits->t] for the lanes of `active`; object-space rays.
+ALWAYS_INLINE void offer_solids(u32 shape, float4 parameters, MASK index, REAL3 o, REAL3 d, REAL t_min,
+                                MASK active, Hits* hits) {
+  SolidHits solid = begin_solids(hits, index);
+  closest_in_solid(shape, parameters, o, d, t_min, active, &solid);
+  if (!any_lane(solid.found)) return;
+  hits->instance = select(hits->instance, index, solid.found);
+  take_solids(&solid, solid.found, hits);
+}
+
+// The instances [first, last), all solids, for the lanes of `active`; world-space rays, whose hits so far are
+// of other instances or of `first`. With `any`, lanes that have found something are done, and only their
+// instance is set. The loop stands in the function, so that rays and hits stay in registers.
 NEVER_INLINE void hit_solids(__global const Instance* restrict instances, u32 first, u32 last,
                              const REAL3* rays_o, const REAL3* rays_d, const REAL* rays_t_min, MASK active,
                              bool any, Hits* hits) {
   const REAL3 o = *rays_o, d = *rays_d;
   const REAL t_min = *rays_t_min;
-  Hits found = *hits;
+  SolidHits solid = begin_solids(hits, (MASK)((int)first));
+  MASK found = NO_LANES, nearest = hits->instance;
   for (u32 i = first; i < last; ++i) {
-    if (any) active &= ~hit_anything(&found);
+    if (any) active &= ~found;
     if (!any_lane(active)) break;
     __global const Instance* instance = instances + i;
-    REAL3 origins = still_origins(&found, i, o), directions = still_directions(&found, i, d);
+    REAL3 origins = still_origins(hits, i, o), directions = still_directions(hits, i, d);
     into_object(instance, &origins, &directions);
-    offer_solids(instance->shape, instance->parameters, (MASK)((int)i), origins, directions, t_min, active,
-                 any, &found);
+    solid.found = NO_LANES;
+    closest_in_solid(instance->shape, instance->parameters, origins, directions, t_min, active, &solid);
+    nearest = select(nearest, (MASK)((int)i), solid.found);
+    solid.t = select(solid.t, number_below(solid.t), solid.found);
+    found |= solid.found;
   }
-  *hits = found;
+  if (!any_lane(found)) return;
+  hits->instance = nearest;
+  if (any) return;
+  solid.t = number_above(solid.t);
+  take_solids(&solid, found, hits);
 }
 
 #endif

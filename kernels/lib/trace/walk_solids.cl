@@ -64,7 +64,7 @@ NEVER_INLINE void hit_solids_by_lane(__global const Instance* restrict instances
     const REAL3 origins = solids_origins(hits, solids, alike, *o),
                 directions = solids_directions(hits, solids, alike, *d);
     offer_solids(first->shape, first->parameters, places, points_by_lane(&transform, origins),
-                 vectors_by_lane(&transform, directions), *t_min, lanes_of(alike), false, hits);
+                 vectors_by_lane(&transform, directions), *t_min, lanes_of(alike), hits);
   } while (bits);
 }
 
