@@ -105,6 +105,7 @@ struct Device::Pending {
   cl::Event event;
   std::string name;
   LaunchSize size;
+  bool first;  // of its program for this size
 };
 
 Device::Device(DeviceInfo info) : info_(std::move(info)) {
@@ -286,12 +287,14 @@ cl::Event Device::enqueue(cl::Kernel& kernel, const std::string& name, ProgramRe
              fmt::format("launch of {} over {}x{} in groups of {}x{}", name, grid.x, grid.y, size.local_x,
                          size.local_y));
   check_cl(queue_.flush(), info_, "clFlush");
-  pending_.push_back({event, name, size});
   // PoCL compiles a kernel once for each local size, and once more for grids below 65536 (its "smallgrid"
   // variant).
   const char* extent = std::max(grid.x, grid.y) < 65536 ? "small" : "large";
-  if (program)
-    program->launched_variants.insert(fmt::format("{} {}x{} {}", name, size.local_x, size.local_y, extent));
+  const bool first =
+      program && program->launched_variants
+                     .insert(fmt::format("{} {}x{} {}", name, size.local_x, size.local_y, extent))
+                     .second;
+  pending_.push_back({event, name, size, first});
   return event;
 }
 
@@ -315,6 +318,7 @@ void Device::finish() {
     ++times.launches;
     times.device_ms += device_ms[i];
     times.host_ms += host_ms * share;
+    if (batch[i].first && total_ms > 0) times.first_ms += std::max(0.0, host_ms - total_ms) * share;
     times.local_x = batch[i].size.local_x;
     times.local_y = batch[i].size.local_y;
   }

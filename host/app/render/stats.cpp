@@ -58,6 +58,7 @@ json device_json(const DeviceReport& report) {
     kernels[name] = {{"launches", times.launches},
                      {"device_ms", times.device_ms},
                      {"host_ms", times.host_ms},
+                     {"first_ms", times.first_ms},
                      {"work_group", work_group_json(times)}};
   return {{"index", fmt::format("{}:{}", report.info.platform, report.info.device)},
           {"platform", report.info.platform_name},

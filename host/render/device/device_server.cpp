@@ -13,6 +13,7 @@ void add(ServerFigures& sum, const ServerFigures& more) {
     total.launches += times.launches;
     total.device_ms += times.device_ms;
     total.host_ms += times.host_ms;
+    total.first_ms += times.first_ms;
     total.local_x = times.local_x;
     total.local_y = times.local_y;
   }

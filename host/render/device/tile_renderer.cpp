@@ -139,12 +139,14 @@ void TileRenderer::launch_samples(const TileRequest& request, const StopFlags& f
   }
 }
 
-// With photons a launch is cut where the maps that the device has room for end. Returns its seconds.
+// With photons a launch is cut where the maps that the device has room for end. Returns its seconds, without
+// those in which the driver made a kernel ready for its first launch.
 double TileRenderer::launch_integrator(const Launch& whole, const SizedLaunch& sized) {
   const u32 end = whole.first_sample + whole.sample_count;
   double seconds = 0;
   for (Launch launch = whole; launch.first_sample < end; launch.first_sample += launch.sample_count) {
     launch.sample_count = photons_.provide({device_, kernels_, watch_}, launch.first_sample, end);
+    const double first_launches = first_launch_seconds(device_.times());
     const Stopwatch clock;
     const WatchedLaunch watched(watch_, sized.expected_seconds, sized.expected_seconds <= 0,
                                 value_of(device_.info().environment).launch_limit);
@@ -153,7 +155,7 @@ double TileRenderer::launch_integrator(const Launch& whole, const SizedLaunch& s
                              kernels_.tables.camera_media, pixels_, film_, weights_, counters_, rays_,
                              launch);
     device_.finish();
-    seconds += clock.seconds();
+    seconds += clock.seconds() - (first_launch_seconds(device_.times()) - first_launches);
   }
   return seconds;
 }

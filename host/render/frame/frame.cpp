@@ -230,8 +230,10 @@ void begin_work(Frame& frame, std::size_t i, const RenderTimes& times) {
   const std::lock_guard lock(frame.mutex);
   frame.servers[i].report.kernels_cached = times.cached;
   frame.servers[i].report.ready = true;
-  if (!frame.timed) frame.times = times;
-  frame.timed = true;
+  if (!frame.timed) {
+    frame.times = times;
+    frame.timed = i;
+  }
   frame.servers[i].phase = Phase::working;
 }
 

@@ -54,8 +54,8 @@ struct Frame : std::enable_shared_from_this<Frame> {
   std::optional<FramePasses> passes;
   TileQueue queue;
   RayCounts counts{};
-  RenderTimes times;  // of the first server to be ready
-  bool timed = false;
+  RenderTimes times;                  // of the first server to be ready
+  std::optional<std::size_t> timed;  // that server
   double readback = 0;
   std::exception_ptr last_error;
   std::uint64_t pixels_done = 0, pixels_kept = 0;  // the latter are in the checkpoint

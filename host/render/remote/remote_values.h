@@ -16,7 +16,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, platform, device, platform_name, 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Tile, x, y, width, height)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkGroup, kind, x, y)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RenderTimes, build_kernels, upload, render, readback, cached)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KernelTimes, launches, device_ms, host_ms, local_x, local_y)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KernelTimes, launches, device_ms, host_ms, first_ms, local_x, local_y)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ServerFigures, kernels, readback_seconds, notes)
 
 /// {tile, counts} and the pixels' bytes.

@@ -179,6 +179,8 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
         result.aovs[name] = result.film.develop_aov(name);
   }
   result.times = frame.times;
+  if (frame.timed)
+    result.times.build_kernels += first_launch_seconds(frame.servers[*frame.timed].report.kernels);
   result.times.readback = frame.readback;
   result.times.render = std::max(
       0.0, frame.clock.seconds() - result.times.build_kernels - result.times.upload - frame.readback);

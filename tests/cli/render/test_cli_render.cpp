@@ -217,6 +217,7 @@ TEST_CASE("the times of --stats add up to the total") {
   for (const auto& kernel : device["kernels"]) {
     CHECK(kernel["launches"] > 0);
     CHECK(kernel["host_ms"] > 0);
+    CHECK(kernel["first_ms"] <= kernel["host_ms"]);
     CHECK(kernel["work_group"].size() == 2);
   }
   CHECK(stats["scene"]["objects"]["sphere"] == 1);
