@@ -291,9 +291,9 @@ cl::Event Device::enqueue(cl::Kernel& kernel, const std::string& name, ProgramRe
   // variant).
   const char* extent = std::max(grid.x, grid.y) < 65536 ? "small" : "large";
   const bool first =
-      program && program->launched_variants
-                     .insert(fmt::format("{} {}x{} {}", name, size.local_x, size.local_y, extent))
-                     .second;
+      program &&
+      program->launched_variants.insert(fmt::format("{} {}x{} {}", name, size.local_x, size.local_y, extent))
+          .second;
   pending_.push_back({event, name, size, first});
   return event;
 }

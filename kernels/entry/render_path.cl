@@ -15,9 +15,9 @@
 
 // What a work-item's lanes are at.
 typedef struct LaneWork {
-  u32 untaken, end;  // pixels that no lane has taken yet: BATCH an item
-  LaneSamples at;    // the lanes' pixels of the image, and the samples that they take next
-  MASK place;        // the same pixels in the rectangle, or NO_PLACE
+  u32 untaken, end;   // pixels that no lane has taken yet: BATCH an item
+  LaneSamples at;     // the lanes' pixels of the image, and the samples that they take next
+  MASK place;         // the same pixels in the rectangle, or NO_PLACE
   float sign[BATCH];  // what the sample counts that the lane is at
 } LaneWork;
 

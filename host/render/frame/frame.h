@@ -54,7 +54,7 @@ struct Frame : std::enable_shared_from_this<Frame> {
   std::optional<FramePasses> passes;
   TileQueue queue;
   RayCounts counts{};
-  RenderTimes times;                  // of the first server to be ready
+  RenderTimes times;                 // of the first server to be ready
   std::optional<std::size_t> timed;  // that server
   double readback = 0;
   std::exception_ptr last_error;

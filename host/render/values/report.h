@@ -33,8 +33,8 @@ struct DeviceReport {
   std::uint64_t kernels_built = 0;  // programs, by the driver's compiler
 };
 
-/// Wall seconds on the frame's clock; what overlaps is charged once. build_kernels holds what drivers spend on
-/// a kernel before its first launch runs.
+/// Wall seconds on the frame's clock; what overlaps is charged once. build_kernels holds what drivers spend
+/// on a kernel before its first launch runs.
 struct RenderTimes {
   double build_kernels = 0, upload = 0, render = 0, readback = 0;
   bool cached = false;  // every program came from the cache
