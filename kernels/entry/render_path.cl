@@ -13,10 +13,12 @@
 
 #define NO_PLACE (-1)
 
-// What a work-item's lanes are at.
+// What a work-item's lanes are at. All zero is a work-item that has ended: Mesa's llvmpipe (22.3) runs groups
+// in whole vectors, and where a group does not fill one, the others loop by the zeros that they read here.
 typedef struct LaneWork {
   u32 untaken, end;   // pixels that no lane has taken yet: BATCH an item
   LaneSamples at;     // the lanes' pixels of the image, and the samples that they take next
+  MASK left;          // the samples that their pixels still get
   MASK place;         // the same pixels in the rectangle, or NO_PLACE
   float sign[BATCH];  // what the sample counts that the lane is at
 } LaneWork;
@@ -25,13 +27,12 @@ static inline LaneWork begin_work(const Launch* launch, u32 first, u32 end) {
   LaneWork work;
   work.untaken = first * BATCH;
   work.end = end * BATCH;
-  work.at.x = work.at.y = NO_LANES;
-  work.at.sample = (MASK)((int)(launch->first_sample + launch->sample_count));
+  work.at.x = work.at.y = work.at.sample = work.left = NO_LANES;
   work.place = (MASK)(NO_PLACE);
   return work;
 }
 
-// The lane is done with its pixel and takes another, if there is one.
+// The lane is done with its pixel and takes the next that no lane has, if there is one.
 static inline void take_pixel(const Launch* launch, __global const u32* restrict pixels, u32 lane,
                               LaneWork* work, u32* counts, __global u32* restrict ray_counts) {
   const int done = MASK_LANE(work->place, lane);
@@ -45,6 +46,7 @@ static inline void take_pixel(const Launch* launch, __global const u32* restrict
     MASK_LANE(work->at.x, lane) = (int)pixel.x;
     MASK_LANE(work->at.y, lane) = (int)pixel.y;
     MASK_LANE(work->at.sample, lane) = (int)launch->first_sample;
+    MASK_LANE(work->left, lane) = (int)launch->sample_count;
     MASK_LANE(work->place, lane) = (int)(at.y * launch->width + at.x);
     return;
   }
@@ -55,12 +57,12 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
                                   __global const u32* restrict pixels, MediaStack around, MASK idle,
                                   LaneWork* work, Walks* walks, SceneRays* rays, u32* counts,
                                   __global u32* restrict ray_counts) {
-  const int end = (int)(launch->first_sample + launch->sample_count);
-  for (u32 bits = lane_bits(idle & MASK_OF(work->at.sample == end)); bits; bits &= bits - 1u)
+  for (u32 bits = lane_bits(idle & MASK_OF(work->left == 0)); bits; bits &= bits - 1u)
     take_pixel(launch, pixels, lowest_bit(bits), work, counts, ray_counts);
-  const BegunSamples begun = {work->at, idle & MASK_OF(work->at.sample < end)};
+  const BegunSamples begun = {work->at, idle & MASK_OF(work->left != 0)};
   if (!any_lane(begun.lanes)) return NO_LANES;
   work->at.sample -= begun.lanes;
+  work->left += begun.lanes;
   const SceneRays first = begun_rays(scene, &begun, around, work->sign);
   const Walks fresh = start_walks(scene, &begun.at, begun.lanes);
   join_rays(rays, &first, begun.lanes);

@@ -56,6 +56,39 @@ TEST_CASE("an estimate has the same bits for 1, 4, 8 and 16 lanes where it uses 
   });
 }
 
+TEST_CASE("the rounded inverse of the lanes is the nearest number, or the next where all bits are set") {
+  const char* const text = R"(
+    #include "lib/core/lanes.h"
+    #include "shared/types.h"
+    kernel void run(global const float* in, global float* out, u32 count) {
+      const u32 i = get_global_id(0);
+      if (i >= count) return;
+      const REAL y = rounded_inverse((REAL)(in[i]));
+      out[i] = REAL_LANE(y, LANES - 1);
+    })";
+  const float all_bits = std::nextafter(2.0f, 1.0f);
+  std::vector<float> inputs;
+  for (int e = -122; e <= 124; ++e) {
+    for (int k = 0; k < 61; ++k)
+      inputs.push_back(std::ldexp(1 + static_cast<float>(k * 137'491 % 8'388'607) * 0x1p-23f, e));
+    inputs.push_back(-std::ldexp(all_bits, e));
+  }
+  const DeviceInfo info = test_devices().front();
+  Device device(info);
+  for (const char* lanes : {"1", "4", "8", "16"}) {
+    const auto found = run_text<float>(device, text, inputs, {{"LANES", lanes}});
+    std::size_t off = 0, far = 0;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      const float wanted = 1 / inputs[i];
+      if (found[i] == wanted) continue;
+      far += found[i] != std::nextafter(wanted, 0.0f);
+      off += std::abs(std::ldexp(inputs[i], -std::ilogb(inputs[i]))) != all_bits;
+    }
+    CHECK(off == 0);
+    CHECK(far == 0);
+  }
+}
+
 TEST_CASE("the logarithm of the lanes is within two units in the last place") {
   const char* const text = R"(
     #include "lib/core/lanes.h"

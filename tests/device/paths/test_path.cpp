@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "path_testing.h"
+#include "same_bits.h"
 
 using namespace sundog;
 using namespace sundog::paths;
@@ -90,6 +91,29 @@ TEST_CASE("a closed room that shines has the sum of all its reflections, with an
     const int room = add_room(scene);
     scenes::place(scene, MeshShape{room}, wall);
     check_mean(mean_on(device, scene), shine * (1 + albedo + albedo * albedo + albedo * albedo * albedo));
+  });
+}
+
+TEST_CASE("work-groups that fill none of a device's vectors end their paths") {
+  on_every_device([&](const DeviceInfo& device) {
+    SceneDescription scene = path_scene({0.2, -0.1, 0.3}, {0.9, 0.4, -0.2}, 2);
+    scene.image.width = 9, scene.image.height = 6;
+    const int wall = add_matte(scene, 0.7);
+    scene.materials.back().emission = dvec3(0.3);
+    const int room = add_room(scene);
+    scenes::place(scene, MeshShape{room}, wall);
+    const auto drawn = [&](std::size_t group) {
+      RenderOptions options;
+      options.work_group = {WorkGroup::Kind::fixed, group, 1};
+      return scenes::render_on(device, scene, options);
+    };
+    const RenderResult whole = drawn(8);
+    for (const std::size_t group : {1u, 3u}) {
+      const RenderResult made = drawn(group);
+      CHECK(same_bits(made.image, whole.image));
+      CHECK(made.devices.front().notes.empty());
+      CHECK(made.devices.front().failures == 0);
+    }
   });
 }
 
