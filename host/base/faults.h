@@ -15,7 +15,7 @@ namespace sundog {
 /// them:
 ///     build@P:D           the kernels do not build on the device
 ///     kernels@P:D         the driver makes no kernels of a program that it has built from its source
-///     compile@P:D         the process that compiles for the device ends without a result
+///     compile=SIGNAL@P:D  the process that compiles for the device ends without a result, by the signal
 ///     alloc=STATUS@P:D    a buffer of more than SIZE bytes gives the OpenCL status
 ///     launch=STATUS@P:D   a launch of more than SIZE work-items gives the OpenCL status
 ///     group=STATUS@P:D    a launch in groups of more than SIZE work-items gives the OpenCL status

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <thread>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "device/cl_status.h"
 #include "device/device.h"
 #include "device/driver_folder.h"
+#include "device/empty_launch.h"
 
 namespace sundog {
 namespace {
@@ -47,6 +49,27 @@ cl::Device device_at(const EnvironmentPtr& environment, const std::string& place
   throw DeviceError(fmt::format("no device {} to compile for", place));
 }
 
+/// The text up to the next end of a line, which is taken off with it.
+std::string take_line(std::string& text) {
+  const std::size_t end = text.find('\n');
+  const std::string line = text.substr(0, end);
+  text.erase(0, end == std::string::npos ? end : end + 1);
+  return line;
+}
+
+/// With machine code for the launch. Throws BuildError, DeviceError.
+void build_for_launch(cl::Program& program, const cl::Context& context, const cl::Device& device,
+                      const std::string& options, const EmptyLaunch& launch) {
+  if (program.build({device}, options.c_str()) != CL_SUCCESS)
+    throw BuildError("the program does not build", "");
+  cl_int status = CL_SUCCESS;
+  cl::Kernel kernel(program, launch.kernel.c_str(), &status);
+  if (status != CL_SUCCESS) throw BuildError("the program has no such kernel", "");
+  const cl::CommandQueue queue(context, device, 0, &status);
+  if (status == CL_SUCCESS) status = launch_nothing(context, queue, kernel, launch);
+  if (status != CL_SUCCESS) throw DeviceError("the kernel cannot be launched", status);
+}
+
 void write_all(int file, const std::vector<unsigned char>& bytes) {
   for (std::size_t written = 0; written < bytes.size();) {
     const ssize_t part = ::write(file, bytes.data() + written, bytes.size() - written);
@@ -58,13 +81,16 @@ void write_all(int file, const std::vector<unsigned char>& bytes) {
 }  // namespace
 
 std::optional<CompileProcess> CompileProcess::start(const DeviceInfo& device, const std::string& source,
-                                                    const std::string& options) noexcept {
+                                                    const std::string& options,
+                                                    const EmptyLaunch* launch) noexcept {
   const StartProgram& start_program = value_of(device.environment).start_program;
   if (!start_program || !reads_a_library(device) || std::thread::hardware_concurrency() < 2)
     return std::nullopt;
-  const int in = memory_file(options + "\n" + source), out = memory_file("");
+  int in = -1;
+  const int out = memory_file("");
   std::optional<CompileProcess> process;
   try {
+    in = memory_file(fmt::format("{}\n{}\n{}", options, launch ? to_line(*launch) : "", source));
     if (in >= 0 && out >= 0) {
       const std::string place = fmt::format("{}:{}", device.platform, device.device);
       process.emplace(
@@ -102,15 +128,21 @@ std::string CompileProcess::wait() noexcept {
 }
 
 void serve_compile(const EnvironmentPtr& environment, const std::string& place, int in, int out) {
-  if (fault(value_of(environment).faults, "compile", place)) throw BuildError("a fault was asked for", "");
-  const std::string text = contents(in), options = text.substr(0, text.find('\n')),
-                    source = text.substr(std::min(text.size(), options.size() + 1));
+  if (const auto signal = fault(value_of(environment).faults, "compile", place)) {
+    std::raise(*signal);
+    throw BuildError("a fault was asked for", "");
+  }
+  std::string source = contents(in);
+  const std::string options = take_line(source), launch = take_line(source);
   const cl::Device device = device_at(environment, place);
   cl_int status = CL_SUCCESS;
   const cl::Context context(device, nullptr, nullptr, nullptr, &status);
   if (status != CL_SUCCESS) throw DeviceError("no context", status);
   cl::Program program(context, source, false);
-  if (program.compile(options.c_str()) != CL_SUCCESS) throw BuildError("the program does not compile", "");
+  if (!launch.empty())
+    build_for_launch(program, context, device, options, empty_launch_of(launch));
+  else if (program.compile(options.c_str()) != CL_SUCCESS)
+    throw BuildError("the program does not compile", "");
   const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
   if (binaries.empty() || binaries.front().empty()) throw BuildError("the driver gives no binary", "");
   write_all(out, binaries.front());

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/faults.h"
 #include "device/cl_status.h"
+#include "device/empty_launch.h"
 #include "device/kernel_source.h"
 #include "device/program.h"
 
@@ -108,7 +109,7 @@ struct Device::Pending {
   bool first;  // of its program for this size
 };
 
-Device::Device(DeviceInfo info) : info_(std::move(info)) {
+Device::Device(DeviceInfo info) : info_(std::move(info)), prepared_(std::make_unique<PreparedBuilds>()) {
   if (!info_.usable()) throw DeviceError(fmt::format("{}: {}", info_.label(), info_.problem));
   device_ = cl::Device(static_cast<cl_device_id>(info_.handle), true);
   if (info_.sub_units > 0) device_ = sub_device(device_, info_);
@@ -150,7 +151,17 @@ const std::shared_ptr<ProgramRecord>* Device::find_built(const std::string& entr
 bool Device::has(const std::string& entry, const KernelDefines& defines,
                  const GeneratedFiles& generated) const {
   const std::string source = expanded(entry, defines, generated);
-  return find_built(entry, source) || is_program_cached(info_, source, wish_);
+  return find_built(entry, source) || is_program_cached(info_, source, wish_, *prepared_);
+}
+
+bool Device::build_ahead(const std::string& entry, const KernelDefines& defines, const EmptyLaunch& launch,
+                         const GeneratedFiles& generated) noexcept {
+  try {
+    const std::string source = expanded(entry, defines, generated);
+    return !find_built(entry, source) && begin_program(info_, source, wish_, launch, *prepared_);
+  } catch (const std::exception&) {
+    return false;  // build() will say what is wrong
+  }
 }
 
 Program Device::build(const std::string& entry, const KernelDefines& defines, BuildReport* report,
@@ -164,7 +175,7 @@ Program Device::build(const std::string& entry, const KernelDefines& defines, Bu
     result.cached = true;
     return Program(*built);
   }
-  programs_.push_back(build_program(context_, device_, info_, entry, source, wish_, result));
+  programs_.push_back(build_program(context_, device_, info_, entry, source, wish_, *prepared_, result));
   result.seconds = milliseconds(Clock::now() - start) * 1e-3;
   return Program(programs_.back());
 }
@@ -184,6 +195,13 @@ void Device::check_argument(cl_int status, const std::string& name, cl_uint inde
 }
 
 namespace {
+
+/// PoCL compiles a kernel once for each local size, and once more for grids below 65536 (its "smallgrid"
+/// variant).
+std::string variant(const std::string& kernel, const LaunchSize& grid) {
+  const char* extent = std::max(grid.x, grid.y) < 65536 ? "small" : "large";
+  return fmt::format("{} {}x{} {}", kernel, grid.local_x, grid.local_y, extent);
+}
 
 std::string place(const DeviceInfo& info) { return fmt::format("{}:{}", info.platform, info.device); }
 
@@ -287,15 +305,20 @@ cl::Event Device::enqueue(cl::Kernel& kernel, const std::string& name, ProgramRe
              fmt::format("launch of {} over {}x{} in groups of {}x{}", name, grid.x, grid.y, size.local_x,
                          size.local_y));
   check_cl(queue_.flush(), info_, "clFlush");
-  // PoCL compiles a kernel once for each local size, and once more for grids below 65536 (its "smallgrid"
-  // variant).
-  const char* extent = std::max(grid.x, grid.y) < 65536 ? "small" : "large";
-  const bool first =
-      program &&
-      program->launched_variants.insert(fmt::format("{} {}x{} {}", name, size.local_x, size.local_y, extent))
-          .second;
+  const bool first = program && program->launched_variants.insert(variant(name, grid)).second;
   pending_.push_back({event, name, size, first});
   return event;
+}
+
+void Device::run_empty(cl::Kernel& kernel, ProgramRecord* program, const EmptyLaunch& launch) {
+  const cl_int status = launch_nothing(context_, queue_, kernel, launch);
+  if (status != CL_SUCCESS)
+    check_cl(status, info_,
+             fmt::format("an empty launch of {} in groups of {}x{}", launch.kernel, launch.local_x,
+                         launch.local_y));
+  if (program)
+    program->launched_variants.insert(
+        variant(launch.kernel, {launch.local_x, launch.local_y, launch.local_x, launch.local_y}));
 }
 
 void Device::finish() {

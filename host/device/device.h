@@ -12,6 +12,7 @@
 #include <string>
 #include <type_traits>
 #include <typeinfo>
+#include <utility>
 #include <vector>
 
 #include "device/build_options.h"
@@ -40,7 +41,21 @@ struct Buffer {
   std::size_t count = 0;  // elements of T
 };
 
-struct ProgramRecord;  // what the binary cache must know of a built program (program.h)
+/// A type's name as kernels spell it: "u32", "float4", "Ray"; with a * for a buffer.
+std::string kernel_type_name(const std::type_info& type);
+template <class T>
+struct ArgumentType {
+  static constexpr std::size_t bytes = sizeof(T);
+  static std::string name() { return kernel_type_name(typeid(T)); }
+};
+template <class T>
+struct ArgumentType<Buffer<T>> {
+  static constexpr std::size_t bytes = 0;
+  static std::string name() { return kernel_type_name(typeid(T)) + "*"; }
+};
+
+struct ProgramRecord;   // what the binary cache must know of a built program (program.h)
+struct PreparedBuilds;  // what is there for the next build() (program.h)
 
 /// A kernel whose arguments have the types Args: Buffer<T> for a __global T*, or a plain value: a scalar, a
 /// vector, a struct.
@@ -49,6 +64,10 @@ struct Kernel {
   cl::Kernel kernel;
   std::string name;
   std::shared_ptr<ProgramRecord> program;
+
+  static EmptyLaunch empty_launch(std::string name, std::size_t local_x, std::size_t local_y = 1) {
+    return {std::move(name), local_x, local_y, {ArgumentType<Args>::bytes...}};
+  }
 };
 
 /// What a driver tells of a kernel on its device; 0: it does not.
@@ -56,17 +75,6 @@ struct KernelLimits {
   std::size_t work_group = 0;  // the most work-items of a group: the device's, where registers allow as many
   std::size_t preferred_multiple = 0;
   cl_ulong private_bytes = 0, local_bytes = 0;  // of a work-item, of a group
-};
-
-/// A type's name as kernels spell it: "u32", "float4", "Ray"; with a * for a buffer.
-std::string kernel_type_name(const std::type_info& type);
-template <class T>
-struct ArgumentType {
-  static std::string name() { return kernel_type_name(typeid(T)); }
-};
-template <class T>
-struct ArgumentType<Buffer<T>> {
-  static std::string name() { return kernel_type_name(typeid(T)) + "*"; }
 };
 
 /// A built kernel file.
@@ -123,6 +131,21 @@ class Device {
   /// Whether build() would compile nothing: it has built this before, or the binary cache holds it.
   bool has(const std::string& entry, const KernelDefines& defines,
            const GeneratedFiles& generated = {}) const;
+
+  /// Begins to build in another process what build() will be asked for, as a whole and with machine code for
+  /// `launch`. build() then waits for that process, and builds in this one if the other fails. Returns whether
+  /// one is at work: not where build() would compile nothing, or where the driver can build beside (PoCL on a
+  /// processor cannot). There is one at a time: another one's is ended. Never throws.
+  bool build_ahead(const std::string& entry, const KernelDefines& defines, const EmptyLaunch& launch,
+                   const GeneratedFiles& generated = {}) noexcept;
+
+  /// Has the driver make a kernel's machine code for a local size, as far as it does that at the first launch
+  /// (EmptyLaunch). Throws DeviceError.
+  template <class... Args>
+  void make_ready(Kernel<Args...>& kernel, std::size_t local_x, std::size_t local_y = 1) {
+    run_empty(kernel.kernel, kernel.program.get(),
+              Kernel<Args...>::empty_launch(kernel.name, local_x, local_y));
+  }
 
   /// A device array with a copy of `values` (never zero bytes: an empty span gives one unused element).
   template <class T>
@@ -199,10 +222,12 @@ class Device {
   void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset, cl_bool waits);
   cl::Event enqueue(cl::Kernel& kernel, const std::string& name, ProgramRecord* program,
                     const LaunchSize& size);
+  void run_empty(cl::Kernel& kernel, ProgramRecord* program, const EmptyLaunch& launch);
 
   DeviceInfo info_;
   bool fma_ = false;  // has the instruction (kernels/lib/core/config.h)
   BuildWish wish_;
+  std::unique_ptr<PreparedBuilds> prepared_;
   cl::Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;

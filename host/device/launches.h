@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace sundog {
 
@@ -12,6 +13,15 @@ namespace sundog {
 struct LaunchSize {
   std::size_t x = 1, y = 1;
   std::size_t local_x = 64, local_y = 1;
+};
+
+/// A launch of one work-group that does nothing, by which some drivers make a kernel's machine code before it
+/// is wanted. Every argument is zero, and a buffer is a few pages of zeros: the kernel must take that for no
+/// work.
+struct EmptyLaunch {
+  std::string kernel;
+  std::size_t local_x = 1, local_y = 1;
+  std::vector<std::size_t> argument_bytes;  // 0: a buffer
 };
 
 /// Sum of the launches of one kernel on one device. device_ms comes from events and is 0 where the driver

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 #include "base/environment.h"
 #include "base/error.h"
@@ -12,9 +13,7 @@
 #include "base/file.h"
 #include "device/build_options.h"
 #include "device/cl_status.h"
-#include "device/compile_process.h"
 #include "device/driver_folder.h"
-#include "device/program_cache.h"
 
 namespace sundog {
 namespace {
@@ -140,6 +139,28 @@ bool compile_beside(ProgramRecord& record, const cl::Context& context, const cl:
   return record.program() != nullptr;
 }
 
+/// The program of the binary that another process has built of the same; null where there is none.
+cl::Program program_begun(PreparedBuilds& prepared, const ProgramRecord& record, const cl::Context& context,
+                          const cl::Device& device) {
+  if (!prepared.begun || prepared.begun->key != record.key) return {};
+  const std::string built = prepared.begun->process.wait();
+  prepared.begun.reset();
+  return built.empty() ? cl::Program() : program_from_binary(context, device, built, record.options);
+}
+
+/// The cache's program of the key, which may have been read before.
+std::optional<CachedProgram> cached_program(const std::filesystem::path& file, const std::string& key,
+                                            PreparedBuilds& prepared) {
+  std::optional<PreparedBuilds::Found> found = std::exchange(prepared.found, std::nullopt);
+  if (found && found->key == key) return std::move(found->program);
+  return load_program(file, key);
+}
+
+/// Whether a build is to give the compiler's log, which neither a cache nor another process has.
+bool wants_log(const HostEnvironment& environment, const BuildWish& wish) {
+  return wish.from_source || !environment.build_log.empty();
+}
+
 /// Whether the build failed by the user's options: nothing at all can be built with them.
 bool options_are_bad(const ProgramRecord& record, const cl::Context& context, const cl::Device& device) {
   return !value_of(record.device.environment).build_options.empty() &&
@@ -197,7 +218,7 @@ void compile_to_kernels(ProgramRecord& record, const cl::Context& context, const
 std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const cl::Device& device,
                                              const DeviceInfo& info, const std::string& entry,
                                              const std::string& source, const BuildWish& wish,
-                                             BuildReport& report) {
+                                             PreparedBuilds& prepared, BuildReport& report) {
   const HostEnvironment& environment = value_of(info.environment);
   dump_source(environment.dump_folder, entry, source);
   if (fault(environment.faults, "build", place_of(info)))
@@ -212,8 +233,9 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
   record->options = all_build_options(environment, wish);
   record->key = program_key(info, record->options, source);
   record->cache_file = program_cache_file(environment, record->key);
-  const bool from_source = wish.from_source || !environment.build_log.empty();
-  const auto cached = from_source ? std::nullopt : load_program(record->cache_file, record->key);
+  const bool from_source = wants_log(environment, wish);
+  const auto cached =
+      from_source ? std::nullopt : cached_program(record->cache_file, record->key, prepared);
   if (cached) {
     record->program = program_from_binary(context, device, cached->binary, record->options);
     if (record->program()) {
@@ -229,16 +251,38 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
       report.note = *reason;
       record->cache_file.clear();
     }
+  if (!from_source) record->program = program_begun(prepared, *record, context, device);
+  if (record->program()) return record;
   if (from_source || !compile_beside(*record, context, device, source))
     compile_to_kernels(*record, context, device, source, report);
   return record;
 }
 
-bool is_program_cached(const DeviceInfo& info, const std::string& source, const BuildWish& wish) {
+bool is_program_cached(const DeviceInfo& info, const std::string& source, const BuildWish& wish,
+                       PreparedBuilds& prepared) {
   const HostEnvironment& environment = value_of(info.environment);
-  if (wish.from_source || !environment.build_log.empty()) return false;
-  const std::string key = program_key(info, all_build_options(environment, wish), source);
-  return load_program(program_cache_file(environment, key), key).has_value();
+  if (wants_log(environment, wish)) return false;
+  std::string key = program_key(info, all_build_options(environment, wish), source);
+  std::optional<CachedProgram> program =
+      cached_program(program_cache_file(environment, key), key, prepared);
+  if (program) prepared.found = {std::move(key), std::move(*program)};
+  return prepared.found.has_value();
+}
+
+bool begin_program(const DeviceInfo& info, const std::string& source, const BuildWish& wish,
+                   const EmptyLaunch& launch, PreparedBuilds& prepared) {
+  const HostEnvironment& environment = value_of(info.environment);
+  const std::string options = all_build_options(environment, wish);
+  std::string key = program_key(info, options, source);
+  if (prepared.begun && prepared.begun->key == key) return true;
+  prepared.begun.reset();
+  // A part of a device has no processors for it to spare.
+  if (wants_log(environment, wish) || info.sub_units > 0 ||
+      is_program_cached(info, source, wish, prepared))
+    return false;
+  std::optional<CompileProcess> process = CompileProcess::start(info, source, options, &launch);
+  if (process) prepared.begun.emplace(PreparedBuilds::Begun{std::move(key), std::move(*process)});
+  return prepared.begun.has_value();
 }
 
 void save_program(ProgramRecord& record) {

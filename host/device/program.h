@@ -2,10 +2,13 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
+#include "device/compile_process.h"
 #include "device/device.h"
+#include "device/program_cache.h"
 
 namespace sundog {
 
@@ -21,14 +24,34 @@ struct ProgramRecord {
   std::set<std::string> stored_variants, launched_variants;
 };
 
-/// Expands, and loads from the cache or compiles. Throws BuildError, DeviceError.
+/// What is there for the next build of a Device: the program that the cache was last found to hold, and one
+/// that another process builds.
+struct PreparedBuilds {
+  struct Found {
+    std::string key;
+    CachedProgram program;
+  };
+  struct Begun {
+    std::string key;
+    CompileProcess process;
+  };
+  std::optional<Found> found;
+  std::optional<Begun> begun;
+};
+
+/// Expands, and loads from the cache, takes what another process has built, or compiles. Throws BuildError, DeviceError.
 std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const cl::Device& device,
                                              const DeviceInfo& info, const std::string& entry,
                                              const std::string& source, const BuildWish& wish,
-                                             BuildReport& report);
+                                             PreparedBuilds& prepared, BuildReport& report);
 
-/// Whether build_program() would find it in the cache.
-bool is_program_cached(const DeviceInfo& info, const std::string& source, const BuildWish& wish);
+/// Whether build_program() would find it in the cache. The next one need not read it again.
+bool is_program_cached(const DeviceInfo& info, const std::string& source, const BuildWish& wish,
+                       PreparedBuilds& prepared);
+
+/// Has another process build it for build_program(), with machine code for `launch`. Returns whether one does.
+bool begin_program(const DeviceInfo& info, const std::string& source, const BuildWish& wish,
+                   const EmptyLaunch& launch, PreparedBuilds& prepared);
 
 /// Stores the program when the cache lacks something that was launched. Throws DeviceError, IoError.
 void save_program(ProgramRecord& record);

@@ -52,6 +52,18 @@ auto integrator_kernel(const Program& program, const std::string& name) {
                       Launch>(program, name);
 }
 
+constexpr const char* photon_entry = "entry/trace_photons.cl";
+constexpr const char* photon_kernel = "trace_photons";
+
+/// Where the integrator's kernel is to be built too, another process builds that of photons meanwhile, if the
+/// driver cannot build both at once. Returns whether it does.
+bool begin_photon_tracer(Device& device, const Integrator& integrator, const KernelConfig& config) {
+  if (device.has(integrator.entry, config.defines, config.generated)) return false;
+  const std::size_t group = photon_group(config, greatest_work_group(config, device.info()));
+  return device.build_ahead(photon_entry, config.defines, PhotonKernel::empty_launch(photon_kernel, group),
+                            config.generated);
+}
+
 void build_integrator(Device& device, const Integrator& integrator, FrameKernels& kernels, RenderTimes& times,
                       KernelUpdate& update) {
   kernels.integrator = integrator_kernel(
@@ -63,6 +75,15 @@ void build_integrator(Device& device, const Integrator& integrator, FrameKernels
   kernels.find_media = {};
   limit_group(device.limits(kernels.integrator).work_group, kernels.most_group);
   update.changed = true;
+}
+
+/// Its machine code is made while another process builds.
+void make_integrator_ready(Device& device, FrameKernels& kernels) {
+  try {
+    device.make_ready(kernels.integrator, first_group(kernels.config));
+  } catch (const DeviceError&) {
+    // the first launch that draws will say it
+  }
 }
 
 bool same_kernels(const KernelConfig& a, const KernelConfig& b) {
@@ -86,8 +107,8 @@ unsigned wait_for_kernels(const Device& device, KernelBuilder& builder, const Ke
 
 /// What to draw with: the wanted kernels where they are there or nothing stands in for them, not even a
 /// draft.
-KernelConfig choose_config(const Device& device, const Integrator& integrator, KernelConfig wanted,
-                           FrameKernels& kernels, KernelUpdate& update) {
+KernelConfig choose_config(Device& device, const Integrator& integrator, KernelConfig wanted,
+                           bool photons, FrameKernels& kernels, KernelUpdate& update) {
   if (!kernels.builder || device.has(integrator.entry, wanted.defines, wanted.generated)) return wanted;
   std::vector<KernelConfig> candidates = kernels.builder->built();
   candidates.insert(candidates.end(), kernels.known.rbegin(), kernels.known.rend());
@@ -106,6 +127,7 @@ KernelConfig choose_config(const Device& device, const Integrator& integrator, K
       kernels.is_draft = true;
       return draft;
     }
+  if (photons) begin_photon_tracer(device, integrator, wanted);
   update.built += wait_for_kernels(device, *kernels.builder, order);
   return wanted;
 }
@@ -120,22 +142,25 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
   kernels.wanted.reset();
   kernels.is_draft = false;
   if (kernels.builder) kernels.general = general_configs(scene, device.info(), tuning);
+  const bool photons = scene.features.caustics;
   const auto is_there = [&] {
     return kernels.integrator.kernel() && kernels.entry == integrator.entry &&
            same_kernels(kernels.config, config);
   };
-  if (!is_there()) config = choose_config(device, integrator, std::move(config), kernels, update);
+  if (!is_there()) config = choose_config(device, integrator, std::move(config), photons, kernels, update);
   if (!is_there()) {
     kernels.config = std::move(config);
     kernels.most_group = greatest_work_group(kernels.config, device.info());
     check_work_group(device.info(), kernels.most_group, asked);
+    const bool beside = photons && begin_photon_tracer(device, integrator, kernels.config);
     build_integrator(device, integrator, kernels, times, update);
+    if (beside) make_integrator_ready(device, kernels);
     if (kernels.builder) kernels.known.push_back(kernels.config);
   }
   // Last: while some drivers compile, they neither load nor begin other kernels.
   if (kernels.wanted) kernels.builder->want({integrator.entry, integrator.kernel, *kernels.wanted});
   if (aovs) add_first_surfaces(device, kernels, times);
-  if (scene.features.caustics) add_photon_tracer(device, kernels, times);
+  if (photons) add_photon_tracer(device, kernels, times);
   check_work_group(device.info(), kernels.most_group, asked);
 }
 
@@ -195,10 +220,16 @@ void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& time
   limit_group(device.limits(kernels.first_surfaces).work_group, kernels.most_group);
 }
 
+std::size_t photon_group(const KernelConfig& config, std::size_t most_group) {
+  constexpr std::size_t few = 4, many = 64;
+  const std::size_t usual = config.tile_w * config.tile_h > 1 ? few : many;
+  return most_group > 0 ? std::min(usual, most_group) : usual;
+}
+
 void add_photon_tracer(Device& device, FrameKernels& kernels, RenderTimes& times) {
   if (kernels.trace_photons.kernel()) return;
   kernels.trace_photons = scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch>(
-      build(device, "entry/trace_photons.cl", kernels.config, kernels, times), "trace_photons");
+      build(device, photon_entry, kernels.config, kernels, times), photon_kernel);
   limit_group(device.limits(kernels.trace_photons).work_group, kernels.most_group);
 }
 

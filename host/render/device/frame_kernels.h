@@ -19,14 +19,16 @@ struct NotWantedAnyMore : DeviceError {
   using DeviceError::DeviceError;
 };
 
+using PhotonKernel = SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch>;
+
 struct FrameKernels {
   KernelConfig config;
   DeviceScene tables;
   SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>
       integrator;
   SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>
-      first_surfaces;                                                                 // only with AOVs
-  SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch> trace_photons;  // only with caustics
+      first_surfaces;                                 // only with AOVs
+  PhotonKernel trace_photons;                         // only with caustics
   bool wants_all_aovs = false, has_all_aovs = false;  // of first_surfaces: all vectors of AOVs
   bool counts_rays = false;                           // of the integrator: those of each pixel
   bool only_general = false;                // general_config() even where the scene's could be built
@@ -76,6 +78,9 @@ bool may_end_draft(const FrameKernels& kernels);
 
 /// Builds the kernel of photons where it is missing.
 void add_photon_tracer(Device& device, FrameKernels& kernels, RenderTimes& times);
+
+/// Work-items of its groups.
+std::size_t photon_group(const KernelConfig& config, std::size_t most_group);
 
 /// Builds the kernel of the AOVs where it is missing.
 void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& times);

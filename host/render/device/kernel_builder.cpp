@@ -31,23 +31,13 @@ void build(const DeviceInfo& info, const KernelOrder& order) {
   auto kernel =
       scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>(
           program, order.kernel);
-  const DeviceScene nothing = upload_scene(device, CompiledScene{});
-  const auto pixels = device.make<u32>(1), rays = device.make<u32>(1);
-  const auto counters = device.make<u32>(std::size_t{COUNTER_BLOCKS} * COUNTER_BLOCK);
-  const auto film = device.make<float4>(1);
-  const auto weights = device.make<float>(1);
-  Launch launch{};
-  launch.row_items = 1;
-  const bool many_pixels = order.config.tile_w * order.config.tile_h > 1;
-  const std::size_t group = many_pixels ? 1 : 64;
-  run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>(
-      device, kernel, {group, 1, group, 1}, nothing, nothing.camera_media, pixels, film, weights, counters,
-      rays, launch);
-  device.finish();
+  device.make_ready(kernel, first_group(order.config));
   device.save_programs();
 }
 
 }  // namespace
+
+std::size_t first_group(const KernelConfig& config) { return config.tile_w * config.tile_h > 1 ? 1 : 64; }
 
 // The thread holds it too, so that nobody waits for a compiler when the builder goes.
 struct KernelBuilder::State {

@@ -16,6 +16,9 @@ struct KernelOrder {
   KernelConfig config;
 };
 
+/// The local size that is launched first, in one column.
+std::size_t first_group(const KernelConfig& config);
+
 class KernelBuilder {
  public:
   explicit KernelBuilder(DeviceInfo info);

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kept_part = 2.0 / 3;       // alpha: 1 keeps the radius, less lets it shrink faster
 constexpr u32 photons_a_launch = 1u << 16;  // a launch stays well below a second on any device
-constexpr std::size_t few_items = 4, many_items = 64;  // a group: of devices with vectors, of others
 constexpr u32 least_cells = 1024;
 
 /// Photons in the order of their cells, in each cell in that of their numbers; `begins` receives where each
@@ -76,12 +75,11 @@ void PhotonMaps::trace(const PhotonTracer& tracer, const PhotonLaunch& launch) {
   FrameKernels& kernels = tracer.kernels;
   const std::size_t batch = std::size_t{kernels.config.tile_w} * kernels.config.tile_h;
   const std::size_t items = (launch.last - launch.first + batch - 1) / batch;
-  const std::size_t usual = batch > 1 ? few_items : many_items;
-  const std::size_t local = kernels.most_group > 0 ? std::min(usual, kernels.most_group) : usual;
+  const std::size_t group = photon_group(kernels.config, kernels.most_group);
   const WatchedLaunch watched(tracer.watch, expected, !traced_,
                               value_of(tracer.device.info().environment).launch_limit);
   run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch>(
-      tracer.device, kernels.trace_photons, {.x = items, .local_x = local}, kernels.tables, light_media_,
+      tracer.device, kernels.trace_photons, {.x = items, .local_x = group}, kernels.tables, light_media_,
       landed_, cells_, launch);
   tracer.device.finish();
   traced_ = true;
