@@ -75,6 +75,18 @@ function(sundog_embed_page target)
   sundog_embed_files(${target} page_files PageFile app/serve/page_files.h ${pairs})
 endfunction()
 
+# Adds the source of built_lobe_energy() to a target, which a program of the build's own computes.
+function(sundog_write_lobe_energy target)
+  set(output ${CMAKE_CURRENT_BINARY_DIR}/built_lobe_energy.cpp)
+  add_executable(write_lobe_energy ${PROJECT_SOURCE_DIR}/cmake/write_lobe_energy.cpp ${CMAKE_CURRENT_SOURCE_DIR}/compile/lobe_energy.cpp)
+  target_include_directories(write_lobe_energy PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/kernels)
+  target_link_libraries(write_lobe_energy PRIVATE sundog_warnings sundog_glm TBB::tbb)
+  add_custom_command(OUTPUT ${output} COMMAND write_lobe_energy ${output} DEPENDS write_lobe_energy
+    COMMENT "Computing the tables of rough surfaces" VERBATIM)
+  target_sources(${target} PRIVATE ${output})
+  set_source_files_properties(${output} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 if(CMAKE_SCRIPT_MODE_FILE)
   sundog_write_files()
 endif()

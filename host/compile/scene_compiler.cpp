@@ -112,18 +112,14 @@ void set_figures(CompiledScene& out) {
 
 /// The same for all scenes; path tracing has gains too, rough glass a table more.
 const SharedTable<float>& lobe_energies(LobeTables wanted) {
-  static const SharedTable<float> energies(make_lobe_energy({}));
-  if (!wanted.gains && !wanted.glass) return energies;
-  if (!wanted.glass) {
-    static const SharedTable<float> with_gains(make_lobe_energy({.gains = true}));
-    return with_gains;
-  }
-  if (!wanted.gains) {
-    static const SharedTable<float> of_glass(make_lobe_energy({.glass = true}));
-    return of_glass;
-  }
-  static const SharedTable<float> with_all(make_lobe_energy({.gains = true, .glass = true}));
-  return with_all;
+  const auto first = [](std::size_t count) {
+    const auto rows = built_lobe_energy().first(count);
+    return SharedTable<float>(std::vector<float>(rows.begin(), rows.end()));
+  };
+  static const SharedTable<float> energies = first(LOBE_GAINS), with_gains = first(LOBE_GLASS),
+                                  with_all = first(built_lobe_energy().size());
+  if (wanted.glass) return with_all;
+  return wanted.gains ? with_gains : energies;
 }
 
 /// The lights as surfaces choose them, once it is known what shines.
