@@ -92,8 +92,8 @@ NEVER_INLINE MASK step_photons(const Scene* scene, Photons* photons, SceneRays* 
   follow_hero(&walks->wavelengths, &at.bsdf);
   const REAL3 wo = negate3(rays->d);
   const Lobes lobes = make_lobes(scene, &at.bsdf, wo, hit);
-  const FourNumbers u = sample_lanes(&walks->at, dimension_here(walks, BOUNCE_DIRECTION));
-  const BsdfSamples sample = sample_lobes(scene, &at.bsdf, &lobes, wo, u.z, u.x, u.y, hit);
+  const FourNumbers u = wanted_lanes(&walks->at, dimension_here(walks, BOUNCE_DIRECTION), false, true);
+  const BsdfSamples sample = sample_perfect_lobes(&at.bsdf, &lobes, wo, u.z, hit);
   const MASK perfect = hit & sample.specular, some = MASK_OF(greatest3(sample.weight) > 0.0f);
   // On a surface that scatters and mirrors, chance decides which of the two the photon represents.
   const REAL one = (REAL)(1.0f), rest = lobes.matte + lobes.glossy + lobes.facets;

@@ -185,6 +185,18 @@ static inline REAL3 local_direction(const Bsdfs* bsdf, const Lobes* lobes, REAL3
   return select3(glossy, diffuse, matte);
 }
 
+// The samples of `specular` are reflected where `mirror`, and transmitted elsewhere.
+static inline void send_perfectly(const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo, MASK mirror, MASK specular,
+                                  BsdfSamples* sample) {
+  const REAL one = (REAL)(1.0f);
+  sample->wi = select3(sample->wi, reflected_direction(bsdf, wo), mirror);
+  sample->wi = select3(sample->wi, transmitted_direction(bsdf, &lobes->split, wo), specular & ~mirror);
+  const REAL chosen = select(lobes->through, lobes->mirror, mirror) / select(one, lobes->all, specular);
+  const REAL3 part = select3(lobes->split.kt, lobes->split.kr, mirror);
+  sample->density = select(sample->density, chosen, specular);
+  sample->weight = select3(sample->weight, scale3(part, 1.0f / select(one, chosen, specular)), specular);
+}
+
 // A direction for each surface of `lanes`, by the numbers u in [0, 1): `u_term` chooses the term, u_x and u_y
 // the direction. The weights' mean is the light that the surface returns of a white surrounding. A weight of
 // 0 ends the path.
@@ -209,16 +221,22 @@ static inline BsdfSamples sample_lobes(const Scene* scene, const Bsdfs* bsdf, co
   const MASK some = MASK_OF(sample.density > 0.0f);
   sample.weight =
       select3(all3((float3)(0.0f)), scale3(value, 1.0f / (M_PI_F * select(one, sample.density, some))), some);
-  if (any_lane(lanes & specular)) {
-    sample.wi = select3(sample.wi, reflected_direction(bsdf, wo), mirror);
-    sample.wi = select3(sample.wi, transmitted_direction(bsdf, &lobes->split, wo), specular & ~mirror);
-    const REAL chosen = select(lobes->through, lobes->mirror, mirror) / select(one, lobes->all, specular);
-    const REAL3 part = select3(lobes->split.kt, lobes->split.kr, mirror);
-    sample.density = select(sample.density, chosen, specular);
-    sample.weight = select3(sample.weight, scale3(part, 1.0f / select(one, chosen, specular)), specular);
-  }
+  if (any_lane(lanes & specular)) send_perfectly(bsdf, lobes, wo, mirror, specular, &sample);
   sample.weight = select3(sample.weight, all3((float3)(0.0f)), black);
   sample.density = select(sample.density, zero, black);
+  return sample;
+}
+
+// Of sample_lobes() the specular samples, and which they are; the others' weights are 0.
+static inline BsdfSamples sample_perfect_lobes(const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo, REAL u_term,
+                                               MASK lanes) {
+  const REAL at = u_term * lobes->all;
+  BsdfSamples sample;
+  sample.specular = MASK_OF(at < lobes->mirror + lobes->through);
+  sample.wi = sample.weight = all3((float3)(0.0f));
+  sample.density = (REAL)(0.0f);
+  if (any_lane(lanes & sample.specular))
+    send_perfectly(bsdf, lobes, wo, MASK_OF(at < lobes->mirror), sample.specular, &sample);
   return sample;
 }
 
