@@ -7,14 +7,8 @@
 #include "lib/light/light_sample.cl"
 #include "lib/path/scene_ray.cl"
 
-// A way from the points p of `lanes` to the light `index`, chosen by the two numbers u in [0, 1)^2, which
-// lights without extent leave alone.
-static inline LightSamples sample_light(const Scene* scene, u32 index, REAL3 p, REAL u_x, REAL u_y,
-                                        MASK lanes) {
-  __global const Light* light = scene->lights + index;
-  if (HAS_AREA_LIGHTS && light->kind == LIGHT_SUN) return sample_sun(light, u_x, u_y);
-  if (HAS_ENVIRONMENT && light->kind == LIGHT_ENVIRONMENT) return sample_environment(scene, u_x, u_y, lanes);
-  if (HAS_AREA_LIGHTS && light->kind >= LIGHT_RECTANGLE) return sample_area_light(light, p, u_x, u_y);
+// The way from the points p to a light without extent.
+static inline LightSamples way_to_lamp(__global const Light* light, REAL3 p) {
   LightSamples sample;
   sample.density = (REAL)(1.0f);
   sample.delta = ALL_LANES;
@@ -43,6 +37,17 @@ static inline LightSamples sample_light(const Scene* scene, u32 index, REAL3 p, 
     sample.radiance = scale3(sample.radiance, s * s * (3.0f - 2.0f * s));
   }
   return sample;
+}
+
+// A way from the points p of `lanes` to the light `index`, chosen by the two numbers u in [0, 1)^2, which
+// lights without extent leave alone.
+static inline LightSamples sample_light(const Scene* scene, u32 index, REAL3 p, REAL u_x, REAL u_y,
+                                        MASK lanes) {
+  __global const Light* light = scene->lights + index;
+  if (HAS_AREA_LIGHTS && light->kind == LIGHT_SUN) return sample_sun(light, u_x, u_y);
+  if (HAS_ENVIRONMENT && light->kind == LIGHT_ENVIRONMENT) return sample_environment(scene, u_x, u_y, lanes);
+  if (HAS_AREA_LIGHTS && light->kind >= LIGHT_RECTANGLE) return sample_area_light(light, p, u_x, u_y);
+  return way_to_lamp(light, p);
 }
 
 // What the rays have gathered from fields that glow.

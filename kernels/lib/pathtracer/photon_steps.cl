@@ -34,7 +34,7 @@ static inline void dim_with_distance(const Scene* scene, REAL3 p, MASK lanes, Ph
   u32 index;
   for (u32 left = lane_bits(lanes & MASK_OF(photons->dimmed != NOT_DIMMED)); left;) {
     const MASK mine = take_alike(photons->dimmed, &left, &index);
-    const LightSamples light = sample_light(scene, index, p, (REAL)(0.5f), (REAL)(0.5f), mine);
+    const LightSamples light = way_to_lamp(scene->lights + index, p);
     const REAL3 sent = scale3(light.radiance, M_PI_F * light.distance * light.distance);
     photons->walks.throughput = carry_select(
         photons->walks.throughput,
