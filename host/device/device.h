@@ -133,9 +133,9 @@ class Device {
            const GeneratedFiles& generated = {}) const;
 
   /// Begins to build in another process what build() will be asked for, as a whole and with machine code for
-  /// `launch`. build() then waits for that process, and builds in this one if the other fails. Returns whether
-  /// one is at work: not where build() would compile nothing, or where the driver can build beside (PoCL on a
-  /// processor cannot). There is one at a time: another one's is ended. Never throws.
+  /// `launch`. build() then waits for that process, and builds in this one if the other fails. Returns
+  /// whether one is at work: not where build() would compile nothing, or where the driver can build beside
+  /// (PoCL on a processor cannot). A new one ends the last. Never throws.
   bool build_ahead(const std::string& entry, const KernelDefines& defines, const EmptyLaunch& launch,
                    const GeneratedFiles& generated = {}) noexcept;
 

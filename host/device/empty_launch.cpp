@@ -29,8 +29,8 @@ cl_int launch_nothing(const cl::Context& context, const cl::CommandQueue& queue,
   for (cl_uint i = 0; i < launch.argument_bytes.size() && status == CL_SUCCESS; ++i)
     status = launch.argument_bytes[i] == 0 ? kernel.setArg(i, buffer)
                                            : kernel.setArg(i, launch.argument_bytes[i], zeros.data());
-  const cl::NDRange group = launch.local_y > 1 ? cl::NDRange(launch.local_x, launch.local_y)
-                                               : cl::NDRange(launch.local_x);
+  const cl::NDRange group =
+      launch.local_y > 1 ? cl::NDRange(launch.local_x, launch.local_y) : cl::NDRange(launch.local_x);
   if (status == CL_SUCCESS) status = queue.enqueueNDRangeKernel(kernel, cl::NullRange, group, group);
   // Not clFinish: see Device::settle().
   return status == CL_SUCCESS ? queue.enqueueReadBuffer(buffer, CL_TRUE, 0, 4, zeros.data()) : status;

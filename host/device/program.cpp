@@ -234,8 +234,7 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
   record->key = program_key(info, record->options, source);
   record->cache_file = program_cache_file(environment, record->key);
   const bool from_source = wants_log(environment, wish);
-  const auto cached =
-      from_source ? std::nullopt : cached_program(record->cache_file, record->key, prepared);
+  const auto cached = from_source ? std::nullopt : cached_program(record->cache_file, record->key, prepared);
   if (cached) {
     record->program = program_from_binary(context, device, cached->binary, record->options);
     if (record->program()) {
@@ -263,8 +262,7 @@ bool is_program_cached(const DeviceInfo& info, const std::string& source, const 
   const HostEnvironment& environment = value_of(info.environment);
   if (wants_log(environment, wish)) return false;
   std::string key = program_key(info, all_build_options(environment, wish), source);
-  std::optional<CachedProgram> program =
-      cached_program(program_cache_file(environment, key), key, prepared);
+  std::optional<CachedProgram> program = cached_program(program_cache_file(environment, key), key, prepared);
   if (program) prepared.found = {std::move(key), std::move(*program)};
   return prepared.found.has_value();
 }
@@ -277,8 +275,7 @@ bool begin_program(const DeviceInfo& info, const std::string& source, const Buil
   if (prepared.begun && prepared.begun->key == key) return true;
   prepared.begun.reset();
   // A part of a device has no processors for it to spare.
-  if (wants_log(environment, wish) || info.sub_units > 0 ||
-      is_program_cached(info, source, wish, prepared))
+  if (wants_log(environment, wish) || info.sub_units > 0 || is_program_cached(info, source, wish, prepared))
     return false;
   std::optional<CompileProcess> process = CompileProcess::start(info, source, options, &launch);
   if (process) prepared.begun.emplace(PreparedBuilds::Begun{std::move(key), std::move(*process)});

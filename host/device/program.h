@@ -39,7 +39,8 @@ struct PreparedBuilds {
   std::optional<Begun> begun;
 };
 
-/// Expands, and loads from the cache, takes what another process has built, or compiles. Throws BuildError, DeviceError.
+/// Expands, and loads from the cache, takes what another process has built, or compiles. Throws BuildError,
+/// DeviceError.
 std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const cl::Device& device,
                                              const DeviceInfo& info, const std::string& entry,
                                              const std::string& source, const BuildWish& wish,
@@ -49,7 +50,8 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
 bool is_program_cached(const DeviceInfo& info, const std::string& source, const BuildWish& wish,
                        PreparedBuilds& prepared);
 
-/// Has another process build it for build_program(), with machine code for `launch`. Returns whether one does.
+/// Has another process build it for build_program(), with machine code for `launch`. Returns whether one
+/// does.
 bool begin_program(const DeviceInfo& info, const std::string& source, const BuildWish& wish,
                    const EmptyLaunch& launch, PreparedBuilds& prepared);
 

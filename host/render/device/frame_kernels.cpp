@@ -107,8 +107,8 @@ unsigned wait_for_kernels(const Device& device, KernelBuilder& builder, const Ke
 
 /// What to draw with: the wanted kernels where they are there or nothing stands in for them, not even a
 /// draft.
-KernelConfig choose_config(Device& device, const Integrator& integrator, KernelConfig wanted,
-                           bool photons, FrameKernels& kernels, KernelUpdate& update) {
+KernelConfig choose_config(Device& device, const Integrator& integrator, KernelConfig wanted, bool photons,
+                           FrameKernels& kernels, KernelUpdate& update) {
   if (!kernels.builder || device.has(integrator.entry, wanted.defines, wanted.generated)) return wanted;
   std::vector<KernelConfig> candidates = kernels.builder->built();
   candidates.insert(candidates.end(), kernels.known.rbegin(), kernels.known.rend());

@@ -206,3 +206,38 @@ TEST_CASE(
   }
   CHECK(pictures[0] == pictures[1]);
 }
+
+TEST_CASE("a process that builds the kernel of photons, and one that is killed at it, make no difference") {
+  const CliFolder folder;
+  const std::string scene = folder.write("photons.json", R"({
+    "camera": {"position": [0, 1, 5], "target": [0, 0, 0], "fov": 40},
+    "image": {"width": 16, "height": 12},
+    "render": {"integrator": "path", "caustics": true, "samples": 1},
+    "lights": [{"type": "point", "position": [-3, 5, 4]}],
+    "materials": {"floor": {"color": [0.8, 0.8, 0.8]}, "glass": {"type": "dielectric", "ior": 1.5}},
+    "objects": [{"type": "plane", "point": [0, -1, 0], "material": "floor"},
+                {"type": "sphere", "material": "glass"}]
+  })");
+  CommandOptions options;
+  std::vector<std::string> pictures;
+  const auto render = [&](const std::string& faults) {
+    options.environment["SUNDOG_FAULTS"] = faults;
+    const CommandResult result = run_sundog({"render", scene, "-o", folder.file("a.pfm"), "--device", "0:0",
+                                             "--stats", folder.file("stats.json")},
+                                            options);
+    CAPTURE(faults, result.err);
+    REQUIRE(result.status == 0);
+    CHECK(result.err.empty());
+    pictures.push_back(read_file(folder / "a.pfm"));
+    return nlohmann::json::parse(read_file(folder / "stats.json"));
+  };
+  options.environment["XDG_CACHE_HOME"] = folder.file("killed");
+  render("compile=9@0:0");
+  options.environment["XDG_CACHE_HOME"] = folder.file("cache");
+  CHECK(render("")["kernels_cached"] == false);
+  CHECK(render("")["kernels_cached"] == true);
+  const std::filesystem::directory_iterator kernels(folder / "cache/sundog/kernels");
+  CHECK(std::distance(begin(kernels), end(kernels)) == 2);
+  CHECK(pictures[0] == pictures[1]);
+  CHECK(pictures[0] == pictures[2]);
+}

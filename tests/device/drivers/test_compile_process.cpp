@@ -94,7 +94,8 @@ float sum_of(Device& device, BuildReport& report) {
 std::vector<DeviceInfo> slow_builders() {
   std::vector<DeviceInfo> devices;
   for (const DeviceInfo& device : test_devices())
-    if (device.platform_name == "Portable Computing Language" && device.type == "cpu") devices.push_back(device);
+    if (device.platform_name == "Portable Computing Language" && device.type == "cpu")
+      devices.push_back(device);
   if (std::thread::hardware_concurrency() < 2) devices.clear();
   return devices;
 }
@@ -179,8 +180,8 @@ TEST_CASE("the kernel of photons is begun before the integrator's is built") {
     REQUIRE(compiled.features.caustics);
     StandIn stand_in{{}, false};
     const TemporaryFolder cache;
-    Device device(with(info, stand_in, cache, "build@" + std::to_string(info.platform) + ":" +
-                                                  std::to_string(info.device)));
+    Device device(with(info, stand_in, cache,
+                       "build@" + std::to_string(info.platform) + ":" + std::to_string(info.device)));
     RenderTimes times;
     CHECK_THROWS_AS(build_frame_kernels(device, compiled, {}, {}, false, times), BuildError);
     REQUIRE(stand_in.asked.size() == 1);
