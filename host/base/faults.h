@@ -15,7 +15,7 @@ namespace sundog {
 /// them:
 ///     build@P:D           the kernels do not build on the device
 ///     kernels@P:D         the driver makes no kernels of a program that it has built from its source
-///     compile=SIGNAL@P:D  the process that compiles for the device ends without a result, by the signal
+///     compile@P:D         the process that compiles for the device ends without a result
 ///     alloc=STATUS@P:D    a buffer of more than SIZE bytes gives the OpenCL status
 ///     launch=STATUS@P:D   a launch of more than SIZE work-items gives the OpenCL status
 ///     group=STATUS@P:D    a launch in groups of more than SIZE work-items gives the OpenCL status
@@ -24,6 +24,7 @@ namespace sundog {
 ///     cut@P:D             the loops of launches of more than SIZE samples are ended early, without an error
 ///     crash@P:D           a launch ends the process
 ///     kill@P:D            the process is killed (SIGKILL) at a launch
+///     kill@compile        the process that compiles is killed
 ///     stop@P:D            a launch stops the process, as SIGSTOP from outside does
 ///     write@NAME          a picture, checkpoint or part of that name cannot be written, as on a full disk
 ///     room=KIBIBYTES@pocl no more can be written to the folder where PoCL writes

@@ -232,7 +232,7 @@ TEST_CASE("a process that builds the kernel of photons, and one that is killed a
     return nlohmann::json::parse(read_file(folder / "stats.json"));
   };
   options.environment["XDG_CACHE_HOME"] = folder.file("killed");
-  render("compile=9@0:0");
+  render("kill@compile");
   options.environment["XDG_CACHE_HOME"] = folder.file("cache");
   CHECK(render("")["kernels_cached"] == false);
   CHECK(render("")["kernels_cached"] == true);
