@@ -112,12 +112,12 @@ void set_figures(CompiledScene& out) {
 
 /// The same for all scenes; path tracing has gains too, rough glass a table more.
 const SharedTable<float>& lobe_energies(LobeTables wanted) {
-  const auto first = [](std::size_t count) {
+  const auto first = [](u32 count) {
     const auto rows = built_lobe_energy().first(count);
     return SharedTable<float>(std::vector<float>(rows.begin(), rows.end()));
   };
   static const SharedTable<float> energies = first(LOBE_GAINS), with_gains = first(LOBE_GLASS),
-                                  with_all = first(built_lobe_energy().size());
+                                  with_all = first(static_cast<u32>(built_lobe_energy().size()));
   if (wanted.glass) return with_all;
   return wanted.gains ? with_gains : energies;
 }
