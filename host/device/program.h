@@ -39,7 +39,7 @@ struct PreparedBuilds {
   std::optional<Begun> begun;
 };
 
-/// Expands, and loads from the cache, takes what another process has built, or compiles. Throws BuildError,
+/// Loads the program from the cache, takes what another process has built, or compiles it. Throws BuildError,
 /// DeviceError.
 std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const cl::Device& device,
                                              const DeviceInfo& info, const std::string& entry,
