@@ -35,11 +35,16 @@ SUNDOG_SHARED_BEGIN
 #define LAYER_GRID_MATTE_SCALE_BARE 3u
 #define LAYER_GRID_NUMBERS 4u
 #define NO_LAYER_GRID 0xFFFFFFFFu
+// Where one gives the coat's weight, the steps are of that, and all that changes with it is exact in each:
+// the base's widths and its index below the coat too. Where textures give both, there are as many grids by
+// roughness as steps of the coat's weight. A film's rows lie then behind the material's own,
+// LAYER_FILM_ROWS for each step of the coat's weight.
+#define LAYER_FILM_ROWS (LAYER_GAINS - LAYER_FILM)
 // The part of step k + 1 at the place y = k .. k + 1: by the width alpha, which is the root's square; its own
 // square in the first step, where gains rise with the square of alpha.
 #define LAYER_GRID_PART(y, k) (((y) * (y) - (k) * (k)) / (2.0f * (k) + 1.0f))
 
-// 160 bytes, one for each material; its base colour is the material's diffuse term.
+// 176 bytes, one for each material; its base colour is the material's diffuse term.
 typedef struct Layers {
   float4 specular;              // a dielectric's tint, a metal's at its edge; w = metalness
   float4 coat;                  // colour of what lies below, seen through it straight on; w = weight
@@ -67,8 +72,12 @@ typedef struct Layers {
   float inner_smooth, inner_matte;  // `inner` for a base that reflects as a mirror, and as a matte one
   float coat_alpha_y;               // of the coat's facets across the tangent
   u32 coat_gains;                   // of these: the first of LAYER_TURNS rows, or NO_LAYER_GAINS
+  // For a texture of the coat's weight:
+  float coat_intervals;  // between the steps of the weight; 0: there is no such texture
+  u32 coat_grid;         // numbers from one step's grid by roughness to the next's; 0: one grid, by weight
+  float index, index_scale;  // the base's index, and the root of the factor on what that reflects straight on
 } Layers;
-SUNDOG_SHARED_SIZE(Layers, 160)
+SUNDOG_SHARED_SIZE(Layers, 176)
 
 SUNDOG_SHARED_END
 #endif

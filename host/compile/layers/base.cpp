@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace sundog {
 namespace {
@@ -41,10 +42,34 @@ const GainGrid& gain_grid(double anisotropy, LayerRows& rows) {
                                    : rows.gains.emplace(anisotropy, make_gains(anisotropy)).first->second;
 }
 
-/// Between a step and the next, as the kernels have it.
-FacetGains gains_at(double y, const GainGrid& grid) {
+/// What the steps of a grid depend on: the roughness, or with the same sizes the coat's weight.
+struct GridSteps {
+  double anisotropy;
+  std::span<const FacetWidths> by_coat;  // of each step; empty in a grid by roughness
+
+  FacetWidths widths_at(double y) const {
+    if (by_coat.empty()) return sundog::widths_at(y, anisotropy);
+    const auto step = std::min(static_cast<std::size_t>(y), steps - 2);
+    const FacetWidths &a = by_coat[step], &b = by_coat[step + 1];
+    // Between steps the roughness is linear: the root of the widths.
+    const auto between = [&](double from, double to) {
+      const double root = std::lerp(std::sqrt(from), std::sqrt(to), y - double(step));
+      return root * root;
+    };
+    return {between(a.x, b.x), between(a.y, b.y)};
+  }
+  /// Of the way to the next step, as the kernels have it.
+  double part_at(double y) const {
+    const auto step = static_cast<std::size_t>(y);
+    if (!by_coat.empty()) return y - double(step);
+    const double by_width = LAYER_GRID_PART(y, double(step));
+    return step == 0 ? by_width * by_width : by_width;
+  }
+};
+
+FacetGains gains_at(double y, const GridSteps& of, const GainGrid& grid) {
   const auto step = static_cast<std::size_t>(y);
-  const double by_width = LAYER_GRID_PART(y, double(step)), part = step == 0 ? by_width * by_width : by_width;
+  const double part = of.part_at(y);
   FacetGains gains;
   for (std::size_t row = 0; row < gains.size(); ++row)
     for (std::size_t i = 0; i < gains[row].size(); ++i)
@@ -52,28 +77,61 @@ FacetGains gains_at(double y, const GainGrid& grid) {
   return gains;
 }
 
-std::array<BaseInterface, steps> make_steps(double anisotropy, const GainGrid& gains,
-                                            const BaseSurroundings& around) {
-  std::array<BaseInterface, steps> made;
-  std::array<double, steps - 1> scales;
-  tbb::parallel_for(std::size_t{0}, steps, [&](std::size_t i) {
-    made[i] = base_interface(widths_at(double(i), anisotropy), gains[i], around);
-    if (i + 1 == steps) return;
+/// The greatest shine_scale of each step that lets no facets between it and its neighbours return more than
+/// all light.
+std::array<double, steps> greatest_scales(const GridSteps& of, const GainGrid& gains) {
+  std::array<double, steps> scales;
+  scales.fill(1);
+  tbb::parallel_for(std::size_t{0}, steps - 1, [&](std::size_t i) {
     const double middle = double(i) + 0.5;
-    scales[i] = facet_albedo(widths_at(middle, anisotropy), gains_at(middle, gains), around.interface).scale;
+    scales[i] = facet_albedo(of.widths_at(middle), gains_at(middle, of, gains), {1, 0, {}}).scale;
   });
-  for (std::size_t i = 0; i + 1 < steps; ++i)
-    for (BaseInterface* step : {&made[i], &made[i + 1]})
-      step->shine_scale = std::min(step->shine_scale, scales[i]);
+  for (std::size_t i = steps - 1; i > 0; --i) scales[i] = std::min(scales[i], scales[i - 1]);
+  return scales;
+}
+
+/// Of each step of a grid; `around` has one for all steps, or one for each.
+std::array<BaseInterface, steps> make_steps(const GridSteps& of, const GainGrid& gains,
+                                            const std::array<double, steps>& scales,
+                                            std::span<const BaseSurroundings> around) {
+  std::array<BaseInterface, steps> made;
+  tbb::parallel_for(std::size_t{0}, steps, [&](std::size_t i) {
+    made[i] = base_interface(of.widths_at(double(i)), gains[i], around[std::min(i, around.size() - 1)]);
+    made[i].shine_scale = std::min(made[i].shine_scale, scales[i]);
+  });
   return made;
 }
 
-std::vector<double> grid_key(double anisotropy, const BaseSurroundings& around) {
-  std::vector<double> key{anisotropy, around.interface.eta, around.interface.film, around.tint,
-                          around.matte_roughness};
-  for (const AlbedoRow* row : {&around.interface.film_row, &around.above})
-    key.insert(key.end(), row->begin(), row->end());
+std::vector<double> grid_key(double anisotropy, std::span<const BaseSurroundings> around) {
+  std::vector<double> key{anisotropy};
+  for (const BaseSurroundings& one : around) {
+    key.insert(key.end(), {one.interface.eta, one.interface.film, one.tint, one.matte_roughness});
+    for (const AlbedoRow* row : {&one.interface.film_row, &one.above})
+      key.insert(key.end(), row->begin(), row->end());
+  }
   return key;
+}
+
+void write_grid(const std::array<BaseInterface, steps>& made, const GainGrid& gains, double anisotropy,
+                std::vector<float>& to) {
+  for (const BaseInterface& step : made)
+    for (const double number : {step.straight, step.shine_scale, step.matte_scale, step.matte_scale_bare})
+      to.push_back(float(number));
+  for (std::size_t i = 0; i < steps; ++i) {
+    to.insert(to.end(), made[i].past.begin(), made[i].past.end());
+    for (std::size_t row = 0; row < (is_round(anisotropy) ? 1 : LAYER_TURNS); ++row)
+      to.insert(to.end(), gains[i][row].begin(), gains[i][row].end());
+  }
+}
+
+/// Neighbours often have the same widths: those of a smooth coat.
+GainGrid gains_of(std::span<const FacetWidths> widths) {
+  GainGrid gains;
+  for (std::size_t i = 0; i < steps; ++i) {
+    const bool again = i > 0 && widths[i].x == widths[i - 1].x && widths[i].y == widths[i - 1].y;
+    gains[i] = again ? gains[i - 1] : facet_gains(widths[i]);
+  }
+  return gains;
 }
 
 }  // namespace
@@ -99,20 +157,31 @@ BaseInterface base_interface(const FacetWidths& widths, const FacetGains& gains,
   return base;
 }
 
-u32 add_layer_grid(double anisotropy, const BaseSurroundings& around, LayerRows& rows) {
+u32 layer_grid_size(double anisotropy) {
+  return LAYER_GRID_STEPS *
+         (LAYER_GRID_NUMBERS + LAYER_STEPS * (is_round(anisotropy) ? 2u : 1u + LAYER_TURNS));
+}
+
+u32 add_roughness_grids(double anisotropy, std::span<const BaseSurroundings> around, LayerRows& rows) {
   const auto [found, added] = rows.grids.try_emplace(grid_key(anisotropy, around), u32(rows.values.size()));
   if (!added) return found->second;
   const GainGrid& gains = gain_grid(anisotropy, rows);
-  const std::array<BaseInterface, steps> made = make_steps(anisotropy, gains, around);
-  std::vector<float>& to = rows.values;
-  for (const BaseInterface& step : made)
-    for (const double number : {step.straight, step.shine_scale, step.matte_scale, step.matte_scale_bare})
-      to.push_back(float(number));
-  for (std::size_t i = 0; i < steps; ++i) {
-    to.insert(to.end(), made[i].past.begin(), made[i].past.end());
-    for (std::size_t row = 0; row < (is_round(anisotropy) ? 1 : LAYER_TURNS); ++row)
-      to.insert(to.end(), gains[i][row].begin(), gains[i][row].end());
-  }
+  const GridSteps of{anisotropy, {}};
+  const std::array<double, steps> scales = greatest_scales(of, gains);
+  for (const BaseSurroundings& one : around)
+    write_grid(make_steps(of, gains, scales, {&one, 1}), gains, anisotropy, rows.values);
+  return found->second;
+}
+
+u32 add_coat_grid(double anisotropy, std::span<const FacetWidths> widths,
+                  std::span<const BaseSurroundings> around, LayerRows& rows) {
+  std::vector<double> key = grid_key(anisotropy, around);
+  for (const FacetWidths& one : widths) key.insert(key.end(), {one.x, one.y});
+  const auto [found, added] = rows.grids.try_emplace(std::move(key), u32(rows.values.size()));
+  if (!added) return found->second;
+  const GainGrid gains = gains_of(widths);
+  const GridSteps of{anisotropy, widths};
+  write_grid(make_steps(of, gains, greatest_scales(of, gains), around), gains, anisotropy, rows.values);
   return found->second;
 }
 

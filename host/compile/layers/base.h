@@ -1,8 +1,9 @@
 // The interface of a layered material's base: what it leaves for the ground, at one roughness, and at a grid
-// of them where a texture gives the roughness.
+// of them where a texture gives the roughness, or the coat's weight, which the roughness below it depends on.
 #pragma once
 #include <array>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "compile/layers/facets.h"
@@ -39,8 +40,15 @@ struct LayerRows {
   std::map<double, GainGrid> gains;
 };
 
-/// The first number of the grid (shared/layers.h) of facets of this anisotropy, which is added unless it is
-/// there. No step's facets return more than all light, nor do those between two steps.
-u32 add_layer_grid(double anisotropy, const BaseSurroundings& around, LayerRows& rows);
+/// The first number of the grids by roughness (shared/layers.h) of facets of this anisotropy, one for each
+/// weight of the coat, where they have `around` about them; they are added unless they are there. No step's
+/// facets return more than all light, nor do those between two steps.
+u32 add_roughness_grids(double anisotropy, std::span<const BaseSurroundings> around, LayerRows& rows);
+/// Numbers of one such grid.
+u32 layer_grid_size(double anisotropy);
+
+/// The same of the grid by the coat's weight: of LAYER_GRID_STEPS widths, and of what lies about them.
+u32 add_coat_grid(double anisotropy, std::span<const FacetWidths> widths,
+                  std::span<const BaseSurroundings> around, LayerRows& rows);
 
 }  // namespace sundog

@@ -23,11 +23,20 @@ double weighted_index(double index, double weight) {
   return (1 + signed_root) / (1 - signed_root);
 }
 
+/// The index above the base, below a coat of this weight.
+double index_above(const OpenPbr& v, double coat_weight) { return 1 + coat_weight * (v.coat_ior - 1); }
+
+/// The base's index over that, or 1 over it where it is less.
+double base_eta(const OpenPbr& v, double coat_weight) {
+  const double index = weighted_index(v.specular_ior / index_above(v, coat_weight), v.specular_weight);
+  return index < 1 ? 1 / index : index;
+}
+
 /// A coat's facets bend the view of the base's: it is as rough as both together.
-double roughened(const OpenPbr& v) {
+double roughened(const OpenPbr& v, double coat_weight) {
   const double both =
       std::pow(std::min(1.0, std::pow(v.specular_roughness, 4) + 2 * std::pow(v.coat_roughness, 4)), 0.25);
-  return std::lerp(v.specular_roughness, both, v.coat_weight);
+  return std::lerp(v.specular_roughness, both, coat_weight);
 }
 
 /// What a coat's inside sends back of the light from a base (OpenPBR 1.1, "Coat", "Darkening"): of one
@@ -50,9 +59,11 @@ struct FilmColors {
   std::array<dvec3, LAYER_STEPS> glass{}, metal{};
 };
 
-FilmColors film_colors(const OpenPbr& v, double above, double index) {
+FilmColors film_colors(const OpenPbr& v, double coat_weight) {
   FilmColors colors;
   if (v.thin_film_weight == 0) return colors;
+  const double above = index_above(v, coat_weight),
+               index = weighted_index(v.specular_ior / above, v.specular_weight);
   const ThinFilm film{above, v.thin_film_ior, above * index, v.thin_film_thickness * 1000};
   for (std::size_t i = 0; i < LAYER_STEPS; ++i) {
     const double cosine = std::max(double(i) / (LAYER_STEPS - 1), 1e-3);
@@ -62,15 +73,20 @@ FilmColors film_colors(const OpenPbr& v, double above, double index) {
   return colors;
 }
 
-/// What the base has about it, and what coat and fuzz pass to it.
+void write_film(const FilmColors& film, std::vector<float>& to) {
+  for (const auto* colors : {&film.glass, &film.metal})
+    for (int channel = 0; channel < 3; ++channel)
+      for (const dvec3& color : *colors) to.push_back(float(color[channel]));
+}
+
+/// What fuzz of its weight leaves, and what a coat of the weight 1 returns.
 struct Above {
-  BaseSurroundings around;
-  AlbedoRow past_fuzz, past_coat;
+  AlbedoRow past_fuzz, coat;
   FacetGains coat_gains;  // where there is a coat
   double fuzz_weight;
 };
 
-Above layers_above(const OpenPbr& v, const Layers& to, const FilmColors& film) {
+Above layers_above(const OpenPbr& v, const Layers& to) {
   const FacetWidths coat_widths{to.coat_alpha, to.coat_alpha_y};
   Above above;
   FacetAlbedo coat{};
@@ -80,25 +96,44 @@ Above layers_above(const OpenPbr& v, const Layers& to, const FilmColors& film) {
   }
   const AlbedoRow fuzz = v.fuzz_weight > 0 ? fuzz_albedo(to.fuzz_alpha) : AlbedoRow{};
   above.fuzz_weight = v.fuzz_weight / std::max(1.0, *std::ranges::max_element(fuzz));
-  above.around.interface = {to.eta, v.thin_film_weight, {}};
-  above.around.tint = greatest(v.specular_color);
-  above.around.matte_roughness = v.base_diffuse_roughness;
   for (std::size_t i = 0; i < LAYER_STEPS; ++i) {
-    above.around.interface.film_row[i] = greatest(film.glass[i]);
     above.past_fuzz[i] = 1 - above.fuzz_weight * fuzz[i];
-    above.past_coat[i] = 1 - v.coat_weight * std::min(coat.of_interface[i], 1.0);
-    above.around.above[i] = above.past_fuzz[i] * above.past_coat[i];
+    above.coat[i] = std::min(coat.of_interface[i], 1.0);
   }
   return above;
 }
 
-void set_numbers(const OpenPbr& v, double above, Layers& to) {
-  const double index = weighted_index(v.specular_ior / above, v.specular_weight),
-               turn = glm::radians(v.geometry_tangent);
-  const FacetWidths widths = wide_enough(facet_widths(roughened(v), v.specular_roughness_anisotropy)),
+AlbedoRow past_coat(const Above& above, double coat_weight) {
+  AlbedoRow past;
+  for (std::size_t i = 0; i < LAYER_STEPS; ++i) past[i] = 1 - coat_weight * above.coat[i];
+  return past;
+}
+
+/// What the base has about it below a coat of this weight.
+BaseSurroundings surroundings(const OpenPbr& v, double coat_weight, const Above& above,
+                              const FilmColors& film) {
+  BaseSurroundings around;
+  around.interface = {float(base_eta(v, coat_weight)), v.thin_film_weight, {}};
+  around.tint = greatest(v.specular_color);
+  around.matte_roughness = v.base_diffuse_roughness;
+  const AlbedoRow past = past_coat(above, coat_weight);
+  for (std::size_t i = 0; i < LAYER_STEPS; ++i) {
+    around.interface.film_row[i] = greatest(film.glass[i]);
+    around.above[i] = above.past_fuzz[i] * past[i];
+  }
+  return around;
+}
+
+FacetWidths base_widths(const OpenPbr& v, double coat_weight) {
+  return wide_enough(facet_widths(roughened(v, coat_weight), v.specular_roughness_anisotropy));
+}
+
+void set_numbers(const OpenPbr& v, Layers& to) {
+  const double turn = glm::radians(v.geometry_tangent);
+  const FacetWidths widths = base_widths(v, v.coat_weight),
                     stretched = facet_widths(std::sqrt(0.5), v.specular_roughness_anisotropy);
   to.alpha_x = float(widths.x), to.alpha_y = float(widths.y);
-  to.eta = float(index < 1 ? 1 / index : index);
+  to.eta = float(base_eta(v, v.coat_weight));
   to.film = float(v.thin_film_weight);
   const FacetWidths coat = wide_enough(facet_widths(v.coat_roughness, v.coat_roughness_anisotropy));
   to.coat_alpha = float(coat.x), to.coat_alpha_y = float(coat.y);
@@ -115,20 +150,42 @@ void set_numbers(const OpenPbr& v, double above, Layers& to) {
   to.haze = float(2 * std::pow(v.coat_roughness, 4));
   to.stretch = float(2 * stretched.x);
   to.narrowed = float(1 - v.specular_roughness_anisotropy);
+  to.index = float(v.specular_ior);
+  to.index_scale = float(std::sqrt(v.specular_weight));
+}
+
+bool maps_coat(const OpenPbr& v, const MaterialTextures& textures) {
+  return v.coat_weight > 0 && textures.coat >= 0;
+}
+
+/// The grid by the coat's weight, and by roughness too where a texture gives that.
+void add_coat_steps(const OpenPbr& v, bool rough, const Above& above, LayerRows& rows, Layers& to) {
+  const double anisotropy = v.specular_roughness_anisotropy;
+  std::vector<BaseSurroundings> around;
+  std::vector<FacetWidths> widths;
+  for (std::size_t i = 0; i < LAYER_GRID_STEPS; ++i) {
+    const double weight = v.coat_weight * double(i) / (LAYER_GRID_STEPS - 1);
+    const FilmColors film = film_colors(v, weight);
+    around.push_back(surroundings(v, weight, above, film));
+    widths.push_back(base_widths(v, weight));
+    if (v.thin_film_weight > 0) write_film(film, rows.values);
+  }
+  to.coat_grid = rough ? layer_grid_size(anisotropy) : 0;
+  to.grid =
+      rough ? add_roughness_grids(anisotropy, around, rows) : add_coat_grid(anisotropy, widths, around, rows);
 }
 
 }  // namespace
 
 Layers make_layers(const OpenPbr& v, const MaterialTextures& textures, LayerRows& rows) {
   Layers to{};
-  const double index_above = 1 + v.coat_weight * (v.coat_ior - 1);
-  set_numbers(v, index_above, to);
-  const FilmColors film =
-      film_colors(v, index_above, weighted_index(v.specular_ior / index_above, v.specular_weight));
-  const Above above = layers_above(v, to, film);
+  set_numbers(v, to);
+  const FilmColors film = film_colors(v, v.coat_weight);
+  const Above above = layers_above(v, to);
+  const BaseSurroundings around = surroundings(v, v.coat_weight, above, film);
   const FacetWidths widths{to.alpha_x, to.alpha_y};
   const FacetGains gains = facet_gains(widths);
-  const BaseInterface base = base_interface(widths, gains, above.around);
+  const BaseInterface base = base_interface(widths, gains, around);
   const double of_glass = std::lerp(1.0, v.specular_roughness, base.straight);
   to.straight = float(base.straight);
   to.inner =
@@ -140,20 +197,22 @@ Layers make_layers(const OpenPbr& v, const MaterialTextures& textures, LayerRows
   to.coat = pack(v.coat_color, v.coat_weight);
   to.fuzz = pack(v.fuzz_color, above.fuzz_weight);
   to.first = u32(rows.values.size());
-  for (const AlbedoRow* row : {&above.past_fuzz, &above.past_coat, &base.past})
+  const AlbedoRow past = past_coat(above, v.coat_weight);
+  for (const AlbedoRow* row : {&above.past_fuzz, &past, &base.past})
     rows.values.insert(rows.values.end(), row->begin(), row->end());
-  for (const auto* colors : {&film.glass, &film.metal})
-    for (int channel = 0; channel < 3; ++channel)
-      for (const dvec3& color : *colors) rows.values.push_back(float(color[channel]));
+  write_film(film, rows.values);
   for (const AlbedoRow& row : gains) rows.values.insert(rows.values.end(), row.begin(), row.end());
+  to.grid = to.coat_grid = NO_LAYER_GRID;
+  if (maps_coat(v, textures))
+    add_coat_steps(v, textures.roughness >= 0, above, rows, to);
+  else if (textures.roughness >= 0)
+    to.grid = add_roughness_grids(v.specular_roughness_anisotropy, {&around, 1}, rows);
   to.coat_gains = NO_LAYER_GAINS;
   if (v.coat_weight > 0 && to.coat_alpha != to.coat_alpha_y) {
     to.coat_gains = u32(rows.values.size());
     for (const AlbedoRow& row : above.coat_gains)
       rows.values.insert(rows.values.end(), row.begin(), row.end());
   }
-  to.grid = NO_LAYER_GRID;
-  if (textures.roughness >= 0) to.grid = add_layer_grid(v.specular_roughness_anisotropy, above.around, rows);
   return to;
 }
 
@@ -170,7 +229,10 @@ void add_layers(const SceneDescription& scene, CompiledScene& out) {
     layers.push_back(material.layers ? make_layers(*material.layers, textures, rows) : Layers{});
     if (!material.layers) continue;
     out.features.layers = true;
-    out.features.layer_maps |= std::max({textures.metalness, textures.roughness, textures.glass}) >= 0;
+    const bool coat = maps_coat(*material.layers, textures);
+    out.features.coat_maps |= coat;
+    out.features.layer_maps |=
+        coat || std::max({textures.metalness, textures.roughness, textures.glass}) >= 0;
     if (std::max(material.layers->specular_roughness_anisotropy, material.layers->coat_roughness_anisotropy) >
         0)
       out.features.surface_coordinates = true;

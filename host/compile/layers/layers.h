@@ -9,7 +9,8 @@ namespace sundog {
 /// A row for each material of the scene, and the table of what layers leave, where some material has layers.
 void add_layers(const SceneDescription& scene, CompiledScene& out);
 
-/// One material's row, with a grid where one of `textures` gives its roughness; adds to `rows`.
+/// One material's row, with a grid where one of `textures` gives its roughness or its coat's weight; adds to
+/// `rows`.
 Layers make_layers(const OpenPbr& values, const MaterialTextures& textures, LayerRows& rows);
 
 }  // namespace sundog

@@ -43,8 +43,9 @@ void read_transmission(JsonObject& object, OpenPbr& to, MaterialDescription& mat
       "transmission_dispersion_abbe_number", to.transmission_dispersion_abbe_number, {.low = 1, .high = 1e4});
 }
 
-void read_above(JsonObject& object, OpenPbr& to) {
-  to.coat_weight = object.number("coat_weight", to.coat_weight, zero_to_one);
+void read_above(JsonObject& object, OpenPbr& to, MaterialDescription& material, TextureLibrary& textures) {
+  if (const auto weight = object.find("coat_weight"))
+    to.coat_weight = read_number(*weight, textures, zero_to_one, &material.textures.coat);
   to.coat_color = object.color("coat_color", to.coat_color, zero_to_one);
   to.coat_roughness = object.number("coat_roughness", to.coat_roughness, zero_to_one);
   to.coat_roughness_anisotropy =
@@ -91,7 +92,7 @@ MaterialDescription read_openpbr(const JsonValue& value, std::string name,
     OpenPbr values;
     read_base(object, values, material, textures);
     read_transmission(object, values, material, textures);
-    read_above(object, values);
+    read_above(object, values, material, textures);
     read_emission(object, values, material, textures);
     read_geometry(object, values, material, textures);
     MediumDescription inside;

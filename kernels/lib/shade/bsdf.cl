@@ -34,6 +34,9 @@ typedef struct Bsdfs {
 #if HAS_LAYER_MAPS
   REAL metalness, roughness, glass;  // of layered materials, with textures
 #endif
+#if HAS_COAT_MAPS
+  REAL coat;  // a factor on the weight of a layered material's
+#endif
 } Bsdfs;
 
 // The light of materials' emission as their textures have it.
@@ -106,6 +109,11 @@ static inline void keep_base(const Terms* terms, Bsdfs* bsdf) {
 static inline void start_base(const Scene* scene, u32 material, MASK lanes, Terms* terms) {}
 static inline void keep_base(const Terms* terms, Bsdfs* bsdf) {}
 #endif
+#if HAS_COAT_MAPS
+static inline void keep_coat(const Terms* terms, Bsdfs* bsdf) { bsdf->coat = terms->coat; }
+#else
+static inline void keep_coat(const Terms* terms, Bsdfs* bsdf) {}
+#endif
 static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
   Terms terms = start_terms(bsdf->ambient, bsdf->diffuse);
   MASK mapped = NO_LANES;
@@ -131,6 +139,7 @@ static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MA
   bsdf->exponent = terms.exponent;
   keep_opacity(&terms, bsdf);
   keep_base(&terms, bsdf);
+  keep_coat(&terms, bsdf);
 }
 #else
 static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {}

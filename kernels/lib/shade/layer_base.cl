@@ -1,6 +1,6 @@
 // The base of layered materials at one place: what a material has of it as numbers, or where a texture gives
-// its roughness or metalness, what the grid of shared/layers.h has between its steps. A surface a lane; the
-// lanes of a call have one material.
+// its roughness or metalness or the coat's weight, what the grid of shared/layers.h has between its steps. A
+// surface a lane; the lanes of a call have one material.
 #ifndef SUNDOG_LIB_LAYER_BASE_CL
 #define SUNDOG_LIB_LAYER_BASE_CL
 #include "lib/shade/layer_lobes.cl"
@@ -14,7 +14,37 @@ typedef struct LayerBase {
   MASK step;  // of the grid, and the part of the way to the next
   REAL part;
 #endif
+#if HAS_COAT_MAPS
+  REAL coat;       // factor on the coat's weight
+  MASK coat_step;  // of the weight, and the part of the way to the next
+  REAL coat_part;
+  REAL eta, eta_next;  // of the base at both
+#endif
 } LayerBase;
+
+// Whether a texture gives the coat's weight, and another one the roughness.
+#if HAS_COAT_MAPS
+static inline bool maps_coat(__global const Layers* m) { return m->coat_grid != NO_LAYER_GRID; }
+static inline bool has_coat_grids(__global const Layers* m) { return maps_coat(m) && m->coat_grid != 0u; }
+#endif
+
+// The coat's weight, how much of its inner reflections' darkening there is, and what the coat leaves where
+// its row has `row`.
+#if HAS_COAT_MAPS
+static inline REAL coat_weight(__global const Layers* m, const LayerBase* base) {
+  return m->coat.w * base->coat;
+}
+static inline REAL darkening(__global const Layers* m, const LayerBase* base) {
+  return m->darkening * base->coat;
+}
+static inline REAL past_coat(const LayerBase* base, REAL row) {
+  return fma(base->coat, row - 1.0f, (REAL)(1.0f));
+}
+#else
+static inline REAL coat_weight(__global const Layers* m, const LayerBase* base) { return (REAL)(m->coat.w); }
+static inline REAL darkening(__global const Layers* m, const LayerBase* base) { return (REAL)(m->darkening); }
+static inline REAL past_coat(const LayerBase* base, REAL row) { return row; }
+#endif
 
 // A row of a material's table at the cosine c, for `lanes`.
 static inline REAL layer_row(const Scene* scene, __global const Layers* layers, u32 row, REAL c, MASK lanes) {
@@ -24,10 +54,31 @@ static inline REAL layer_row(const Scene* scene, __global const Layers* layers, 
   const REAL a = gather_floats(from, low, lanes), b = gather_floats(from + 1, low, lanes);
   return fma(x - TO_REAL(low), b - a, a);
 }
-static inline REAL3 layer_row3(const Scene* scene, __global const Layers* layers, u32 row, REAL c,
-                               MASK lanes) {
-  return real3(layer_row(scene, layers, row, c, lanes), layer_row(scene, layers, row + 1u, c, lanes),
-               layer_row(scene, layers, row + 2u, c, lanes));
+// The same of a film, at the step of the coat's weight.
+#if HAS_COAT_MAPS
+static inline REAL film_row(const Scene* scene, __global const Layers* m, const LayerBase* base, u32 row,
+                            REAL c, MASK lanes) {
+  if (!maps_coat(m)) return layer_row(scene, m, row, c, lanes);
+  const REAL x = real_clamp(c, (REAL)(0.0f), (REAL)(1.0f)) * (float)(LAYER_STEPS - 1u);
+  const MASK at = min(TO_MASK(x), (MASK)((int)LAYER_STEPS - 2));
+  const MASK low = base->coat_step * (int)(LAYER_FILM_ROWS * LAYER_STEPS) + at;
+  __global const float* from = scene->layer_rows + m->first + (LAYER_ROWS + row - LAYER_FILM) * LAYER_STEPS;
+  __global const float* next = from + LAYER_FILM_ROWS * LAYER_STEPS;
+  const REAL a = gather_floats(from, low, lanes), b = gather_floats(from + 1, low, lanes);
+  const REAL c0 = gather_floats(next, low, lanes), d = gather_floats(next + 1, low, lanes);
+  const REAL along = x - TO_REAL(at), near = fma(along, b - a, a), far = fma(along, d - c0, c0);
+  return fma(base->coat_part, far - near, near);
+}
+#else
+static inline REAL film_row(const Scene* scene, __global const Layers* m, const LayerBase* base, u32 row,
+                            REAL c, MASK lanes) {
+  return layer_row(scene, m, row, c, lanes);
+}
+#endif
+static inline REAL3 film_rows(const Scene* scene, __global const Layers* m, const LayerBase* base, u32 row,
+                              REAL c, MASK lanes) {
+  return real3(film_row(scene, m, base, row, c, lanes), film_row(scene, m, base, row + 1u, c, lanes),
+               film_row(scene, m, base, row + 2u, c, lanes));
 }
 
 // The place of a direction among the LAYER_TURNS rows by its turn about the normal.
@@ -64,41 +115,112 @@ static inline REAL coat_gain(const Scene* scene, __global const Layers* m, REAL3
 // Facets are as wide across as along: their gains are one row.
 static inline bool round_facets(__global const Layers* m) { return m->narrowed == 1.0f; }
 
-static inline REAL grid_number(const Scene* scene, __global const Layers* m, const LayerBase* base, u32 which,
-                               MASK lanes) {
-  __global const float* from = scene->layer_rows + m->grid + which;
-  const MASK low = base->step * (int)LAYER_GRID_NUMBERS;
+// Where the grid by roughness of the coat's weight begins, behind the material's first.
+#if HAS_COAT_MAPS
+static inline MASK grid_of_coat(__global const Layers* m, const LayerBase* base) {
+  return has_coat_grids(m) ? base->coat_step * (int)m->coat_grid : NO_LANES;
+}
+#else
+static inline MASK grid_of_coat(__global const Layers* m, const LayerBase* base) { return NO_LANES; }
+#endif
+
+// A number between steps of the roughness, of the grid `ahead` numbers behind that of the coat's weight.
+static inline REAL number_in_grid(const Scene* scene, __global const Layers* m, const LayerBase* base,
+                                  u32 ahead, u32 which, MASK lanes) {
+  __global const float* from = scene->layer_rows + m->grid + ahead + which;
+  const MASK low = grid_of_coat(m, base) + base->step * (int)LAYER_GRID_NUMBERS;
   const REAL a = gather_floats(from, low, lanes), b = gather_floats(from + LAYER_GRID_NUMBERS, low, lanes);
   return fma(base->part, b - a, a);
 }
 // A row of each step at the cosine c: number 0 is LAYER_SHINE, those from 1 on are gains.
-static inline REAL grid_row(const Scene* scene, __global const Layers* m, const LayerBase* base, MASK row,
-                            REAL c, MASK lanes) {
+static inline REAL row_in_grid(const Scene* scene, __global const Layers* m, const LayerBase* base, u32 ahead,
+                               MASK row, REAL c, MASK lanes) {
   const u32 size = LAYER_STEPS * (round_facets(m) ? 2u : 1u + LAYER_TURNS);
   const REAL x = real_clamp(c, (REAL)(0.0f), (REAL)(1.0f)) * (float)(LAYER_STEPS - 1u);
   const MASK at = min(TO_MASK(x), (MASK)((int)LAYER_STEPS - 2));
-  const MASK low = base->step * (int)size + row * (int)LAYER_STEPS + at;
-  __global const float* from = scene->layer_rows + m->grid + LAYER_GRID_NUMBERS * LAYER_GRID_STEPS;
+  const MASK low = grid_of_coat(m, base) + (base->step * (int)size + row * (int)LAYER_STEPS + at);
+  __global const float* from = scene->layer_rows + m->grid + ahead + LAYER_GRID_NUMBERS * LAYER_GRID_STEPS;
   const REAL a = gather_floats(from, low, lanes), b = gather_floats(from + 1, low, lanes);
   const REAL c0 = gather_floats(from + size, low, lanes), d = gather_floats(from + size + 1u, low, lanes);
   const REAL along = x - TO_REAL(at), near = fma(along, b - a, a), far = fma(along, d - c0, c0);
   return fma(base->part, far - near, near);
 }
+
+// The same between steps of the coat's weight too; gains are the same in all of these.
+#if HAS_COAT_MAPS
+static inline REAL grid_number(const Scene* scene, __global const Layers* m, const LayerBase* base, u32 which,
+                               MASK lanes) {
+  const REAL near = number_in_grid(scene, m, base, 0u, which, lanes);
+  if (!has_coat_grids(m)) return near;
+  const REAL far = number_in_grid(scene, m, base, m->coat_grid, which, lanes);
+  return fma(base->coat_part, far - near, near);
+}
+static inline REAL grid_shine(const Scene* scene, __global const Layers* m, const LayerBase* base, REAL c,
+                              MASK lanes) {
+  const REAL near = row_in_grid(scene, m, base, 0u, (MASK)(0), c, lanes);
+  if (!has_coat_grids(m)) return near;
+  const REAL far = row_in_grid(scene, m, base, m->coat_grid, (MASK)(0), c, lanes);
+  return fma(base->coat_part, far - near, near);
+}
+#else
+static inline REAL grid_number(const Scene* scene, __global const Layers* m, const LayerBase* base, u32 which,
+                               MASK lanes) {
+  return number_in_grid(scene, m, base, 0u, which, lanes);
+}
+static inline REAL grid_shine(const Scene* scene, __global const Layers* m, const LayerBase* base, REAL c,
+                              MASK lanes) {
+  return row_in_grid(scene, m, base, 0u, (MASK)(0), c, lanes);
+}
+#endif
 static inline REAL grid_gain(const Scene* scene, __global const Layers* m, const LayerBase* base, REAL3 w,
                              MASK lanes) {
-  if (round_facets(m)) return grid_row(scene, m, base, (MASK)(1), w.z, lanes);
+  if (round_facets(m)) return row_in_grid(scene, m, base, 0u, (MASK)(1), w.z, lanes);
   const REAL y = turn_place(w);
   const MASK row = min(TO_MASK(y), (MASK)((int)LAYER_TURNS - 2));
-  const REAL near = grid_row(scene, m, base, row + 1, w.z, lanes),
-             far = grid_row(scene, m, base, row + 2, w.z, lanes);
+  const REAL near = row_in_grid(scene, m, base, 0u, row + 1, w.z, lanes),
+             far = row_in_grid(scene, m, base, 0u, row + 2, w.z, lanes);
   return fma(y - TO_REAL(row), far - near, near);
 }
+
+// The index of a dielectric base over what lies above it, where that has as much of the coat's index as the
+// coat has weight; 1 over it where it is less (OpenPBR 1.1, "Coat", "Index of refraction").
+#if HAS_COAT_MAPS
+static inline REAL base_eta(__global const Layers* m, REAL weight) {
+  const REAL above = fma(weight, (REAL)(m->coat_eta - 1.0f), (REAL)(1.0f));
+  const REAL root = m->index_scale * fabs(m->index - above) / (m->index + above);
+  const REAL bounded = real_min(root, (REAL)(0.99949987f));
+  return (1.0f + bounded) / (1.0f - bounded);
+}
+// The coat's weight where its texture has the factor `coat`, and what depends on it alone.
+static inline void weigh_coat(__global const Layers* m, REAL coat, LayerBase* base) {
+  base->coat = (REAL)(1.0f);
+  base->coat_step = NO_LANES;
+  base->coat_part = (REAL)(0.0f);
+  base->eta = base->eta_next = (REAL)(m->eta);
+  if (!maps_coat(m)) return;
+  const float intervals = (float)(LAYER_GRID_STEPS - 1u), interval = m->coat.w / intervals;
+  const REAL y = coat * intervals;
+  base->coat = coat;
+  base->coat_step = min(TO_MASK(y), (MASK)((int)LAYER_GRID_STEPS - 2));
+  base->coat_part = y - TO_REAL(base->coat_step);
+  base->eta = base_eta(m, TO_REAL(base->coat_step) * interval);
+  base->eta_next = base_eta(m, TO_REAL(base->coat_step + 1) * interval);
+}
+// Steps of a grid by the coat's weight alone.
+static inline void step_by_coat(__global const Layers* m, LayerBase* base) {
+  if (m->coat_grid != 0u) return;
+  base->step = base->coat_step;
+  base->part = base->coat_part;
+}
+#else
+static inline void step_by_coat(__global const Layers* m, LayerBase* base) {}
+#endif
 
 // The base's facets as wide as `roughness` makes them, seen through the coat's.
 static inline void widen_base(__global const Layers* m, REAL roughness, LayerBase* base) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), square = roughness * roughness;
   const REAL both = real_sqrt(real_sqrt(real_min(one, fma(square, square, (REAL)(m->haze)))));
-  const REAL root = real_clamp(fma((REAL)(m->coat.w), both - roughness, roughness), zero, one);
+  const REAL root = real_clamp(fma(coat_weight(m, base), both - roughness, roughness), zero, one);
   const REAL along = real_min(root * root * m->stretch, one);
   base->alpha_x = real_max(along, (REAL)(LEAST_LAYER_ALPHA));
   base->alpha_y = real_max(along * m->narrowed, (REAL)(LEAST_LAYER_ALPHA));
@@ -106,6 +228,7 @@ static inline void widen_base(__global const Layers* m, REAL roughness, LayerBas
   base->step = min(TO_MASK(y), (MASK)((int)LAYER_GRID_STEPS - 2));
   const REAL part = LAYER_GRID_PART(y, TO_REAL(base->step));
   base->part = select(part, part * part, MASK_OF(base->step == 0));
+  step_by_coat(m, base);
 }
 static inline void map_base(const Scene* scene, __global const Layers* m, REAL metalness, REAL roughness,
                             MASK lanes, LayerBase* base) {
@@ -139,16 +262,33 @@ static inline LayerBase base_of(const Scene* scene, __global const Layers* m, co
   base.matte_scale_bare = (REAL)(m->matte_scale_bare);
 #if HAS_LAYER_MAPS
   base.glass = bsdf->glass;
+#if HAS_COAT_MAPS
+  weigh_coat(m, bsdf->coat, &base);
+#endif
   map_base(scene, m, bsdf->metalness, bsdf->roughness, lanes, &base);
 #endif
   return base;
 }
 
+// What a dielectric base's interface reflects at the cosine c. Between two steps of the coat's weight it is
+// what lies between those of both, as in the rows of what it leaves.
+#if HAS_COAT_MAPS
+static inline REAL base_reflectance(__global const Layers* m, const LayerBase* base, REAL c) {
+  const REAL near = interface_reflectance(c, base->eta);
+  if (!maps_coat(m)) return near;
+  return fma(base->coat_part, interface_reflectance(c, base->eta_next) - near, near);
+}
+#else
+static inline REAL base_reflectance(__global const Layers* m, const LayerBase* base, REAL c) {
+  return interface_reflectance(c, (REAL)(m->eta));
+}
+#endif
+
 // What the base's interface leaves at the cosine c, and the gain of its facets for a direction.
 static inline REAL past_shine(const Scene* scene, __global const Layers* m, const LayerBase* base, REAL c,
                               MASK lanes) {
 #if HAS_LAYER_MAPS
-  if (m->grid != NO_LAYER_GRID) return grid_row(scene, m, base, (MASK)(0), c, lanes);
+  if (m->grid != NO_LAYER_GRID) return grid_shine(scene, m, base, c, lanes);
 #endif
   return layer_row(scene, m, LAYER_SHINE, c, lanes);
 }

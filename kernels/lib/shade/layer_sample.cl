@@ -13,10 +13,12 @@ static inline REAL3 left_by_layers(const Scene* scene, __global const Layers* m,
   const REAL3 white = all3((float3)(1.0f));
   if (m->fuzz.w == 0.0f && m->coat.w == 0.0f) return white;
   const MASK through = MASK_OF(c_i < 0.0f);
-  const REAL of_o = past_layers(scene, m, c_o, lanes), of_i = past_layers(scene, m, fabs(c_i), lanes);
   const LayerBase base = base_of(scene, m, bsdf, lanes);
+  const REAL of_o = past_layers(scene, m, &base, c_o, lanes),
+             of_i = past_layers(scene, m, &base, fabs(c_i), lanes);
   const REAL3 darkening = coat_darkening(m, &base, bsdf->base);
-  const REAL3 tint_o = multiply3(coat_tints(m, c_o), darkening), tint_i = coat_tints(m, fabs(c_i));
+  const REAL3 tint_o = multiply3(coat_tints(m, &base, c_o), darkening),
+              tint_i = coat_tints(m, &base, fabs(c_i));
   const MASK front = lanes & bsdf->coated, back = lanes & bsdf->coated_behind & through;
   REAL3 left = scale3(multiply3(tint_o, tint_i), real_min(of_o, of_i));
   left = select3(left, scale3(tint_o, of_o), through);
@@ -35,9 +37,9 @@ static inline LayerShares make_shares(const Scene* scene, const Bsdfs* bsdf, REA
     const MASK mine = take_alike(bsdf->material, &left, &index);
     __global const Layers* m = scene->layers + index;
     const MASK coated = mine & bsdf->coated;
-    const REAL by_fuzz = select(one, past_fuzz(scene, m, c, mine), coated);
-    const REAL by_both = select(one, past_layers(scene, m, c, mine), coated);
     const LayerBase base = base_of(scene, m, bsdf, mine);
+    const REAL by_fuzz = select(one, past_fuzz(scene, m, c, mine), coated);
+    const REAL by_both = select(one, past_layers(scene, m, &base, c, mine), coated);
     const REAL by_shine = past_shine(scene, m, &base, c, mine);
     const REAL opaque = (1.0f - base.metal) * (1.0f - base.glass);
     const REAL of_metal = base.metal * real_max(greatest3(bsdf->base), (REAL)(0.05f));

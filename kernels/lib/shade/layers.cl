@@ -27,20 +27,28 @@ static inline REAL past_fuzz(const Scene* scene, __global const Layers* m, REAL 
   if (m->fuzz.w == 0.0f) return (REAL)(1.0f);
   return layer_row(scene, m, LAYER_FUZZ, c, lanes);
 }
-static inline REAL past_layers(const Scene* scene, __global const Layers* m, REAL c, MASK lanes) {
+static inline REAL past_layers(const Scene* scene, __global const Layers* m, const LayerBase* base, REAL c,
+                               MASK lanes) {
   const REAL left = past_fuzz(scene, m, c, lanes);
-  return m->coat.w == 0.0f ? left : left * layer_row(scene, m, LAYER_COAT, c, lanes);
+  return m->coat.w == 0.0f ? left : left * past_coat(base, layer_row(scene, m, LAYER_COAT, c, lanes));
 }
 
 // What the coat's colour takes on a way through it at the cosine c.
-static inline REAL coat_tint(float color, float weight, REAL way) {
-  const float straight = fmax(1.0f - weight * (1.0f - color), 1e-6f);
+#if HAS_COAT_MAPS
+static inline REAL coat_tint(__global const Layers* m, const LayerBase* base, float color, REAL way) {
+  const REAL straight = real_max(1.0f - coat_weight(m, base) * (1.0f - color), (REAL)(1e-6f));
+  return real_exp(real_log(straight) * way);
+}
+#else
+static inline REAL coat_tint(__global const Layers* m, const LayerBase* base, float color, REAL way) {
+  const float straight = fmax(1.0f - m->coat.w * (1.0f - color), 1e-6f);
   return straight == 1.0f ? (REAL)(1.0f) : real_exp(log(straight) * way);
 }
-static inline REAL3 coat_tints(__global const Layers* m, REAL c) {
+#endif
+static inline REAL3 coat_tints(__global const Layers* m, const LayerBase* base, REAL c) {
   const REAL way = 0.5f / real_max(refracted_cosine(c, (REAL)(m->coat_eta)), (REAL)(0.05f));
-  return real3(coat_tint(m->coat.x, m->coat.w, way), coat_tint(m->coat.y, m->coat.w, way),
-               coat_tint(m->coat.z, m->coat.w, way));
+  return real3(coat_tint(m, base, m->coat.x, way), coat_tint(m, base, m->coat.y, way),
+               coat_tint(m, base, m->coat.z, way));
 }
 
 // What reflections between the coat and a base of the colour `color` leave of the light from it (OpenPBR 1.1,
@@ -59,20 +67,22 @@ static inline REAL3 coat_darkening(__global const Layers* m, const LayerBase* ba
   const REAL3 left = real3((1.0f - inner) / (1.0f - inner * real_min(back.x, one.x)),
                            (1.0f - inner) / (1.0f - inner * real_min(back.y, one.y)),
                            (1.0f - inner) / (1.0f - inner * real_min(back.z, one.z)));
-  return along3(scale3(one, (REAL)(1.0f - m->darkening)), (REAL)(m->darkening), left);
+  const REAL darker = darkening(m, base);
+  return along3(scale3(one, 1.0f - darker), darker, left);
 }
 
 // What the base's interface reflects at the cosine c: of the dielectric's opaque share and of the metal.
 static inline REAL3 shine_color(const Scene* scene, __global const Layers* m, const LayerBase* base,
                                 REAL3 color, REAL c, MASK lanes) {
   const REAL opaque = (1.0f - base->metal) * (1.0f - base->glass);
-  const REAL f = interface_reflectance(c, (REAL)(m->eta));
+  const REAL f = base_reflectance(m, base, c);
   REAL3 of_glass = real3(f, f, f), of_metal = metal_shares(c, color, m->specular);
   if (m->film > 0.0f) {
     const REAL left = (REAL)(1.0f - m->film);
-    of_glass = along3(scale3(of_glass, left), (REAL)(m->film), layer_row3(scene, m, LAYER_FILM, c, lanes));
-    of_metal =
-        along3(scale3(of_metal, left), (REAL)(m->film), layer_row3(scene, m, LAYER_FILM_METAL, c, lanes));
+    of_glass =
+        along3(scale3(of_glass, left), (REAL)(m->film), film_rows(scene, m, base, LAYER_FILM, c, lanes));
+    of_metal = along3(scale3(of_metal, left), (REAL)(m->film),
+                      film_rows(scene, m, base, LAYER_FILM_METAL, c, lanes));
   }
   of_glass = multiply3(of_glass, all3(m->specular.xyz));
   return along3(scale3(of_glass, opaque), base->metal * m->metal, of_metal);
@@ -99,10 +109,10 @@ static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, 
     const REAL gains = coat_gain(scene, m, wo, coated) * coat_gain(scene, m, wi, coated);
     const FacetLobe lobe = facet_lobe(wo, wi, h, (REAL)(m->coat_alpha), (REAL)(m->coat_alpha_y), gains);
     const REAL part = mend_share(interface_reflectance(wo_h, (REAL)(m->coat_eta)), lobe.more);
-    const REAL coat = select((REAL)(0.0f), m->coat.w * part * lobe.value * kept, coated);
+    const REAL coat = select((REAL)(0.0f), coat_weight(m, base) * part * lobe.value * kept, coated);
     value = add3(value, real3(coat, coat, coat));
-    kept = real_min(past_layers(scene, m, wo.z, coated), past_layers(scene, m, wi.z, coated));
-    tint = multiply3(coat_tints(m, wo.z), coat_tints(m, wi.z));
+    kept = real_min(past_layers(scene, m, base, wo.z, coated), past_layers(scene, m, base, wi.z, coated));
+    tint = multiply3(coat_tints(m, base, wo.z), coat_tints(m, base, wi.z));
     tint = multiply3(tint, coat_darkening(m, base, bsdf->base));
     chance += shares->coat * lobe.density;
   }
@@ -117,10 +127,10 @@ static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, 
     const REAL through = past_shine(scene, m, base, wo.z, lanes) * past_shine(scene, m, base, wi.z, lanes);
     REAL above = base->matte_scale_bare;
     if (any_lane(coated))
-      above = select(
-          above,
-          base->matte_scale * past_layers(scene, m, wo.z, coated) * past_layers(scene, m, wi.z, coated),
-          coated);
+      above = select(above,
+                     base->matte_scale * past_layers(scene, m, base, wo.z, coated) *
+                         past_layers(scene, m, base, wi.z, coated),
+                     coated);
     own = along3(own, through * above * ground, matte);
   }
   *density = chance;
@@ -164,12 +174,12 @@ static inline void mirror_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo
     __global const Layers* m = scene->layers + index;
     const MASK coated = mine & bsdf->coated;
     const LayerBase base = base_of(scene, m, bsdf, mine);
-    const REAL past = select(one, past_layers(scene, m, c, mine), coated);
-    const REAL3 tint = select3(all3((float3)(1.0f)), coat_tints(m, c), coated);
+    const REAL past = select(one, past_layers(scene, m, &base, c, mine), coated);
+    const REAL3 tint = select3(all3((float3)(1.0f)), coat_tints(m, &base, c), coated);
     const REAL3 color = shine_color(scene, m, &base, bsdf->base, c, mine);
     const REAL3 below = multiply3(multiply3(tint, tint), color);
     REAL coat = past_fuzz(scene, m, c, mine) * interface_reflectance(c, (REAL)(m->coat_eta));
-    coat *= m->coat.w * mirror_share((REAL)(m->coat_alpha), (REAL)(m->coat_alpha_y));
+    coat *= coat_weight(m, &base) * mirror_share((REAL)(m->coat_alpha), (REAL)(m->coat_alpha_y));
     coat = select((REAL)(0.0f), coat, coated);
     const REAL share = past * mirror_share(base.alpha_x, base.alpha_y);
     const REAL3 own = along3(real3(coat, coat, coat), share, below);

@@ -19,6 +19,9 @@ typedef struct Terms {
 #if HAS_LAYER_MAPS
   REAL metalness, roughness, glass;  // of layered materials
 #endif
+#if HAS_COAT_MAPS
+  REAL coat;  // a factor on the weight of a layered material's
+#endif
 } Terms;
 
 #if HAS_LAYERS
@@ -38,6 +41,12 @@ static inline void start_smooth(Terms* terms) {
 static inline void start_smooth(Terms* terms) {}
 #endif
 
+#if HAS_COAT_MAPS
+static inline void start_coat(Terms* terms) { terms->coat = (REAL)(1.0f); }
+#else
+static inline void start_coat(Terms* terms) {}
+#endif
+
 // The terms of surfaces before their materials' own are added.
 static inline Terms start_terms(REAL3 ambient, REAL3 diffuse) {
   const REAL3 none = all3((float3)(0.0f));
@@ -49,6 +58,7 @@ static inline Terms start_terms(REAL3 ambient, REAL3 diffuse) {
   terms.exponent = (REAL)(0.0f);
   make_opaque(&terms);
   start_smooth(&terms);
+  start_coat(&terms);
   return terms;
 }
 
@@ -225,6 +235,18 @@ static inline void map_base_terms(const Scene* scene, u32 material, __global con
                                   const SlotValues* values, MASK lanes, Terms* terms) {}
 #endif
 
+// The weight of a layered material's coat.
+#if HAS_COAT_MAPS
+static inline void map_coat_weight(__global const MaterialMaps* maps, const SlotValues* values, MASK lanes,
+                                   Terms* terms) {
+  if (has_slot(maps, MAP_COAT))
+    terms->coat = select(terms->coat, real_clamp(values->of[MAP_COAT].x, (REAL)(0.0f), (REAL)(1.0f)), lanes);
+}
+#else
+static inline void map_coat_weight(__global const MaterialMaps* maps, const SlotValues* values, MASK lanes,
+                                   Terms* terms) {}
+#endif
+
 // Adds a clear layer's mirror, which leaves less of what lies below.
 static inline void map_coat(REAL coat, MASK lanes, Terms* terms) {
   const REAL kept = 1.0f - coat;
@@ -268,6 +290,7 @@ static inline void map_material(const Scene* scene, u32 index, const TexturePoin
   map_term(maps, &values, MAP_TRANSMISSION, lanes, &terms->transmission);
   map_term(maps, &values, MAP_EMISSION, lanes, &terms->emission);
   map_base_terms(scene, index, maps, &values, lanes, terms);
+  map_coat_weight(maps, &values, lanes, terms);
   if (has_slot(maps, MAP_EXPONENT))
     terms->exponent = select(terms->exponent, terms->exponent * values.of[MAP_EXPONENT].x, lanes);
   if (has_slot(maps, MAP_OCCLUSION)) {

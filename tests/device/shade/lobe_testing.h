@@ -25,7 +25,7 @@ inline constexpr u32 count = 1u << 12;
 inline const std::string lobe_kernel = surface_text + R"(
 #include "lib/core/sampler.cl"
 // The surface z = 0 of one material, seen from above, or from below where `below`, behind it the other of the media 0 and 1.
-Bsdfs surface(__global const Material* materials, u32 below, float3 metal_rough) {
+Bsdfs surface(__global const Material* materials, u32 below, float4 base) {
   const REAL3 n = real3(0.0f, 0.0f, below ? -1.0f : 1.0f), none = real3(0.0f, 0.0f, 0.0f);
   Bsdfs bsdf = make_surface(materials, n, (int)below, 1 - (int)below);
 #if HAS_LAYERS
@@ -39,20 +39,23 @@ Bsdfs surface(__global const Material* materials, u32 below, float3 metal_rough)
   bsdf.coated_behind = layered & inside;
 #endif
 #if HAS_LAYER_MAPS
-  bsdf.metalness = metal_rough.x;
-  bsdf.roughness = metal_rough.y;
-  bsdf.glass = metal_rough.z;
+  bsdf.metalness = base.x;
+  bsdf.roughness = base.y;
+  bsdf.glass = base.z;
+#endif
+#if HAS_COAT_MAPS
+  bsdf.coat = base.w;
 #endif
   return bsdf;
 }
 // Draws where `wi` has no length, else takes wi. Out: wi, density, weight or pi BSDF cos, whether it is specular.
 __kernel void run(__global const Material* materials, __global const Medium* media, __global const float* energy,
-                  __global const Layers* layers, __global const float* layer_rows, __global const float4* wis, __global float* out, float4 wo4, float4 metal_rough, u32 count) {
+                  __global const Layers* layers, __global const float* layer_rows, __global const float4* wis, __global float* out, float4 wo4, float4 base, u32 count) {
   const u32 i = get_global_id(0);
   if (i >= count) return;
   const Scene scene = {.materials = materials, .media = media, .lobe_energy = energy, .layers = layers, .layer_rows = layer_rows};
   const REAL3 wo = real3(wo4.x, wo4.y, wo4.z), given = real3(wis[i].x, wis[i].y, wis[i].z);
-  const Bsdfs bsdf = surface(materials, wo4.z < 0.0f, metal_rough.xyz);
+  const Bsdfs bsdf = surface(materials, wo4.z < 0.0f, base);
   const Lobes lobes = make_lobes(&scene, &bsdf, wo, ALL_LANES);
   // Roberts's sequence in three dimensions: even, and without a pattern of its own. In integers, as few floats lie
   // between large ones: numbers that are 0 too often draw lobes of small shares too often.
@@ -82,7 +85,8 @@ struct Lobe {
 
 class Tester {
  public:
-  /// `layered`: materials have layers; `mapped`: whose metalness and roughness textures give.
+  /// `layered`: materials have layers; `mapped`: whose metalness and roughness, or coat's weight, textures
+  /// give.
   explicit Tester(const DeviceInfo& info, bool layered = false, bool mapped = false)
       : device_(info),
         kernel_(build_text(device_, lobe_kernel,
@@ -92,7 +96,8 @@ class Tester {
                             {"WIDE_VECTORS", "0"},
                             {"HAS_ROUGH_GLASS", "1"},
                             {"HAS_LAYERS", layered ? "1" : "0"},
-                            {"HAS_LAYER_MAPS", mapped ? "1" : "0"}})
+                            {"HAS_LAYER_MAPS", mapped ? "1" : "0"},
+                            {"HAS_COAT_MAPS", mapped ? "1" : "0"}})
                     .kernel<Buffer<Material>, Buffer<Medium>, Buffer<float>, Buffer<Layers>, Buffer<float>,
                             Buffer<float4>, Buffer<float>, float4, float4, u32>("run")),
         mapped_(mapped),
@@ -100,21 +105,24 @@ class Tester {
         layers_(device_.upload<Layers>(std::vector{Layers{}})),
         layer_rows_(device_.upload<float>(std::vector{0.f})) {}
 
-  /// From now on materials have these layers; where they are mapped, with textures of one value that give
-  /// metalness and roughness.
+  /// From now on materials have these layers; where they are mapped, with textures of one value, which give
+  /// metalness and roughness unless others are named.
   Layers set_layers(const OpenPbr& values) {
-    rows_.values.clear(), rows_.grids.clear();  // its gains serve again
     MaterialTextures textures;
     if (mapped_) textures.metalness = textures.roughness = 0;
+    return set_layers(values, textures);
+  }
+  Layers set_layers(const OpenPbr& values, const MaterialTextures& textures) {
+    rows_.values.clear(), rows_.grids.clear();  // its gains serve again
     const Layers layers = make_layers(values, textures, rows_);
     layers_ = device_.upload<Layers>(std::vector{layers});
     layer_rows_ = device_.upload<float>(rows_.values);
     set_base(values.base_metalness, values.specular_roughness, values.transmission_weight);
     return layers;
   }
-  /// What the textures have at the place.
-  void set_base(double metalness, double roughness, double glass = 0) {
-    base_ = {float(metalness), float(roughness), float(glass), 0};
+  /// What the textures have at the place; `coat` is a factor on the coat's weight.
+  void set_base(double metalness, double roughness, double glass = 0, double coat = 1) {
+    base_ = {float(metalness), float(roughness), float(glass), float(coat)};
   }
 
   /// For each direction the lobe there; for directions of no length a sample.

@@ -137,11 +137,34 @@ TEST_CASE("textures of roughness have a grid, which materials that differ in col
   CHECK(scene.materials[3].transmission.x == 0.5f);
 }
 
+TEST_CASE(
+    "textures of the coat's weight have a grid by it, with grids by roughness where a texture gives that") {
+  const CompiledScene scene = compile(load_scene_text(R"({
+    "textures": {"t": {"type": "noise"}},
+    "materials": {
+      "a": {"type": "openpbr", "coat_weight": "t"},
+      "b": {"type": "openpbr", "coat_weight": "t", "coat_color": [0.1, 0.2, 0.3]},
+      "c": {"type": "openpbr", "coat_weight": "t", "specular_roughness": "t"},
+      "d": {"type": "openpbr", "coat_weight": 0.5}},
+    "objects": [{"type": "sphere", "material": "a"}, {"type": "sphere", "material": "b"}, {"type": "sphere", "material": "c"},
+      {"type": "sphere", "material": "d"}]})"));
+  CHECK(scene.features.coat_maps);
+  CHECK(scene.features.layer_maps);
+  const Layers &a = scene.layers[0], &c = scene.layers[2];
+  CHECK(a.coat.w == 1);  // the texture is a factor on it
+  CHECK(a.grid == scene.layers[1].grid);
+  CHECK(a.coat_grid == 0);
+  CHECK(c.coat_grid == LAYER_GRID_STEPS * (LAYER_GRID_NUMBERS + 2 * LAYER_STEPS));
+  CHECK(scene.layers[3].coat_grid == NO_LAYER_GRID);
+  CHECK(scene.layers[3].grid == NO_LAYER_GRID);
+}
+
 TEST_CASE("numbers alone have no grid") {
   const CompiledScene scene =
       compile(load_scene_text(R"({"materials": {"m": {"type": "openpbr", "base_color": [1, 0, 0]}},
     "objects": [{"type": "sphere", "material": "m"}]})"));
   CHECK_FALSE(scene.features.layer_maps);
+  CHECK_FALSE(scene.features.coat_maps);
   CHECK(scene.layers[0].grid == NO_LAYER_GRID);
   CHECK(scene.layer_rows.size() == LAYER_ROWS * LAYER_STEPS);
 }

@@ -106,14 +106,46 @@ TEST_CASE("a glTF's transmission texture is that of OpenPBR's for integrators th
   CHECK(compile(scene).features.layer_maps);
 }
 
-TEST_CASE("textures of what layers have as numbers keep a glTF's material as it is with every integrator") {
-  for (const char* extension :
-       {R"("KHR_materials_clearcoat":{"clearcoatFactor":1,"clearcoatTexture":{"index":0}})",
-        R"("KHR_materials_specular":{"specularTexture":{"index":0}})"}) {
-    INFO(extension);
-    const std::string base = R"({"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{)";
-    CHECK_FALSE(quad_with(base + extension + "}}").materials.at(0).by_paths);
-  }
+TEST_CASE("textures of specular values keep a glTF's material as it is with every integrator") {
+  CHECK_FALSE(quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{
+      "KHR_materials_specular":{"specularTexture":{"index":0}}}})")
+                  .materials.at(0)
+                  .by_paths);
+}
+
+TEST_CASE("a glTF's clearcoat texture is that of the coat's weight for integrators that follow paths") {
+  SceneDescription scene = quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":0},
+      "extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":0.5,"clearcoatTexture":{"index":0}}}})");
+  const MaterialDescription& m = scene.materials.at(0);
+  CHECK_FALSE(m.layers);
+  REQUIRE(m.by_paths);
+  CHECK(m.by_paths->coat == 0);
+  CHECK(m.by_paths->layers.value().coat_weight == 0.5);
+  CHECK(texture_of(scene, m.by_paths->textures.coat).channel == 0);
+  CHECK_FALSE(compile(scene).features.coat_maps);
+  scene.render.integrator = "path";
+  const CompiledScene path = compile(scene);
+  CHECK(path.features.coat_maps);
+  CHECK(path.layers[0].coat_grid == 0);
+  CHECK(path.layers[0].coat.w == 0.5f);
+}
+
+TEST_CASE(
+    "glass of a glTF keeps its clearcoat texture for integrators that follow paths, a coat of none has no "
+    "use for it") {
+  const auto by_paths = [](const std::string& factor) {
+    const SceneDescription scene =
+        quad_with(R"({"extensions":{"KHR_materials_transmission":{"transmissionFactor":1},
+        "KHR_materials_volume":{"thicknessFactor":1},
+        "KHR_materials_clearcoat":{"clearcoatTexture":{"index":0},"clearcoatFactor":)" +
+                  factor +
+                  "}},"
+                  R"("pbrMetallicRoughness":{"metallicFactor":0}})");
+    return *scene.materials.at(0).by_paths;
+  };
+  CHECK(by_paths("1").type == MaterialType::dielectric);
+  CHECK(by_paths("1").textures.coat >= 0);
+  CHECK(by_paths("0").textures.coat == -1);
 }
 
 TEST_CASE("a glTF's clearcoat texture is a factor on the mirror of its clear layer") {

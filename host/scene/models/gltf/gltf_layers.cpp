@@ -56,11 +56,6 @@ void add_specular(const JsonAt& at, OpenPbr& values) {
   values.specular_ior = (1 + weighted) / (1 - weighted);
 }
 
-bool has_texture(const JsonAt& material, const char* extension, const char* factor, const char* texture) {
-  const auto at = material.extension(extension);
-  return at && at->find(texture) && at->number(factor, 0, unit_range) > 0;
-}
-
 void add_gltf_layers(const JsonAt& material, OpenPbr& values) {
   if (const auto sheen = material.extension("KHR_materials_sheen")) add_sheen(*sheen, values);
   if (const auto film = material.extension("KHR_materials_iridescence")) add_film(*film, values);
@@ -91,8 +86,7 @@ bool has_layers(const JsonAt& material) {
 bool fits_layers(const JsonAt& material) {
   if (material.extension("KHR_materials_unlit")) return false;
   const auto specular = material.extension("KHR_materials_specular");
-  if (specular && (specular->find("specularTexture") || specular->find("specularColorTexture"))) return false;
-  return !has_texture(material, "KHR_materials_clearcoat", "clearcoatFactor", "clearcoatTexture");
+  return !specular || !(specular->find("specularTexture") || specular->find("specularColorTexture"));
 }
 
 OpenPbr gltf_openpbr(const JsonAt& material, const MetalRough& base, double ior) {

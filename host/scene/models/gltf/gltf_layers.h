@@ -9,8 +9,7 @@ namespace sundog::models {
 /// Whether a material has an extension that makes it one of layers with every integrator. Those whose layers
 /// vary by a texture of the coat, or whose roughness does, are not taken so.
 bool has_layers(const JsonAt& material);
-/// Whether OpenPBR's values say all of a material: none of them varies by a texture of the coat or of
-/// specular values.
+/// Whether OpenPBR's values say all of a material: no texture gives specular values.
 bool fits_layers(const JsonAt& material);
 
 /// The base and specular values, and those of the extensions:

@@ -201,6 +201,16 @@ void GltfMaterials::add_specular_textures(const JsonAt& at, Entry& entry) const 
     entry.specular_color = textures_.read(*color);
 }
 
+/// KHR_materials_clearcoat's texture, whose red is a factor on the coat's weight.
+std::optional<TextureDescription> GltfMaterials::read_coat_texture(const JsonAt& at) const {
+  const auto extension = at.extension("KHR_materials_clearcoat");
+  const auto texture = extension ? extension->find("clearcoatTexture") : std::nullopt;
+  if (!texture) return std::nullopt;
+  TextureDescription read = textures_.read(*texture);
+  read.channel = 0;
+  return read;
+}
+
 /// KHR_materials_clearcoat as a mirror of 4 % above the rest, as far as it is smooth.
 void GltfMaterials::add_clearcoat(const JsonAt& at, Entry& entry) const {
   MaterialDescription& material = entry.material;
@@ -209,10 +219,7 @@ void GltfMaterials::add_clearcoat(const JsonAt& at, Entry& entry) const {
   const double factor = extension->number("clearcoatFactor", 0, unit_range);
   const double coat =
       0.04 * factor * square(1 - extension->number("clearcoatRoughnessFactor", 0, unit_range));
-  if (const auto texture = extension->find("clearcoatTexture")) {
-    entry.coat = textures_.read(*texture);
-    entry.coat->channel = 0;
-  }
+  entry.coat = read_coat_texture(at);
   if (entry.coat || entry.by_values) {  // the device computes the terms
     material.coat = coat;
     return;
@@ -224,7 +231,7 @@ void GltfMaterials::add_clearcoat(const JsonAt& at, Entry& entry) const {
 
 /// The same values as OpenPBR's: with every integrator of materials that have layers, with those that follow
 /// paths of the others that they fit.
-void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) {
+void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const {
   const bool metal_map = entry.metal_rough && entry.values.metalness > 0;
   const bool always = has_layers(at);
   if (!always && !fits_layers(at)) return;
@@ -243,6 +250,7 @@ void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) {
   if (metal_map && entry.values.metalness < 1) other.transmission /= 1 - entry.values.metalness;
   if (metal_map) other.textures.metalness = 0;
   if (entry.transmission) other.textures.glass = 0;
+  if (values.coat_weight > 0) entry.coat_weight = read_coat_texture(at);
   set_gltf_layers(values, reflectance(ior), other);
   entry.by_paths = other;
 }

@@ -38,6 +38,7 @@ class GltfMaterials {
     bool has_medium = false;
     std::optional<TextureDescription> base, opacity, emission, metal_rough, normal, occlusion;
     std::optional<TextureDescription> transmission, specular, specular_color, coat;
+    std::optional<TextureDescription> coat_weight;  // of by_paths
     MetalRough values;
     double transmitted = 0;  // of what is no metal, the share that a transmission texture is a factor on
     bool two_sided = false, unlit = false,
@@ -47,8 +48,9 @@ class GltfMaterials {
   void read_textures(const JsonAt& at, Entry& entry) const;
   void settle_sides();
   static void read_unlit(const JsonAt& at, Entry& entry, glm::dvec3 base);
+  std::optional<TextureDescription> read_coat_texture(const JsonAt& at) const;
   void add_clearcoat(const JsonAt& at, Entry& entry) const;
-  static void add_layers(const JsonAt& at, Entry& entry, double ior);
+  void add_layers(const JsonAt& at, Entry& entry, double ior) const;
   void add_specular_textures(const JsonAt& at, Entry& entry) const;
   void use_textures(const Entry& entry, MaterialDescription& material, Model& model);
   void use_transmission(const Entry& entry, MaterialDescription& material, Model& model);

@@ -58,6 +58,7 @@ void GltfMaterials::use_by_paths(const Entry& entry, MaterialDescription& materi
   if (shared) to.diffuse = material.textures.diffuse;
   if (!shared && entry.base) to.diffuse = textures_.use(*entry.base, true, model);
   if (entry.transmission) to.glass = textures_.use(*entry.transmission, false, model);
+  if (entry.coat_weight) to.coat = textures_.use(*entry.coat_weight, false, model);
   to.ambient = to.diffuse;
   if (other->transmission != dvec3(0)) to.transmission = to.diffuse;
   if (entry.metal_rough) {

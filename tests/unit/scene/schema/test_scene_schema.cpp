@@ -48,7 +48,7 @@ const std::string everything = R"({
     "plain": {"color": [0, 1, 0], "ambient": 0, "specular": 0.5, "transmission": 1, "ior": 1.5},
     "glass": {"type": "dielectric", "medium": "a"},
     "layered": {"type": "openpbr", "base_color": "t", "transmission_weight": 0.5, "coat_weight": 1, "fuzz_weight": 0.5},
-    "mapped": {"type": "openpbr", "base_metalness": "t", "specular_roughness": "t", "transmission_weight": "t"}},
+    "mapped": {"type": "openpbr", "base_metalness": "t", "specular_roughness": "t", "transmission_weight": "t", "coat_weight": "t"}},
   "meshes": {
     "t": {"file": "tetra.ply", "crease_angle": 30},
     "i": {"generate": {"type": "ice_block", "subdivision": 4, "cavity": {}}},
