@@ -113,7 +113,7 @@ SUNDOG_SHARED_SIZE(TexelLevel, 16)
   SLOT(HEIGHT, height)           /* along the normal, times MaterialMaps.bump */ \
   SLOT(METAL_ROUGH, metal_rough) /* green: roughness, blue: metalness (glTF) */  \
   SLOT(OCCLUSION, occlusion)     /* red: of ambient light */                     \
-  SLOT(COAT, coat)               /* red: of the clear layer's mirror, or of a layered material's coat */ \
+  SLOT(COAT, coat)               /* red: of the mirror or coat above all */      \
   SLOT(METALNESS, metalness)     /* of a layered material's base */              \
   SLOT(ROUGHNESS, roughness)                                                     \
   SLOT(GLASS, glass) /* the share of its dielectric that transmits */
