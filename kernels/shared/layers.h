@@ -72,10 +72,10 @@ typedef struct Layers {
   float inner_smooth, inner_matte;  // `inner` for a base that reflects as a mirror, and as a matte one
   float coat_alpha_y;               // of the coat's facets across the tangent
   u32 coat_gains;                   // of these: the first of LAYER_TURNS rows, or NO_LAYER_GAINS
-  // For a texture of the coat's weight:
-  float coat_intervals;  // between the steps of the weight; 0: there is no such texture
-  u32 coat_grid;         // numbers from one step's grid by roughness to the next's; 0: one grid, by weight
+  // For a texture of the coat's weight, without which coat_grid is NO_LAYER_GRID:
+  u32 coat_grid;  // numbers from one step's grid by roughness to the next's; 0: one grid, by the weight
   float index, index_scale;  // the base's index, and the root of the factor on what that reflects straight on
+  u32 pad;
 } Layers;
 SUNDOG_SHARED_SIZE(Layers, 176)
 

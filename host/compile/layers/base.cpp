@@ -42,7 +42,7 @@ const GainGrid& gain_grid(double anisotropy, LayerRows& rows) {
                                    : rows.gains.emplace(anisotropy, make_gains(anisotropy)).first->second;
 }
 
-/// What the steps of a grid depend on: the roughness, or with the same sizes the coat's weight.
+/// What the steps of a grid are of: the roughness, or the coat's weight.
 struct GridSteps {
   double anisotropy;
   std::span<const FacetWidths> by_coat;  // of each step; empty in a grid by roughness
