@@ -80,11 +80,21 @@ bool bends_light(const std::vector<Medium>& media) {
   });
 }
 
+/// Whether facets of a thin material send paths through it. What is not there is seen straight on, so facets of
+/// a material that is partly there only reflect.
+bool is_frosted(const SceneDescription& scene, const MaterialDescription& material) {
+  const bool there = material.opacity == 1 && material.textures.opacity < 0 && !material.one_sided;
+  const double alpha = material.roughness * material.roughness;
+  return traces_paths(scene.render.integrator) && there && material.medium < 0 &&
+         !is_zero(material.transmission) && alpha >= double(LEAST_ALPHA);
+}
+
 /// Whether shadow rays stop at a material. Paths find by themselves what lights send through bending
-/// interfaces, and shadow rays that went straight through these would find it a second time. So would
-/// photons.
+/// interfaces and frosted walls, and shadow rays that went straight through these would find it a second
+/// time. So would photons.
 bool stops_shadows(const SceneDescription& scene, const MaterialDescription& material, bool bends) {
-  const bool by_path = traces_paths(scene.render.integrator) && bends && material.medium >= 0;
+  const bool by_path = (traces_paths(scene.render.integrator) && bends && material.medium >= 0) ||
+                       is_frosted(scene, material);
   return material.shadow_opaque || (by_path && (!material.shadow_filter || scene.render.caustics));
 }
 
@@ -100,6 +110,7 @@ u32 material_flags(const MaterialDescription& material) {
   if (material.layers) flags |= MATERIAL_LAYERED;
   if (!material.multiple_scattering) flags |= MATERIAL_SCATTERS_ONCE;
   if (material.medium < 0) flags |= MATERIAL_THIN;
+  if (material.medium < 0 && material.wall_ior > 0) flags |= MATERIAL_WALL;
   if (material.vertex_color) flags |= MATERIAL_VERTEX_COLOR;
   if (material.one_sided) flags |= MATERIAL_ONE_SIDED | MATERIAL_TRANSMITS;
   if (material.metal_rough) {
@@ -108,7 +119,8 @@ u32 material_flags(const MaterialDescription& material) {
   }
   const bool local = !is_zero(material.ambient) || !is_zero(material.diffuse) ||
                      !is_zero(material.specular) || has_maps(material) || material.layers;
-  if (material.type == MaterialType::dielectric && !local && material.transmission == dvec3(1))
+  if (material.type == MaterialType::dielectric && !local && material.transmission == dvec3(1) &&
+      !(flags & MATERIAL_WALL))
     flags |= MATERIAL_CLEAR;
   return flags;
 }
@@ -119,7 +131,7 @@ Material make_material(const MaterialDescription& material, const std::vector<u3
   packed.diffuse = pack(material.diffuse);
   packed.specular = pack(material.specular, material.exponent);
   packed.reflection = pack(material.reflection, material.roughness * material.roughness);
-  packed.transmission = pack(material.transmission);
+  packed.transmission = pack(material.transmission, material.wall_ior);
   packed.checker_ambient = pack(material.checker_ambient);
   packed.checker_diffuse = pack(material.checker_diffuse, 1 / material.checker_size);
   packed.emission = pack(material.emission);
@@ -150,6 +162,7 @@ u32 add_materials(const SceneDescription& scene, CompiledScene& out) {
   for (const MaterialDescription& any : scene.materials) {
     const MaterialDescription& material = surface_for(scene, any);
     Material packed = make_material(material, media);
+    if (is_frosted(scene, material)) packed.flags |= MATERIAL_FROSTED;
     if (stops_shadows(scene, material, bends)) packed.flags |= MATERIAL_SHADOW_OPAQUE;
     out.materials.push_back(packed);
   }

@@ -166,6 +166,7 @@ struct MaterialDescription {
   double roughness = 0;  // of reflection and transmission, [0, 1]; the GGX distribution's alpha is its square
   bool multiple_scattering = true;  // light that meets several facets of a rough surface is given back
   int medium = -1;                  // index into media of the inside; -1: thin, transmits straight through
+  double wall_ior = 0;              // above 0, with medium -1: a dielectric thin wall of this index
   bool shadow_opaque = false;
   bool shadow_filter = false;  // path tracing: shadow rays go straight through an interface that bends light
   bool checker = false;

@@ -33,6 +33,7 @@
   FEATURE(bool, HAS_LIGHT_TREE, light_tree)         /* surfaces choose among the lights with an extent */ \
   FEATURE(bool, HAS_ROUGH, rough)                   /* some material reflects or transmits roughly */   \
   FEATURE(bool, HAS_ROUGH_GLASS, rough_glass)       /* some dielectric does */                          \
+  FEATURE(bool, HAS_THIN_WALLS, thin_walls)         /* some thin wall has an index or is frosted */     \
   FEATURE(bool, HAS_LAYERS, layers)                 /* some material has layers: shared/layers.h */     \
   FEATURE(bool, HAS_LAYER_MAPS, layer_maps)         /* some has metalness or roughness from a texture */ \
   FEATURE(bool, HAS_COAT_MAPS, coat_maps)           /* some has the weight of its coat from a texture */ \

@@ -22,6 +22,11 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_SCATTERS_ONCE 2048u  // its facets give no light back that meets two of them
 #define MATERIAL_SHINES 4096u         // it has a highlight: `specular` is not black
 #define MATERIAL_EMITS 8192u          // `emission` is not black
+#define MATERIAL_FROSTED 16384u       // path tracing: thin, and its facets transmit too
+#define MATERIAL_WALL 32768u          // thin, of an index: transmission.w
+
+// Facets of a lesser width alpha are perfect mirrors and interfaces for paths.
+#define LEAST_ALPHA 1e-4f
 
 // Highlights up to this exponent, where it is whole, are products alone.
 #define GREATEST_WHOLE_EXPONENT 65535.0f
@@ -39,7 +44,7 @@ typedef struct Material {
   float4 diffuse;          // kd
   float4 specular;         // ks; w = exponent
   float4 reflection;       // kr (a dielectric's tint, normally 1); w = alpha, the width of rough lobes
-  float4 transmission;     // kt (a dielectric's tint, normally 1)
+  float4 transmission;     // kt (a dielectric's tint, normally 1); w = index of a thin wall
   float4 checker_ambient;  // ka in odd cells
   float4 checker_diffuse;  // kd in odd cells; w = 1 / cell size (object space)
   float4 emission;         // radiance that the outside sends out

@@ -260,6 +260,7 @@ std::string plain_refusal(const CompiledScene& scene) {
   if (scene.features.sampler != SAMPLER_AUTO || scene.features.filter)
     return "the plain C++ program knows the default sampler and filter alone";
   if (scene.features.rough) return "the plain C++ program knows no roughness";
+  if (scene.features.thin_walls) return "the plain C++ program knows no thin walls";
   if (scene.features.object_motion) return "the plain C++ program knows no motion";
   if (scene.features.layers) return "the plain C++ program knows no layered materials";
   if (scene.features.sky) return "the plain C++ program knows no sky";

@@ -175,8 +175,9 @@ class Placer {
     if (material.flags & (MATERIAL_TRANSMITS | MATERIAL_REFLECTS) && material.reflection.w > 0)
       out_.features.rough = true;
     if (material.kind == MATERIAL_DIELECTRIC && material.flags & MATERIAL_TRANSMITS &&
-        material.reflection.w > 0)
+        material.reflection.w > 0 && !(material.flags & MATERIAL_THIN))
       out_.features.rough_glass = true;
+    if (material.flags & (MATERIAL_WALL | MATERIAL_FROSTED)) out_.features.thin_walls = true;
     const float4& shines = material.emission;
     if (shines.x != 0 || shines.y != 0 || shines.z != 0) out_.features.emission = true;
     if (flags & INSTANCE_TRANSMITS) out_.features.media = true;

@@ -17,7 +17,7 @@ FacetWidths facet_widths(double roughness, double anisotropy) {
 bool set_openpbr(const OpenPbr& values, MaterialDescription& material, MediumDescription& inside) {
   const double dielectric = material.textures.metalness >= 0 ? 1 : 1 - values.base_metalness,
                through = values.transmission_weight * dielectric;
-  const bool in_depth = values.transmission_depth > 0;
+  const bool in_depth = values.transmission_depth > 0 && !values.geometry_thin_walled;
   material.diffuse = values.base_weight * values.base_color;
   const double matte = material.textures.glass >= 0 ? 1 : 1 - values.transmission_weight;
   material.ambient = 0.1 * dielectric * matte * material.diffuse;
@@ -30,6 +30,8 @@ bool set_openpbr(const OpenPbr& values, MaterialDescription& material, MediumDes
   material.layers = values;
   if (through == 0) return false;
   material.type = MaterialType::dielectric;
+  material.wall_ior = values.geometry_thin_walled ? values.specular_ior : 0;
+  if (values.geometry_thin_walled) return false;
   inside.name = material.name;
   inside.ior = values.specular_ior;
   if (values.transmission_dispersion_scale > 0) {

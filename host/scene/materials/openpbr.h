@@ -40,6 +40,7 @@ struct OpenPbr {
   glm::dvec3 emission_color{1};
   double geometry_opacity = 1;
   double geometry_tangent = 0;  // degrees from the surface's first coordinate, against the clock from outside
+  bool geometry_thin_walled = false;  // what transmits is a thin wall of specular_ior, without an inside
 };
 
 /// Widths of the GGX distribution along and across the tangent.
@@ -58,8 +59,9 @@ struct MediumDescription;
 ///   roughness, emission, opacity by their names
 /// Where a texture of the material gives its metalness, these are the terms of what is no metal, and where
 /// one gives its transmission those of rays are of all that may transmit and the ambient one of what does
-/// not: kernels take the rest from them. Returns whether light goes through, and sets `inside` then: index
-/// and dispersion, and absorption and scattering that leave transmission_color after transmission_depth.
+/// not: kernels take the rest from them. Returns whether light goes into the surface, and sets `inside` then:
+/// index and dispersion, and absorption and scattering that leave transmission_color after
+/// transmission_depth. A thin wall has no inside, and is tinted by transmission_color once.
 bool set_openpbr(const OpenPbr& values, MaterialDescription& material, MediumDescription& inside);
 
 }  // namespace sundog

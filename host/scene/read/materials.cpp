@@ -187,10 +187,24 @@ void read_local_terms(JsonObject& object, MaterialDescription& material, Texture
         "medium's \"absorption\"");
 }
 
+/// A thin wall has an index and no inside.
+void read_wall(JsonObject& object, const JsonValue& thin, MaterialDescription& material) {
+  if (material.type != MaterialType::dielectric || object.has("medium"))
+    thin.fail("a thin wall is a dielectric with an \"ior\" and no \"medium\"");
+  object.at("ior", "the index of refraction of a thin wall");
+  MediumDescription wall;
+  read_ior(object, wall);
+  material.wall_ior = wall.ior;
+}
+
 void read_interior(JsonObject& object, MaterialDescription& material, const NameTable& names,
                    std::vector<MediumDescription>& media) {
   object.not_both("medium", "ior");
   object.not_both("medium", "abbe");
+  if (const auto thin = object.find("thin_walled"); thin && thin->boolean()) {
+    read_wall(object, *thin, material);
+    return;
+  }
   if (const auto medium = object.find("medium")) {
     material.medium = find_name(*medium, names, "medium");
   } else if (object.has("ior") || object.has("abbe")) {
@@ -247,7 +261,7 @@ void read_surface(JsonObject& object, MaterialDescription& material, TextureLibr
   if (const auto occlusion = object.find("occlusion"))
     material.textures.occlusion = textures.use(*occlusion, TextureUse::number);
   material.one_sided = object.choice("sides", "both", sides) == "front";
-  if (material.one_sided && material.medium >= 0)
+  if (material.one_sided && (material.medium >= 0 || material.wall_ior > 0))
     object.find("sides")->fail("a material with a \"medium\" or an \"ior\" has both sides");
   material.shadow_opaque = object.choice("shadow", "filter", shadows) == "opaque";
   material.shadow_filter = object.has("shadow") && !material.shadow_opaque;
@@ -261,7 +275,8 @@ void read_opacity(JsonObject& object, MaterialDescription& material, TextureLibr
   material.cutoff = object.number("cutoff", 0, zero_to_one);
   if (!opacity) return;
   material.opacity = read_number(*opacity, textures, zero_to_one, &material.textures.opacity);
-  if (material.medium >= 0 && (material.opacity < 1 || material.textures.opacity >= 0))
+  if ((material.medium >= 0 || material.wall_ior > 0) &&
+      (material.opacity < 1 || material.textures.opacity >= 0))
     opacity->fail(
         "a material with a \"medium\" or an \"ior\" is not partly there: give it a \"transmission\" "
         "instead");

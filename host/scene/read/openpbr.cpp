@@ -72,6 +72,7 @@ void read_emission(JsonObject& object, OpenPbr& to, MaterialDescription& materia
 
 void read_geometry(JsonObject& object, OpenPbr& to, MaterialDescription& material, TextureLibrary& textures) {
   to.geometry_tangent = object.number("geometry_tangent", to.geometry_tangent, {.low = -360, .high = 360});
+  to.geometry_thin_walled = object.boolean("geometry_thin_walled", to.geometry_thin_walled);
   const auto opacity = object.find("geometry_opacity");
   if (!opacity) return;
   to.geometry_opacity = read_number(*opacity, textures, zero_to_one, &material.textures.opacity);

@@ -6,6 +6,7 @@
 #include "lib/core/optics.cl"
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
+#include "lib/shade/bsdf.cl"
 #include "lib/shade/maps.cl"
 
 #define MAX_FILTERS 64
@@ -67,6 +68,16 @@ static inline REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, co
 }
 #endif
 
+// The part that thin walls of an index among the surfaces of `lanes` let through.
+#if HAS_THIN_WALLS
+static inline void pass_walls(const Scene* scene, const Faces* faces, REAL3 wi, MASK lanes, REAL* kept) {
+  const REAL cosine = real_min(fabs(dot3(safe_unit3(faces->outward), wi)), (REAL)(1.0f));
+  *kept = 1.0f - reflected_by_walls(scene, faces->material, faces->flags, cosine, 1.0f - *kept, lanes);
+}
+#else
+static inline void pass_walls(const Scene* scene, const Faces* faces, REAL3 wi, MASK lanes, REAL* kept) {}
+#endif
+
 // Multiplies `through` by the transmission of the surfaces that the lanes of `lanes` pass.
 static inline void filter_light(const Scene* scene, const SceneRays* rays, const Hits* hits,
                                 const Faces* faces, MASK here, MASK there, MASK lanes, REAL3* through) {
@@ -83,7 +94,8 @@ static inline void filter_light(const Scene* scene, const SceneRays* rays, const
   if (HAS_MAPS && any_lane(mapped)) passed = mapped_filters(scene, rays, hits, faces, mapped, passed);
   *through = select3(*through, multiply3(*through, passed), lanes);
   if (!any_lane(dielectric)) return;
-  const REAL kept = straight_transmittance(scene->media, here, there, faces->outward, rays->d, dielectric);
+  REAL kept = straight_transmittance(scene->media, here, there, faces->outward, rays->d, dielectric);
+  pass_walls(scene, faces, rays->d, dielectric, &kept);
   *through = select3(*through, scale3(*through, kept), dielectric);
 }
 

@@ -310,6 +310,40 @@ static inline REAL3 transmission_of(const Bsdfs* bsdf, __global const Material* 
 }
 #endif
 
+// The light that both faces of a thin wall of an index return together at the cosine c: 2 R / (1 + R), the sum
+// over all reflections between them, where R is that of one face (Stokes 1862, "On the Intensity of the Light
+// Reflected from or Transmitted through a Pile of Plates").
+#if HAS_THIN_WALLS
+static inline REAL wall_reflectance(REAL c, REAL index) {
+  const REAL r = fresnel_reflectance(c, refracted_cosine(c, index), index);
+  return 2.0f * r / (1.0f + r);
+}
+
+static inline MASK walls_of(MASK flags, MASK lanes) {
+  const int kind = (int)(MATERIAL_THIN | MATERIAL_WALL);
+  return lanes & MASK_OF((flags & kind) == kind);
+}
+
+// The same for the surfaces of `lanes` that are such walls; `f` for the others.
+static inline REAL reflected_by_walls(const Scene* scene, MASK materials, MASK flags, REAL c, REAL f,
+                                      MASK lanes) {
+  REAL reflected = f;
+  u32 index;
+  for (u32 left = lane_bits(walls_of(flags, lanes)); left;) {
+    const MASK mine = take_alike(materials, &left, &index);
+    const REAL own = wall_reflectance(c, (REAL)(scene->materials[index].transmission.w));
+    reflected = select(reflected, own, mine);
+  }
+  return reflected;
+}
+#else
+static inline MASK walls_of(MASK flags, MASK lanes) { return NO_LANES; }
+static inline REAL reflected_by_walls(const Scene* scene, MASK materials, MASK flags, REAL c, REAL f,
+                                      MASK lanes) {
+  return f;
+}
+#endif
+
 static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes) {
   const REAL3 none = all3((float3)(0.0f));
   const REAL one = (REAL)(1.0f), zero = (REAL)(0.0f);
@@ -330,7 +364,8 @@ static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf
   split.cos_i = real_clamp(dot3(bsdf->ns, wo), zero, one);
   split.eta = index_behind(scene, bsdf, bends);
   split.cos_t = refracted_cosine(split.cos_i, split.eta);
-  const REAL f = select(zero, fresnel_reflectance(split.cos_i, split.cos_t, split.eta), bends);
+  const REAL bent = select(zero, fresnel_reflectance(split.cos_i, split.cos_t, split.eta), bends);
+  const REAL f = reflected_by_walls(scene, bsdf->material, bsdf->flags, split.cos_i, bent, split.branches);
   split.f = select(zero, f, dielectric);
   // Total internal reflection turns everything into reflection.
   const MASK total = split.transmits & ~dielectric & MASK_OF(split.cos_t <= 0.0f);

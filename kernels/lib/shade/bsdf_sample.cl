@@ -73,11 +73,12 @@ static inline void find_highlights(const Scene* scene, const Bsdfs* bsdf, MASK l
 static inline void add_facets(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes, Lobes* lobes) {
   const REAL zero = (REAL)(0.0f);
   lobes->rough = make_microfacets(scene, bsdf, &lobes->split, wo, lanes);
-  // What does not bend goes straight through, whatever the facets.
-  const REAL of_facets = lobes->mirror + select(zero, lobes->through, lobes->rough.bends);
+  // What neither bends nor is frosted goes straight through, whatever the facets.
+  const MASK sending = transmitting_facets(&lobes->rough);
+  const REAL of_facets = lobes->mirror + select(zero, lobes->through, sending);
   lobes->facets = select(zero, of_facets, lobes->rough.rough);
   lobes->mirror = select(lobes->mirror, zero, lobes->rough.rough);
-  lobes->through = select(lobes->through, zero, lobes->rough.bends);
+  lobes->through = select(lobes->through, zero, sending);
 }
 static inline void add_facet_scatter(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
                                      REAL3 wi, MASK lanes, REAL3* value, REAL* chosen) {

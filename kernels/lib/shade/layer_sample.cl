@@ -7,7 +7,8 @@
 
 #if HAS_LAYERS
 // What fuzz and coat leave of light between the cosines c_o and c_i to the normal, where the first is on the
-// viewer's side, and the second behind the surface where it is below 0.
+// viewer's side, and the second behind the surface where it is below 0. Thin walls of an index have the same
+// layers on both sides: light that goes through leaves by those of the other.
 static inline REAL3 left_by_layers(const Scene* scene, __global const Layers* m, const Bsdfs* bsdf, REAL c_o,
                                    REAL c_i, MASK lanes) {
   const REAL3 white = all3((float3)(1.0f));
@@ -19,9 +20,10 @@ static inline REAL3 left_by_layers(const Scene* scene, __global const Layers* m,
   const REAL3 darkening = coat_darkening(m, &base, bsdf->base);
   const REAL3 tint_o = multiply3(coat_tints(m, &base, c_o), darkening),
               tint_i = coat_tints(m, &base, fabs(c_i));
+  const MASK walls = walls_of(bsdf->flags, lanes);
   const MASK front = lanes & bsdf->coated, back = lanes & bsdf->coated_behind & through;
   REAL3 left = scale3(multiply3(tint_o, tint_i), real_min(of_o, of_i));
-  left = select3(left, scale3(tint_o, of_o), through);
+  left = select3(left, scale3(tint_o, of_o), through & ~walls);
   left = select3(white, left, front);
   return select3(left, scale3(multiply3(tint_i, darkening), of_i), back);
 }

@@ -6,9 +6,6 @@
 #include "lib/shade/rough.cl"
 
 #if HAS_ROUGH
-// Narrower lobes are perfect mirrors and interfaces.
-#define LEAST_ALPHA 1e-4f
-
 // Light that glass sends on after further meetings with its facets: as much as is lost at the first, spread
 // evenly, m(wo) m(wi) over the mean of m where m is what a direction loses (Kulla and Conty 2017, "Revisiting
 // Physically Based Shading at Imageworks", whose sides share light so that the lobe is reciprocal too: the
@@ -44,11 +41,14 @@ static inline void set_further(const Scene* scene, const SpecularSplits* split, 
 #endif
 
 typedef struct Microfacets {
-  MASK rough, bends;  // has facets; they also transmit
+  MASK rough, bends;  // has facets; they also transmit as interfaces that bend light
   MASK mends;         // the lobe is scaled by gains: see microfacet_gain()
   MASK glass;         // of those that transmit the dielectrics whose further light is a lobe of its own
   REAL alpha, lambda_o;
   REAL gain;  // of the viewer's side
+#if HAS_THIN_WALLS
+  MASK frosted;  // thin walls with facets that transmit
+#endif
 #if HAS_ROUGH_GLASS
   FurtherLight further;
 #endif
@@ -71,12 +71,30 @@ static inline void start_further(const Scene* scene, const SpecularSplits* split
                                  Microfacets* facets) {}
 #endif
 
+// Frosted thin walls send light through as they reflect it, on the other side: by the same facets, mirrored
+// through the surface (KHR_materials_transmission). What both faces make of light together is the facet's
+// split.
+#if HAS_THIN_WALLS
+static inline void find_frosted(const Bsdfs* bsdf, const SpecularSplits* split, Microfacets* facets) {
+  const int kind = (int)(MATERIAL_THIN | MATERIAL_FROSTED);
+  facets->frosted = facets->rough & split->transmits & MASK_OF((bsdf->flags & kind) == kind);
+}
+static inline MASK frosted_of(const Microfacets* facets) { return facets->frosted; }
+#else
+static inline void find_frosted(const Bsdfs* bsdf, const SpecularSplits* split, Microfacets* facets) {}
+static inline MASK frosted_of(const Microfacets* facets) { return NO_LANES; }
+#endif
+static inline MASK transmitting_facets(const Microfacets* facets) {
+  return facets->bends | frosted_of(facets);
+}
+
 static inline Microfacets make_microfacets(const Scene* scene, const Bsdfs* bsdf, const SpecularSplits* split,
                                            REAL3 wo, MASK lanes) {
   Microfacets facets;
   facets.alpha = facet_width(scene, bsdf, lanes);
   facets.rough = split->branches & MASK_OF(facets.alpha >= LEAST_ALPHA);
   facets.bends = facets.rough & split->transmits & MASK_OF(split->eta != 1.0f);
+  find_frosted(bsdf, split, &facets);
   facets.mends = giving_back(bsdf, facets.rough & ~facets.bends);
   facets.glass = rough_glass(scene, bsdf, giving_back(bsdf, facets.bends));
   if (!any_lane(facets.rough)) return facets;
@@ -105,7 +123,7 @@ static inline REAL3 facet_between(REAL3 n, REAL3 wo, REAL3 wi, REAL eta, MASK be
 static inline REAL facet_reflects(const Microfacets* facets, const SpecularSplits* split) {
   const REAL r = greatest3(split->kr), t = greatest3(split->kt);
   const REAL part = r / real_max(r + t, (REAL)(1e-30f));
-  return select((REAL)(1.0f), part, facets->bends);
+  return select((REAL)(1.0f), part, transmitting_facets(facets));
 }
 
 // Adds further light to pi times the BSDF times the cosine, and its samples to the density, of glass for
@@ -159,7 +177,7 @@ static inline MASK draw_further(const Bsdfs* bsdf, const Microfacets* facets, RE
 #endif
 
 // pi times the BSDF times the cosine of single reflections and refractions by facets of the normals h, and
-// the density of wi among them.
+// the density of wi among them. `below`: of transmission; of frosted walls wi is then mirrored.
 static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
                                 REAL3 wo, REAL3 wi, REAL3 h, MASK below, MASK good, REAL* density) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), cos_i = dot3(bsdf->ns, wi);
@@ -170,7 +188,8 @@ static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Mic
   const REAL chance = facet_reflects(facets, &split);
   const REAL bent = fma(eta, wi_h, wo_h);
   const REAL jacobian = select(0.25f / real_max(wo_h, (REAL)(1e-6f)),
-                               eta * eta * fabs(wi_h) / real_max(bent * bent, (REAL)(1e-20f)), below);
+                               eta * eta * fabs(wi_h) / real_max(bent * bent, (REAL)(1e-20f)),
+                               below & ~frosted_of(facets));
   const REAL cos_o = real_max(dot3(bsdf->ns, wo), (REAL)(1e-6f));
   const REAL seen = facet_density(bsdf->ns, h, facets->alpha) * wo_h / cos_o * jacobian;
   const REAL lambda_i = smith_lambda(fabs(cos_i), facets->alpha);
@@ -181,8 +200,10 @@ static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Mic
   const MASK mends = good & facets->mends;
   if (any_lane(mends)) {
     const REAL more = fma(facets->gain, microfacet_gain(scene, cos_i, facets->alpha, mends), (REAL)(-1.0f));
-    const REAL3 mended = real3(color.x * fma(color.x, more, one), color.y * fma(color.y, more, one),
-                               color.z * fma(color.z, more, one));
+    // Light that meets a further facet of a frosted wall leaves it on either side.
+    const REAL3 kept = select3(color, add3(split.kr, split.kt), frosted_of(facets));
+    const REAL3 mended = real3(color.x * fma(kept.x, more, one), color.y * fma(kept.y, more, one),
+                               color.z * fma(kept.z, more, one));
     color = select3(color, mended, mends);
   }
   return select3(all3((float3)(0.0f)), scale3(color, size), good);
@@ -196,33 +217,38 @@ static inline REAL3 facet_scatter(const Scene* scene, const Bsdfs* bsdf, const M
   const REAL zero = (REAL)(0.0f);
   const REAL cos_i = dot3(bsdf->ns, wi), side = dot3(bsdf->ng, wi);
   const MASK above = lanes & facets->rough & MASK_OF(cos_i > 0.0f) & MASK_OF(side > 0.0f);
-  const MASK below = lanes & facets->bends & MASK_OF(cos_i < 0.0f) & MASK_OF(side < 0.0f);
-  const REAL3 h = facet_between(bsdf->ns, wo, wi, eta, below);
-  const REAL wo_h = dot3(wo, h), wi_h = dot3(wi, h);
-  const MASK good = (above & MASK_OF(wo_h > 0.0f)) | (below & MASK_OF(wo_h > 0.0f) & MASK_OF(wi_h < 0.0f));
+  const MASK below = lanes & transmitting_facets(facets) & MASK_OF(cos_i < 0.0f) & MASK_OF(side < 0.0f);
+  const MASK mirrored = below & frosted_of(facets), bent = below & ~mirrored;
+  const REAL3 from = select3(wi, reflect_direction(wi, bsdf->ns), mirrored);
+  const REAL3 h = facet_between(bsdf->ns, wo, from, eta, bent);
+  const REAL wo_h = dot3(wo, h), wi_h = dot3(from, h);
+  const MASK good =
+      ((above | mirrored) & MASK_OF(wo_h > 0.0f)) | (bent & MASK_OF(wo_h > 0.0f) & MASK_OF(wi_h < 0.0f));
   REAL3 value = all3((float3)(0.0f));
   *density = zero;
-  if (any_lane(good)) value = facet_light(scene, bsdf, facets, eta, wo, wi, h, below, good, density);
+  if (any_lane(good)) value = facet_light(scene, bsdf, facets, eta, wo, from, h, below, good, density);
   add_further(scene, bsdf, facets, eta, cos_i, above | below, &value, density);
   return value;
 }
 
 // Directions that facets send light from wo to; the numbers u in [0, 1) choose the facet, and `u_side`
-// between its reflection and its transmission, which is `through`.
+// between its reflection and its transmission, which is `below`.
 static inline REAL3 facet_direction(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets,
-                                    REAL3 wo, REAL u_side, REAL u_x, REAL u_y, MASK lanes, MASK* through) {
+                                    REAL3 wo, REAL u_side, REAL u_x, REAL u_y, MASK lanes, MASK* below) {
   Bsdfs facet = *bsdf;
   REAL rest;
   REAL3 wi = all3((float3)(0.0f));
-  *through = NO_LANES;
-  const MASK further = draw_further(bsdf, facets, u_side, u_x, u_y, lanes, &rest, through, &wi);
+  *below = NO_LANES;
+  const MASK further = draw_further(bsdf, facets, u_side, u_x, u_y, lanes, &rest, below, &wi);
   facet.ns = visible_normal(bsdf->ns, wo, facets->alpha, u_x, u_y);
   const SpecularSplits split = bsdf_specular(scene, &facet, wo, lanes);
   const REAL3 d = negate3(wo);
   const REAL3 bent = refract_direction(d, facet.ns, split.cos_i, split.cos_t, split.eta);
   const MASK behind = MASK_OF(rest >= facet_reflects(facets, &split));
-  wi = select3(select3(reflect_direction(d, facet.ns), bent, behind), wi, further);
-  *through = select(behind, *through, further);
+  const REAL3 reflected = reflect_direction(d, facet.ns);
+  const REAL3 through = select3(bent, reflect_direction(reflected, bsdf->ns), frosted_of(facets));
+  wi = select3(select3(reflected, through, behind), wi, further);
+  *below = select(behind, *below, further);
   return wi;
 }
 #endif

@@ -19,13 +19,17 @@ inline Layered layered(const OpenPbr& values) {
   const bool through = set_openpbr(values, description, inside);
   to.material.flags = MATERIAL_LAYERED | MATERIAL_REFLECTS | (through ? MATERIAL_TRANSMITS : MATERIAL_THIN);
   to.material.kind = through ? MATERIAL_DIELECTRIC : MATERIAL_PHONG;
+  if (description.wall_ior > 0) {
+    to.material.flags |= MATERIAL_TRANSMITS | MATERIAL_WALL | MATERIAL_FROSTED;
+    to.material.kind = MATERIAL_DIELECTRIC;
+  }
   const auto packed = [](const dvec3& c, double w) {
     return float4{float(c.x), float(c.y), float(c.z), float(w)};
   };
   to.material.diffuse = packed(description.diffuse, 0);
   to.material.reflection =
       packed(description.reflection, values.specular_roughness * values.specular_roughness);
-  to.material.transmission = packed(description.transmission, 0);
+  to.material.transmission = packed(description.transmission, description.wall_ior);
   if (through) to.index = inside.ior;
   return to;
 }

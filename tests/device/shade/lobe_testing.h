@@ -33,7 +33,7 @@ Bsdfs surface(__global const Material* materials, u32 below, float4 base) {
   bsdf.tangent = real3(1.0f, 0.0f, 0.0f);
   bsdf.bitangent = real3(0.0f, 1.0f, 0.0f);
   bsdf.there = (REAL)(1.0f);
-  const MASK layered = MASK_OF((bsdf.flags & (int)MATERIAL_LAYERED) != 0), inside = MASK_OF(below != 0u);
+  const MASK layered = MASK_OF((bsdf.flags & (int)MATERIAL_LAYERED) != 0), inside = MASK_OF(below != 0u && !(materials[0].flags & MATERIAL_THIN));
   if (layered) bsdf.diffuse = none;
   bsdf.coated = layered & ~inside;
   bsdf.coated_behind = layered & inside;
@@ -95,6 +95,7 @@ class Tester {
                             {"LANES", "1"},
                             {"WIDE_VECTORS", "0"},
                             {"HAS_ROUGH_GLASS", "1"},
+                            {"HAS_THIN_WALLS", "1"},
                             {"HAS_LAYERS", layered ? "1" : "0"},
                             {"HAS_LAYER_MAPS", mapped ? "1" : "0"},
                             {"HAS_COAT_MAPS", mapped ? "1" : "0"}})

@@ -123,6 +123,50 @@ TEST_CASE("a material scatters as often as its facets have it, or once where its
   CHECK(once.reflection == plain.reflection);
 }
 
+TEST_CASE("a thin wall has an index and no medium, and stops shadow rays where it is frosted for paths") {
+  const auto compiled = [](const std::string& material, const char* integrator = "path") {
+    SceneDescription scene = load_scene_text(R"({"objects": [{"type": "sphere", "material": "m"}],
+      "materials": {"m": )" + material + "}}");
+    scene.render.integrator = integrator;
+    return compile(scene);
+  };
+  const std::string plain = R"({"type": "dielectric", "thin_walled": true, "ior": 1.4, "roughness": )",
+                    pbr = R"({"type": "openpbr", "geometry_thin_walled": true, "transmission_weight": 0.5,
+                             "specular_ior": 1.4, "transmission_color": [0.5, 1, 1], "transmission_depth": 2,
+                             "specular_roughness": )";
+  constexpr u32 wall = MATERIAL_THIN | MATERIAL_WALL | MATERIAL_TRANSMITS | MATERIAL_REFLECTS,
+                frosted = MATERIAL_FROSTED | MATERIAL_SHADOW_OPAQUE;
+  for (const std::string& text : {plain, pbr}) {
+    const u32 also = text == pbr ? u32{MATERIAL_LAYERED} : 0;
+    const CompiledScene smooth = compiled(text + "0}"), rough = compiled(text + "0.5}"),
+                        blurred = compiled(text + "0.5}", "whitted"), narrow = compiled(text + "0.005}");
+    CHECK(smooth.materials[0].flags == (wall | also));
+    CHECK(narrow.materials[0].flags == (wall | also));
+    CHECK(rough.materials[0].flags == (wall | also | frosted));
+    CHECK(blurred.materials[0].flags == (wall | also));
+    CHECK(rough.materials[0].transmission.w == 1.4f);
+    CHECK(rough.materials[0].kind == MATERIAL_DIELECTRIC);
+    CHECK((rough.features.thin_walls && smooth.features.thin_walls && rough.features.rough));
+    CHECK_FALSE((rough.features.media || rough.features.rough_glass || rough.features.shadow_filters));
+    CHECK(smooth.features.shadow_filters);
+    CHECK(rough.info.medium_count == 1);
+  }
+  CHECK(compiled(pbr + "0}").materials[0].transmission == float4{0.25f, 0.5f, 0.5f, 1.4f});  // whatever the depth
+  const std::string fixed = R"({"diffuse": 0, "reflection": 0.1, "transmission": 0.8, "roughness": 0.5)";
+  const CompiledScene rough = compiled(fixed + "}");
+  CHECK((rough.materials[0].flags & frosted) == frosted);
+  CHECK_FALSE((rough.materials[0].flags & MATERIAL_WALL));
+  CHECK(rough.features.thin_walls);
+  // What is not there is seen straight on.
+  for (const char* partly : {R"(, "opacity": 0.5})", R"(, "sides": "front"})"}) {
+    const CompiledScene straight = compiled(fixed + partly);
+    CHECK_FALSE((straight.materials[0].flags & frosted));
+    CHECK_FALSE(straight.features.thin_walls);
+  }
+  CHECK((compiled(fixed + R"(, "shadow": "filter"})").materials[0].flags & frosted) == MATERIAL_FROSTED);
+  CHECK_FALSE(compiled(fixed + "}", "whitted").features.thin_walls);
+}
+
 TEST_CASE("features follow the materials that are used") {
   SceneDescription scene = glass_sphere();
   CompiledScene flat = compile(scene);

@@ -114,6 +114,40 @@ TEST_CASE("glass of a glTF is as rough as it says for integrators that follow pa
   CHECK(near(frosted.by_paths->transmission, {0.4, 0.8, 0.8}));
 }
 
+TEST_CASE("a rough pane of a glTF is a thin wall for integrators that follow paths, others have fixed shares",
+          "[models]") {
+  const auto pane = [](const std::string& roughness, const std::string& more = "", const std::string& alpha = "") {
+    return material_of(R"({"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":)" + roughness +
+                       R"(,"baseColorFactor":[0.5,1,1,1]})" + alpha +
+                       R"(,"extensions":{"KHR_materials_ior":{"ior":1.4},
+                       "KHR_materials_transmission":{"transmissionFactor":0.8})" +
+                       more + "}}");
+  };
+  for (const char* sheen : {"", R"(,"KHR_materials_sheen":{"sheenColorFactor":[0.2,0.2,0.2]})"}) {
+    const MaterialDescription rough = pane("0.5", sheen);
+    REQUIRE(rough.by_paths);
+    const MaterialDescription& wall = *rough.by_paths;
+    CHECK(wall.type == MaterialType::dielectric);
+    CHECK(wall.medium == -1);
+    CHECK(wall.wall_ior == 1.4);
+    CHECK(wall.roughness == 0.5);
+    CHECK(wall.reflection == dvec3(0.8));
+    CHECK(near(wall.transmission, {0.4, 0.8, 0.8}));
+    CHECK(wall.layers->geometry_thin_walled);
+    CHECK(rough.type == MaterialType::phong);
+    CHECK(rough.wall_ior == 0);
+    CHECK(rough.transmission.y == Approx(0.8 * (1 - 0.4 * 0.4 / (2.4 * 2.4))));
+  }
+  for (const MaterialDescription& other :
+       {pane("0"), pane("0.5", "", R"(,"alphaMode":"MASK")"),
+        pane("0.5", R"(,"KHR_materials_volume":{"thicknessFactor":1})")}) {
+    REQUIRE(other.by_paths);
+    CHECK(other.by_paths->wall_ior == 0);
+  }
+  CHECK(pane("0").by_paths->type == MaterialType::phong);
+  CHECK(pane("0").by_paths->reflection.x == Approx(0.8 * 0.4 * 0.4 / (2.4 * 2.4)));
+}
+
 TEST_CASE("opacity of a glTF is the same for integrators that follow paths", "[models]") {
   const std::string pbr = R"({"pbrMetallicRoughness":{"metallicFactor":0,"baseColorFactor":[1,1,1,0.25]})";
   const MaterialDescription blended = material_of(pbr + R"(,"alphaMode":"BLEND"})");

@@ -9,6 +9,7 @@
 
 #include "scene/models/gltf/gltf_layers.h"
 #include "shared/metal_rough.h"
+#include "shared/scene.h"
 
 namespace sundog::models {
 namespace {
@@ -56,6 +57,21 @@ Dispersion read_dispersion(const JsonAt& at, double ior) {
   const auto extension = at.extension("KHR_materials_dispersion");
   const double dispersion = extension ? extension->number("dispersion", 0, not_negative) : 0;
   return dispersion > 0 ? cauchy_of_abbe(ior, std::max(20 / dispersion, 1.0)) : Dispersion{};
+}
+
+/// KHR_materials_transmission without a volume is a thin wall. Smooth ones, and those that are partly there,
+/// have the fixed shares of GltfMaterials::transmit() with every integrator.
+bool is_rough_wall(const JsonAt& at, const MaterialDescription& material, double roughness, double ior) {
+  const std::string mode = at.text("alphaMode");
+  return material.type == MaterialType::phong && material.transmission != dvec3(0) && ior >= 1 &&
+         square(roughness) >= double(LEAST_ALPHA) && mode != "BLEND" && mode != "MASK";
+}
+
+/// For integrators that follow paths the Fresnel equations take the place of the share `mirrored`.
+void make_wall(OpenPbr& values, MaterialDescription& material, double mirrored) {
+  values.geometry_thin_walled = true;
+  material.type = MaterialType::dielectric;
+  material.transmission /= 1 - mirrored;
 }
 
 }  // namespace
@@ -236,9 +252,15 @@ void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const
   const bool always = has_layers(at);
   if (!always && !fits_layers(at)) return;
   OpenPbr values = gltf_openpbr(at, entry.values, ior);
+  const bool wall = is_rough_wall(at, entry.material, entry.values.roughness, ior);
   if (always) {
+    MaterialDescription other = entry.material;
     set_gltf_layers(values, reflectance(ior), entry.material);
     entry.specular = entry.specular_color = std::nullopt;
+    if (!wall) return;
+    make_wall(values, other, reflectance(ior));
+    set_gltf_layers(values, reflectance(ior), other);
+    entry.by_paths = other;
     return;
   }
   MaterialDescription other;
@@ -251,6 +273,7 @@ void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const
   if (metal_map) other.textures.metalness = 0;
   if (entry.transmission) other.textures.glass = 0;
   if (values.coat_weight > 0) entry.coat_weight = read_coat_texture(at);
+  if (wall) make_wall(values, other, reflectance(ior));
   set_gltf_layers(values, reflectance(ior), other);
   entry.by_paths = other;
 }

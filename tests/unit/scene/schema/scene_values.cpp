@@ -106,7 +106,7 @@ std::string line(const OpenPbr& values) {
 std::string line(const MaterialDescription& m) {
   return fmt::format("material {} {} {} {} {} {} {} {} ", m.name, static_cast<int>(m.type), text(m.ambient),
                      text(m.diffuse), text(m.specular), text(m.emission), m.exponent, m.blinn) +
-         fmt::format("{} {} ", m.roughness, m.multiple_scattering) +
+         fmt::format("{} {} {} ", m.roughness, m.multiple_scattering, m.wall_ior) +
          fmt::format("{} {} {} {} {} {} {} {} {}\n", text(m.reflection), text(m.transmission), m.medium,
                      m.shadow_opaque, m.checker, text(m.checker_ambient), text(m.checker_diffuse),
                      m.checker_size, m.vertex_color) +

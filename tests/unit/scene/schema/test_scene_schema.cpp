@@ -47,6 +47,7 @@ const std::string everything = R"({
     "m": {"color": {"checker": [[0, 0, 0], [1, 1, 1]]}, "ambient": {}, "specular": {}, "reflection": {}},
     "plain": {"color": [0, 1, 0], "ambient": 0, "specular": 0.5, "transmission": 1, "ior": 1.5},
     "glass": {"type": "dielectric", "medium": "a"},
+    "wall": {"type": "dielectric", "thin_walled": true, "ior": 1.5},
     "layered": {"type": "openpbr", "base_color": "t", "transmission_weight": 0.5, "coat_weight": 1, "fuzz_weight": 0.5},
     "mapped": {"type": "openpbr", "base_metalness": "t", "specular_roughness": "t", "transmission_weight": "t", "coat_weight": "t"}},
   "meshes": {
