@@ -68,7 +68,7 @@ static inline REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, co
 }
 #endif
 
-// The part that thin walls of an index among the surfaces of `lanes` let through.
+// Sets the part of light that the thin walls of an index among the surfaces of `lanes` let through.
 #if HAS_THIN_WALLS
 static inline void pass_walls(const Scene* scene, const Faces* faces, REAL3 wi, MASK lanes, REAL* kept) {
   const REAL cosine = real_min(fabs(dot3(safe_unit3(faces->outward), wi)), (REAL)(1.0f));

@@ -310,21 +310,22 @@ static inline REAL3 transmission_of(const Bsdfs* bsdf, __global const Material* 
 }
 #endif
 
-// The light that both faces of a thin wall of an index return together at the cosine c: 2 R / (1 + R), the sum
-// over all reflections between them, where R is that of one face (Stokes 1862, "On the Intensity of the Light
-// Reflected from or Transmitted through a Pile of Plates").
+// What both faces of a thin wall of an index reflect together at the cosine c: 2 R / (1 + R), the sum of all
+// reflections between them, where R is what one face reflects (Stokes 1862, "On the Intensity of the Light
+// Reflected from or Transmitted through a Pile of Plates", without polarisation).
 #if HAS_THIN_WALLS
 static inline REAL wall_reflectance(REAL c, REAL index) {
   const REAL r = fresnel_reflectance(c, refracted_cosine(c, index), index);
   return 2.0f * r / (1.0f + r);
 }
 
+// The surfaces of `lanes` that are such walls.
 static inline MASK walls_of(MASK flags, MASK lanes) {
   const int kind = (int)(MATERIAL_THIN | MATERIAL_WALL);
   return lanes & MASK_OF((flags & kind) == kind);
 }
 
-// The same for the surfaces of `lanes` that are such walls; `f` for the others.
+// What those walls reflect; `f` for the other surfaces.
 static inline REAL reflected_by_walls(const Scene* scene, MASK materials, MASK flags, REAL c, REAL f,
                                       MASK lanes) {
   REAL reflected = f;

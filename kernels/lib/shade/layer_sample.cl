@@ -8,7 +8,7 @@
 #if HAS_LAYERS
 // What fuzz and coat leave of light between the cosines c_o and c_i to the normal, where the first is on the
 // viewer's side, and the second behind the surface where it is below 0. Thin walls of an index have the same
-// layers on both sides: light that goes through leaves by those of the other.
+// layers on both sides, and light that goes through passes both.
 static inline REAL3 left_by_layers(const Scene* scene, __global const Layers* m, const Bsdfs* bsdf, REAL c_o,
                                    REAL c_i, MASK lanes) {
   const REAL3 white = all3((float3)(1.0f));

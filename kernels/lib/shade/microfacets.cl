@@ -71,9 +71,8 @@ static inline void start_further(const Scene* scene, const SpecularSplits* split
                                  Microfacets* facets) {}
 #endif
 
-// Frosted thin walls send light through as they reflect it, on the other side: by the same facets, mirrored
-// through the surface (KHR_materials_transmission). What both faces make of light together is the facet's
-// split.
+// Frosted thin walls transmit by the facets that they reflect by: to the direction of the reflection,
+// mirrored through the surface (KHR_materials_transmission). Each facet has the shares of both faces together.
 #if HAS_THIN_WALLS
 static inline void find_frosted(const Bsdfs* bsdf, const SpecularSplits* split, Microfacets* facets) {
   const int kind = (int)(MATERIAL_THIN | MATERIAL_FROSTED);
@@ -200,7 +199,7 @@ static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Mic
   const MASK mends = good & facets->mends;
   if (any_lane(mends)) {
     const REAL more = fma(facets->gain, microfacet_gain(scene, cos_i, facets->alpha, mends), (REAL)(-1.0f));
-    // Light that meets a further facet of a frosted wall leaves it on either side.
+    // Light that meets a further facet of a frosted wall may leave it on either side.
     const REAL3 kept = select3(color, add3(split.kr, split.kt), frosted_of(facets));
     const REAL3 mended = real3(color.x * fma(kept.x, more, one), color.y * fma(kept.y, more, one),
                                color.z * fma(kept.z, more, one));
