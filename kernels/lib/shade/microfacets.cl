@@ -176,7 +176,8 @@ static inline MASK draw_further(const Bsdfs* bsdf, const Microfacets* facets, RE
 #endif
 
 // pi times the BSDF times the cosine of single reflections and refractions by facets of the normals h, and
-// the density of wi among them. `below`: of transmission; of frosted walls wi is then mirrored.
+// the density of wi among them. `below`: of transmission. Of frosted walls wi is then mirrored, for which
+// refraction's change of solid angle, with an eta of 1, is that of reflection.
 static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
                                 REAL3 wo, REAL3 wi, REAL3 h, MASK below, MASK good, REAL* density) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), cos_i = dot3(bsdf->ns, wi);
@@ -187,8 +188,7 @@ static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Mic
   const REAL chance = facet_reflects(facets, &split);
   const REAL bent = fma(eta, wi_h, wo_h);
   const REAL jacobian = select(0.25f / real_max(wo_h, (REAL)(1e-6f)),
-                               eta * eta * fabs(wi_h) / real_max(bent * bent, (REAL)(1e-20f)),
-                               below & ~frosted_of(facets));
+                               eta * eta * fabs(wi_h) / real_max(bent * bent, (REAL)(1e-20f)), below);
   const REAL cos_o = real_max(dot3(bsdf->ns, wo), (REAL)(1e-6f));
   const REAL seen = facet_density(bsdf->ns, h, facets->alpha) * wo_h / cos_o * jacobian;
   const REAL lambda_i = smith_lambda(fabs(cos_i), facets->alpha);
