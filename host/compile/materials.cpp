@@ -80,8 +80,8 @@ bool bends_light(const std::vector<Medium>& media) {
   });
 }
 
-/// Whether facets of a thin material send paths through it. What is not there is seen straight on, so facets of
-/// a material that is partly there only reflect.
+/// Whether facets of a thin material send paths through it. What is not there is seen straight on, so facets
+/// of a material that is partly there only reflect.
 bool is_frosted(const SceneDescription& scene, const MaterialDescription& material) {
   const bool there = material.opacity == 1 && material.textures.opacity < 0 && !material.one_sided;
   const double alpha = material.roughness * material.roughness;
@@ -93,8 +93,8 @@ bool is_frosted(const SceneDescription& scene, const MaterialDescription& materi
 /// interfaces and frosted walls, and shadow rays that went straight through these would find it a second
 /// time. So would photons.
 bool stops_shadows(const SceneDescription& scene, const MaterialDescription& material, bool bends) {
-  const bool by_path = (traces_paths(scene.render.integrator) && bends && material.medium >= 0) ||
-                       is_frosted(scene, material);
+  const bool by_path =
+      (traces_paths(scene.render.integrator) && bends && material.medium >= 0) || is_frosted(scene, material);
   return material.shadow_opaque || (by_path && (!material.shadow_filter || scene.render.caustics));
 }
 

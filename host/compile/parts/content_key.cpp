@@ -179,9 +179,9 @@ KeyMaker& KeyMaker::add(const TextureDescription& texture) {
 KeyMaker& KeyMaker::add(const MaterialDescription& material) {
   const auto& [name, type, ambient, diffuse, specular, exponent, blinn, emission, reflection, transmission,
                roughness, multiple_scattering, medium, wall_ior, shadow_opaque, shadow_filter, checker,
-               checker_ambient, checker_diffuse, checker_size, vertex_color, opacity, cutoff, one_sided, textures,
-               metal_rough, normal_scale, bump, bump_uv, parallax, displaced_by, displacement, displacement_middle,
-               displacement_edge, occlusion, coat, layers, by_paths] = material;
+               checker_ambient, checker_diffuse, checker_size, vertex_color, opacity, cutoff, one_sided,
+               textures, metal_rough, normal_scale, bump, bump_uv, parallax, displaced_by, displacement,
+               displacement_middle, displacement_edge, occlusion, coat, layers, by_paths] = material;
   (void)name;
   // These have made the meshes.
   (void)displaced_by, (void)displacement, (void)displacement_middle, (void)displacement_edge;

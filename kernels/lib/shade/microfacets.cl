@@ -72,7 +72,8 @@ static inline void start_further(const Scene* scene, const SpecularSplits* split
 #endif
 
 // Frosted thin walls transmit by the facets that they reflect by: to the direction of the reflection,
-// mirrored through the surface (KHR_materials_transmission). Each facet has the shares of both faces together.
+// mirrored through the surface (KHR_materials_transmission). Each facet has the shares of both faces
+// together.
 #if HAS_THIN_WALLS
 static inline void find_frosted(const Bsdfs* bsdf, const SpecularSplits* split, Microfacets* facets) {
   const int kind = (int)(MATERIAL_THIN | MATERIAL_FROSTED);

@@ -44,7 +44,8 @@ constexpr double no_medium = 1;
 
 }  // namespace
 
-TEST_CASE("smooth and nearly smooth thin walls share light as the sum of all reflections between their faces") {
+TEST_CASE(
+    "smooth and nearly smooth thin walls share light as the sum of all reflections between their faces") {
   // The sum itself: out of the second face after 2 k reflections inside.
   for (const double r : {0.04, 0.3}) {
     double back = r, ahead = 0;
@@ -187,7 +188,8 @@ TEST_CASE("layers over a frosted wall stand on both of its sides") {
   tester.set_layers(white);
   for (const double cosine : {1.0, 0.5, 0.2}) {
     INFO(cosine);
-    const double mean = mean_weight(tester.draw(layered(white).material, no_medium, at_cosine(cosine), 4 * count));
+    const double mean =
+        mean_weight(tester.draw(layered(white).material, no_medium, at_cosine(cosine), 4 * count));
     CHECK(mean < 1.005);
     CHECK(mean > 0.93);
   }
@@ -223,13 +225,12 @@ SceneDescription below_wall(double roughness, u32 strategy) {
 }
 
 /// The floor's radiance: of what the wall lets in, and gives back, of light from all around.
-double lit_floor(double albedo, double returned) {
-  return albedo * (1 - returned) / (1 - albedo * returned);
-}
+double lit_floor(double albedo, double returned) { return albedo * (1 - returned) / (1 - albedo * returned); }
 
 }  // namespace
 
-TEST_CASE("a floor under a sky behind a thin wall has the light of all reflections, by each way of finding it") {
+TEST_CASE(
+    "a floor under a sky behind a thin wall has the light of all reflections, by each way of finding it") {
   double returned = 0;
   constexpr int steps = 1000;
   for (int i = 0; i < steps; ++i) {
@@ -277,7 +278,9 @@ TEST_CASE("light of a lamp goes straight through smooth thin walls, and stops at
   });
 }
 
-TEST_CASE("a frosted wall is no way into a medium: in a ball that absorbs, the light of both sides stays absorbed") {
+TEST_CASE(
+    "a frosted wall is no way into a medium: in a ball that absorbs, the light of both sides stays "
+    "absorbed") {
   on_picture_devices([](const DeviceInfo& device) {
     SceneDescription scene = path_scene({0, 0, 0.5}, {0, 0, -4}, 16);
     scene.image.background_bottom = scene.image.background_top = dvec3(1);

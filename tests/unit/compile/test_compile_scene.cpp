@@ -151,7 +151,8 @@ TEST_CASE("a thin wall has an index and no medium, and stops shadow rays where i
     CHECK(smooth.features.shadow_filters);
     CHECK(rough.info.medium_count == 1);
   }
-  CHECK(compiled(pbr + "0}").materials[0].transmission == float4{0.25f, 0.5f, 0.5f, 1.4f});  // whatever the depth
+  CHECK(compiled(pbr + "0}").materials[0].transmission ==
+        float4{0.25f, 0.5f, 0.5f, 1.4f});  // whatever the depth
   const std::string fixed = R"({"diffuse": 0, "reflection": 0.1, "transmission": 0.8, "roughness": 0.5)";
   const CompiledScene rough = compiled(fixed + "}");
   CHECK((rough.materials[0].flags & frosted) == frosted);

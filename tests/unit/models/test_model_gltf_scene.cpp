@@ -116,7 +116,8 @@ TEST_CASE("glass of a glTF is as rough as it says for integrators that follow pa
 
 TEST_CASE("a rough pane of a glTF is a thin wall for integrators that follow paths, others have fixed shares",
           "[models]") {
-  const auto pane = [](const std::string& roughness, const std::string& more = "", const std::string& alpha = "") {
+  const auto pane = [](const std::string& roughness, const std::string& more = "",
+                       const std::string& alpha = "") {
     return material_of(R"({"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":)" + roughness +
                        R"(,"baseColorFactor":[0.5,1,1,1]})" + alpha +
                        R"(,"extensions":{"KHR_materials_ior":{"ior":1.4},
@@ -138,9 +139,8 @@ TEST_CASE("a rough pane of a glTF is a thin wall for integrators that follow pat
     CHECK(rough.wall_ior == 0);
     CHECK(rough.transmission.y == Approx(0.8 * (1 - 0.4 * 0.4 / (2.4 * 2.4))));
   }
-  for (const MaterialDescription& other :
-       {pane("0"), pane("0.5", "", R"(,"alphaMode":"MASK")"),
-        pane("0.5", R"(,"KHR_materials_volume":{"thicknessFactor":1})")}) {
+  for (const MaterialDescription& other : {pane("0"), pane("0.5", "", R"(,"alphaMode":"MASK")"),
+                                           pane("0.5", R"(,"KHR_materials_volume":{"thicknessFactor":1})")}) {
     REQUIRE(other.by_paths);
     CHECK(other.by_paths->wall_ior == 0);
   }
