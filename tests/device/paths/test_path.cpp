@@ -5,6 +5,7 @@
 
 #include "path_testing.h"
 #include "same_bits.h"
+#include "sdf_testing.h"
 
 using namespace sundog;
 using namespace sundog::paths;
@@ -96,6 +97,7 @@ TEST_CASE("a closed room that shines has the sum of all its reflections, with an
 
 TEST_CASE("work-groups that fill none of a device's vectors end their paths") {
   on_every_device([&](const DeviceInfo& device) {
+    if (is_quick(device)) return;  // many pixels a work-item: invariance has its groups
     SceneDescription scene = path_scene({0.2, -0.1, 0.3}, {0.9, 0.4, -0.2}, 2);
     scene.image.width = 9, scene.image.height = 6;
     const int wall = add_matte(scene, 0.7);
