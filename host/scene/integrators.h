@@ -17,7 +17,7 @@ struct Integrator {
 
 inline constexpr std::array integrators{
     Integrator{"whitted", "entry/render_whitted.cl", "render_whitted", true, 1},
-    Integrator{"path", "entry/render_path.cl", "render_path", true, 32}};
+    Integrator{"path", "entry/render_path.cl", "render_path", true, 16}};
 
 /// The names, in the table's order.
 inline constexpr auto integrator_names = [] {

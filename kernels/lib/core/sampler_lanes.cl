@@ -123,13 +123,6 @@ static inline FourNumbers chosen_lanes(const LaneSamples* at, MASK dimension, bo
   return u;
 }
 
-NEVER_INLINE FourNumbers wanted_lanes(const LaneSamples* at, MASK dimension, bool first, bool later) {
-  return chosen_lanes(at, dimension, first, later);
-}
-static inline FourNumbers sample_lanes(const LaneSamples* at, MASK dimension) {
-  return wanted_lanes(at, dimension, true, true);
-}
-
 // Two of the four: the first two, or with `later` those behind them.
 static inline void pair_lanes(const LaneSamples* at, MASK dimension, bool later, REAL* u, REAL* v) {
   const FourNumbers chosen = chosen_lanes(at, dimension, !later, later);

@@ -6,7 +6,7 @@
 #ifndef SUNDOG_LIB_CARRIED_CL
 #define SUNDOG_LIB_CARRIED_CL
 #include "lib/core/lanes.h"
-#include "lib/core/sampler_lanes.cl"
+#include "lib/pathtracer/numbers.cl"
 #include "lib/shade/dispersion.cl"
 
 #if HAS_DISPERSION

@@ -4,9 +4,9 @@
 #ifndef SUNDOG_LIB_PHOTON_START_CL
 #define SUNDOG_LIB_PHOTON_START_CL
 #include "lib/core/directions.cl"
-#include "lib/core/sampler_lanes.cl"
 #include "lib/light/area_light.cl"
 #include "lib/light/environment.cl"
+#include "lib/pathtracer/numbers.cl"
 #include "lib/pathtracer/photon_cells.cl"
 
 #define NOT_DIMMED (-1)

@@ -3,7 +3,6 @@
 // Combining Sampling Techniques for Monte Carlo Rendering"; the power heuristic). A path a lane.
 #ifndef SUNDOG_LIB_WALK_STATE_CL
 #define SUNDOG_LIB_WALK_STATE_CL
-#include "lib/core/sampler_lanes.cl"
 #include "lib/light/choose_light.cl"
 #include "lib/light/light.cl"
 #include "lib/pathtracer/carried.cl"

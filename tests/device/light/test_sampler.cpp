@@ -54,7 +54,7 @@ __kernel void run(__global const Pixel* in, __global float4* out, u32 count) {
     MASK_LANE(at.y, lane) = (int)in[first + lane].y;
     MASK_LANE(at.sample, lane) = (int)in[first + lane].sample;
   }
-  const FourNumbers u = sample_lanes(&at, (MASK)(4));
+  const FourNumbers u = chosen_lanes(&at, (MASK)(4), true, true);
   out[first + mine] = (float4)(REAL_LANE(u.x, mine), REAL_LANE(u.y, mine), REAL_LANE(u.z, mine), REAL_LANE(u.w, mine));
 }
 )";

@@ -29,7 +29,7 @@ __kernel void draw(__global const Material* materials, __global const Medium* me
   const REAL3 n = real3(0.0f, 0.0f, 1.0f), wo = real3(-sqrt(1.0f - cosine * cosine), 0.0f, cosine);
   const Bsdfs bsdf = make_surface(materials, n, 0, 1);
   const LaneSamples at = {7, 9, (int)i};
-  const FourNumbers u = sample_lanes(&at, 0);
+  const FourNumbers u = chosen_lanes(&at, 0, true, true);
   const BsdfSamples s = bsdf_sample(&scene, &bsdf, wo, u.x, u.y, u.z, ALL_LANES);
   __global float* to = out + 8u * i;
   to[0] = s.wi.x; to[1] = s.wi.y; to[2] = s.wi.z; to[3] = s.density;
