@@ -70,7 +70,8 @@ TEST_CASE("the rounded inverse of the lanes is the nearest number, or the next w
   std::vector<float> inputs;
   for (int e = -122; e <= 124; ++e) {
     for (int k = 0; k < 61; ++k)
-      inputs.push_back(std::ldexp(1 + static_cast<float>(k * 137'491 % 8'388'607) * 0x1p-23f, e));
+      inputs.push_back(
+          std::ldexp(1 + static_cast<float>((61 * (e + 122) + k) * 137'491L % 8'388'607) * 0x1p-23f, e));
     inputs.push_back(-std::ldexp(all_bits, e));
   }
   const DeviceInfo info = test_devices().front();
