@@ -27,8 +27,6 @@ import statistics
 import sys
 import tempfile
 
-import numpy as np
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "mitsuba"))
 import figures
 import peer_scenes
@@ -62,20 +60,7 @@ class Bench:
 
     def stored(self, key, samples, make):
         """A converged picture, from --pictures where it is."""
-        path = self.args.pictures and os.path.join(self.args.pictures, f"{self.name}-{key}-{samples}.npy")
-        if path and os.path.exists(path):
-            return figures.Picture(np.load(path).astype(float), samples)
-        parts = np.array(make())
-        if path:
-            os.makedirs(self.args.pictures, exist_ok=True)
-            np.save(path, parts.astype(np.float32))
-        return figures.Picture(parts, samples)
-
-    def halves(self):
-        """sundog's sample i is the same in every picture, so the second half is what a whole adds to the first."""
-        total = self.args.converged
-        first, whole = (self.sundog.render("independent", n)[0] for n in (total // 2, total))
-        return [first, 2 * whole - first]
+        return figures.stored_picture(self.args.pictures, f"{self.name}-{key}", samples, make)
 
     @staticmethod
     def passes(program, total):
@@ -85,7 +70,7 @@ class Bench:
     def converge(self):
         """Pictures of `independent` samples: sundog's, Mitsuba's of the same radiance, and of what Mitsuba makes of the sky's file."""
         total = self.args.converged
-        ours = self.stored("sundog", total, self.halves)
+        ours = self.stored("sundog", total, lambda: self.sundog.halves(total))
         theirs = self.stored("mitsuba", total, lambda: self.passes(self.same, total))
         if self.name not in peer_scenes.UNDER_SKY:
             return ours, theirs, theirs
@@ -142,15 +127,6 @@ def measure_times(bench, errors):
     return result
 
 
-def tell_means(m):
-    whole = ", ".join(f"{d:+.3f} ({s:+.1f})" for d, s in zip(m["whole_per_cent"], m["whole_standard_errors"]))
-    print(f"  means   whole R, G, B off by per cent (standard errors) {whole}; regions' error {m['median_error_of_regions_per_cent']:.2f} %\n"
-          f"          {m['beyond_3']} of {m['figures']} beyond 3 (chance of as many {m['chance_of_as_many']:.2g}); greatest {m['greatest']:.2f} in "
-          f"{m['greatest_in']}, {m['greatest_per_cent']:+.2f} % (chance of as great {m['chance_of_as_great']:.2g}); "
-          f"root mean square {m['root_mean_square_of_regions']:.2f}\n"
-          f"          root mean square difference of pixels {m['pictures_apart']:.4f}, by noise alone {m['apart_by_noise_alone']:.4f}")
-
-
 def tell_errors(e):
     r, own = e["reference"], e["reference_of_mitsuba"]
     print(f"  errors  reference of {r['samples']} samples, noise {r['noise']:.4f}; for Mitsuba {own['samples']}, {own['noise']:.4f}")
@@ -184,7 +160,7 @@ def run_scene(bench, parts, result):
         ours, theirs, of_file = bench.converge()
     if "means" in parts:
         result["means"] = figures.compare_means(ours, theirs) | {"samples": bench.args.converged}
-        tell_means(result["means"])
+        figures.tell_means(result["means"])
     if "errors" in parts:
         result["errors"] = measure_errors(bench, ours, theirs, of_file)
         tell_errors(result["errors"])

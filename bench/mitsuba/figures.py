@@ -1,5 +1,6 @@
 """What pictures say: means of regions in standard errors of their difference, errors against a reference, samples for a given error."""
 import math
+import os
 
 import numpy as np
 
@@ -16,6 +17,18 @@ class Picture:
         self.variance = parts.var(0, ddof=1) / len(parts)
 
 
+def stored_picture(folder, name, samples, make):
+    """The Picture of the parts that `make` gives, or that an earlier run kept in the folder; None is no folder."""
+    path = folder and os.path.join(folder, f"{name}-{samples}.npy")
+    if path and os.path.exists(path):
+        return Picture(np.load(path).astype(float), samples)
+    parts = np.array(make())
+    if path:
+        os.makedirs(folder, exist_ok=True)
+        np.save(path, parts.astype(np.float32))
+    return Picture(parts, samples)
+
+
 def region_means(values):
     """Of the whole and of GRID x GRID regions, row by row, per channel."""
     step = values.shape[0] // GRID
@@ -28,6 +41,13 @@ def region_errors(picture):
     step = picture.mean.shape[0] // GRID
     pixels = np.array([picture.mean.shape[0] * picture.mean.shape[1]] + [step * step] * (GRID * GRID))[:, None]
     return np.sqrt(region_means(picture.variance) / pixels)
+
+
+def errors_by_parts(picture):
+    """How much greater the regions' errors are by how the means of whole parts differ, root mean square: 1 where pixels are independent."""
+    parts = np.array([region_means(part) for part in picture.parts])
+    variance = parts.var(0, ddof=1) / len(parts)
+    return float(np.sqrt((variance / region_errors(picture)**2)[1:].mean()))
 
 
 def beyond(z):
@@ -63,6 +83,15 @@ def compare_means(ours, theirs):
         "median_error_of_regions_per_cent": float(np.median(error_per_cent[1:])),
         "means": mean_a.tolist(), "means_of_peer": mean_b.tolist(), "standard_errors": error.tolist(), "off": off.tolist(),
     }
+
+
+def tell_means(m):
+    whole = ", ".join(f"{d:+.3f} ({s:+.1f})" for d, s in zip(m["whole_per_cent"], m["whole_standard_errors"]))
+    print(f"  means   whole R, G, B off by per cent (standard errors) {whole}; regions' error {m['median_error_of_regions_per_cent']:.2f} %\n"
+          f"          {m['beyond_3']} of {m['figures']} beyond 3 (chance of as many {m['chance_of_as_many']:.2g}); greatest {m['greatest']:.2f} in "
+          f"{m['greatest_in']}, {m['greatest_per_cent']:+.2f} % (chance of as great {m['chance_of_as_great']:.2g}); "
+          f"root mean square {m['root_mean_square_of_regions']:.2f}\n"
+          f"          root mean square difference of pixels {m['pictures_apart']:.4f}, by noise alone {m['apart_by_noise_alone']:.4f}")
 
 
 def clipped(image):

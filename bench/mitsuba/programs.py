@@ -31,6 +31,11 @@ class Sundog:
         with open(stats) as file:
             return read_pfm(out), json.load(file)["seconds"]["render"]
 
+    def halves(self, total):
+        """Two parts of independent samples. sundog's sample i is the same in every picture, so the second half is what a whole adds to the first."""
+        first, whole = (self.render("independent", n)[0] for n in (total // 2, total))
+        return [first, 2 * whole - first]
+
 
 def rgb(color):
     return {"type": "rgb", "value": list(color)}
