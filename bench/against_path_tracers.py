@@ -37,7 +37,9 @@ def render_peer(peer, name, folder, args):
     script = os.path.join(FOLDER, peer + "_passes.py")
     command = [getattr(args, "python_" + peer), script, name, out, str(args.passes), str(args.samples)]
     # LuxCore looks at every OpenCL driver, and its allocator ends the program in some: it finds none in this folder.
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=os.environ | {"OCL_ICD_VENDORS": folder})
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=os.environ | {"OCL_ICD_VENDORS": folder})
+    if done.returncode:
+        sys.exit(f"{' '.join(command)} ended with {done.returncode}:\n{done.stdout[-2000:]}")
     with np.load(out) as found:
         print(f"  {peer} {found['version']}: {args.passes} passes of {args.samples} samples, {float(found['seconds']):.1f} s", flush=True)
         return found["parts"].astype(float)

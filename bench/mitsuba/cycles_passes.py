@@ -111,7 +111,8 @@ def add_darkness():
 
 def set_up(samples):
     """Without what makes Cycles biased: clamping, glossy filters, adaptive samples, the denoiser. The box filter has the width of a pixel. Its usual
-    samples are blue noise, by which pixels depend on each other: Sobol-Burley's, an experimental setting, do not."""
+    samples are blue noise, by which pixels depend on each other. Those of tables, an experimental setting, vary as independent pixels would;
+    SOBOL_BURLEY's do not: regions of `cornell` are 1 % off at 4 passes of 32."""
     scene, preferences = bpy.context.scene, bpy.context.preferences
     preferences.view.show_developer_ui = preferences.experimental.use_cycles_debug = True
     scene.render.engine = "CYCLES"
@@ -124,7 +125,7 @@ def set_up(samples):
     render.use_persistent_data = True
     cycles.device, cycles.samples = "CPU", samples
     cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_guiding = cycles.use_fast_gi = cycles.use_auto_tile = False
-    cycles.pixel_filter_type, cycles.sampling_pattern = "BOX", "SOBOL_BURLEY"
+    cycles.pixel_filter_type, cycles.sampling_pattern = "BOX", "TABULATED_SOBOL"
     for kind in ("max", "diffuse", "glossy", "transmission", "volume"):
         setattr(cycles, kind + "_bounces", DEPTH)
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.blur_glossy = cycles.light_sampling_threshold = 0
