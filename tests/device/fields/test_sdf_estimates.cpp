@@ -56,16 +56,26 @@ TEST_CASE("an estimate has the same bits for 1, 4, 8 and 16 lanes where it uses 
   });
 }
 
-TEST_CASE("the rounded inverse of the lanes is the nearest number, or the next where all bits are set") {
-  const char* const text = R"(
+namespace {
+
+/// A kernel that gives a function of lib/core/lanes.h for each number.
+std::string kernel_of(const std::string& function) {
+  return R"(
     #include "lib/core/lanes.h"
     #include "shared/types.h"
     kernel void run(global const float* in, global float* out, u32 count) {
       const u32 i = get_global_id(0);
       if (i >= count) return;
-      const REAL y = rounded_inverse((REAL)(in[i]));
+      const REAL y = )" +
+         function + R"(((REAL)(in[i]));
       out[i] = REAL_LANE(y, LANES - 1);
     })";
+}
+
+}  // namespace
+
+TEST_CASE("the rounded inverse of the lanes is the nearest number, or the next where all bits are set") {
+  const std::string text = kernel_of("rounded_inverse");
   const float all_bits = std::nextafter(2.0f, 1.0f);
   std::vector<float> inputs;
   for (int e = -122; e <= 124; ++e) {
@@ -91,15 +101,7 @@ TEST_CASE("the rounded inverse of the lanes is the nearest number, or the next w
 }
 
 TEST_CASE("the logarithm of the lanes is within two units in the last place") {
-  const char* const text = R"(
-    #include "lib/core/lanes.h"
-    #include "shared/types.h"
-    kernel void run(global const float* in, global float* out, u32 count) {
-      const u32 i = get_global_id(0);
-      if (i >= count) return;
-      const REAL y = real_log((REAL)(in[i]));
-      out[i] = REAL_LANE(y, LANES - 1);
-    })";
+  const std::string text = kernel_of("real_log");
   std::vector<float> inputs;
   for (int e = -126; e <= 126; ++e)
     for (int k = 0; k < 64; ++k) inputs.push_back(std::ldexp(1.0f + static_cast<float>(k) / 64, e));
