@@ -89,10 +89,6 @@ static inline void start_on_hits(__global const SceneInfo* restrict info, SceneR
 #endif
 
 #if HAS_CONES
-#define SCATTERED_SPREAD 0.2f  // of the cone of what a surface scatters, at least
-static inline void spread_scattered(SceneRays* rays, MASK lanes) {
-  rays->cone_spread = select(rays->cone_spread, real_max(rays->cone_spread, (REAL)(SCATTERED_SPREAD)), lanes);
-}
 static inline void join_cones(SceneRays* rays, const SceneRays* others, MASK lanes) {
   rays->cone_width = select(rays->cone_width, others->cone_width, lanes);
   rays->cone_spread = select(rays->cone_spread, others->cone_spread, lanes);
@@ -105,7 +101,6 @@ static inline void widen_cones(SceneRays* rays, REAL t, MASK lanes) {
   rays->cone_width = select(rays->cone_width, fma(t, rays->cone_spread, rays->cone_width), lanes);
 }
 #else
-static inline void spread_scattered(SceneRays* rays, MASK lanes) {}
 static inline void join_cones(SceneRays* rays, const SceneRays* others, MASK lanes) {}
 static inline void start_camera_cones(SceneRays* rays, const Rays* camera) {}
 static inline void widen_cones(SceneRays* rays, REAL t, MASK lanes) {}

@@ -51,7 +51,6 @@ static inline void leave_surfaces(const Scene* scene, const Encounters* met, con
   REAL way;
   const REAL3 outside = along3(leave_relief(s, child.d, &way), s->offset, leaving_normal(s));
   child.o = select3(outside, points_behind(scene, s, rays->d, below), below);
-  spread_scattered(&child, ~sample->specular);
   if (any_lane(below)) {
     start_on_hits(scene->info, &child, &met->hit, s->entering, below);
     enter_behind(met, rays, below, &child);

@@ -180,7 +180,6 @@ static inline MASK turn_on_stretch(const Scene* scene, Walks* walks, const Begun
   note_own_rays(going, counts);
   SceneRays child = rays_from_stretch(scene, begun, rays, s, at, direction_about(s->d, cosine, u.y),
                                       (REAL)(INFINITY), lanes);
-  spread_scattered(&child, lanes);
   join_rays(rays, &child, lanes);
   return going;
 }

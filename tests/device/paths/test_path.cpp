@@ -95,6 +95,31 @@ TEST_CASE("a closed room that shines has the sum of all its reflections, with an
   });
 }
 
+TEST_CASE("what surfaces scatter sees texels as fine as the pixels do") {
+  const double albedo = 0.7, shine = 0.3;
+  // Half of the picture shines: the room's coordinates end five texels before the dark half.
+  StoredImage halves;
+  halves.width = halves.height = 256;
+  halves.channels = 1;
+  for (int i = 0; i < halves.width * halves.height; ++i)
+    halves.data.push_back(i % halves.width < halves.width / 2 ? 255 : 0);
+  SceneDescription scene = path_scene({0.2, -0.1, 0.3}, {0.9, 0.4, -0.2}, 32);
+  const int wall = add_matte(scene, albedo);
+  scene.materials.back().emission = dvec3(shine);
+  scene.materials.back().textures.emission = 0;
+  scene.images.emplace_back().pixels = std::move(halves);
+  scene.images.back().srgb = false;
+  scene.textures.emplace_back().kind = TEXTURE_IMAGE;
+  scene.textures.back().image = 0;
+  const int room = add_room(scene);
+  for (const glm::vec3 p : scene.meshes.back().positions)
+    scene.meshes.back().uvs.push_back(
+        {0.25f + 0.23f * (p.x + p.y + p.z) / 3, 0.5f + 0.4f * (p.x - p.y + p.z / 2) / 2.5f});
+  scenes::place(scene, MeshShape{room}, wall);
+  on_picture_devices(
+      [&](const DeviceInfo& device) { check_mean(mean_on(device, scene), shine / (1 - albedo)); });
+}
+
 TEST_CASE("work-groups that fill none of a device's vectors end their paths") {
   on_every_device([&](const DeviceInfo& device) {
     if (is_quick(device)) return;  // many pixels a work-item: invariance has its groups
