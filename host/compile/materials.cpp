@@ -98,6 +98,12 @@ bool stops_shadows(const SceneDescription& scene, const MaterialDescription& mat
   return material.shadow_opaque || (by_path && (!material.shadow_filter || scene.render.caustics));
 }
 
+/// Whether light passes fuzz or a coat on its way through a material.
+bool passes_layers(const MaterialDescription& material) {
+  const auto& layers = material.layers;
+  return layers && (layers->fuzz_weight > 0 || layers->coat_weight > 0) && !is_zero(material.transmission);
+}
+
 u32 material_flags(const MaterialDescription& material) {
   u32 flags = 0;
   if (material.blinn) flags |= MATERIAL_BLINN;
@@ -163,7 +169,10 @@ u32 add_materials(const SceneDescription& scene, CompiledScene& out) {
     const MaterialDescription& material = surface_for(scene, any);
     Material packed = make_material(material, media);
     if (is_frosted(scene, material)) packed.flags |= MATERIAL_FROSTED;
-    if (stops_shadows(scene, material, bends)) packed.flags |= MATERIAL_SHADOW_OPAQUE;
+    if (stops_shadows(scene, material, bends))
+      packed.flags |= MATERIAL_SHADOW_OPAQUE;
+    else if (traces_paths(scene.render.integrator) && passes_layers(material))
+      out.features.layer_filters = true;
     out.materials.push_back(packed);
   }
   if (!lacks_materials(scene)) return NO_MATERIAL;

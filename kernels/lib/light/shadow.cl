@@ -7,6 +7,7 @@
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
+#include "lib/shade/layer_sample.cl"
 #include "lib/shade/maps.cl"
 
 #define MAX_FILTERS 64
@@ -78,6 +79,35 @@ static inline void pass_walls(const Scene* scene, const Faces* faces, REAL3 wi, 
 static inline void pass_walls(const Scene* scene, const Faces* faces, REAL3 wi, MASK lanes, REAL* kept) {}
 #endif
 
+// What fuzz and coats leave of light that goes straight through surfaces of `lanes`, where `through` is what it
+// would be without them. Paths alone ask for it: with whitted layers take nothing from what is transmitted.
+#if HAS_LAYERS && HAS_LAYER_FILTERS && SHADOWS_AS_PATHS
+NEVER_INLINE REAL3 layered_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
+                                   const Faces* faces, MASK lanes, REAL3 through) {
+  SurfaceInteractions s;
+  interact(scene, rays->o, rays->d, hits, faces, lanes, &s);
+  set_footprints(rays, hits->t, &s);
+  const Bsdfs bsdf = make_bsdfs(scene, &s, NO_LANES, NO_LANES, lanes);
+  const REAL c = real_clamp(-dot3(bsdf.ns, rays->d), (REAL)(0.0f), (REAL)(1.0f));
+  REAL3 passed = through;
+  u32 index;
+  for (u32 left = lane_bits(lanes); left;) {
+    const MASK mine = take_alike(faces->material, &left, &index);
+    const REAL3 by_layers = left_by_layers(scene, scene->layers + index, &bsdf, c, -c, mine);
+    passed = select3(passed, left_where_there(&bsdf, through, by_layers), mine);
+  }
+  return passed;
+}
+static inline void pass_layers(const Scene* scene, const SceneRays* rays, const Hits* hits,
+                               const Faces* faces, MASK lanes, REAL3* passed) {
+  const MASK layered = lanes & MASK_OF((faces->flags & (int)MATERIAL_LAYERED) != 0);
+  if (any_lane(layered)) *passed = layered_filters(scene, rays, hits, faces, layered, *passed);
+}
+#else
+static inline void pass_layers(const Scene* scene, const SceneRays* rays, const Hits* hits,
+                               const Faces* faces, MASK lanes, REAL3* passed) {}
+#endif
+
 // Multiplies `through` by the transmission of the surfaces that the lanes of `lanes` pass.
 static inline void filter_light(const Scene* scene, const SceneRays* rays, const Hits* hits,
                                 const Faces* faces, MASK here, MASK there, MASK lanes, REAL3* through) {
@@ -92,6 +122,7 @@ static inline void filter_light(const Scene* scene, const SceneRays* rays, const
     if (HAS_MAPS && scene->materials[index].maps != NO_MAPS) mapped |= mine;
   }
   if (HAS_MAPS && any_lane(mapped)) passed = mapped_filters(scene, rays, hits, faces, mapped, passed);
+  pass_layers(scene, rays, hits, faces, lanes, &passed);
   *through = select3(*through, multiply3(*through, passed), lanes);
   if (!any_lane(dielectric)) return;
   REAL kept = straight_transmittance(scene->media, here, there, faces->outward, rays->d, dielectric);

@@ -28,6 +28,14 @@ static inline REAL3 left_by_layers(const Scene* scene, __global const Layers* m,
   return select3(left, scale3(multiply3(tint_i, darkening), of_i), back);
 }
 
+// What remains of the light `through` surfaces, of which layers leave `left`. They are there as much as the
+// surface is: light that passes where nothing is loses nothing.
+static inline REAL3 left_where_there(const Bsdfs* bsdf, REAL3 through, REAL3 left) {
+  const REAL open = 1.0f - bsdf->there;
+  const REAL3 beside = real3(open, open, open);
+  return add3(multiply3(left, subtract3(through, beside)), beside);
+}
+
 // The shares of samples for the viewer in wo, as large as what the lobes may return; and what the layers
 // leave of perfect reflection and transmission.
 static inline LayerShares make_shares(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes,
@@ -45,13 +53,14 @@ static inline LayerShares make_shares(const Scene* scene, const Bsdfs* bsdf, REA
     const REAL by_shine = past_shine(scene, m, &base, c, mine);
     const REAL opaque = (1.0f - base.metal) * (1.0f - base.glass);
     const REAL of_metal = base.metal * real_max(greatest3(bsdf->base), (REAL)(0.05f));
-    shares.fuzz = select(shares.fuzz, 1.0f - by_fuzz, mine);
-    shares.coat = select(shares.coat, by_fuzz - by_both, mine);
-    shares.shine = select(shares.shine, by_both * fma(opaque, 1.0f - by_shine, of_metal), mine);
+    const REAL there = bsdf->there;
+    shares.fuzz = select(shares.fuzz, there * (1.0f - by_fuzz), mine);
+    shares.coat = select(shares.coat, there * (by_fuzz - by_both), mine);
+    shares.shine = select(shares.shine, there * (by_both * fma(opaque, 1.0f - by_shine, of_metal)), mine);
     const REAL matte = by_both * by_shine * opaque * greatest3(bsdf->base);
-    shares.matte = select(shares.matte, matte, mine);
+    shares.matte = select(shares.matte, there * matte, mine);
     const REAL3 kr = multiply3(split->kr, left_by_layers(scene, m, bsdf, c, c, mine));
-    const REAL3 kt = multiply3(split->kt, left_by_layers(scene, m, bsdf, c, -split->cos_t, mine));
+    const REAL3 kt = left_where_there(bsdf, split->kt, left_by_layers(scene, m, bsdf, c, -split->cos_t, mine));
     split->kr = select3(split->kr, kr, mine);
     split->kt = select3(split->kt, kt, mine);
   }

@@ -255,6 +255,48 @@ TEST_CASE(
   });
 }
 
+TEST_CASE("what fuzz and a coat take from light behind a smooth wall, each way of finding it knows") {
+  OpenPbr values{.specular_roughness = 0, .transmission_weight = 1};
+  values.geometry_thin_walled = true;
+  values.coat_weight = 1, values.coat_color = {0.7, 0.8, 0.9}, values.coat_roughness = 0.2;
+  values.fuzz_weight = 0.6;
+  Mean means[2];
+  for (const u32 strategy : {STRATEGY_LIGHTS, STRATEGY_SURFACES}) {
+    SceneDescription scene = below_wall(0, strategy);
+    scene.render.samples = 512;
+    scene.render.max_depth = 6;
+    MediumDescription inside;
+    set_openpbr(values, scene.materials.back(), inside);
+    means[strategy == STRATEGY_LIGHTS ? 0 : 1] = mean_on(picture_devices().front(), scene);
+  }
+  const auto [lights, surfaces] = means;
+  INFO(lights.value.x << " +- " << lights.error << ", " << surfaces.value.x << " +- " << surfaces.error);
+  const double error = std::hypot(lights.error, surfaces.error);
+  CHECK(lights.error < 0.01);
+  for (int channel = 0; channel < 3; ++channel)
+    CHECK(lights.value[channel] == Approx(surfaces.value[channel]).epsilon(0).margin(3.5 * error));
+}
+
+TEST_CASE("where a surface is not there, its layers are not: paths see what lies behind as it is") {
+  const auto seen = [](double opacity, bool one_sided) {
+    OpenPbr values{.base_color = dvec3(0)};
+    values.coat_weight = 1, values.coat_color = {0.5, 0.1, 0.1}, values.fuzz_weight = 0.6;
+    values.geometry_opacity = opacity;
+    SceneDescription scene = path_scene({0, -1, 0.4}, {0, 0, 0}, 16);
+    scene.environment.type = EnvironmentType::gradient;
+    scene.environment.bottom = scene.environment.top = dvec3(1);
+    scenes::place(scene, PlaneShape{}, add_matte(scene, 0));
+    MediumDescription inside;
+    set_openpbr(values, scene.materials.back(), inside);
+    scene.materials.back().one_sided = one_sided;
+    return mean_on(picture_devices().front(), scene).value;
+  };
+  for (int channel = 0; channel < 3; ++channel) {
+    CHECK(seen(0, false)[channel] == Approx(1).epsilon(1e-5));
+    CHECK(seen(1, true)[channel] == Approx(1).epsilon(1e-5));
+  }
+}
+
 TEST_CASE("light of a lamp goes straight through smooth thin walls, and stops at frosted ones for paths") {
   const auto seen = [](const DeviceInfo& device, double roughness, const char* integrator, double height) {
     SceneDescription scene = path_scene({0, 0.5, 0.4}, {0, 0, 0}, 1);
