@@ -79,8 +79,9 @@ static inline void pass_walls(const Scene* scene, const Faces* faces, REAL3 wi, 
 static inline void pass_walls(const Scene* scene, const Faces* faces, REAL3 wi, MASK lanes, REAL* kept) {}
 #endif
 
-// What fuzz and coats leave of light that goes straight through surfaces of `lanes`, where `through` is what it
-// would be without them. Paths alone ask for it: with whitted layers take nothing from what is transmitted.
+// What fuzz and coats leave of light that goes straight through surfaces of `lanes`, where `through` is what
+// it would be without them. Paths alone ask for it: with whitted layers take nothing from what is
+// transmitted.
 #if HAS_LAYERS && HAS_LAYER_FILTERS && SHADOWS_AS_PATHS
 NEVER_INLINE REAL3 layered_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
                                    const Faces* faces, MASK lanes, REAL3 through) {

@@ -60,7 +60,8 @@ static inline LayerShares make_shares(const Scene* scene, const Bsdfs* bsdf, REA
     const REAL matte = by_both * by_shine * opaque * greatest3(bsdf->base);
     shares.matte = select(shares.matte, there * matte, mine);
     const REAL3 kr = multiply3(split->kr, left_by_layers(scene, m, bsdf, c, c, mine));
-    const REAL3 kt = left_where_there(bsdf, split->kt, left_by_layers(scene, m, bsdf, c, -split->cos_t, mine));
+    const REAL3 kt =
+        left_where_there(bsdf, split->kt, left_by_layers(scene, m, bsdf, c, -split->cos_t, mine));
     split->kr = select3(split->kr, kr, mine);
     split->kt = select3(split->kt, kt, mine);
   }

@@ -106,6 +106,29 @@ TEST_CASE("a glTF's transmission texture is that of OpenPBR's for integrators th
   CHECK(compile(scene).features.layer_maps);
 }
 
+TEST_CASE("paths go through what a glTF's texture says is no metal, where its factor says metal") {
+  const std::string metal = R"({"pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0}},"extensions":{
+      "KHR_materials_transmission":{"transmissionFactor":0.5,"transmissionTexture":{"index":0}})",
+                    volume =
+                        R"(,"KHR_materials_ior":{"ior":1.7},"KHR_materials_volume":{"thicknessFactor":1})";
+  const SceneDescription solid = quad_with(metal + volume + "}}");
+  CHECK(solid.materials.at(0).transmission == dvec3(0));
+  CHECK(solid.materials[0].medium == -1);
+  REQUIRE(solid.materials[0].by_paths);
+  const MaterialDescription& m = *solid.materials[0].by_paths;
+  CHECK(m.type == MaterialType::dielectric);
+  CHECK(m.transmission == dvec3(0.5));
+  CHECK(solid.media.at(std::size_t(m.medium)).ior == 1.7);
+  CHECK(m.layers->base_metalness == 1);
+  CHECK(m.layers->transmission_weight == 0.5);
+  CHECK(texture_of(solid, m.textures.metalness).channel == 2);
+  CHECK(texture_of(solid, m.textures.glass).channel == 0);
+  const SceneDescription pane = quad_with(metal + "}}");
+  REQUIRE(pane.materials.at(0).by_paths);
+  CHECK(pane.materials[0].by_paths->medium == -1);
+  CHECK(pane.materials[0].by_paths->wall_ior == 1.5);
+}
+
 TEST_CASE("textures of specular values keep a glTF's material as it is with every integrator") {
   CHECK_FALSE(quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{
       "KHR_materials_specular":{"specularTexture":{"index":0}}}})")

@@ -59,12 +59,16 @@ Dispersion read_dispersion(const JsonAt& at, double ior) {
   return dispersion > 0 ? cauchy_of_abbe(ior, std::max(20 / dispersion, 1.0)) : Dispersion{};
 }
 
+bool is_partly_there(const JsonAt& at) {
+  const std::string mode = at.text("alphaMode");
+  return mode == "BLEND" || mode == "MASK";
+}
+
 /// KHR_materials_transmission without a volume is a thin wall. Smooth ones, and those that are partly there,
 /// have the fixed shares of GltfMaterials::transmit() with every integrator.
 bool is_rough_wall(const JsonAt& at, const MaterialDescription& material, double roughness, double ior) {
-  const std::string mode = at.text("alphaMode");
   return material.type == MaterialType::phong && material.transmission != dvec3(0) && ior >= 1 &&
-         square(roughness) >= double(LEAST_ALPHA) && mode != "BLEND" && mode != "MASK";
+         square(roughness) >= double(LEAST_ALPHA) && !is_partly_there(at);
 }
 
 /// For integrators that follow paths the Fresnel equations take the place of the share `mirrored`.
@@ -252,8 +256,8 @@ void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const
   const bool always = has_layers(at);
   if (!always && !fits_layers(at)) return;
   OpenPbr values = gltf_openpbr(at, entry.values, ior);
-  const bool wall = is_rough_wall(at, entry.material, entry.values.roughness, ior);
   if (always) {
+    const bool wall = is_rough_wall(at, entry.material, entry.values.roughness, ior);
     MaterialDescription other = entry.material;
     set_gltf_layers(values, reflectance(ior), entry.material);
     entry.specular = entry.specular_color = std::nullopt;
@@ -264,16 +268,24 @@ void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const
     return;
   }
   MaterialDescription other;
-  const MaterialDescription& m = entry.material;
+  // Where a texture says that all of the surface may be a metal, it also says where it is none.
+  Entry passing = entry;
+  if (metal_map && entry.values.metalness == 1 && !is_partly_there(at)) {
+    transmit(at, passing, entry.values.base, ior);
+    entry.medium = passing.medium;
+    entry.paths_have_medium = passing.has_medium;
+    entry.glass = passing.transmission;
+  }
+  const MaterialDescription& m = passing.material;
   other.type = m.type, other.emission = m.emission, other.transmission = m.transmission;
   other.normal_scale = m.normal_scale, other.occlusion = m.occlusion;
   if (m.transmission == dvec3(0)) values.transmission_weight = 0;
   // Kernels take the metal's share, and what a texture keeps, from what may pass. use_by_paths() has them.
   if (metal_map && entry.values.metalness < 1) other.transmission /= 1 - entry.values.metalness;
   if (metal_map) other.textures.metalness = 0;
-  if (entry.transmission) other.textures.glass = 0;
+  if (passing.transmission) other.textures.glass = 0;
   if (values.coat_weight > 0) entry.coat_weight = read_coat_texture(at);
-  if (wall) make_wall(values, other, reflectance(ior));
+  if (is_rough_wall(at, m, entry.values.roughness, ior)) make_wall(values, other, reflectance(ior));
   set_gltf_layers(values, reflectance(ior), other);
   entry.by_paths = other;
 }

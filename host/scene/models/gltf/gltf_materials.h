@@ -39,7 +39,8 @@ class GltfMaterials {
     bool has_medium = false;
     std::optional<TextureDescription> base, opacity, emission, metal_rough, normal, occlusion;
     std::optional<TextureDescription> transmission, specular, specular_color, coat;
-    std::optional<TextureDescription> coat_weight;  // of by_paths
+    std::optional<TextureDescription> coat_weight, glass;  // of by_paths, which may have a medium by itself
+    bool paths_have_medium = false;
     MetalRough values;
     double transmitted = 0;  // of what is no metal, the share that a transmission texture is a factor on
     bool two_sided = false, unlit = false,

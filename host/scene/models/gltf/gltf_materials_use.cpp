@@ -48,7 +48,11 @@ void GltfMaterials::use_by_paths(const Entry& entry, MaterialDescription& materi
   auto other = std::make_shared<MaterialDescription>(*entry.by_paths);
   other->name = material.name;
   other->medium = material.medium;
-  other->one_sided = material.one_sided;
+  if (entry.paths_have_medium) {
+    other->medium = static_cast<int>(model.media.size());
+    model.media.push_back(entry.medium);
+  }
+  other->one_sided = material.one_sided && other->transmission == glm::dvec3(0);
   other->vertex_color = material.vertex_color;
   MaterialTextures& to = other->textures;
   to = {};
@@ -57,7 +61,8 @@ void GltfMaterials::use_by_paths(const Entry& entry, MaterialDescription& materi
   const bool shared = !entry.transmission;  // else it has what passes taken from it
   if (shared) to.diffuse = material.textures.diffuse;
   if (!shared && entry.base) to.diffuse = textures_.use(*entry.base, true, model);
-  if (entry.transmission) to.glass = textures_.use(*entry.transmission, false, model);
+  if (const auto& glass = shared ? entry.glass : entry.transmission)
+    to.glass = textures_.use(*glass, false, model);
   if (entry.coat_weight) to.coat = textures_.use(*entry.coat_weight, false, model);
   to.ambient = to.diffuse;
   if (other->transmission != dvec3(0)) to.transmission = to.diffuse;
