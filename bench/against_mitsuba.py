@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Path tracing against Mitsuba 3 (PyPI mitsuba): the five scenes of bench/mitsuba/peer_scenes.py in both programs. Usage:
+"""Path tracing against Mitsuba 3 (PyPI mitsuba): the scenes of bench/mitsuba/peer_scenes.py in both programs. Usage:
 
     bench/against_mitsuba.py SUNDOG [--scenes cornell,glass] [--parts means,errors,times] [--json FILE] [options]
 
-Dr.Jit looks for LLVM by itself, or where DRJIT_LIBLLVM_PATH says. `textured` needs the model of the barrel in $SUNDOG_ASSETS or ../shared/assets.
+Dr.Jit looks for LLVM by itself, or where DRJIT_LIBLLVM_PATH says. `textured` needs the model of the barrel in $SUNDOG_ASSETS or ../shared/assets;
+`textured_flat` is the same without the normals at its vertices, which the programs treat differently at silhouettes.
 
 means   the whole and 4x4 regions of both converged pictures, three channels each, in standard errors of both together: how many of these 51 are
         beyond three, the greatest, and the chances of both, were they 51 independent normal numbers (they are fewer: channels are alike)

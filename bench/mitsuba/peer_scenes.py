@@ -10,8 +10,9 @@ import shutil
 import numpy as np
 
 SIZE, DEPTH = 256, 32
-NAMES = ("cornell", "glass", "environment", "textured", "ice")
-UNDER_SKY = ("environment", "textured")
+NAMES = ("cornell", "glass", "environment", "textured", "textured_flat", "ice")
+TEXTURED = ("textured", "textured_flat")  # with normals at the vertices, and without
+UNDER_SKY = ("environment", *TEXTURED)
 BARREL = os.path.join("scenes", "metal_barrel")  # in the folder of assets
 BARREL_SCALE = 1.2 / 90.21511
 
@@ -44,7 +45,8 @@ OBJECTS = {
                        ("sphere", {"center": [-0.45, 0.451, -0.35], "radius": 0.45}, "mirror")],
     "environment": [GROUND, ("sphere", {"center": [-0.65, 0.601, 0], "radius": 0.6}, "clay"),
                     ("sphere", {"center": [0.65, 0.601, 0], "radius": 0.6}, "metal")],
-    "textured": [GROUND, ("mesh", {}, "barrel")],
+    "textured": [GROUND, ("mesh", {"file": "mesh.obj", "flat": False}, "barrel")],
+    "textured_flat": [GROUND, ("mesh", {"file": "flat.obj", "flat": True}, "barrel")],
     "ice": room() + [("box", turned([0, 0.601, 0.1], [0.5, 0.6, 0.5], 25), "shell"),
                      ("box", turned([0, 0.601, 0.1], [0.35, 0.45, 0.35], 25), "liquid")],
 }
@@ -93,15 +95,26 @@ def sky_between_edges(rgbe):
     return rows
 
 
+def without_normals(line):
+    """A line of an OBJ file; none in place of a normal."""
+    if line.startswith("vn"):
+        return ""
+    return " ".join(corner.rsplit("/", 1)[0] for corner in line.split()) + "\n" if line.startswith("f ") else line
+
+
 def write_files(folder):
     """What scenes name: the sky, and the barrel's model where there is one. Returns the scenes that can be made."""
     write_sky(os.path.join(folder, "sky.hdr"), make_sky())
     barrel = find_barrel()
     if not barrel:
-        return [name for name in NAMES if name != "textured"]
+        return [name for name in NAMES if name not in TEXTURED]
     shutil.copyfile(os.path.join(barrel, "diffuse.png"), os.path.join(folder, "diffuse.png"))
-    with open(os.path.join(barrel, "mesh.obj")) as model, open(os.path.join(folder, "mesh.obj"), "w") as copy:
-        copy.writelines(line for line in model if not line.startswith(("mtllib", "usemtl")))
+    with open(os.path.join(barrel, "mesh.obj")) as model:
+        lines = [line for line in model if not line.startswith(("mtllib", "usemtl"))]
+    with open(os.path.join(folder, "mesh.obj"), "w") as copy:
+        copy.writelines(lines)
+    with open(os.path.join(folder, "flat.obj"), "w") as copy:
+        copy.writelines(map(without_normals, lines))
     return list(NAMES)
 
 
@@ -121,7 +134,7 @@ def sundog_object(kind, numbers, material):
     numbers = dict(numbers)
     thing = {"type": kind, "material": material}
     if kind == "mesh":
-        thing |= {"mesh": "barrel", "transform": [{"scale": BARREL_SCALE}]}
+        return thing | {"mesh": "barrel", "transform": [{"scale": BARREL_SCALE}]}
     if "turn" in numbers:
         thing["transform"] = [{"rotate": {"axis": [0, 1, 0], "degrees": numbers.pop("turn")}}, {"translate": numbers.pop("center")}]
     return thing | numbers
@@ -133,8 +146,9 @@ def sundog_scene(name, samples, sampler, caustics=False):
              "objects": [sundog_object(*thing) for thing in OBJECTS[name]],
              "render": {"integrator": "path", "max_depth": DEPTH, "samples": samples, "sampler": sampler,
                         "caustics": caustics}}
-    if name == "textured":
-        scene["meshes"] = {"barrel": {"file": "mesh.obj"}}
+    if name in TEXTURED:
+        _, model, _ = OBJECTS[name][-1]
+        scene["meshes"] = {"barrel": {"file": model["file"]} | ({"crease_angle": 0} if model["flat"] else {})}
         scene["textures"] = {"barrel": {"type": "image", "file": "diffuse.png", "filter": "bilinear"}}
         materials["barrel"] = {"color": "barrel", "ambient": 0, "diffuse": 1}
     if name in UNDER_SKY:

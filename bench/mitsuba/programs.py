@@ -70,7 +70,7 @@ def mitsuba_shape(mi, kind, numbers, folder):
     if kind == "sphere":
         return {"type": "sphere", "center": numbers["center"], "radius": numbers["radius"]}
     if kind == "mesh":
-        return {"type": "obj", "filename": os.path.join(folder, "mesh.obj"), "to_world": T().scale(BARREL_SCALE)}
+        return {"type": "obj", "filename": os.path.join(folder, numbers["file"]), "face_normals": numbers["flat"], "to_world": T().scale(BARREL_SCALE)}
     low, high = np.array(numbers["min"], float), np.array(numbers["max"], float)
     middle = np.array(numbers.get("center", [0, 0, 0]), float) + (low + high) / 2
     to_world = T().translate(middle.tolist()).rotate([0, 1, 0], numbers.get("turn", 0)).scale(((high - low) / 2).tolist())

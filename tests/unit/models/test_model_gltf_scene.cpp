@@ -114,7 +114,7 @@ TEST_CASE("glass of a glTF is as rough as it says for integrators that follow pa
   CHECK(near(frosted.by_paths->transmission, {0.4, 0.8, 0.8}));
 }
 
-TEST_CASE("a rough pane of a glTF is a thin wall for integrators that follow paths, others have fixed shares",
+TEST_CASE("a pane of a glTF is a thin wall for integrators that follow paths, others have fixed shares",
           "[models]") {
   const auto pane = [](const std::string& roughness, const std::string& more = "",
                        const std::string& alpha = "") {
@@ -124,28 +124,31 @@ TEST_CASE("a rough pane of a glTF is a thin wall for integrators that follow pat
                        "KHR_materials_transmission":{"transmissionFactor":0.8})" +
                        more + "}}");
   };
-  for (const char* sheen : {"", R"(,"KHR_materials_sheen":{"sheenColorFactor":[0.2,0.2,0.2]})"}) {
-    const MaterialDescription rough = pane("0.5", sheen);
-    REQUIRE(rough.by_paths);
-    const MaterialDescription& wall = *rough.by_paths;
+  const char* const sheen = R"(,"KHR_materials_sheen":{"sheenColorFactor":[0.2,0.2,0.2]})";
+  for (const auto& [roughness, more] : {std::pair{"0", ""}, {"0.5", ""}, {"0", sheen}, {"0.5", sheen}}) {
+    const MaterialDescription made = pane(roughness, more);
+    REQUIRE(made.by_paths);
+    const MaterialDescription& wall = *made.by_paths;
     CHECK(wall.type == MaterialType::dielectric);
     CHECK(wall.medium == -1);
     CHECK(wall.wall_ior == 1.4);
-    CHECK(wall.roughness == 0.5);
+    CHECK(wall.roughness == std::stod(roughness));
     CHECK(wall.reflection == dvec3(0.8));
     CHECK(near(wall.transmission, {0.4, 0.8, 0.8}));
     CHECK(wall.layers->geometry_thin_walled);
-    CHECK(rough.type == MaterialType::phong);
-    CHECK(rough.wall_ior == 0);
-    CHECK(rough.transmission.y == Approx(0.8 * (1 - 0.4 * 0.4 / (2.4 * 2.4))));
+    CHECK(made.type == MaterialType::phong);
+    CHECK(made.wall_ior == 0);
+    CHECK(made.transmission.y == Approx(0.8 * (1 - 0.4 * 0.4 / (2.4 * 2.4))));
   }
-  for (const MaterialDescription& other : {pane("0"), pane("0.5", "", R"(,"alphaMode":"MASK")"),
-                                           pane("0.5", R"(,"KHR_materials_volume":{"thicknessFactor":1})")}) {
+  for (const MaterialDescription& other :
+       {pane("0", "", R"(,"alphaMode":"BLEND")"), pane("0.5", "", R"(,"alphaMode":"MASK")"),
+        pane("0.5", R"(,"KHR_materials_volume":{"thicknessFactor":1})")}) {
     REQUIRE(other.by_paths);
     CHECK(other.by_paths->wall_ior == 0);
   }
-  CHECK(pane("0").by_paths->type == MaterialType::phong);
-  CHECK(pane("0").by_paths->reflection.x == Approx(0.8 * 0.4 * 0.4 / (2.4 * 2.4)));
+  const MaterialDescription blended = pane("0", "", R"(,"alphaMode":"BLEND")");
+  CHECK(blended.by_paths->type == MaterialType::phong);
+  CHECK(blended.by_paths->reflection.x == Approx(0.8 * 0.4 * 0.4 / (2.4 * 2.4)));
 }
 
 TEST_CASE("opacity of a glTF is the same for integrators that follow paths", "[models]") {

@@ -64,11 +64,11 @@ bool is_partly_there(const JsonAt& at) {
   return mode == "BLEND" || mode == "MASK";
 }
 
-/// KHR_materials_transmission without a volume is a thin wall. Smooth ones, and those that are partly there,
-/// have the fixed shares of GltfMaterials::transmit() with every integrator.
-bool is_rough_wall(const JsonAt& at, const MaterialDescription& material, double roughness, double ior) {
+/// KHR_materials_transmission without a volume is a thin wall. Those that are partly there have the fixed
+/// shares of GltfMaterials::transmit() with every integrator.
+bool is_wall(const JsonAt& at, const MaterialDescription& material, double ior) {
   return material.type == MaterialType::phong && material.transmission != dvec3(0) && ior >= 1 &&
-         square(roughness) >= double(LEAST_ALPHA) && !is_partly_there(at);
+         !is_partly_there(at);
 }
 
 /// For integrators that follow paths the Fresnel equations take the place of the share `mirrored`.
@@ -257,7 +257,7 @@ void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const
   if (!always && !fits_layers(at)) return;
   OpenPbr values = gltf_openpbr(at, entry.values, ior);
   if (always) {
-    const bool wall = is_rough_wall(at, entry.material, entry.values.roughness, ior);
+    const bool wall = is_wall(at, entry.material, ior);
     MaterialDescription other = entry.material;
     set_gltf_layers(values, reflectance(ior), entry.material);
     entry.specular = entry.specular_color = std::nullopt;
@@ -285,7 +285,7 @@ void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const
   if (metal_map) other.textures.metalness = 0;
   if (passing.transmission) other.textures.glass = 0;
   if (values.coat_weight > 0) entry.coat_weight = read_coat_texture(at);
-  if (is_rough_wall(at, m, entry.values.roughness, ior)) make_wall(values, other, reflectance(ior));
+  if (is_wall(at, m, ior)) make_wall(values, other, reflectance(ior));
   set_gltf_layers(values, reflectance(ior), other);
   entry.by_paths = other;
 }

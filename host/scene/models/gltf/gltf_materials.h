@@ -18,9 +18,8 @@ namespace sundog::models {
 /// and _specular; KHR_materials_clearcoat adds a mirror, _unlit makes all of it emission.
 /// KHR_materials_transmission lets that
 /// share of base through: with a volume (thickness above 0) as a dielectric with a medium, absorbing
-/// -ln(attenuationColor) / attenuationDistance; without one as a thin pane, straight through, and where that
-/// is rough as a frosted thin wall for integrators that follow paths. alphaMode BLEND
-/// and MASK become the opacity. The base colour's texture is a factor on all terms that have its colour.
+/// -ln(attenuationColor) / attenuationDistance; without one as a thin pane, straight through, and for
+/// integrators that follow paths as a thin wall, frosted where it is rough. alphaMode BLEND and MASK become the opacity. The base colour's texture is a factor on all terms that have its colour.
 /// For integrators that follow paths most are OpenPBR's layers in place of these terms (gltf_layers.h).
 class GltfMaterials {
  public:
