@@ -19,8 +19,9 @@ namespace sundog::models {
 /// KHR_materials_transmission lets that
 /// share of base through: with a volume (thickness above 0) as a dielectric with a medium, absorbing
 /// -ln(attenuationColor) / attenuationDistance; without one as a thin pane, straight through, and for
-/// integrators that follow paths as a thin wall, frosted where it is rough. alphaMode BLEND and MASK become the opacity. The base colour's texture is a factor on all terms that have its colour.
-/// For integrators that follow paths most are OpenPBR's layers in place of these terms (gltf_layers.h).
+/// integrators that follow paths as a thin wall, frosted where it is rough. alphaMode BLEND and MASK become
+/// the opacity. The base colour's texture is a factor on all terms that have its colour. For integrators that
+/// follow paths most are OpenPBR's layers in place of these terms (gltf_layers.h).
 class GltfMaterials {
  public:
   GltfMaterials(const JsonAt& root, GltfTextures& textures);
