@@ -49,8 +49,8 @@ class Bench:
         self.name, self.args = name, args
         self.ways = [way for way, (_, _, caustics) in WAYS.items() if not caustics or name in WITH_CAUSTICS]
         self.sundog = programs.Sundog(name, folder, args.sundog, args.device)
-        self.mitsuba = programs.Mitsuba(name, folder, mi, same_radiance=False)
-        self.same = programs.Mitsuba(name, folder, mi, same_radiance=True)
+        self.mitsuba = programs.Mitsuba(name, folder, mi, same_model=False)
+        self.same = programs.Mitsuba(name, folder, mi, same_model=True)
 
     def render(self, way, samples, seed=0):
         """The picture, its seconds, and the samples that it has."""
@@ -69,7 +69,7 @@ class Bench:
         return [program.render("independent", each, seed=1000 + i)[0] for i in range(total // each)]
 
     def converge(self):
-        """Pictures of `independent` samples: sundog's, Mitsuba's of the same radiance, and of what Mitsuba makes of the sky's file."""
+        """Pictures of `independent` samples: sundog's, Mitsuba's of the same model, and, under a sky, of Mitsuba's own."""
         total = self.args.converged
         ours = self.stored("sundog", total, lambda: self.sundog.halves(total))
         theirs = self.stored("mitsuba", total, lambda: self.passes(self.same, total))

@@ -46,13 +46,57 @@ def absorbing(sigma):
     return {"type": "homogeneous", "albedo": 0.0, "sigma_t": rgb([v / max(sigma) for v in sigma]), "scale": max(sigma)}
 
 
-def mitsuba_surface(material, folder):
+def register_correlated_metal(mi):
+    """`correlated_metal`: Mitsuba's roughconductor with the masking and shadowing of both directions correlated by height (Heitz 2014,
+    "Understanding the Masking-Shadowing Function", equation 99), in place of its product of both.
+    """
+    import drjit as dr
+
+    def smith_lambda(w):
+        tangent = dr.maximum(1 - w.z**2, 0) / w.z**2
+        return (dr.sqrt(1 + METAL_ALPHA**2 * tangent) - 1) / 2
+
+    def gain(wi, wo):
+        i, o = smith_lambda(wi), smith_lambda(wo)
+        return dr.select((wi.z > 0) & (wo.z > 0), (1 + i) * (1 + o) / (1 + i + o), 0)
+
+    class CorrelatedMetal(mi.BSDF):
+        def __init__(self, props):
+            mi.BSDF.__init__(self, props)
+            self.metal = mi.load_dict(mitsuba_metal())
+            self.m_flags, self.m_components = self.metal.flags(), [self.metal.flags(0)]
+
+        def sample(self, ctx, si, sample1, sample2, active=True):
+            drawn, weight = self.metal.sample(ctx, si, sample1, sample2, active)
+            return drawn, weight * gain(si.wi, drawn.wo)
+
+        def eval(self, ctx, si, wo, active=True):
+            return self.metal.eval(ctx, si, wo, active) * gain(si.wi, wo)
+
+        def pdf(self, ctx, si, wo, active=True):
+            return self.metal.pdf(ctx, si, wo, active)
+
+        def eval_pdf(self, ctx, si, wo, active=True):
+            value, density = self.metal.eval_pdf(ctx, si, wo, active)
+            return value * gain(si.wi, wo), density
+
+        def to_string(self):
+            return "CorrelatedMetal[]"
+
+    mi.register_bsdf("correlated_metal", CorrelatedMetal)
+
+
+def mitsuba_metal():
+    return {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": METAL_ALPHA, "specular_reflectance": rgb(METAL)}
+
+
+def mitsuba_surface(material, folder, same_model):
     if material in COLORS:
         return {"bsdf": {"type": "diffuse", "reflectance": rgb(COLORS[material])}}
     if material == "mirror":
         return {"bsdf": {"type": "conductor", "material": "none", "specular_reflectance": rgb(MIRROR)}}
     if material == "metal":
-        return {"bsdf": {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": METAL_ALPHA, "specular_reflectance": rgb(METAL)}}
+        return {"bsdf": {"type": "correlated_metal"} if same_model else mitsuba_metal()}
     if material == "barrel":
         texture = {"type": "bitmap", "filename": os.path.join(folder, "diffuse.png"), "filter_type": "bilinear"}
         return {"bsdf": {"type": "diffuse", "reflectance": texture}}
@@ -85,27 +129,26 @@ def mitsuba_camera(mi, name, sampler):
             "sampler": {"type": sampler, "sample_count": 64}}
 
 
-def mitsuba_sky(mi, folder, same_radiance):
-    """`same_radiance`: as sundog blends the picture, which is what means are compared by. Else the file, as Mitsuba is used: its multijittered
-    samples have an eighth less noise with it."""
-    picture = {"bitmap": mi.Bitmap(sky_between_edges(make_sky()))} if same_radiance else {"filename": os.path.join(folder, "sky.hdr")}
+def mitsuba_sky(mi, folder, same_model):
+    """`same_model`: as sundog blends the picture. Else the file, as Mitsuba is used: its multijittered samples have an eighth less noise with it."""
+    picture = {"bitmap": mi.Bitmap(sky_between_edges(make_sky()))} if same_model else {"filename": os.path.join(folder, "sky.hdr")}
     return {"type": "envmap", "to_world": mi.ScalarTransform4f().rotate([0, 1, 0], 180)} | picture
 
 
-def mitsuba_scene(mi, name, folder, sampler, same_radiance):
+def mitsuba_scene(mi, name, folder, sampler, same_model):
     T = mi.ScalarTransform4f
     # Its volpath takes the length of a way by one channel's absorption: red, of which the liquid takes a tenth, then has rare samples that
     # count hundreds of times, and neither its mean nor its error is known at 512 samples.
     scene = {"type": "scene", "integrator": {"type": "volpathmis" if name == "ice" else "path", "max_depth": DEPTH + 1},
              "sensor": mitsuba_camera(mi, name, sampler)}
     if name in UNDER_SKY:
-        scene["sky"] = mitsuba_sky(mi, folder, same_radiance)
+        scene["sky"] = mitsuba_sky(mi, folder, same_model)
     else:
         to_world = T().translate(LAMP["center"]).rotate([1, 0, 0], 90).scale([LAMP["size"][0] / 2, LAMP["size"][1] / 2, 1])
         scene["lamp"] = {"type": "rectangle", "to_world": to_world, "bsdf": {"type": "diffuse", "reflectance": rgb([0, 0, 0])},
                          "emitter": {"type": "area", "radiance": rgb(LAMP["radiance"])}}
     for i, (kind, numbers, material) in enumerate(OBJECTS[name]):
-        scene[f"thing{i}"] = mitsuba_shape(mi, kind, numbers, folder) | mitsuba_surface(material, folder)
+        scene[f"thing{i}"] = mitsuba_shape(mi, kind, numbers, folder) | mitsuba_surface(material, folder, same_model)
     return mi.load_dict(scene)
 
 
@@ -116,16 +159,19 @@ def load_mitsuba(variant):
     mi.set_log_level(mi.LogLevel.Error)
     import drjit
     drjit.set_thread_count(1)
+    register_correlated_metal(mi)
     return mi
 
 
 class Mitsuba:
-    def __init__(self, name, folder, mi, same_radiance):
-        self.name, self.folder, self.mi, self.same_radiance, self.scenes = name, folder, mi, same_radiance, {}
+    """`same_model`: with the sky and the metal that sundog has, for means. Else Mitsuba's own, for errors and times."""
+
+    def __init__(self, name, folder, mi, same_model):
+        self.name, self.folder, self.mi, self.same_model, self.scenes = name, folder, mi, same_model, {}
 
     def render(self, sampler, samples, seed=0):
         if sampler not in self.scenes:
-            self.scenes[sampler] = mitsuba_scene(self.mi, self.name, self.folder, sampler, self.same_radiance)
+            self.scenes[sampler] = mitsuba_scene(self.mi, self.name, self.folder, sampler, self.same_model)
         start = time.perf_counter()
         image = np.array(self.mi.render(self.scenes[sampler], spp=samples, seed=seed), float)
         return image, time.perf_counter() - start
