@@ -37,6 +37,7 @@
   FEATURE(bool, HAS_LAYERS, layers)                 /* some material has layers: shared/layers.h */     \
   FEATURE(bool, HAS_LAYER_MAPS, layer_maps)         /* some has metalness or roughness from a texture */ \
   FEATURE(bool, HAS_COAT_MAPS, coat_maps)           /* some has the weight of its coat from a texture */ \
+  FEATURE(bool, HAS_SPECULAR_MAPS, specular_maps)   /* some has what it reflects from a texture */      \
   FEATURE(bool, HAS_LAYER_FILTERS, layer_filters)   /* paths: shadow rays go through fuzz or coats */   \
   FEATURE(bool, HAS_LENS, lens)                     /* the camera has a lens */                         \
   FEATURE(bool, HAS_CAMERA_MOTION, camera_motion)   /* the camera moves while the shutter is open */    \

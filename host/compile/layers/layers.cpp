@@ -231,6 +231,7 @@ void add_layers(const SceneDescription& scene, CompiledScene& out) {
     out.features.layers = true;
     const bool coat = maps_coat(*material.layers, textures);
     out.features.coat_maps |= coat;
+    out.features.specular_maps |= textures.specular >= 0;
     out.features.layer_maps |=
         coat || std::max({textures.metalness, textures.roughness, textures.glass}) >= 0;
     if (std::max(material.layers->specular_roughness_anisotropy, material.layers->coat_roughness_anisotropy) >

@@ -37,6 +37,9 @@ typedef struct Bsdfs {
 #if HAS_COAT_MAPS
   REAL coat;  // a factor on the weight of a layered material's
 #endif
+#if HAS_SPECULAR_MAPS
+  REAL3 tint;  // a factor on what a layered material's dielectric reflects
+#endif
 } Bsdfs;
 
 // The light of materials' emission as their textures have it.
@@ -114,6 +117,11 @@ static inline void keep_coat(const Terms* terms, Bsdfs* bsdf) { bsdf->coat = ter
 #else
 static inline void keep_coat(const Terms* terms, Bsdfs* bsdf) {}
 #endif
+#if HAS_SPECULAR_MAPS
+static inline void keep_tint(const Terms* terms, Bsdfs* bsdf) { bsdf->tint = terms->tint; }
+#else
+static inline void keep_tint(const Terms* terms, Bsdfs* bsdf) {}
+#endif
 static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
   Terms terms = start_terms(bsdf->ambient, bsdf->diffuse);
   MASK mapped = NO_LANES;
@@ -140,6 +148,7 @@ static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MA
   keep_opacity(&terms, bsdf);
   keep_base(&terms, bsdf);
   keep_coat(&terms, bsdf);
+  keep_tint(&terms, bsdf);
 }
 #else
 static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {}

@@ -20,6 +20,10 @@ typedef struct LayerBase {
   REAL coat_part;
   REAL eta, eta_next;  // of the base at both
 #endif
+#if HAS_SPECULAR_MAPS
+  REAL3 tint;   // a factor on what the dielectric's interface reflects,
+  REAL tinted;  // and its greatest, on what that takes from what lies below
+#endif
 } LayerBase;
 
 // Whether a texture gives the coat's weight, and another one the roughness.
@@ -44,6 +48,31 @@ static inline REAL past_coat(const LayerBase* base, REAL row) {
 static inline REAL coat_weight(__global const Layers* m, const LayerBase* base) { return (REAL)(m->coat.w); }
 static inline REAL darkening(__global const Layers* m, const LayerBase* base) { return (REAL)(m->darkening); }
 static inline REAL past_coat(const LayerBase* base, REAL row) { return row; }
+#endif
+
+// What the dielectric's interface leaves where its row has `row`, and the colour of what it reflects.
+#if HAS_SPECULAR_MAPS
+static inline REAL past_interface(const LayerBase* base, REAL row) {
+  return fma(base->tinted, row - 1.0f, (REAL)(1.0f));
+}
+static inline REAL3 interface_tint(__global const Layers* m, const LayerBase* base) {
+  return multiply3(all3(m->specular.xyz), base->tint);
+}
+// matte_scale_bare is 1 over the mean of what the interface leaves, by which that changes. Layers above leave
+// less at grazing angles as the interface does, so the mean of both changes by no more.
+static inline void tint_base(const Bsdfs* bsdf, LayerBase* base) {
+  base->tint = bsdf->tint;
+  base->tinted = greatest3(bsdf->tint);
+  const REAL gain = 1.0f / fma(1.0f - base->tinted, base->matte_scale_bare - 1.0f, (REAL)(1.0f));
+  base->matte_scale *= gain;
+  base->matte_scale_bare *= gain;
+}
+#else
+static inline REAL past_interface(const LayerBase* base, REAL row) { return row; }
+static inline REAL3 interface_tint(__global const Layers* m, const LayerBase* base) {
+  return all3(m->specular.xyz);
+}
+static inline void tint_base(const Bsdfs* bsdf, LayerBase* base) {}
 #endif
 
 // A row of a material's table at the cosine c, for `lanes`.
@@ -267,6 +296,7 @@ static inline LayerBase base_of(const Scene* scene, __global const Layers* m, co
 #endif
   map_base(scene, m, bsdf->metalness, bsdf->roughness, lanes, &base);
 #endif
+  tint_base(bsdf, &base);
   return base;
 }
 
@@ -288,9 +318,9 @@ static inline REAL base_reflectance(__global const Layers* m, const LayerBase* b
 static inline REAL past_shine(const Scene* scene, __global const Layers* m, const LayerBase* base, REAL c,
                               MASK lanes) {
 #if HAS_LAYER_MAPS
-  if (m->grid != NO_LAYER_GRID) return grid_shine(scene, m, base, c, lanes);
+  if (m->grid != NO_LAYER_GRID) return past_interface(base, grid_shine(scene, m, base, c, lanes));
 #endif
-  return layer_row(scene, m, LAYER_SHINE, c, lanes);
+  return past_interface(base, layer_row(scene, m, LAYER_SHINE, c, lanes));
 }
 static inline REAL shine_gain(const Scene* scene, __global const Layers* m, const LayerBase* base, REAL3 w,
                               MASK lanes) {

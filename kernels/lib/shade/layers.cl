@@ -58,9 +58,10 @@ static inline REAL3 coat_darkening(__global const Layers* m, const LayerBase* ba
   const REAL3 one = all3((float3)(1.0f));
   if (m->darkening == 0.0f) return one;
   const REAL glassy = (1.0f - base->metal) * base->straight,
-             below = (1.0f - base->metal) * (1.0f - base->straight), matte = below * (1.0f - base->glass),
+             below = (1.0f - base->metal) * past_interface(base, 1.0f - base->straight),
+             matte = below * (1.0f - base->glass),
              through = below * base->glass;
-  const REAL3 tint = scale3(all3(m->specular.xyz), glassy),
+  const REAL3 tint = scale3(interface_tint(m, base), glassy),
               clear = add3(tint, real3(through, through, through));
   const REAL3 back = add3(scale3(color, fma(base->metal, (REAL)(m->metal), matte)), clear);
   const REAL inner = base->inner;
@@ -84,7 +85,7 @@ static inline REAL3 shine_color(const Scene* scene, __global const Layers* m, co
     of_metal = along3(scale3(of_metal, left), (REAL)(m->film),
                       film_rows(scene, m, base, LAYER_FILM_METAL, c, lanes));
   }
-  of_glass = multiply3(of_glass, all3(m->specular.xyz));
+  of_glass = multiply3(of_glass, interface_tint(m, base));
   return along3(scale3(of_glass, opaque), base->metal * m->metal, of_metal);
 }
 

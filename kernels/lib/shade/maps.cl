@@ -22,6 +22,9 @@ typedef struct Terms {
 #if HAS_COAT_MAPS
   REAL coat;  // a factor on the weight of a layered material's
 #endif
+#if HAS_SPECULAR_MAPS
+  REAL3 tint;  // a factor on what a layered material's dielectric reflects
+#endif
 } Terms;
 
 #if HAS_LAYERS
@@ -46,6 +49,11 @@ static inline void start_coat(Terms* terms) { terms->coat = (REAL)(1.0f); }
 #else
 static inline void start_coat(Terms* terms) {}
 #endif
+#if HAS_SPECULAR_MAPS
+static inline void start_tint(Terms* terms) { terms->tint = all3((float3)(1.0f)); }
+#else
+static inline void start_tint(Terms* terms) {}
+#endif
 
 // The terms of surfaces before their materials' own are added.
 static inline Terms start_terms(REAL3 ambient, REAL3 diffuse) {
@@ -59,6 +67,7 @@ static inline Terms start_terms(REAL3 ambient, REAL3 diffuse) {
   make_opaque(&terms);
   start_smooth(&terms);
   start_coat(&terms);
+  start_tint(&terms);
   return terms;
 }
 
@@ -247,6 +256,22 @@ static inline void map_coat_weight(__global const MaterialMaps* maps, const Slot
                                    Terms* terms) {}
 #endif
 
+// What a layered material's dielectric reflects.
+#if HAS_SPECULAR_MAPS
+static inline void map_tint(__global const MaterialMaps* maps, const SlotValues* values, MASK lanes,
+                            Terms* terms) {
+  if (!has_slot(maps, MAP_SPECULAR)) return;
+  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
+  const REAL4 value = values->of[MAP_SPECULAR];
+  const REAL3 tint = real3(real_clamp(value.x, zero, one), real_clamp(value.y, zero, one),
+                           real_clamp(value.z, zero, one));
+  terms->tint = select3(terms->tint, tint, lanes);
+}
+#else
+static inline void map_tint(__global const MaterialMaps* maps, const SlotValues* values, MASK lanes,
+                            Terms* terms) {}
+#endif
+
 // Adds a clear layer's mirror, which leaves less of what lies below.
 static inline void map_coat(REAL coat, MASK lanes, Terms* terms) {
   const REAL kept = 1.0f - coat;
@@ -291,6 +316,7 @@ static inline void map_material(const Scene* scene, u32 index, const TexturePoin
   map_term(maps, &values, MAP_EMISSION, lanes, &terms->emission);
   map_base_terms(scene, index, maps, &values, lanes, terms);
   map_coat_weight(maps, &values, lanes, terms);
+  map_tint(maps, &values, lanes, terms);
   if (has_slot(maps, MAP_EXPONENT))
     terms->exponent = select(terms->exponent, terms->exponent * values.of[MAP_EXPONENT].x, lanes);
   if (has_slot(maps, MAP_OCCLUSION)) {

@@ -25,7 +25,7 @@ inline constexpr u32 count = 1u << 12;
 inline const std::string lobe_kernel = surface_text + R"(
 #include "lib/core/sampler.cl"
 // The surface z = 0 of one material, seen from above, or from below where `below`, behind it the other of the media 0 and 1.
-Bsdfs surface(__global const Material* materials, u32 below, float4 base) {
+Bsdfs surface(__global const Material* materials, u32 below, float4 base, float4 tint) {
   const REAL3 n = real3(0.0f, 0.0f, below ? -1.0f : 1.0f), none = real3(0.0f, 0.0f, 0.0f);
   Bsdfs bsdf = make_surface(materials, n, (int)below, 1 - (int)below);
 #if HAS_LAYERS
@@ -46,16 +46,19 @@ Bsdfs surface(__global const Material* materials, u32 below, float4 base) {
 #if HAS_COAT_MAPS
   bsdf.coat = base.w;
 #endif
+#if HAS_SPECULAR_MAPS
+  bsdf.tint = real3(tint.x, tint.y, tint.z);
+#endif
   return bsdf;
 }
 // Draws where `wi` has no length, else takes wi. Out: wi, density, weight or pi BSDF cos, whether it is specular.
 __kernel void run(__global const Material* materials, __global const Medium* media, __global const float* energy,
-                  __global const Layers* layers, __global const float* layer_rows, __global const float4* wis, __global float* out, float4 wo4, float4 base, u32 count) {
+                  __global const Layers* layers, __global const float* layer_rows, __global const float4* wis, __global float* out, float4 wo4, float4 base, float4 tint, u32 count) {
   const u32 i = get_global_id(0);
   if (i >= count) return;
   const Scene scene = {.materials = materials, .media = media, .lobe_energy = energy, .layers = layers, .layer_rows = layer_rows};
   const REAL3 wo = real3(wo4.x, wo4.y, wo4.z), given = real3(wis[i].x, wis[i].y, wis[i].z);
-  const Bsdfs bsdf = surface(materials, wo4.z < 0.0f, base);
+  const Bsdfs bsdf = surface(materials, wo4.z < 0.0f, base, tint);
   const Lobes lobes = make_lobes(&scene, &bsdf, wo, ALL_LANES);
   // Roberts's sequence in three dimensions: even, and without a pattern of its own. In integers, as few floats lie
   // between large ones: numbers that are 0 too often draw lobes of small shares too often.
@@ -85,8 +88,8 @@ struct Lobe {
 
 class Tester {
  public:
-  /// `layered`: materials have layers; `mapped`: whose metalness and roughness, or coat's weight, textures
-  /// give.
+  /// `layered`: materials have layers; `mapped`: whose metalness and roughness, coat's weight or
+  /// reflected colour textures give.
   explicit Tester(const DeviceInfo& info, bool layered = false, bool mapped = false)
       : device_(info),
         kernel_(build_text(device_, lobe_kernel,
@@ -98,9 +101,10 @@ class Tester {
                             {"HAS_THIN_WALLS", "1"},
                             {"HAS_LAYERS", layered ? "1" : "0"},
                             {"HAS_LAYER_MAPS", mapped ? "1" : "0"},
-                            {"HAS_COAT_MAPS", mapped ? "1" : "0"}})
+                            {"HAS_COAT_MAPS", mapped ? "1" : "0"},
+                            {"HAS_SPECULAR_MAPS", mapped ? "1" : "0"}})
                     .kernel<Buffer<Material>, Buffer<Medium>, Buffer<float>, Buffer<Layers>, Buffer<float>,
-                            Buffer<float4>, Buffer<float>, float4, float4, u32>("run")),
+                            Buffer<float4>, Buffer<float>, float4, float4, float4, u32>("run")),
         mapped_(mapped),
         energy_(device_.upload<float>(lobe_energy())),
         layers_(device_.upload<Layers>(std::vector{Layers{}})),
@@ -124,7 +128,10 @@ class Tester {
   /// What the textures have at the place; `coat` is a factor on the coat's weight.
   void set_base(double metalness, double roughness, double glass = 0, double coat = 1) {
     base_ = {float(metalness), float(roughness), float(glass), float(coat)};
+    tint_ = {1, 1, 1, 0};
   }
+  /// A factor on what the base's dielectric reflects, until the next set_base().
+  void set_tint(const dvec3& tint) { tint_ = {float(tint.x), float(tint.y), float(tint.z), 0}; }
 
   /// For each direction the lobe there; for directions of no length a sample.
   std::vector<Lobe> look(const Material& material, double index, const dvec3& wo,
@@ -138,7 +145,7 @@ class Tester {
     const auto out = device_.make<float>(8 * wis.size());
     device_.run(kernel_, {.x = wis.size()}, device_.upload<Material>(std::vector{material}),
                 device_.upload<Medium>(media), energy_, layers_, layer_rows_, device_.upload<float4>(given),
-                out, float4{float(wo.x), float(wo.y), float(wo.z), 0}, base_, size);
+                out, float4{float(wo.x), float(wo.y), float(wo.z), 0}, base_, tint_, size);
     std::vector<float> values(8 * wis.size());
     device_.read(out, std::span<float>(values));
     device_.save_programs();  // for the next process: this one keeps its testers to the end
@@ -157,11 +164,11 @@ class Tester {
  private:
   Device device_;
   Kernel<Buffer<Material>, Buffer<Medium>, Buffer<float>, Buffer<Layers>, Buffer<float>, Buffer<float4>,
-         Buffer<float>, float4, float4, u32>
+         Buffer<float>, float4, float4, float4, u32>
       kernel_;
   bool mapped_;
   LayerRows rows_;
-  float4 base_{};
+  float4 base_{}, tint_{};
   Buffer<float> energy_;
   Buffer<Layers> layers_;
   Buffer<float> layer_rows_;

@@ -1,6 +1,6 @@
-// Layered materials whose metalness, roughness or coat's weight come from textures: between the steps of
-// their grid too they return at most all light, are reciprocal and sampled as their density has it, and a
-// texture of one value is the number.
+// Layered materials whose metalness, roughness, coat's weight or reflected colour come from textures: between
+// the steps of their grid too they return at most all light, are reciprocal and sampled as their density has
+// it, and a texture of one value is the number.
 #include <nlohmann/json.hpp>
 
 #include "layer_testing.h"
@@ -247,6 +247,57 @@ TEST_CASE("glass below a coat of which a texture gives the weight has what passe
     for (int channel = 0; channel < 3; ++channel)
       CHECK(found[channel] == Approx(wanted[channel]).epsilon(0.005));
   }
+}
+
+TEST_CASE("what a texture takes from the reflection of white materials comes back from below") {
+  Tester& tester = tester_on(picture_devices().front(), true, true);
+  for (const Named& one : white_materials(0.3)) {
+    tester.set_layers(one.values);
+    const Material material = layered(one.values).material;
+    for (const double tint : {0.0, 0.45})
+      for (const double cosine : {1.0, 0.5, 0.1}) {
+        tester.set_base(one.values.base_metalness, one.values.specular_roughness);
+        tester.set_tint(dvec3(tint));
+        INFO(one.name << " of the tint " << tint << " at " << cosine);
+        const double mean = mean_weight(tester.draw(material, 1, at_cosine(cosine), 4 * count));
+        CHECK(mean < 1.005);
+        CHECK(mean > one.least - 0.005);
+      }
+  }
+}
+
+TEST_CASE("a dielectric of which a texture takes all reflection is its matte ground") {
+  Tester &plain = tester_on(picture_devices().front(), true),
+         &mapped = tester_on(picture_devices().front(), true, true);
+  OpenPbr values{.base_color = {0.8, 0.5, 0.2}, .specular_roughness = 0.4};
+  mapped.set_layers(values);
+  mapped.set_tint(dvec3(0));
+  values.specular_weight = 0;
+  plain.set_layers(values);
+  const Material material = layered(values).material;
+  const auto wanted = plain.look(material, 1, at_cosine(0.6), all_directions()),
+             found = mapped.look(material, 1, at_cosine(0.6), all_directions());
+  CHECK(apart_from(wanted, found) < 1e-4);
+}
+
+TEST_CASE(
+    "light takes the same way in both directions, and samples lie as their density has it, where a texture "
+    "gives the reflected colour") {
+  Tester& tester = tester_on(picture_devices().front(), true, true);
+  const OpenPbr values = colored();
+  tester.set_layers(values);
+  tester.set_base(0.3, 0.5);
+  tester.set_tint({0.8, 0.4, 0.1});
+  const Material material = layered(values).material;
+  for (const dvec3& a : {at_cosine(0.9), on_sphere(0.15, 0.6)})
+    for (const dvec3& b : {on_sphere(0.8, 0.05), on_sphere(0.4, 0.9)}) {
+      const dvec3 there = tester.look(material, 1, a, {b})[0].value / b.z,
+                  back = tester.look(material, 1, b, {a})[0].value / a.z;
+      INFO(a.z << " and " << b.z);
+      for (int channel = 0; channel < 3; ++channel)
+        CHECK(there[channel] == Approx(back[channel]).epsilon(2e-3));
+    }
+  CHECK(chi_squared(tester, material, 1, at_cosine(0.6)) < 1.5);
 }
 
 TEST_CASE("a texture of one value gives the picture of the number") {

@@ -83,12 +83,6 @@ bool has_layers(const JsonAt& material) {
                              [&](const char* name) { return material.extension(name).has_value(); });
 }
 
-bool fits_layers(const JsonAt& material) {
-  if (material.extension("KHR_materials_unlit")) return false;
-  const auto specular = material.extension("KHR_materials_specular");
-  return !specular || !(specular->find("specularTexture") || specular->find("specularColorTexture"));
-}
-
 OpenPbr gltf_openpbr(const JsonAt& material, const MetalRough& base, double ior) {
   OpenPbr values{.base_color = base.base, .base_metalness = base.metalness};
   values.specular_roughness = base.roughness;

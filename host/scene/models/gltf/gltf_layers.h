@@ -9,8 +9,6 @@ namespace sundog::models {
 /// Whether a material has an extension that makes it one of layers with every integrator. Those whose layers
 /// vary by a texture of the coat, or whose roughness does, are not taken so.
 bool has_layers(const JsonAt& material);
-/// Whether OpenPBR's values say all of a material: no texture gives specular values.
-bool fits_layers(const JsonAt& material);
 
 /// The base and specular values, and those of the extensions:
 ///   clearcoat    coat of the index 1.5

@@ -254,13 +254,12 @@ void GltfMaterials::add_clearcoat(const JsonAt& at, Entry& entry) const {
 void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const {
   const bool metal_map = entry.metal_rough && entry.values.metalness > 0;
   const bool always = has_layers(at);
-  if (!always && !fits_layers(at)) return;
+  if (at.extension("KHR_materials_unlit")) return;
   OpenPbr values = gltf_openpbr(at, entry.values, ior);
   if (always) {
     const bool wall = is_wall(at, entry.material, ior);
     MaterialDescription other = entry.material;
     set_gltf_layers(values, reflectance(ior), entry.material);
-    entry.specular = entry.specular_color = std::nullopt;
     if (!wall) return;
     make_wall(values, other, reflectance(ior));
     set_gltf_layers(values, reflectance(ior), other);

@@ -64,6 +64,7 @@ void GltfMaterials::use_by_paths(const Entry& entry, MaterialDescription& materi
   if (const auto& glass = shared ? entry.glass : entry.transmission)
     to.glass = textures_.use(*glass, false, model);
   if (entry.coat_weight) to.coat = textures_.use(*entry.coat_weight, false, model);
+  use_specular(entry, *other, model);
   to.ambient = to.diffuse;
   if (other->transmission != dvec3(0)) to.transmission = to.diffuse;
   if (entry.metal_rough) {
