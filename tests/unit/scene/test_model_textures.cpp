@@ -129,11 +129,22 @@ TEST_CASE("paths go through what a glTF's texture says is no metal, where its fa
   CHECK(pane.materials[0].by_paths->wall_ior == 1.5);
 }
 
-TEST_CASE("textures of specular values keep a glTF's material as it is with every integrator") {
-  CHECK_FALSE(quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{
-      "KHR_materials_specular":{"specularTexture":{"index":0}}}})")
-                  .materials.at(0)
-                  .by_paths);
+TEST_CASE("a glTF's specular textures are those of what a layered dielectric reflects") {
+  const std::string start = R"({"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{)",
+                    specular = R"("KHR_materials_specular":{"specularTexture":{"index":0}}}})";
+  SceneDescription scene = quad_with(start + specular);
+  const MaterialDescription& plain = scene.materials.at(0);
+  CHECK_FALSE(plain.layers);
+  REQUIRE(plain.by_paths);
+  CHECK(plain.by_paths->layers);
+  CHECK(texture_of(scene, plain.by_paths->textures.specular).channel == 3);
+  CHECK_FALSE(compile(scene).features.specular_maps);
+  scene.render.integrator = "path";
+  CHECK(compile(scene).features.specular_maps);
+  const SceneDescription cloth =
+      quad_with(start + R"("KHR_materials_sheen":{"sheenColorFactor":[1,1,1]},)" + specular);
+  CHECK(cloth.materials.at(0).layers);
+  CHECK(cloth.materials.at(0).textures.specular >= 0);
 }
 
 TEST_CASE("a glTF's clearcoat texture is that of the coat's weight for integrators that follow paths") {

@@ -76,15 +76,17 @@ void find_textures(const json& value, Model& model, int levels = 8) {
   }
 }
 
-/// Layers are read where no texture varies what lies below them (gltf_layers.h).
-bool reads_layers(const json& material, const std::string& extension) {
+bool is_layer(const std::string& extension) {
   constexpr std::array layers{"KHR_materials_sheen", "KHR_materials_iridescence", "KHR_materials_anisotropy"};
+  return std::ranges::count(layers, extension) > 0;
+}
+
+/// Only paths see layers where a texture varies what lies below them (gltf_layers.h).
+bool is_for_paths(const json& material) {
   const json& extensions = member(material, "extensions");
-  const bool varies =
-      member(member(material, "pbrMetallicRoughness"), "metallicRoughnessTexture").is_object() ||
-      member(member(extensions, "KHR_materials_transmission"), "transmissionTexture").is_object() ||
-      member(member(extensions, "KHR_materials_clearcoat"), "clearcoatTexture").is_object();
-  return std::ranges::count(layers, extension) > 0 && !varies;
+  return member(member(material, "pbrMetallicRoughness"), "metallicRoughnessTexture").is_object() ||
+         member(member(extensions, "KHR_materials_transmission"), "transmissionTexture").is_object() ||
+         member(member(extensions, "KHR_materials_clearcoat"), "clearcoatTexture").is_object();
 }
 
 void find_in_material(const json& material, Model& model) {
@@ -95,7 +97,8 @@ void find_in_material(const json& material, Model& model) {
     const char* feature = name.c_str();
     for (const Named& known : material_extensions)
       if (name == known.key) feature = known.feature;
-    if (feature && !reads_layers(material, name)) leave_unread(model, feature);
+    if (!feature || (is_layer(name) && !is_for_paths(material))) continue;
+    leave_unread(model, is_layer(name) ? std::string(feature) + " with whitted" : feature);
   }
 }
 
