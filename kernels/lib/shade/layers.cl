@@ -59,8 +59,7 @@ static inline REAL3 coat_darkening(__global const Layers* m, const LayerBase* ba
   if (m->darkening == 0.0f) return one;
   const REAL glassy = (1.0f - base->metal) * base->straight,
              below = (1.0f - base->metal) * past_interface(base, 1.0f - base->straight),
-             matte = below * (1.0f - base->glass),
-             through = below * base->glass;
+             matte = below * (1.0f - base->glass), through = below * base->glass;
   const REAL3 tint = scale3(interface_tint(m, base), glassy),
               clear = add3(tint, real3(through, through, through));
   const REAL3 back = add3(scale3(color, fma(base->metal, (REAL)(m->metal), matte)), clear);

@@ -263,8 +263,8 @@ static inline void map_tint(__global const MaterialMaps* maps, const SlotValues*
   if (!has_slot(maps, MAP_SPECULAR)) return;
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
   const REAL4 value = values->of[MAP_SPECULAR];
-  const REAL3 tint = real3(real_clamp(value.x, zero, one), real_clamp(value.y, zero, one),
-                           real_clamp(value.z, zero, one));
+  const REAL3 tint =
+      real3(real_clamp(value.x, zero, one), real_clamp(value.y, zero, one), real_clamp(value.z, zero, one));
   terms->tint = select3(terms->tint, tint, lanes);
 }
 #else
