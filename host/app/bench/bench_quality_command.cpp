@@ -5,6 +5,8 @@
 
 #include "app/bench/bench_options.h"
 #include "app/options/option_helpers.h"
+#include "app/options/option_values.h"
+#include "app/options/output_files.h"
 #include "base/error.h"
 #include "base/image_io.h"
 #include "bench/quality/quality.h"
@@ -13,8 +15,8 @@ namespace sundog {
 namespace {
 
 struct QualityOptions : BenchOptions {
-  std::string reference, integrators, samplers = "auto,sobol,independent", counts = "1,4,16,64";
-  double goal = 0.02;
+  std::string reference, integrators, samplers = "auto,sobol,independent", counts = "1,4,16,64",
+                                      goal = "0.02";
 };
 
 /// "a,b" -> a, b.
@@ -44,7 +46,8 @@ int bench_quality(const QualityOptions& options) {
   QualityPlan plan;
   plan.counts = parse_list("--counts", options.counts, 1, 65536);
   plan.repeat = options.repeat;
-  plan.goal = options.goal;
+  plan.goal = parse_real("--goal", options.goal, 1e-9, 1e9);
+  check_output_files({options.json, options.csv, options.html}, {options.reference});
   plan.reference = read_image(options.reference);
   if (plan.reference.channels < 3)
     throw UsageError(fmt::format("{}: wanted a picture with colours", options.reference));
@@ -87,9 +90,7 @@ void add_bench_quality(Arguments& bench, Command& chosen) {
   value(app, "--integrators", "LIST", options->integrators, "integrators (default: the scene's own)");
   value(app, "--samplers", "LIST", options->samplers, "samplers (default auto,sobol,independent)");
   value(app, "--counts", "LIST", options->counts, "samples a pixel (default 1,4,16,64)");
-  app->add_option("--goal", options->goal, "the rms error to whose time ways are compared (default 0.02)")
-      ->type_name("E")
-      ->range(1e-9, 1e9);
+  value(app, "--goal", "E", options->goal, "the rms error to whose time ways are compared (default 0.02)");
   app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_quality(*options); }}; });
 }
 

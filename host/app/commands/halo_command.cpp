@@ -60,11 +60,7 @@ EnvironmentDescription read_halo(const HaloOptions& options) {
 
 EnvironmentDescription halo_of(const HaloOptions& options) {
   EnvironmentDescription e = read_halo(options);
-  if (!options.altitude.empty()) {
-    e.sun_altitude = parse_tolerance(options.altitude);
-    if (e.sun_altitude > 90)
-      throw UsageError(fmt::format("--altitude {}: wanted 0 to 90 degrees", options.altitude));
-  }
+  if (!options.altitude.empty()) e.sun_altitude = parse_real("--altitude", options.altitude, 0, 90);
   if (!options.rays.empty()) e.halo.rays = parse_number("--rays", options.rays, 1000, 400'000'000);
   return e;
 }

@@ -36,10 +36,7 @@ std::optional<std::pair<int, int>> number_pair(std::string_view text) {
 
 /// The number that an option gives, in `low`..`high`; 0 without it.
 double real_number(const char* option, const std::string& text, double low, double high) {
-  if (text.empty()) return 0;
-  const std::optional<double> value = number(text, low, high);
-  if (!value) throw UsageError(fmt::format("{} {}: wanted a number from {} to {}", option, text, low, high));
-  return *value;
+  return text.empty() ? 0 : parse_real(option, text, low, high);
 }
 
 }  // namespace
@@ -114,6 +111,12 @@ Split parse_split(const std::string& text) {
   }
   if (sum <= 0) throw UsageError(fmt::format("--split {}: one share at least must be more than 0", text));
   return split;
+}
+
+double parse_real(const char* option, const std::string& text, double low, double high) {
+  const std::optional<double> value = number(text, low, high);
+  if (!value) throw UsageError(fmt::format("{} {}: wanted a number from {} to {}", option, text, low, high));
+  return *value;
 }
 
 double parse_tolerance(const std::string& text) {

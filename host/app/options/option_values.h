@@ -23,6 +23,9 @@ PartOfFrame parse_part(const std::string& text);
 /// "dynamic", "static", or shares such as "3,1".
 Split parse_split(const std::string& text);
 
+/// A number from `low` to `high`.
+double parse_real(const char* option, const std::string& text, double low, double high);
+
 /// A finite number, 0 or more.
 double parse_tolerance(const std::string& text);
 

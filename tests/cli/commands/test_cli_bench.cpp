@@ -323,6 +323,12 @@ TEST_CASE("bench quality tells the error of each way by time, against a picture 
   CHECK(result.status == 2);
   CHECK(is_one_error_line(result.err));
   CHECK_THAT(result.err, ContainsSubstring("5x4"));
+  result = run({"--goal", "nan"});
+  CHECK(result.status == 2);
+  CHECK_THAT(result.err, ContainsSubstring("--goal nan"));
+  const std::string reference = sundog::read_file(folder.file("r.exr"));
+  CHECK(run({"--json", folder.file("r.exr")}).status == 2);
+  CHECK(sundog::read_file(folder.file("r.exr")) == reference);
 }
 
 TEST_CASE("bench textures times a frame with textures and without, and the loading of images") {

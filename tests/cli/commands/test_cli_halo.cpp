@@ -67,6 +67,8 @@ TEST_CASE("halo refuses what it cannot do, with a mend") {
   refused({file, "-o", out, "--veiw", "fisheye"}, 2, "--view");
   refused({file, "-o", out, "--size", "0"}, 2, "--size");
   refused({file, "-o", out, "--altitude", "91"}, 2, "0 to 90");
+  refused({file, "-o", out, "--altitude", "-5"}, 2, "--altitude -5");
+  refused({file, "-o", out, "--altitude", "nan"}, 2, "--altitude nan");
   refused({"-o", out, "--set", "/environment/rays=2000"}, 2, "SCENE");
   refused({(folder / "dull.json").string(), "-o", out}, 3, "halo");
   refused({file, "-o", (folder / "sky.txt").string()}, 2, "sky.txt");
