@@ -21,6 +21,7 @@ namespace sundog {
 ///     group=STATUS@P:D    a launch in groups of more than SIZE work-items gives the OpenCL status
 ///     limit=MOST@P:D      the driver gives no kernel's groups more than MOST work-items
 ///     hang@P:D            a launch never comes back
+///     photons=KIBIBYTES@P:D  maps of photons take no more on the device, or one map if that is more
 ///     cut@P:D             the loops of launches of more than SIZE samples are ended early, without an error
 ///     crash@P:D           a launch ends the process
 ///     kill@P:D            the process is killed (SIGKILL) at a launch

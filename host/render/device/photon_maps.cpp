@@ -1,12 +1,15 @@
 // See photon_maps.h.
 #include "render/device/photon_maps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numeric>
 
 #include "base/environment.h"
+#include "base/faults.h"
 
 namespace sundog {
 namespace {
@@ -14,6 +17,15 @@ namespace {
 constexpr double kept_part = 2.0 / 3;       // alpha: 1 keeps the radius, less lets it shrink faster
 constexpr u32 photons_a_launch = 1u << 16;  // a launch stays well below a second on any device
 constexpr u32 least_cells = 1024;
+// Those of 1024 samples have room, by the default number of photons.
+constexpr std::size_t usual_bytes = std::size_t{608} << 20;
+
+/// Bytes that maps may take on the device together.
+std::size_t most_bytes_on(const DeviceInfo& info) {
+  const auto kibibytes =
+      fault(value_of(info.environment).faults, "photons", fmt::format("{}:{}", info.platform, info.device));
+  return kibibytes ? static_cast<std::size_t>(*kibibytes) << 10 : usual_bytes;
+}
 
 /// Photons in the order of their cells, in each cell in that of their numbers; `begins` receives where each
 /// cell begins and the last one ends.
@@ -114,13 +126,14 @@ bool PhotonMaps::fill(const PhotonTracer& tracer, const StopFlags& flags, u32 nu
   std::vector<float4> photons;
   first_map_ = end_map_ = 0;
   full_ = false;
+  const std::size_t most_bytes = most_bytes_on(tracer.device.info());
   const u32 wanted = std::max(wanted_end_, number + 1);
   u32 next = number;
   for (; next < wanted; ++next) {
     if (flags.set()) return false;
     Made made = make(tracer, next);
     const std::size_t bytes = photons.size() * sizeof(float4) + cells.size() * sizeof(u32) + made.bytes();
-    full_ = next > number && bytes > most_bytes_;
+    full_ = next > number && bytes > most_bytes;
     if (full_) break;
     made.map.first_cell = static_cast<u32>(cells.size());
     const auto before = static_cast<u32>(photons.size() / 2);
@@ -138,13 +151,11 @@ bool PhotonMaps::fill(const PhotonTracer& tracer, const StopFlags& flags, u32 nu
   return true;
 }
 
-u32 PhotonMaps::provide(const PhotonTracer& tracer, u32 first, u32 last) {
-  if (targets_ == 0) return last - first;
-  const u32 number = photon_map_of(first);
-  if (!holds(number)) fill(tracer, {}, number);
-  u32 end = first + 1;
+u32 PhotonMaps::end_of_maps(u32 first, u32 last) const {
+  if (targets_ == 0) return last;
+  u32 end = first;
   while (end < last && holds(photon_map_of(end))) ++end;
-  return end - first;
+  return end;
 }
 
 }  // namespace sundog

@@ -29,12 +29,8 @@ class PhotonMaps {
   /// is room. Returns false when it was stopped. Throws DeviceError.
   bool prepare(const PhotonTracer& tracer, const StopFlags& flags, u32 first, u32 last);
 
-  /// Puts maps into the tables, among them that of the sample `first`, unless it is there. Returns how many
-  /// of the samples [first, last) have theirs there. Throws DeviceError.
-  u32 provide(const PhotonTracer& tracer, u32 first, u32 last);
-
-  /// For tests: bytes that maps may take on the device together.
-  void limit(std::size_t bytes) { most_bytes_ = bytes; }
+  /// The end of those of the samples [first, last) that have their maps in the tables, one after another.
+  u32 end_of_maps(u32 first, u32 last) const;
 
  private:
   struct Made {
@@ -54,8 +50,7 @@ class PhotonMaps {
   std::size_t lights_ = 0;
   u32 first_map_ = 0, end_map_ = 0;  // those in the tables
   u32 wanted_end_ = 0;
-  bool full_ = false;  // there was no room for more
-  std::size_t most_bytes_ = std::size_t{512} << 20;
+  bool full_ = false;        // there was no room for more
   Buffer<u32> light_media_;  // the MediaStack at each light, low word first
   bool traced_ = false;      // the kernel has run before
   Buffer<float4> landed_;

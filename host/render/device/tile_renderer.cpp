@@ -125,39 +125,41 @@ void TileRenderer::prepare_surfaces() {
   add_first_surfaces(device_, kernels_, times);
 }
 
-void TileRenderer::launch_samples(const TileRequest& request, const StopFlags& flags) {
-  const u32 first = request.first_sample;
-  if (!photons_.prepare({device_, kernels_, watch_}, flags, first, first + samples_of(request))) return;
-  while (!flags.set()) {
-    const std::optional<SizedLaunch> next = sizer_.next();
-    if (!next) return;
-    Launch launch = next->launch;
-    launch.first_sample += first;
-    launch.listed = !request.pixels.empty();
-    launch.counts_rays = kernels_.counts_rays || request.costs;
-    sizer_.note_time(launch_integrator(launch, *next));
+// Returns the rows whose pixels have all samples. With photons all pixels get the samples whose maps are
+// there before other maps are made.
+unsigned TileRenderer::launch_samples(const TileRequest& request, const StopFlags& flags) {
+  u32 first = request.first_sample;
+  const u32 end = first + samples_of(request);
+  while (first < end && !flags.set()) {
+    if (!photons_.prepare({device_, kernels_, watch_}, flags, first, end)) return 0;
+    const u32 last = photons_.end_of_maps(first, end);
+    sizer_.begin(request.tile, last - first);
+    while (!flags.set()) {
+      const std::optional<SizedLaunch> next = sizer_.next();
+      if (!next) break;
+      Launch launch = next->launch;
+      launch.first_sample += first;
+      launch.listed = !request.pixels.empty();
+      launch.counts_rays = kernels_.counts_rays || request.costs;
+      sizer_.note_time(launch_integrator(launch, *next));
+    }
+    if (last == end) return sizer_.finished_rows();
+    first = last;
   }
+  return 0;
 }
 
-// With photons a launch is cut where the maps that the device has room for end. Returns its seconds, without
-// those in which the driver made a kernel ready for its first launch.
-double TileRenderer::launch_integrator(const Launch& whole, const SizedLaunch& sized) {
-  const u32 end = whole.first_sample + whole.sample_count;
-  double seconds = 0;
-  for (Launch launch = whole; launch.first_sample < end; launch.first_sample += launch.sample_count) {
-    launch.sample_count = photons_.provide({device_, kernels_, watch_}, launch.first_sample, end);
-    const double first_launches = first_launch_seconds(device_.times());
-    const Stopwatch clock;
-    const WatchedLaunch watched(watch_, sized.expected_seconds, sized.expected_seconds <= 0,
-                                value_of(device_.info().environment).launch_limit);
-    run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>,
-                     Launch>(device_, kernels_.integrator, sized.size, kernels_.tables,
-                             kernels_.tables.camera_media, pixels_, film_, weights_, counters_, rays_,
-                             launch);
-    device_.finish();
-    seconds += clock.seconds() - (first_launch_seconds(device_.times()) - first_launches);
-  }
-  return seconds;
+// Returns its seconds, without those in which the driver made a kernel ready for its first launch.
+double TileRenderer::launch_integrator(const Launch& launch, const SizedLaunch& sized) {
+  const double first_launches = first_launch_seconds(device_.times());
+  const Stopwatch clock;
+  const WatchedLaunch watched(watch_, sized.expected_seconds, sized.expected_seconds <= 0,
+                              value_of(device_.info().environment).launch_limit);
+  run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>(
+      device_, kernels_.integrator, sized.size, kernels_.tables, kernels_.tables.camera_media, pixels_, film_,
+      weights_, counters_, rays_, launch);
+  device_.finish();
+  return clock.seconds() - (first_launch_seconds(device_.times()) - first_launches);
 }
 
 void TileRenderer::launch_aovs(const TileRequest& request, const Tile& tile, std::vector<float4>& aovs) {
@@ -272,11 +274,7 @@ TileResult TileRenderer::try_render(const TileRequest& request, const StopFlags&
   const SettledAtEnd settled(device_);
   write_start(request, result);
   const unsigned samples = samples_of(request);
-  if (samples > 0) {
-    sizer_.begin(request.tile, samples);
-    launch_samples(request, flags);
-    result.tile.height = static_cast<int>(sizer_.finished_rows());
-  }
+  if (samples > 0) result.tile.height = static_cast<int>(launch_samples(request, flags));
   if (wants_aovs(request)) launch_aovs(request, result.tile, result.aovs);
   read_result(samples, result);
   return result;

@@ -63,8 +63,8 @@ class TileRenderer {
   TileResult try_render(const TileRequest& request, const StopFlags& flags);
   void write_start(const TileRequest& request, TileResult& result);
   void read_result(unsigned samples, TileResult& result);
-  void launch_samples(const TileRequest& request, const StopFlags& flags);
-  double launch_integrator(const Launch& whole, const SizedLaunch& sized);
+  unsigned launch_samples(const TileRequest& request, const StopFlags& flags);
+  double launch_integrator(const Launch& launch, const SizedLaunch& sized);
   void launch_aovs(const TileRequest& request, const Tile& tile, std::vector<float4>& aovs);
   void check_finished(const TileRequest& asked, const TileResult& made);
   unsigned samples_of(const TileRequest& request) const {

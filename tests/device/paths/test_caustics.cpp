@@ -5,6 +5,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <optional>
 
+#include "base/environment.h"
+#include "base/faults.h"
 #include "compile/compiled_scene.h"
 #include "path_testing.h"
 #include "render/device/kernel_config.h"
@@ -236,6 +238,31 @@ TEST_CASE("a picture with photons has the same bits however its work is cut, and
   options.stop = nullptr;
   options.on_progress = {};
   CHECK(same_bits(scenes::render_on(device, scene, options).image, whole));
+}
+
+TEST_CASE("a tile makes each map of photons once where not all have room, and the same bits") {
+  SceneDescription scene = ball_scene(of_point, 0, 9);  // three maps
+  scene.camera.fov = 30;
+  scene.image.width = scene.image.height = 16;
+  scene.render.photons = 5000;
+  DeviceInfo device = test_devices().front();
+  RenderOptions options;
+  options.tile = 16;
+  options.tuning = [](const DeviceInfo&) {
+    Tuning short_launches;
+    short_launches.launch_ms = 1e-3;
+    return short_launches;
+  };
+  const RenderResult whole = render(compile(scene), {device}, options);
+  CHECK(whole.devices.at(0).kernels.at("trace_photons").launches == 3);
+  HostEnvironment environment = value_of(device.environment);
+  environment.faults = std::make_shared<Faults>("photons=1@" + std::to_string(device.platform) + ":" +
+                                                std::to_string(device.device));
+  device.environment = std::make_shared<const HostEnvironment>(environment);
+  const RenderResult narrow = render(compile(scene), {device}, options);
+  CHECK(same_bits(narrow.image, whole.image));
+  CHECK(narrow.devices.at(0).kernels.at("trace_photons").launches == 5);  // two had no room and came again
+  CHECK(narrow.devices.at(0).kernels.at("render_path").launches > 12);
 }
 
 TEST_CASE("photons of a radius next to nothing, or wider than the scene, leave no sample out") {
