@@ -17,14 +17,17 @@ namespace {
 constexpr double kept_part = 2.0 / 3;       // alpha: 1 keeps the radius, less lets it shrink faster
 constexpr u32 photons_a_launch = 1u << 16;  // a launch stays well below a second on any device
 constexpr u32 least_cells = 1024;
-// Those of 1024 samples have room, by the default number of photons.
-constexpr std::size_t usual_bytes = std::size_t{608} << 20;
+// By the default number of photons those of 1024 samples have room in the one, those of 30,000 in the other.
+constexpr std::uint64_t least_room = std::uint64_t{608} << 20, most_room = std::uint64_t{2} << 30;
 
-/// Bytes that maps may take on the device together.
-std::size_t most_bytes_on(const DeviceInfo& info) {
+/// Bytes that maps may take on the device together: a quarter of its memory, within these bounds, and no
+/// more than one buffer may have.
+std::uint64_t room_on(const DeviceInfo& info) {
   const auto kibibytes =
       fault(value_of(info.environment).faults, "photons", fmt::format("{}:{}", info.platform, info.device));
-  return kibibytes ? static_cast<std::size_t>(*kibibytes) << 10 : usual_bytes;
+  if (kibibytes) return static_cast<std::uint64_t>(*kibibytes) << 10;
+  const std::uint64_t room = std::clamp(info.global_memory / 4, least_room, most_room);
+  return info.max_allocation > 0 ? std::min(room, info.max_allocation) : room;
 }
 
 /// Photons in the order of their cells, in each cell in that of their numbers; `begins` receives where each
@@ -126,14 +129,14 @@ bool PhotonMaps::fill(const PhotonTracer& tracer, const StopFlags& flags, u32 nu
   std::vector<float4> photons;
   first_map_ = end_map_ = 0;
   full_ = false;
-  const std::size_t most_bytes = most_bytes_on(tracer.device.info());
+  const std::uint64_t room = room_on(tracer.device.info());
   const u32 wanted = std::max(wanted_end_, number + 1);
   u32 next = number;
   for (; next < wanted; ++next) {
     if (flags.set()) return false;
     Made made = make(tracer, next);
     const std::size_t bytes = photons.size() * sizeof(float4) + cells.size() * sizeof(u32) + made.bytes();
-    full_ = next > number && bytes > most_bytes;
+    full_ = next > number && bytes > room;
     if (full_) break;
     made.map.first_cell = static_cast<u32>(cells.size());
     const auto before = static_cast<u32>(photons.size() / 2);
