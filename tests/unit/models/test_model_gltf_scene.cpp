@@ -208,6 +208,16 @@ TEST_CASE("Dispersion: KHR_materials_dispersion is 20 over Abbe's number", "[mod
   CHECK(index_at(wild.dispersion, wild.ior, 780) > 1);
 }
 
+TEST_CASE("emission that no float has is refused", "[models]") {
+  const auto shining = [](const std::string& strength) {
+    return material_of(
+        R"({"emissiveFactor":[1,1,1],"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":)" +
+        strength + "}}}");
+  };
+  CHECK(shining("1e6").emission.x == Approx(1e6));
+  CHECK_THROWS_AS(shining("1e39"), SceneError);
+}
+
 TEST_CASE("a metal transmits nothing, whatever its transmission factor", "[models]") {
   const MaterialDescription metal =
       material_of(R"({"extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})");

@@ -125,7 +125,7 @@ GltfMaterials::Entry GltfMaterials::read(const JsonAt& at) const {
   entry.values = {base, metallic, roughness, plain.x};
   m.emission = at.vector("emissiveFactor", dvec3(0), unit_range);
   if (const auto strength = at.extension("KHR_materials_emissive_strength"))
-    m.emission *= strength->number("emissiveStrength", 1, not_negative);
+    m.emission *= strength->number("emissiveStrength", 1, {0, 1e30, false});
   transmit(at, entry, base * (1 - metallic), ior);
   entry.two_sided = at.boolean("doubleSided", false);
   read_textures(at, entry);

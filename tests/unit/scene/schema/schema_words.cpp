@@ -52,8 +52,10 @@ std::string value_text(const ordered_json& value) {
 
 std::string plural(const std::string& noun) {
   const auto at = noun.starts_with("[") ? noun.find(']') : noun.find(',');
-  if (at == std::string::npos) return fmt::format("{}s", noun);
-  return fmt::format("{}s{}", noun.substr(0, at), noun.substr(at));
+  const std::string name = noun.substr(0, at);
+  if (name.ends_with('s')) return noun;
+  if (at == std::string::npos) return name + "s";
+  return fmt::format("{}s{}", name, noun.substr(at));
 }
 
 /// A number's limits; those of 1e18 and more are none.
