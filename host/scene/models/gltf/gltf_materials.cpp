@@ -250,7 +250,7 @@ void GltfMaterials::add_clearcoat(const JsonAt& at, Entry& entry) const {
 }
 
 /// The same values as OpenPBR's: with every integrator of materials that have layers, with those that follow
-/// paths of the others that they fit.
+/// paths of the others.
 void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const {
   const bool metal_map = entry.metal_rough && entry.values.metalness > 0;
   const bool always = has_layers(at);
