@@ -93,6 +93,17 @@ json Browser::command(const std::string& method, const std::string& path, const 
   return answer["value"];
 }
 
+void Browser::type(const std::string& text, int gap) {
+  json steps = json::array();
+  for (const char c : text) {
+    const std::string key(1, c);
+    steps.push_back({{"type", "keyDown"}, {"value", key}});
+    steps.push_back({{"type", "keyUp"}, {"value", key}});
+    steps.push_back({{"type", "pause"}, {"duration", gap}});
+  }
+  perform({{{"type", "key"}, {"id", "keys"}, {"actions", steps}}});
+}
+
 /// The size of the page, not of the window around it.
 void Browser::resize(int width, int height) {
   for (int tries = 0; tries < 2; ++tries) {
@@ -189,6 +200,8 @@ void Browser::open_tab(const std::string& url) {
 void Browser::use_tab(std::size_t index) {
   command("POST", "/window", {{"handle", command("GET", "/window/handles")[index]}});
 }
+
+std::size_t Browser::tabs() { return command("GET", "/window/handles").size(); }
 
 std::string Browser::screenshot() { return from_base64(command("GET", "/screenshot").get<std::string>()); }
 

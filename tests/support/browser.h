@@ -36,9 +36,12 @@ class Browser {
   void prefer_dark(bool dark);
   /// Types keys at what has the focus; "\uE00C" and the like are WebDriver's special keys.
   void keys(const std::vector<std::string>& keys);
+  /// Types one character after the other at what has the focus, with so many milliseconds between them.
+  void type(const std::string& text, int gap);
   /// Opens another tab and goes there; tabs are counted from 0.
   void open_tab(const std::string& url);
   void use_tab(std::size_t index);
+  std::size_t tabs();
   /// A PNG of what is seen.
   std::string screenshot();
   /// Errors that the page has logged so far.

@@ -122,6 +122,7 @@ json resolved_json(const SceneDescription& scene) {
 json scene_message(const SceneDocument& document) {
   return {{"is", "scene"},
           {"version", document.version()},
+          {"since", document.opened_version()},
           {"document", document.now()},
           {"opened", document.opened()},
           {"file", document.file().filename().string()},

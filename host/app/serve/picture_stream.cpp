@@ -75,7 +75,31 @@ bool PictureStream::send_picture() {
   return true;
 }
 
+/// What a picture is refused by, its encoder or memory, is told in its place.
+bool PictureStream::try_picture(Snapshot now) {
+  try {
+    return send_picture();
+  } catch (const std::exception& error) {
+    now.state = SessionState::failed;
+    now.error = fmt::format("the picture cannot be shown: {}", error.what());
+    tell_status(now);
+    return true;
+  }
+}
+
+/// Without memory for its words it tries again.
 void PictureStream::run() {
+  while (!stop_) {
+    try {
+      stream();
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "sundog: serve: {}\n", error.what());
+      std::this_thread::sleep_for(std::chrono::duration<double>(idle_seconds));
+    }
+  }
+}
+
+void PictureStream::stream() {
   std::uint64_t revision = 0;
   double status_at = -1, picture_at = -1;
   bool all_sent = true, told = true;
@@ -91,7 +115,7 @@ void PictureStream::run() {
     if (told) tell_status(now), status_at = clock.seconds();
     all_sent = ended || clock.seconds() - picture_at >= picture_seconds;
     if (all_sent) {
-      all_sent = send_picture();
+      all_sent = try_picture(now);
       picture_at = clock.seconds();
     }
     // Changes come faster than pictures are made: the rest of the time is the renderer's.

@@ -29,8 +29,10 @@ class PictureStream {
 
  private:
   void run();
+  void stream();
   void tell_status(const Snapshot& now);
   bool send_picture();
+  bool try_picture(Snapshot now);
 
   WebServer& server_;
   RenderSession& session_;

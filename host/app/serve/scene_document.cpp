@@ -5,10 +5,13 @@
 #include <charconv>
 #include <utility>
 
+#include "app/serve/frame_limit.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include "scene/document.h"
 #include "scene/json/override.h"
 #include "scene/json/parse.h"
+#include "scene/model.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -17,6 +20,20 @@ using nlohmann::json;
 namespace {
 
 constexpr std::size_t most_undone = 200, most_tokens = max_json_depth;
+constexpr std::size_t most_undo_bytes = std::size_t{64} << 20;
+
+/// The oldest steps give way to the newest.
+void remember(std::deque<DocumentStep>& steps, DocumentStep newest) {
+  steps.push_back(std::move(newest));
+  std::size_t bytes = 0;
+  for (const DocumentStep& step : steps) bytes += step.size();
+  for (; steps.size() > most_undone || (bytes > most_undo_bytes && steps.size() > 1); steps.pop_front())
+    bytes -= steps.front().size();
+}
+
+std::size_t text_size(const json& document) {
+  return document.dump(-1, ' ', false, json::error_handler_t::replace).size();
+}
 
 [[noreturn]] void lead_nowhere(const std::string& pointer) {
   throw UsageError(fmt::format("{}: there is no such place in the scene", pointer));
@@ -69,6 +86,14 @@ bool leads_on(const json& place, const std::string& token) {
 
 }  // namespace
 
+void check_document_size(std::uintmax_t bytes, const fs::path& file) {
+  if (bytes > most_document_bytes)
+    throw SceneError(file.string(), "",
+                     fmt::format("the viewer holds scenes of at most {} bytes of JSON, found {}; keep meshes "
+                                 "in files of their own",
+                                 most_document_bytes, bytes));
+}
+
 void apply_change(json& document, const Change& change) {
   const std::vector<std::string> tokens = tokens_of(change.pointer);
   json* place = &document;
@@ -82,16 +107,29 @@ void apply_change(json& document, const Change& change) {
     remove_child(*place, tokens.back(), change.pointer);
 }
 
+/// Throws SceneError for what is more than the viewer holds.
+void SceneDocument::check(const json& next, const SceneDescription& scene) const {
+  check_document_size(text_size(next), scene.file);
+  const std::int64_t shown = scene_ ? std::int64_t{scene_->image.width} * scene_->image.height : 0;
+  check_frame(scene, shown, available_memory());
+}
+
 void SceneDocument::begin(json document, const fs::path& file) {
   auto scene = std::make_shared<const SceneDescription>(load_scene_document(document, file));
+  check(document, *scene);
   now_ = opened_ = std::move(document);
   file_ = file;
   scene_ = std::move(scene);
   past_.clear(), future_.clear(), gesture_.clear();
-  ++version_;
+  opened_version_ = ++version_;
 }
 
-void SceneDocument::open(const fs::path& file) { begin(read_scene_document(file), file); }
+void SceneDocument::open(const fs::path& file) {
+  std::error_code missing;  // is reported by who reads it
+  const std::uintmax_t bytes = fs::file_size(file, missing);
+  if (!missing && !is_model_file(file)) check_document_size(bytes, file);
+  begin(read_scene_document(file), file);
+}
 
 void SceneDocument::replace(json document, const fs::path& file) { begin(std::move(document), file); }
 
@@ -99,41 +137,36 @@ void SceneDocument::replace(json document, const fs::path& file) { begin(std::mo
 void SceneDocument::take(json next) {
   auto scene = scene_ ? change_scene(*scene_, now_, next) : nullptr;
   if (!scene) scene = std::make_shared<const SceneDescription>(load_scene_document(next, file_));
+  check(next, *scene);
   scene_ = std::move(scene);
   now_ = std::move(next);
   ++version_;
 }
 
 void SceneDocument::apply(const std::vector<Change>& changes, const std::string& gesture) {
-  json next = now_, before = now_;
+  json next = now_;
   for (const Change& change : changes) apply_change(next, change);
+  DocumentStep before = json::to_cbor(now_);
   take(std::move(next));
   future_.clear();
   if (!gesture.empty() && gesture == gesture_ && !past_.empty()) return;
   gesture_ = gesture;
-  past_.push_back(std::move(before));
-  if (past_.size() > most_undone) past_.pop_front();
+  remember(past_, std::move(before));
 }
 
-bool SceneDocument::undo() {
-  if (past_.empty()) return false;
-  json before = now_;
-  take(past_.back());
-  past_.pop_back();
-  future_.push_back(std::move(before));
+bool SceneDocument::step(std::deque<DocumentStep>& from, std::deque<DocumentStep>& to) {
+  if (from.empty()) return false;
+  DocumentStep before = json::to_cbor(now_);
+  take(json::from_cbor(from.back()));
+  from.pop_back();
+  remember(to, std::move(before));
   gesture_.clear();
   return true;
 }
 
-bool SceneDocument::redo() {
-  if (future_.empty()) return false;
-  json before = now_;
-  take(future_.back());
-  future_.pop_back();
-  past_.push_back(std::move(before));
-  gesture_.clear();
-  return true;
-}
+bool SceneDocument::undo() { return step(past_, future_); }
+
+bool SceneDocument::redo() { return step(future_, past_); }
 
 std::optional<std::vector<std::string>> settings_between(const json& opened, const json& now,
                                                          const fs::path& file) {

@@ -1,7 +1,8 @@
 // The scene that the viewer shows, as a document that pages change: each change is checked by reading the
 // scene; what does not read is refused and changes nothing. With undo, redo, and the scene of what is valid
-// now. One thread at a time.
+// now. What it holds is bounded. One thread at a time.
 #pragma once
+#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <memory>
@@ -19,6 +20,15 @@ struct Change {
   std::string pointer;  // RFC 6901; "-" appends to an array; objects around it that are missing are made
   std::optional<nlohmann::json> value;
 };
+
+/// As JSON text. Each page gets it whole, twice: as it is, and as the file has it.
+inline constexpr std::size_t most_document_bytes = std::size_t{16} << 20;
+
+/// Throws SceneError for more than that.
+void check_document_size(std::uintmax_t bytes, const std::filesystem::path& file);
+
+/// A whole document as CBOR: several times smaller than its values in memory.
+using DocumentStep = std::vector<std::uint8_t>;
 
 class SceneDocument {
  public:
@@ -40,19 +50,23 @@ class SceneDocument {
   std::shared_ptr<const SceneDescription> scene() const { return scene_; }
   /// Grows with each change.
   std::uint64_t version() const { return version_; }
+  /// The version that open() or replace() made.
+  std::uint64_t opened_version() const { return opened_version_; }
   bool can_undo() const { return !past_.empty(); }
   bool can_redo() const { return !future_.empty(); }
 
  private:
+  void check(const nlohmann::json& next, const SceneDescription& scene) const;
   void take(nlohmann::json next);
   void begin(nlohmann::json document, const std::filesystem::path& file);
+  bool step(std::deque<DocumentStep>& from, std::deque<DocumentStep>& to);
 
   nlohmann::json now_, opened_;
   std::filesystem::path file_;
   std::shared_ptr<const SceneDescription> scene_;
-  std::deque<nlohmann::json> past_, future_;
+  std::deque<DocumentStep> past_, future_;  // the newest last
   std::string gesture_;
-  std::uint64_t version_ = 0;
+  std::uint64_t version_ = 0, opened_version_ = 0;
 };
 
 /// Sets or removes one value. Throws UsageError for a pointer that leads nowhere.

@@ -61,13 +61,16 @@ Studio::~Studio() {
 WebHandlers Studio::handlers() {
   WebHandlers all;
   all.message = [this](ClientId client, std::string text) {
-    if (!edits_.post([this, client, text = std::move(text)] { take_message(client, text); }))
+    const std::size_t bytes = text.size();
+    if (!edits_.post([this, client, text = std::move(text)] { take_message(client, text); }, bytes))
       server_.send(client, message_text({{"is", "refused"}, {"reason", "too much is waiting"}}));
   };
   all.opened = [this](ClientId client) {
     edits_.post([this, client] {
-      server_.send(client,
-                   message_text({{"is", "welcome"}, {"client", client}, {"version", SUNDOG_VERSION}}));
+      server_.send(client, message_text({{"is", "welcome"},
+                                         {"client", client},
+                                         {"version", SUNDOG_VERSION},
+                                         {"most_upload_bytes", server_.limits().body_bytes}}));
       server_.send(client, message_text(devices_message(setup_.devices, setup_.picked)));
       server_.send(client, message_text(scene_message(document_)));
       stream_.greet(client);
@@ -126,8 +129,7 @@ void Studio::take_message(ClientId client, const std::string& text) {
 void Studio::dispatch(ClientId client, const json& message) {
   const std::string what = text_of(message, "do");
   if (what == "edit") return edit(client, message);
-  if (what == "undo") return step(true);
-  if (what == "redo") return step(false);
+  if (what == "undo" || what == "redo") return step(client, message, what == "undo");
   if (what == "pick") return pick(client, message);
   if (what == "devices") return use_devices(message);
   if (what == "options") return set_options(message);
@@ -144,7 +146,9 @@ void Studio::dispatch(ClientId client, const json& message) {
 
 void Studio::edit(ClientId client, const json& message) {
   const std::vector<Change> changes = changes_of(message);
-  document_.apply(changes, text_of(message, "gesture"));
+  std::string gesture = text_of(message, "gesture");
+  if (!gesture.empty()) gesture = fmt::format("{}/{}", client, gesture);  // pages count theirs alike
+  document_.apply(changes, gesture);
   begin_drawing();
   server_.send_to_all(message_text({{"is", "changed"},
                                     {"version", document_.version()},
@@ -156,10 +160,15 @@ void Studio::edit(ClientId client, const json& message) {
                                     {"resolved", resolved_json(*document_.scene())}}));
 }
 
-void Studio::step(bool back) {
-  if (!(back ? document_.undo() : document_.redo())) return;
+/// All get the scene; the page that asked, where there is nothing to undo as well.
+void Studio::step(ClientId client, const json& message, bool back) {
+  const bool changed = back ? document_.undo() : document_.redo();
+  json scene = scene_message(document_);
+  scene["client"] = client;
+  scene["id"] = message.value("id", json(nullptr));
+  if (!changed) return server_.send(client, message_text(scene));
   begin_drawing();
-  tell_scene();
+  server_.send_to_all(message_text(scene));
 }
 
 void Studio::use_devices(const json& message) {

@@ -39,7 +39,7 @@ class Studio {
   void take_message(ClientId client, const std::string& text);
   void dispatch(ClientId client, const nlohmann::json& message);
   void edit(ClientId client, const nlohmann::json& message);
-  void step(bool back);
+  void step(ClientId client, const nlohmann::json& message, bool back);
   void use_devices(const nlohmann::json& message);
   void set_options(const nlohmann::json& message);
   void pick(ClientId client, const nlohmann::json& message);

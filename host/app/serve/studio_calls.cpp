@@ -84,10 +84,12 @@ void Studio::open_model(const std::string& name, const std::string& bytes) {
 /// count from the folder of the scene before.
 WebAnswer Studio::open_upload(const WebRequest& request) {
   const std::string name = safe_file_name(query_value(request.query, "name"));
-  if (is_model_file(name))
+  if (is_model_file(name)) {
     open_model(name, request.body);
-  else
+  } else {
+    check_document_size(request.body.size(), name);  // before its values take many times as much
     document_.replace(parse_json(request.body, name), document_.file().parent_path() / name);
+  }
   begin_drawing();
   tell_scene();
   return plain(200, "opened");

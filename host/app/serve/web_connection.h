@@ -40,12 +40,10 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   void read_head() {
     parser_.emplace();
     parser_->header_limit(static_cast<std::uint32_t>(server_.limits.header_bytes));
-    parser_->body_limit(server_.limits.body_bytes);
+    parser_->body_limit(boost::none);  // check_body() says how long it is
     stream_.expires_after(std::chrono::seconds(server_.limits.header_seconds));
     http::async_read_header(stream_, buffer_, *parser_,
                             [self = shared_from_this()](NetError error, std::size_t) {
-                              if (error == http::error::body_limit)
-                                return self->refuse({413, "the body is too large"});
                               if (error == http::error::header_limit)
                                 return self->refuse({431, "the head is too large"});
                               if (error == http::error::end_of_stream || error == beast::error::timeout)
@@ -71,11 +69,27 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
       stream_.expires_never();
       return std::make_shared<WebSocket>(server_, stream_.release_socket())->accept(parser_->release());
     }
+    if (const Refusal refusal = check_body(); refusal.status) return refuse(refusal);
+    held_.emplace(server_.held_bytes, parser_->content_length().value_or(0));
     stream_.expires_after(std::chrono::seconds(server_.limits.body_seconds));
     http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](NetError error, std::size_t) {
-      if (error == http::error::body_limit) return self->refuse({413, "the body is too large"});
       if (!error) self->hand_over();
     });
+  }
+
+  /// By its length, before a byte of it is held.
+  Refusal check_body() const {
+    if (parser_->chunked()) return {411, "wanted a Content-Length"};
+    const std::uint64_t bytes = parser_->content_length().value_or(0);
+    if (bytes > server_.limits.body_bytes)
+      return {413,
+              fmt::format("the upload has {} bytes, the viewer takes at most {}: put it into the folder that "
+                          "sundog was started in, and open it there",
+                          bytes, server_.limits.body_bytes)};
+    if (server_.held_bytes + bytes > server_.limits.bodies_bytes)
+      return {503, fmt::format("uploads of {} bytes are under way: try again when they are done",
+                               server_.held_bytes)};
+    return {};
   }
 
   void hand_over() {
@@ -91,6 +105,7 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   }
 
   void write(const WebAnswer& answer, bool keep) {
+    held_.reset();
     response_ = {static_cast<http::status>(answer.status), 11};
     response_.set(http::field::content_type, answer.type);
     response_.set(http::field::cache_control, "no-store");
@@ -128,6 +143,7 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
 
   WebState& server_;
   Counted counted_;
+  std::optional<Counted> held_;  // the bytes of its body
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{64 << 10};
   std::optional<http::request_parser<http::string_body>> parser_;

@@ -42,11 +42,30 @@ WebServer::~WebServer() = default;
 
 int WebServer::port() const { return state_->acceptor.local_endpoint().port(); }
 
+const WebLimits& WebServer::limits() const { return state_->limits; }
+
+namespace {
+
+/// What escapes a handler (there is no memory for its bytes) ends the connection that it served, and no
+/// other.
+bool runs_to_its_end(asio::io_context& io) {
+  try {
+    io.run();
+    return true;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "sundog: serve: {}\n", error.what());
+    return false;
+  }
+}
+
+}  // namespace
+
 void WebServer::run(const Gate& gate, WebHandlers handlers) {
   state_->gate = gate;
   state_->handlers = std::move(handlers);
   state_->accept_next();
-  state_->io.run();
+  while (!runs_to_its_end(state_->io)) {
+  }
 }
 
 void WebServer::stop() { state_->io.stop(); }

@@ -37,8 +37,8 @@ struct WebHandlers {
 
 struct WebLimits {
   std::size_t header_bytes = 16 << 10;
-  std::size_t body_bytes = 32 << 20;
-  std::size_t message_bytes = 8 << 20;  // from a socket
+  std::size_t body_bytes = 32 << 20, bodies_bytes = 64 << 20;  // of one upload, and of all that are held
+  std::size_t message_bytes = 8 << 20;                         // from a socket
   std::size_t connections = 64, sockets = 16;
   int messages_a_second = 400;         // from a socket
   std::size_t queue_bytes = 64 << 20;  // to a socket: one that lags by more is closed
@@ -56,6 +56,7 @@ class WebServer {
   WebServer& operator=(const WebServer&) = delete;
 
   int port() const;
+  const WebLimits& limits() const;
   /// Serves until stop() is called.
   void run(const Gate& gate, WebHandlers handlers);
 

@@ -27,8 +27,8 @@ class WebSocket;
 
 struct WebState {
   WebLimits limits;
-  std::size_t connections = 0,
-              upgraded = 0;  // before `io`, whose end is that of the connections that count themselves
+  // Before `io`, whose end is that of the connections that count themselves.
+  std::size_t connections = 0, upgraded = 0, held_bytes = 0;
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
   asio::steady_timer pause{io};
@@ -44,13 +44,14 @@ struct WebState {
 /// Counts while it lives.
 class Counted {
  public:
-  explicit Counted(std::size_t& count) : count_(count) { ++count_; }
-  ~Counted() { --count_; }
+  explicit Counted(std::size_t& count, std::size_t by = 1) : count_(count), by_(by) { count_ += by_; }
+  ~Counted() { count_ -= by_; }
   Counted(const Counted&) = delete;
   Counted& operator=(const Counted&) = delete;
 
  private:
   std::size_t& count_;
+  std::size_t by_;
 };
 
 }  // namespace sundog

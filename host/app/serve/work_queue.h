@@ -1,5 +1,7 @@
-// One thread that does what it is given, in turn.
+// One thread that does what it is given, in turn. What waits is bounded, in number and in bytes.
 #pragma once
+#include <fmt/format.h>
+
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -16,12 +18,14 @@ class WorkQueue {
   WorkQueue(const WorkQueue&) = delete;
   WorkQueue& operator=(const WorkQueue&) = delete;
 
-  /// False: too much is waiting already, or the queue has stopped. Tasks must not throw.
-  bool post(std::function<void()> task) {
+  /// False: too much is waiting already, or the queue has stopped. `bytes`: what the task holds. Tasks answer
+  /// for their own errors; one that escapes them (no memory for the answer) ends that task alone.
+  bool post(std::function<void()> task, std::size_t bytes = 0) {
     {
       const std::lock_guard lock(mutex_);
-      if (stopped_ || tasks_.size() >= most_waiting) return false;
-      tasks_.push_back(std::move(task));
+      if (stopped_ || tasks_.size() >= most_waiting || bytes_ + bytes > most_bytes) return false;
+      tasks_.push_back({std::move(task), bytes});
+      bytes_ += bytes;
     }
     changed_.notify_one();
     return true;
@@ -32,31 +36,42 @@ class WorkQueue {
       const std::lock_guard lock(mutex_);
       stopped_ = true;
       tasks_.clear();
+      bytes_ = 0;
     }
     changed_.notify_one();
     if (thread_.joinable()) thread_.join();
   }
 
  private:
-  static constexpr std::size_t most_waiting = 2000;
+  struct Task {
+    std::function<void()> act;
+    std::size_t bytes = 0;
+  };
+  static constexpr std::size_t most_waiting = 2000, most_bytes = std::size_t{64} << 20;
 
   void run() {
     for (;;) {
-      std::function<void()> task;
+      Task task;
       {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [&] { return stopped_ || !tasks_.empty(); });
         if (stopped_) return;
         task = std::move(tasks_.front());
         tasks_.pop_front();
+        bytes_ -= task.bytes;
       }
-      task();
+      try {
+        task.act();
+      } catch (const std::exception& error) {
+        fmt::print(stderr, "sundog: serve: {}\n", error.what());
+      }
     }
   }
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::function<void()>> tasks_;
+  std::deque<Task> tasks_;
+  std::size_t bytes_ = 0;  // of what waits
   bool stopped_ = false;
   std::thread thread_;  // last: it uses all others
 };

@@ -202,6 +202,66 @@ TEST_CASE("bodies, heads and messages are bounded") {
   CHECK(get("/").status == 200);
 }
 
+TEST_CASE("an upload is refused by its length, with the figure, before it is held") {
+  const std::string head =
+      "POST /api/scene?name=a.glb HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(served().port) + "\r\n" +
+      served().with_token();
+  const HttpReply large = http(served().port, head + "Content-Length: 33554433\r\n\r\n");
+  CHECK(large.status == 413);
+  CHECK(large.body.find("33554433 bytes") != std::string::npos);
+  CHECK(large.body.find("33554432") != std::string::npos);
+  CHECK(http(served().port, head + "Transfer-Encoding: chunked\r\n\r\n0\r\n\r\n").status == 411);
+  // Two that are under way take what there is for all.
+  const TcpClient first(served().port), second(served().port);
+  for (const TcpClient* one : {&first, &second}) one->send(head + "Content-Length: 33000000\r\n\r\nsome");
+  HttpReply third;
+  for (int tries = 0; tries < 100 && third.status != 503; ++tries)
+    third = http(served().port, head + "Content-Length: 3000000\r\n\r\n" + std::string(3'000'000, 'x'));
+  CHECK(third.status == 503);
+  CHECK(get("/").status == 200);
+}
+
+TEST_CASE("a scene larger than the viewer holds is refused by its length") {
+  const std::string large = "{\"name\": \"" + std::string(17'000'000, 'x') + "\"}";
+  const HttpReply upload = post("/api/scene?name=large.json", large);
+  CHECK(upload.status == 422);
+  CHECK(upload.body.find("at most 16777216 bytes of JSON, found 17000012") != std::string::npos);
+  served().folder.write("large.json", large);
+  WebSocketClient socket = greeted();
+  CHECK(ask(socket, {{"do", "open"}, {"file", "large.json"}}, "refused")["reason"].get<std::string>().find(
+            "found 17000012") != std::string::npos);
+  std::filesystem::remove(served().folder / "large.json");
+  CHECK(ask(socket, {{"do", "scene"}}, "scene")["file"] == "scene.json");
+}
+
+TEST_CASE("a frame that pages cannot show or the machine cannot hold is refused, and the server goes on") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", viewer_scene);
+  // 12 GB of addresses, on a machine of any size.
+  BackgroundProgram program({"sh", "-c", "ulimit -v 12000000; exec \"$0\" serve scene.json", SUNDOG_BINARY},
+                            folder.path());
+  const std::string url = program.line_with("http://");
+  const int port = std::stoi(url.substr(url.find(':', 7) + 1));
+  WebSocketClient socket(port);
+  socket.send(url.substr(url.find("token=") + 6));
+  const auto resize = [&](int width, int height, const std::string& answer) {
+    const json changes = {{{"at", "/image/width"}, {"value", width}},
+                          {{"at", "/image/height"}, {"value", height}}};
+    return ask(socket, {{"do", "edit"}, {"id", 1}, {"changes", changes}}, answer);
+  };
+  const json wide = resize(65536, 1, "refused"), high = resize(1, 65501, "refused");
+  CHECK(wide["at"] == "/image/width");
+  CHECK(high["at"] == "/image/height");
+  CHECK(wide["reason"].get<std::string>().find("at most 65500 pixels an edge, found 65536") !=
+        std::string::npos);
+  const json large = resize(12000, 12000, "refused");
+  CHECK(large["reason"].get<std::string>().find("12000x12000 pixels take 18.7 GB") != std::string::npos);
+  resize(65500, 1, "changed");
+  REQUIRE(socket.receive_with("\"settled\":true").has_value());
+  resize(96, 96, "changed");
+  REQUIRE(socket.receive_with("\"settled\":true").has_value());
+}
+
 TEST_CASE("messages that come too fast close their socket, and no other") {
   WebSocketClient other = greeted(), fast = greeted();
   for (int i = 0; i < 2000; ++i) fast.send("{}");

@@ -291,7 +291,7 @@ TEST_CASE("presets of materials, lights and quality are scenes that can be read"
     const tried = async (name, act) => {
       store.update({error: null});
       act();
-      for (let i = 0; i < 500 && (store.pending.length || store.inFlight !== null); ++i) await new Promise((r) => setTimeout(r, 5));
+      for (let i = 0; i < 500 && !store.edits.idle; ++i) await new Promise((r) => setTimeout(r, 5));
       if (store.state.error) bad.push(name + ': ' + store.state.error.reason);
     };
     for (const name of Object.keys(presets.materials)) await tried(name, () => presets.setMaterial('/materials/red', {}, name));
@@ -313,6 +313,12 @@ TEST_CASE("a model that is dropped on the page is shown; one that is damaged is 
   v.wait("return store.state.error !== null");
   CHECK(v.run("return store.state.document") == before);
   CHECK(v.run("return store.state.error.reason").get<std::string>().starts_with("bad.stl: "));
+  v.run("store.update({error: null})");
+  v.run(R"(
+    const data = new DataTransfer();
+    data.items.add(new File([new Uint8Array(33554433)], 'large.glb'));
+    document.dispatchEvent(new DragEvent('drop', {dataTransfer: data, bubbles: true, cancelable: true}));)");
+  v.wait("return store.state.error?.reason.startsWith('large.glb has 33554433 bytes') ?? false");
   v.run("store.update({error: null})");
   v.run(drop,
         {"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"

@@ -4,11 +4,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "base/file.h"
 #include "catch.h"
 #include "run_command.h"
 #include "viewing.h"
@@ -102,6 +106,48 @@ TEST_CASE("two pages see each other's changes, and a page that is loaded again i
   CHECK(v.picture() == after);
   v.undo_all();
   CHECK(v.picture() == before);
+}
+
+TEST_CASE("opening another scene asks where it would drop edits") {
+  Viewer& v = viewer();
+  const auto opens = [&](const std::string& file) {
+    v.press("Open");
+    v.wait("return [...document.querySelectorAll('.files button')].some((b) => b.textContent === '" + file +
+           "')");
+    v.run("[...document.querySelectorAll('.files button')].find((b) => b.textContent === args[0]).click()",
+          {file});
+  };
+  const std::string asked =
+      "return document.querySelector('dialog')?.ariaLabel === 'Edits that are not saved'";
+  v.run("store.set('/camera/fov', 29)");
+  v.settle();
+  opens("sub/other.json");
+  v.wait(asked);
+  v.press("Keep editing");
+  v.wait("return document.querySelector('dialog') === null");
+  CHECK(v.run("return [store.state.file, store.state.document.camera.fov]") == json({"scene.json", 29}));
+  v.run(R"(
+    const data = new DataTransfer();
+    data.items.add(new File([args[0]], 'dropped.json'));
+    document.dispatchEvent(new DragEvent('drop', {dataTransfer: data, bubbles: true, cancelable: true}));)",
+        {viewer_scene});
+  v.wait(asked);
+  v.press("Open without saving");
+  v.wait("return store.state.file === 'dropped.json'");
+  v.run("store.set('/camera/fov', 28)");
+  v.settle();
+  opens("scene.json");
+  v.wait(asked);
+  v.press("Save and open");
+  v.wait("return store.state.file === 'scene.json'");
+  v.settle();
+  const auto saved = v.browser.downloads() / "dropped.json";
+  for (int i = 0; i < 500 && !std::filesystem::exists(saved); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  CHECK(json::parse(sundog::read_file(saved))["camera"]["fov"] == 28);
+  opens("sub/other.json");  // there is nothing to lose
+  v.wait("return store.state.file === 'other.json'");
+  v.open_again();
 }
 
 TEST_CASE("a page with a wrong token says so and shows nothing") {

@@ -17,7 +17,7 @@ inline constexpr const char* viewer_prelude = R"(
   const pixels = () => Array.from(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data);
   const hash = () => pixels().reduce((h, v) => (h * 31 + v) >>> 0, 7);
   const settled = () => canvas.dataset.settled === 'true' && Number(canvas.dataset.version) === store.state.version
-    && store.pending.length === 0 && store.inFlight === null;
+    && store.edits.idle;
 )";
 
 /// One server and one browser for all cases: each leaves the scene as it was (undo).
@@ -77,6 +77,14 @@ struct Viewer {
     REQUIRE(run("const b = [...document.querySelectorAll('button')].find((b) => b.textContent === args[0] && "
                 "!b.disabled); if (!b) return false; b.click(); return true",
                 {label}) == true);
+  }
+  /// Opens the scene's file again: all edits, and the steps to undo, are gone.
+  void open_again() {
+    const json since =
+        run("const n = store.state.since; store.update({error: null}); store.say('open', {file: "
+            "'scene.json'}); return n");
+    wait("return store.edits.idle && store.state.since !== " + since.dump());
+    settle();
   }
   /// Undoes everything and waits for the first picture again.
   void undo_all() {

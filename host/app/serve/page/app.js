@@ -8,7 +8,7 @@ import {LightPanel} from './panels/light.js';
 import {ImagePanel} from './panels/image.js';
 import {DevicesPanel} from './panels/devices.js';
 import {StatisticsPanel} from './panels/statistics.js';
-import {CopyDialog, OpenDialog, SaveMenu, openFile, openLink} from './files.js';
+import {CopyDialog, OpenDialog, QuestionDialog, SaveMenu, openFile, openLink} from './files.js';
 
 const tabs = [['build', 'Build', BuildPanel], ['camera', 'Camera', CameraPanel], ['light', 'Light', LightPanel], ['image', 'Image', ImagePanel],
   ['devices', 'Devices', DevicesPanel], ['statistics', 'Statistics', StatisticsPanel]];
@@ -29,7 +29,7 @@ function nextTheme() {
 function Bar() {
   const file = useStore(store, (s) => s.file);
   const canUndo = useStore(store, (s) => s.canUndo), canRedo = useStore(store, (s) => s.canRedo);
-  const changed = useStore(store, (s) => s.document !== s.opened && s.canUndo);
+  const changed = useStore(store, () => store.unsaved);
   const [opening, open] = useState(false);
   return html`<header class="bar">
     <h1><img src="/sundog.svg" alt="" width="20" height="20" />sundog</h1>
@@ -37,8 +37,8 @@ function Bar() {
     <${Button} label="Open" onClick=${() => open(true)} />
     <${SaveMenu} />
     <span class="gap"></span>
-    <${Button} label="Undo" title="Undo (Ctrl+Z)" disabled=${!canUndo} onClick=${() => store.say('undo')} />
-    <${Button} label="Redo" title="Redo (Ctrl+Shift+Z)" disabled=${!canRedo} onClick=${() => store.say('redo')} />
+    <${Button} label="Undo" title="Undo (Ctrl+Z)" disabled=${!canUndo} onClick=${() => store.undo()} />
+    <${Button} label="Redo" title="Redo (Ctrl+Shift+Z)" disabled=${!canRedo} onClick=${() => store.redo()} />
     <${Button} label="◐" title="Dark or light" onClick=${nextTheme} />
     ${opening && html`<${OpenDialog} onClose=${() => open(false)} />`}
   </header>`;
@@ -91,18 +91,21 @@ function StatusLine() {
 
 function Notices() {
   const error = useStore(store, (s) => s.error), notice = useStore(store, (s) => s.notice);
-  const copyable = useStore(store, (s) => s.copyable);
+  const copyable = useStore(store, (s) => s.copyable), question = useStore(store, (s) => s.question);
   return html`<div class="notices">
     ${error && html`<p class="toast bad" role="alert"><span>${error.at ? error.at + ': ' : ''}${error.reason}</span><${Button} kind="small" label="✕" title="Dismiss" onClick=${() => store.update({error: null})} /></p>`}
     ${notice && html`<p class="toast" role="status">${notice}</p>`}
-    ${copyable && html`<${CopyDialog} copyable=${copyable} />`}</div>`;
+    ${copyable && html`<${CopyDialog} copyable=${copyable} />`}
+    ${question && html`<${QuestionDialog} answer=${question} />`}</div>`;
 }
 
 function keyboard(event) {
-  if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== 'z') return;
-  if (event.target.matches('input[type=text], textarea')) return;
+  const key = event.key.toLowerCase();
+  if (event.defaultPrevented || !(event.ctrlKey || event.metaKey) || (key !== 'z' && key !== 'y')) return;
+  if (event.target.matches('input[type=text], input[type=search], textarea') || document.querySelector('dialog')) return;
   event.preventDefault();
-  store.say(event.shiftKey ? 'redo' : 'undo');
+  if (key === 'y' || event.shiftKey) store.redo();
+  else store.undo();
 }
 
 function App() {

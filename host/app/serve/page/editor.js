@@ -1,17 +1,17 @@
 // The editor of formulas: CodeMirror with the formula language's words, in a shadow root, where it may bring its own style sheets (the page's
 // policy forbids style elements).
-import {html, useEffect, useRef} from './ui.js';
+import {html, useEffect, useRef, useStore} from './ui.js';
 import {store} from './store.js';
 import * as cm from './vendor/codemirror.module.js';
 
-const own = cm.Annotation.define();  // a change that is not the person's
+const pause = 400;  // milliseconds that part two steps of the editor's own history: less than what sends a text
 
 /** Numbers, names, functions of the language, operators. */
 const language = cm.StreamLanguage.define({
   token(stream) {
     if (stream.eatSpace()) return null;
     if (stream.match(/^(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?/)) return 'number';
-    if (stream.match(/^(#|\/\/).*/)) return 'comment';
+    if (stream.match(/^\/\/.*/)) return 'comment';
     if (stream.match(/^[A-Za-z_]\w*(?=\s*\()/)) return 'keyword';
     if (stream.match(/^[A-Za-z_]\w*/)) return 'variableName';
     stream.next();
@@ -49,37 +49,51 @@ function completions(extra) {
   };
 }
 
-/** `place` is {line, column, reason} of an error, or null; both count from 1. */
-export function CodeEditor({id, label, text, words, place, onInput, onLeave}) {
-  const host = useRef(), view = useRef(), now = useRef({});
-  const extra = useRef([]);
-  now.current = {onInput, onLeave};
-  extra.current = words ?? [];
+const historyCommand = (key) => cm.historyKeymap.find((binding) => binding.key === key).run;
+const undoTyping = historyCommand('Mod-z'), redoTyping = historyCommand('Mod-y');
+
+/** Undo is the page's, as for everything else; what the document has not got is taken back here. */
+function keymap(at) {
+  const undo = (view) => (store.drafts.differs(at) && undoTyping(view)) || (store.undo(), true);
+  const redo = (view) => redoTyping(view) || (store.redo(), true);
+  return cm.keymap.of([{key: 'Mod-z', run: undo}, {key: 'Mod-y', run: redo}, {key: 'Mod-Shift-z', run: redo},
+    ...cm.closeBracketsKeymap, ...cm.completionKeymap, ...cm.defaultKeymap]);
+}
+
+function stateOf(doc, {at, label, words}) {
+  return cm.EditorState.create({
+    doc,
+    extensions: [
+      keymap(at), cm.history({newGroupDelay: pause}), cm.lineNumbers(), cm.drawSelection(), cm.bracketMatching(), cm.closeBrackets(), language, cm.syntaxHighlighting(colors), look,
+      // Enter is a new line until an entry of the list is chosen.
+      cm.autocompletion({override: [completions(words)], icons: false, selectOnOpen: false}),
+      cm.EditorView.lineWrapping,
+      cm.EditorView.contentAttributes.of({'aria-label': label, spellcheck: 'false', autocapitalize: 'off'}),
+      cm.EditorView.updateListener.of((update) => {
+        if (update.docChanged) store.drafts.write(at, update.state.doc.toString());
+        if (update.focusChanged && !update.view.hasFocus) store.drafts.send(at);
+      }),
+    ],
+  });
+}
+
+/** The text at `at`. `place` is {line, column, reason} of an error, or null; both count from 1. */
+export function CodeEditor({id, at, label, words, place}) {
+  const host = useRef(), view = useRef(), known = useRef([]);
+  known.current = words ?? [];
   useEffect(() => {
     const root = host.current.shadowRoot ?? host.current.attachShadow({mode: 'open'});
-    view.current = new cm.EditorView({
-      root, parent: root,
-      state: cm.EditorState.create({
-        doc: text,
-        extensions: [
-          cm.history(), cm.lineNumbers(), cm.drawSelection(), cm.bracketMatching(), cm.closeBrackets(), language, cm.syntaxHighlighting(colors), look,
-          cm.autocompletion({override: [completions(extra)], icons: false}),
-          cm.keymap.of([...cm.closeBracketsKeymap, ...cm.completionKeymap, ...cm.historyKeymap, ...cm.defaultKeymap]),
-          cm.EditorView.lineWrapping,
-          cm.EditorView.contentAttributes.of({'aria-label': label, spellcheck: 'false', autocapitalize: 'off'}),
-          cm.EditorView.updateListener.of((update) => {
-            if (update.docChanged && !update.transactions.some((t) => t.annotation(own))) now.current.onInput(update.state.doc.toString());
-            if (update.focusChanged && !update.view.hasFocus) now.current.onLeave(update.state.doc.toString());
-          }),
-        ],
-      }),
-    });
+    view.current = new cm.EditorView({root, parent: root, state: stateOf(store.drafts.text(at), {at, label, words: known})});
     host.current.editor = view.current;
     return () => view.current.destroy();
   }, []);
+  const text = useStore(store, () => store.drafts.text(at));
   useEffect(() => {
-    const doc = view.current.state.doc;
-    if (doc.toString() !== text) view.current.dispatch({changes: {from: 0, to: doc.length, insert: text}, annotations: own.of(true)});
+    // The text of now, not that of the drawing: the person may have typed on.
+    const wanted = store.drafts.text(at), {doc, selection} = view.current.state;
+    if (doc.toString() === wanted) return;
+    view.current.setState(stateOf(wanted, {at, label, words: known}));
+    view.current.dispatch({selection: {anchor: Math.min(selection.main.head, wanted.length)}});
   }, [text]);
   useEffect(() => {
     const doc = view.current.state.doc, list = [];

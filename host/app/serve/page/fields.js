@@ -1,6 +1,6 @@
 // One widget for each kind of value. Each takes {label, value, fallback, onSet(value, gesture), help, at}: `value` undefined means
 // that the document leaves it open, and `fallback` (the default) is shown.
-import {html, useRef, useState, useEffect, useStore, plain} from './ui.js';
+import {html, useEffect, useRef, useState, useStore, plain} from './ui.js';
 import {store} from './store.js';
 import {CodeEditor} from './editor.js';
 
@@ -27,9 +27,16 @@ function sliderRange(min, max, value) {
   return null;
 }
 
-/** A number that is typed; the text is the person's until it is left. */
-export function NumberInput({id, value, min, max, step, label, faint, onSet}) {
+/** What is typed into a field: the person's until it is left, or an undo changes the scene. */
+function useTyped() {
   const [text, setText] = useState(null);
+  const scenes = useStore(store, (s) => s.scenes);
+  useEffect(() => setText(null), [scenes]);
+  return [text, setText];
+}
+
+export function NumberInput({id, value, min, max, step, label, faint, onSet}) {
+  const [text, setText] = useTyped();
   const gesture = useRef('');
   const input = (event) => {
     setText(event.target.value);
@@ -100,35 +107,25 @@ export function ChoiceField({label, value, fallback, choices, help, at, onSet, o
 
 export function TextField({label, value, fallback, help, at, onSet, onReset}) {
   const id = useId();
+  const [text, setText] = useTyped();
   return html`<${Row} id=${id} label=${label} help=${help} at=${at} isSet=${value !== undefined} onReset=${onReset}>
-    <input id=${id} type="text" value=${value ?? fallback ?? ''} onChange=${(e) => onSet(e.target.value || undefined)} /></${Row}>`;
+    <input id=${id} type="text" value=${text ?? value ?? fallback ?? ''} onInput=${(e) => setText(e.target.value)} onBlur=${() => setText(null)}
+      onChange=${(e) => onSet(e.target.value || undefined)} /></${Row}>`;
 }
 
-const asText = (value) => (Array.isArray(value) ? value.join('\n') : value ?? '');
-
 /** Text of the formula language. It is sent when typing pauses; an error is marked at its line and column. */
-export function CodeField({label, value, help, at, words, onSet, onReset}) {
-  const id = useId(), timer = useRef();
-  const [text, setText] = useState(null);
-  const error = useStore(store, (s) => (s.error?.at === at ? s.error : null));
-  const given = asText(value), shown = text ?? given;
+export function CodeField({label, value, help, at, words, onReset}) {
+  const id = useId();
+  const error = useStore(store, (s) => store.drafts.error(at) ?? (s.error?.at === at ? s.error : null));
   const place = error && /line (\d+), column (\d+)/.exec(error.reason);
-  useEffect(() => {
-    if (!error && given !== text) setText(null);  // what was refused stays, to be mended
-  }, [given]);
-  const input = (code) => {
-    setText(code);
-    clearTimeout(timer.current);
-    timer.current = setTimeout(() => send(code), 500);
-  };
-  const send = (code) => {
-    clearTimeout(timer.current);
-    const lines = code.split('\n').filter((line) => line.trim());
-    onSet(lines.length > 1 ? lines : lines[0], 'code' + id);
-  };
   const marked = place && {line: Number(place[1]), column: Number(place[2]), reason: error.reason};
-  return html`<${Row} id=${id} label=${label} help=${help} at=${error ? undefined : at} isSet=${value !== undefined} onReset=${onReset} wide>
-    <${CodeEditor} id=${id} label=${label} text=${shown} words=${words} place=${marked} onInput=${input} onLeave=${(code) => text !== null && code !== given && send(code)} />
-    <p class="error" role="alert">${error && html`${place && html`<pre>${shown.split('\n')[place[1] - 1] ?? ''}${'\n' + ' '.repeat(Math.max(0, place[2] - 1))}^</pre>`}${error.reason}`}</p>
+  const reset = onReset && (() => {
+    store.drafts.drop(at);
+    onReset();
+  });
+  const line = place && (store.drafts.text(at).split('\n')[place[1] - 1] ?? '');
+  return html`<${Row} id=${id} label=${label} help=${help} at=${error ? undefined : at} isSet=${value !== undefined} onReset=${reset} wide>
+    <${CodeEditor} id=${id} at=${at} label=${label} words=${words} place=${marked} />
+    <p class="error" role="alert">${error && html`${place && html`<pre>${line}${'\n' + ' '.repeat(Math.max(0, place[2] - 1))}^</pre>`}${error.reason}`}</p>
   </${Row}>`;
 }

@@ -14,10 +14,35 @@ const tell = (error) => store.notice(error.message);
 
 export async function saveScene() {
   try {
-    save(await (await store.link.call('scene')).blob(), stem() + '.json');
+    const text = await (await store.link.call('scene')).text();
+    save(new Blob([text], {type: 'application/json'}), stem() + '.json');
+    store.saved = JSON.parse(text);
+    store.update({});
+    return true;
   } catch (error) {
     tell(error);
+    return false;
   }
+}
+
+/** Whether another scene may take the place of this one: where a file has all edits, else as the person says. */
+function mayReplace() {
+  store.drafts.sendAll();
+  if (!store.unsaved && !store.drafts.refused()) return true;
+  store.state.question?.(false);
+  return new Promise((resolve) => store.update({question: resolve}));
+}
+
+export function QuestionDialog({answer}) {
+  const say = (yes) => {
+    store.update({question: null});
+    answer(yes);
+  };
+  return html`<${Dialog} title="Edits that are not saved" onClose=${() => say(false)}>
+    <p>Opening another scene drops the edits of ${store.state.file}.</p>
+    <div class="line"><${Button} kind="primary" label="Save and open" onClick=${async () => (await saveScene()) && say(true)} />
+      <${Button} label="Open without saving" onClick=${() => say(true)} />
+      <${Button} label="Keep editing" onClick=${() => say(false)} /></div></${Dialog}>`;
 }
 
 /** Waits until the picture rests, then saves it. */
@@ -66,9 +91,16 @@ export async function copyLink() {
 
 const models = ['gltf', 'glb', 'obj', 'ply', 'stl', 'nff'];
 
-async function upload(bytes, name) {
+/** `read` gives so many bytes. A file that is too large is not even read. */
+async function upload(read, name, bytes) {
+  if (bytes > store.state.mostUpload) {
+    const reason = `${name} has ${bytes} bytes, the viewer takes at most ${store.state.mostUpload}: put it into the folder that sundog was started in, and open it there`;
+    return store.update({error: {at: '', reason}});
+  }
+  if (!(await mayReplace())) return;
   try {
-    await store.link.call('scene?name=' + encodeURIComponent(name), {method: 'POST', body: bytes});
+    const body = await read();
+    await store.link.call('scene?name=' + encodeURIComponent(name), {method: 'POST', body});
   } catch (error) {
     store.update({error: {at: '', reason: error.message}});
   }
@@ -80,7 +112,9 @@ export async function openLink() {
   if (parts.get('token')) history.replaceState(null, '', '#token=' + parts.get('token'));
   if (!scene) return;
   try {
-    await upload(await unsqueeze(scene), parts.get('name') || 'link.json');
+    const text = await unsqueeze(scene);
+    await store.until((state) => state.document !== null);
+    await upload(() => text, parts.get('name') || 'link.json', text.length);
   } catch {
     store.notice('The link is damaged: its scene cannot be read.');
   }
@@ -88,8 +122,7 @@ export async function openLink() {
 
 export async function openFile(file) {
   const kind = file.name.toLowerCase().split('.').pop();
-  if (kind === 'json') return upload(await file.text(), file.name);
-  if (models.includes(kind)) return upload(await file.arrayBuffer(), file.name);
+  if (kind === 'json' || models.includes(kind)) return upload(() => file.arrayBuffer(), file.name, file.size);
   store.notice(`${file.name} is neither a scene (.json) nor a model (${models.join(', ')}).`);
 }
 
@@ -99,9 +132,9 @@ export function OpenDialog({onClose}) {
   useEffect(() => {
     store.link.json('files').then(setFiles, tell);
   }, []);
-  const open = (file) => {
-    store.say('open', {file});
+  const open = async (file) => {
     onClose();
+    if (await mayReplace()) store.say('open', {file});
   };
   const shown = (files ?? []).filter((f) => f.toLowerCase().includes(wanted.toLowerCase()));
   return html`<${Dialog} title="Open" onClose=${onClose}>

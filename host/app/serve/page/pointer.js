@@ -11,17 +11,21 @@ export function get(document, at) {
   return value;
 }
 
+function changedList(list, key, rest, next) {
+  const copy = list.slice(), index = key === '-' ? copy.length : Number(key);
+  if (rest.length === 0 && next === undefined) copy.splice(index, 1);
+  else copy[index] = changed(copy[index], rest, next);
+  return copy;
+}
+
 function changed(value, keys, next) {
   if (keys.length === 0) return next;
   const [key, ...rest] = keys;
-  const copy = Array.isArray(value) ? value.slice() : {...(value ?? {})};
-  const index = Array.isArray(copy) && key === '-' ? copy.length : key;
-  if (rest.length === 0 && next === undefined) {
-    if (Array.isArray(copy)) copy.splice(Number(index), 1);
-    else delete copy[index];
-  } else {
-    copy[index] = changed(copy[index], rest, next);
-  }
+  if (Array.isArray(value)) return changedList(value, key, rest, next);
+  if (key === '-' && (value ?? null) === null) return changedList([], key, rest, next);  // the list is made with its first item
+  const copy = {...value};
+  if (rest.length === 0 && next === undefined) delete copy[key];
+  else copy[key] = changed(copy[key], rest, next);
   return copy;
 }
 
@@ -29,4 +33,24 @@ function changed(value, keys, next) {
 export function apply(document, change) {
   if (!('value' in change) && get(document, change.at) === undefined) return document;
   return changed(document, parts(change.at), change.value);
+}
+
+/** Whether two documents say the same; the order of keys says nothing. */
+export function equal(a, b) {
+  if (a === b) return true;
+  if (a === null || b === null || typeof a !== 'object' || typeof b !== 'object' || Array.isArray(a) !== Array.isArray(b)) return false;
+  const keys = Object.keys(a);
+  return keys.length === Object.keys(b).length && keys.every((key) => Object.hasOwn(b, key) && equal(a[key], b[key]));
+}
+
+/** Whether a pointer leads to the same thing in both documents: no list on its way has moved its items. */
+export function leadsToSame(before, after, at) {
+  let a = before, b = after;
+  for (const key of parts(at)) {
+    if (Array.isArray(a) !== Array.isArray(b)) return false;
+    if (Array.isArray(a) && key !== '-' && a.length !== b.length && !equal(a[key], b[key])) return false;
+    a = a?.[key];
+    b = b?.[key];
+  }
+  return true;
 }

@@ -1,6 +1,8 @@
 // What the page knows: the document as the server and the person have it, what the server said of it, and what is selected.
-// Changes are drawn here at once and sent one message at a time, the newest of a drag taking the place of those that wait.
-import {apply} from './pointer.js';
+// Changes are drawn here at once and sent one message at a time (edits.js); texts belong to their editors meanwhile (drafts.js).
+import {Drafts} from './drafts.js';
+import {Edits} from './edits.js';
+import {apply, equal} from './pointer.js';
 import {Link} from './link.js';
 
 class Store {
@@ -8,10 +10,12 @@ class Store {
     connected: 'connecting', client: 0, document: null, opened: null, file: '', version: 0, canUndo: false, canRedo: false,
     resolved: null, status: null, devices: [], options: {split: 'dynamic', work_group: 'auto', coarse: true},
     schema: null, formulas: [], functions: [], selection: null, picked: null, error: null, picture: null, tab: 'build', notice: '',
+    mostUpload: Infinity,
+    question: null, since: null, scenes: 0,  // the version that was opened; how many whole documents have come
   };
   listeners = new Set();
-  pending = [];
-  inFlight = null;
+  edits = new Edits();
+  drafts = new Drafts(this);
   lastId = 0;
   asked = new Map();
   rates = [];
@@ -19,6 +23,17 @@ class Store {
   listen(listener) {
     this.listeners.add(listener);
     return () => this.listeners.delete(listener);
+  }
+  /** Waits until the state is as `test` wants it. */
+  until(test) {
+    return new Promise((resolve) => {
+      const stop = this.listen(() => {
+        if (!test(this.state)) return;
+        stop();
+        resolve();
+      });
+      this.update({});
+    });
   }
   update(patch) {
     Object.assign(this.state, patch);
@@ -32,7 +47,7 @@ class Store {
         this.update({connected: 'yes'});
       },
       closed: (why) => {
-        this.inFlight = null;
+        this.edits.sent = null;  // whether the server has it is seen when it is there again
         this.update({connected: why});
       },
       message: (message) => this.take(message),
@@ -53,27 +68,39 @@ class Store {
 
   /** Changes the document, here and at the server. Changes of one gesture are undone together. */
   edit(changes, gesture = '') {
-    let document = this.state.document;
-    for (const change of changes) document = apply(document, change);
-    this.update({document, error: null});
-    for (const change of changes) {
-      const last = this.pending[this.pending.length - 1];
-      const same = last && gesture && this.pending.find((p) => p.gesture === gesture && p.change.at === change.at && 'value' in p.change);
-      if (same && 'value' in change) same.change = change;
-      else this.pending.push({change, gesture});
-    }
+    this.edits.add(changes, gesture);
+    this.update({document: changes.reduce(apply, this.state.document), error: null});
     this.flush();
   }
   set(at, value, gesture = '') {
     this.edit([value === undefined ? {at} : {at, value}], gesture);
   }
   flush() {
-    if (this.inFlight || this.pending.length === 0 || this.state.connected !== 'yes') return;
-    const gesture = this.pending[0].gesture;
-    const count = this.pending.findIndex((p) => p.gesture !== gesture);
-    const taken = this.pending.splice(0, count < 0 ? this.pending.length : count);
-    this.inFlight = ++this.lastId;
-    this.link.send({do: 'edit', id: this.inFlight, gesture, changes: taken.map((p) => p.change)});
+    if (this.state.connected !== 'yes') return;
+    const message = this.edits.next(++this.lastId);
+    if (message) this.link.send(message);
+  }
+  /** Takes back the last step: where a text was refused, that text. */
+  undo() {
+    this.drafts.sendAll();
+    const refused = this.edits.idle && this.drafts.refused();
+    if (refused) this.drafts.drop(refused);
+    else this.step('undo');
+  }
+  redo() {
+    this.drafts.sendAll();
+    this.step('redo');
+  }
+  step(step) {
+    this.edits.addStep(step);
+    this.flush();
+  }
+  /** Whether the document has edits that no file has; compared once for each document. */
+  get unsaved() {
+    const {document, opened} = this.state, {compared, saved} = this;
+    if (compared?.document !== document || compared.opened !== opened || compared.saved !== saved)
+      this.compared = {document, opened, saved, differs: document !== null && !equal(document, opened) && !equal(document, saved)};
+    return this.compared.differs;
   }
 
   /** Asks for what a pixel shows. */
@@ -93,7 +120,7 @@ class Store {
 
   take(message) {
     const takers = {
-      welcome: () => this.update({client: message.client}),
+      welcome: () => this.update({client: message.client, mostUpload: message.most_upload_bytes}),
       devices: () => this.update({devices: message.devices}),
       options: () => this.update({options: message}),
       scene: () => this.takeScene(message),
@@ -112,36 +139,47 @@ class Store {
     if (!this.comesBack) return false;
     this.comesBack = false;
     const mine = this.state.document, name = this.state.file;
-    if (message.version >= this.state.version || message.file !== name || JSON.stringify(mine) === JSON.stringify(message.document)) return false;
+    if (message.version >= this.state.version || message.file !== name || equal(mine, message.document)) return false;
     await this.link.call('scene?name=' + encodeURIComponent(name), {method: 'POST', body: JSON.stringify(mine)});
+    this.edits.forget();
     this.notice('The server was started anew; the scene is as you left it.');
     return true;
   }
   async takeScene(message) {
     if (await this.giveBack(message).catch(() => false)) return;
+    const another = message.since !== this.state.since, before = this.edits.confirmed;
+    if (another && this.state.since !== null) this.edits.forget();
+    if (another) this.drafts.forget();
+    this.edits.takeAll(message.document, message.client === this.state.client && message.id === this.edits.sent?.id);
     if (message.version !== this.state.version) this.update({error: null});
-    this.update({
-      document: message.document, opened: message.opened, file: message.file, version: message.version,
-      canUndo: message.can_undo, canRedo: message.can_redo, resolved: message.resolved,
-    });
-    if (this.inFlight === null) this.flush();
+    this.shows(before, message, {opened: message.opened, file: message.file, since: message.since, scenes: this.state.scenes + 1});
   }
   takeChanged(message) {
-    const own = message.client === this.state.client;
-    if (own && message.id === this.inFlight) this.inFlight = null;
-    let document = this.state.document;
-    if (!own || this.pending.length === 0)
-      for (const change of message.changes) document = apply(document, change);
-    this.update({document, version: message.version, canUndo: message.can_undo, canRedo: message.can_redo, resolved: message.resolved});
-    this.flush();
+    const own = message.client === this.state.client && message.id === this.edits.sent?.id, before = this.edits.confirmed;
+    this.edits.take(message.changes, own);
+    this.shows(before, message);
   }
   takeRefused(message) {
-    if (message.id !== undefined && message.id === this.inFlight) {
-      this.inFlight = null;
-      this.pending = [];
-      this.say('scene');
+    const error = {at: message.at ?? '', reason: message.reason};
+    if (message.id !== undefined && message.id === this.edits.sent?.id) {
+      const {changes = []} = this.edits.refuse(), undone = this.edits.waiting[0]?.step === 'undo';
+      if (undone) this.edits.waiting.shift();  // it meant what is refused
+      this.shows(this.edits.confirmed);
+      this.drafts.refuse(changes, error);
+      if (undone) for (const {at} of changes) this.drafts.drop(at);
     }
-    this.update({error: {at: message.at ?? '', reason: message.reason}});
+    this.update({error});
+  }
+  /** After the server's word; `message` has more than the document. A camera that still moves stays where the person has it. */
+  shows(before, message, more = {}) {
+    if (message) this.told = message.resolved;
+    const moving = this.edits.concern('/camera') && this.state.resolved;
+    this.update({
+      document: this.edits.shown(), resolved: moving ? {...this.told, camera: this.state.resolved.camera} : this.told, ...more,
+      ...(message && {version: message.version, canUndo: message.can_undo, canRedo: message.can_redo}),
+    });
+    this.drafts.settle(before, this.edits.confirmed);
+    this.flush();
   }
   takeStatus(status) {
     const total = status.rays.primary + status.rays.reflection + status.rays.refraction + status.rays.shadow;

@@ -1,5 +1,5 @@
 // Build: which surface, its parameters, the interval it is built in, its material, smoothing.
-import {html, Group, Button, useState, useStore} from '../ui.js';
+import {html, Group, Button, useEffect, useRef, useState, useStore} from '../ui.js';
 import {store} from '../store.js';
 import {get, join} from '../pointer.js';
 import {definition, sample, variants, words} from '../schema.js';
@@ -26,12 +26,25 @@ function useSelected() {
   return {all, chosen, document};
 }
 
+const namedIn = {mesh: 'meshes', field: 'fields'};  // types that are made of an entry of a table
+
+/** Scrolls the list alone, not the panel around it. */
+function showIn(list, row) {
+  if (!row) return;
+  const outer = list.getBoundingClientRect(), inner = row.getBoundingClientRect();
+  list.scrollTop += Math.min(0, inner.top - outer.top) + Math.max(0, inner.bottom - outer.bottom);
+}
+
 function ObjectList({all, chosen}) {
-  const [type, setType] = useState('sphere');
+  const [type, setType] = useState('sphere'), [file, setFile] = useState('');
+  const list = useRef();
+  useEffect(() => showIn(list.current, list.current.querySelector('[aria-pressed=true]')), [chosen?.at]);
   const types = Object.keys(variants({$ref: '#/$defs/object'})).filter((t) => t !== 'native');
   const add = () => {
     const schema = variants({$ref: '#/$defs/object'})[type];
-    const starts = {formula: {map: 'z = z^8 + c'}, hybrid: {}};
+    const entry = namedIn[type] && Object.keys(store.state.document[namedIn[type]] ?? {})[0];
+    if (namedIn[type] && !entry) return store.notice(`There is no ${type} in the scene: add one first, at Image → ${words(namedIn[type])}.`);
+    const starts = {formula: {map: 'z = z^8 + c'}, hybrid: {}, mesh: {mesh: entry}, field: {field: entry}, model: {file}};
     const object = {type, ...sample(schema), ...starts[type]};
     const materials = Object.keys(store.state.document.materials ?? {});
     const changes = [];
@@ -41,9 +54,10 @@ function ObjectList({all, chosen}) {
     store.update({selection: `/objects/${store.state.document.objects.length - 1}`});
   };
   return html`<${Group} title=${`Objects (${all.length})`} id="objects">
-    <ul class="objects" aria-label="Objects">${all.map((o) => html`<li key=${o.at}><button type="button"
+    <ul ref=${list} class="objects" aria-label="Objects">${all.map((o) => html`<li key=${o.at}><button type="button"
       aria-pressed=${o.at === chosen?.at} class=${'object depth' + Math.min(3, o.depth)} onClick=${() => store.update({selection: o.at})}>
       <span>${titleOf(o)}</span><i>${o.object.type}</i></button></li>`)}</ul>
+    ${type === 'model' && html`<div class="line"><input type="text" aria-label="File of the new model" placeholder="model.glb, from the scene's folder" value=${file} onInput=${(e) => setFile(e.target.value)} /></div>`}
     <div class="line"><select aria-label="Type of the new object" value=${type} onChange=${(e) => setType(e.target.value)}>${types.map((t) => html`<option>${t}</option>`)}</select>
       <${Button} kind="small" label="Add" onClick=${add} />
       <${Button} kind="small" label="Remove" title="Remove the selected object" disabled=${!chosen} onClick=${() => store.set(chosen.at, undefined)} /></div>
@@ -86,7 +100,7 @@ function OwnFormula({at, object}) {
     setName('');
   };
   return html`${['start', 'map', 'distance'].map((key) => html`<${CodeField} key=${at + key} label=${words(key)} at=${at + '/' + key} value=${object[key]} help=${schema[key].description}
-      words=${[...Object.keys(object.parameters ?? {}), 'p', 'z', 'c']} onSet=${(v, g) => store.set(at + '/' + key, v, g)} onReset=${() => store.set(at + '/' + key, undefined)} />`)}
+      words=${[...Object.keys(object.parameters ?? {}), 'p', 'z', 'c']} onReset=${() => store.set(at + '/' + key, undefined)} />`)}
     <h2 class="minor">Parameters</h2>
     ${Object.entries(object.parameters ?? {}).map(([key, p]) => {
       const whole = typeof p === 'object' && !Array.isArray(p);
