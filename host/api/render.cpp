@@ -114,7 +114,7 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
       {.file = {}, .aovs = options.aovs, .tile = options.tile, .passes = sundog::in_passes(flat->sampling)});
   const HostDevices devices = devices_of(options.devices, scene.impl().threads);
   film->warnings = description->warnings;
-  for (std::string& warning : sundog::view_warnings(*flat, devices.infos))
+  for (std::string& warning : sundog::view_warnings(*description, *flat, devices.infos))
     film->warnings.push_back(std::move(warning));
   core::RenderOptions wanted;
   wanted.work_group = group_of(options.work_group);

@@ -195,7 +195,7 @@ std::vector<ServerPlan> plan_servers(const RenderCommand& command, const LoadedS
 int render_one(const RenderCommand& command, const LoadedScene& scene, const Setup& setup,
                const Stopwatch& clock, TimeLedger& times) {
   setup.stop.asks();
-  print_warnings(view_warnings(*scene.flat, setup.devices));
+  print_warnings(view_warnings(scene.description, *scene.flat, setup.devices));
   for (const std::string& file : {command.out, command.stats, checkpoint_file(command, setup)})
     if (!file.empty()) remove_left_over(file);
   ProgressBar bar(!command.quiet);

@@ -154,7 +154,8 @@ std::vector<std::string> losses(const RayCounts& counts, const SceneDescription&
   };
   constexpr Loss kinds[] = {
       {COUNT_RAY_STACK_OVERFLOW, "rays were dropped because the ray stack was full: lower max_depth"},
-      {COUNT_MEDIA_STACK_OVERFLOW, "rays entered more solids inside each other than the media stack holds"},
+      {COUNT_MEDIA_STACK_OVERFLOW,
+       "rays entered more solids inside each other than the media stack holds, 8: take some of them apart"},
       {COUNT_SHADOW_LIMIT, "shadow rays were given up after too many transmissive surfaces"},
       {COUNT_MARCH_BUDGET,
        "marches through a field were not made because the pixels had cost too much: lower its iterations, "

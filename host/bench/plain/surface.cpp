@@ -61,10 +61,17 @@ const Material& material_of(const CompiledScene& scene, const Hit& hit) {
 
 float start_offset(const CompiledScene& scene, const vec3& o, const Hit& hit, const vec3& p,
                    const vec3& outward) {
-  const float offset = std::max(greatest_size(o), greatest_size(p)) * 0x1p-19f;
-  if (scene.instances[hit.instance].shape != SHAPE_MESH) return offset;
-  const float extent = scene.triangles[hit.prim].extent;
-  return std::max(offset, extent * 0x1p-21f * greatest_size(hit.ng) / greatest_size(outward));
+  const Instance& instance = scene.instances[hit.instance];
+  const float4* rows = instance.object_from_world;
+  const u32 shape = instance.shape;
+  const bool flat =
+      shape == SHAPE_MESH || shape == SHAPE_PLANE || shape == SHAPE_DISK || shape == SHAPE_RECTANGLE;
+  const float size = flat ? 0 : 1;
+  float rounding = greatest_size(hit.ng * (glm::abs(vec3(rows[0].w, rows[1].w, rows[2].w)) + size));
+  if (instance.shape == SHAPE_MESH)
+    rounding = std::max(rounding, scene.triangles[hit.prim].extent * greatest_size(hit.ng));
+  return std::max(std::max(greatest_size(o), greatest_size(p)) * 0x1p-19f,
+                  rounding * 0x1p-21f / greatest_size(outward));
 }
 
 Surface make_surface(const CompiledScene& scene, const Ray& ray, const Hit& hit) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "compile/fields/sdf_leaf_emitter.h"
+#include "scene/formula/held_bailout.h"
 
 namespace sundog {
 namespace {
@@ -124,8 +125,10 @@ void LeafEmitter::iterated() {
                      {distance, gradient[0], gradient[1], gradient[2], point, plane_, axis_, count}));
 }
 
-LeafCode leaf_code(const FormulaField& field) {
-  check(field);
+LeafCode leaf_code(const FormulaField& described) {
+  check(described);
+  FormulaField field = described;
+  field.bailout = held_bailout(described);
   LeafCode code;
   using Variant = LeafEmitter::Variant;
   for (const Variant variant : {Variant::distance, Variant::two_sided, Variant::sample})

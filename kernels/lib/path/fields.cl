@@ -107,25 +107,24 @@ static inline MASK starts_within(__global const SdfField* restrict field, const 
          MASK_OF(p.y <= field->upper.y) & MASK_OF(p.z >= field->lower.z) & MASK_OF(p.z <= field->upper.z);
 }
 
-// The lanes whose rays start inside the field.
+// Sets on which side of the field's surface the rays start.
 #if SDF_TWO_SIDED
-static inline MASK start_inside(const Scene* scene, u32 index, const FieldSearch* search,
-                                const MarchRays* rays) {
-  const u32 field = scene->instances[index].root;
-  MASK inside = rays->leaving & MASK_OF((search->from & 1) != 0);
+static inline void start_on_side(const Scene* scene, u32 index, const FieldSearch* search, MarchRays* rays) {
+  const u32 place = scene->instances[index].root;
+  __global const SdfField* restrict field = scene->sdf_fields + place;
+  rays->inside = rays->leaving & MASK_OF((search->from & 1) != 0);
   // A ray that starts elsewhere asks the field itself.
-  const MASK ask = rays->active & ~rays->leaving & starts_within(scene->sdf_fields + field, rays);
-  if (any_lane(ask)) {
-    const REAL3 start = along3(rays->origin, rays->t_min, rays->direction);
-    inside |= ask & MASK_OF(sdf_signed(field, start, ask, scene->sdf_parameters) < 0.0f);
-  }
-  return inside;
+  const MASK ask = rays->active & ~rays->leaving & starts_within(field, rays);
+  if (!any_lane(ask)) return;
+  const REAL3 start = along3(rays->origin, rays->t_min, rays->direction);
+  const REAL d = sdf_signed(place, start, ask, scene->sdf_parameters);
+  rays->inside |= ask & MASK_OF(d < 0.0f);
+  // One that starts closer to a closed form than a threshold, on another surface, has not arrived there yet.
+  const REAL threshold = march_threshold(field, rays, rays->t_min, length3(rays->direction));
+  if (field->flags & SDF_FLAGS & SDF_SMOOTH) rays->leaving |= ask & MASK_OF(fabs(d) < threshold);
 }
 #else
-static inline MASK start_inside(const Scene* scene, u32 index, const FieldSearch* search,
-                                const MarchRays* rays) {
-  return NO_LANES;
-}
+static inline void start_on_side(const Scene* scene, u32 index, const FieldSearch* search, MarchRays* rays) {}
 #endif
 
 // The rays in the field's own space, and on which side of its surface they start.
@@ -141,7 +140,7 @@ static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided
   rays.active = search->active;
   rays.leaving = MASK_OF((search->from | 1) == (int)(index * 2u + 1u));
   rays.inside = NO_LANES;
-  if (two_sided) rays.inside = start_inside(scene, index, search, &rays);
+  if (two_sided) start_on_side(scene, index, search, &rays);
   return rays;
 }
 
@@ -193,17 +192,21 @@ static inline void shade_lanes(const Scene* scene, u32 index, const FieldSearch*
   if (!any_lane(mine)) return;
   const REAL3 o = field_points(scene->instances + index, search_origins(scene, index, search)),
               d = object_vectors(scene->instances + index, search_directions(scene, index, search));
-  const REAL3 normal = sdf_normal(scene, scene->instances[index].root, along3(o, search->t_best, d),
-                                  search->threshold, mine, search->cut);
-  // A normal must not contradict the side that the ray comes from: it is bent as far as the silhouette.
+  REAL3 normal = sdf_normal(scene, scene->instances[index].root, along3(o, search->t_best, d),
+                            search->threshold, mine, search->cut);
+  // A normal must not contradict the side that the ray comes from: it is bent as far as the silhouette. Of a
+  // closed form it is that of the other side of a wall without thickness.
   const REAL speed = length3(d), towards = dot3(normal, d) / speed;
   const MASK inside = search->inside;
   const REAL limit = select((REAL)(-1e-3f), (REAL)(1e-3f), inside);
   const MASK wrong = select(MASK_OF(towards > limit), MASK_OF(towards < limit), inside);
+  const bool smooth = scene->sdf_fields[scene->instances[index].root].flags & SDF_FLAGS & SDF_SMOOTH;
+  const MASK other = smooth ? wrong & MASK_OF(fabs(towards) > 0.1f) : NO_LANES;
   const REAL3 bent = along3(normal, select((REAL)(0.0f), (limit - towards) / speed, wrong), d);
+  normal = select3(bent, negate3(normal), other);
   hits->t = select(hits->t, search->t_best, mine);
   hits->instance = select(hits->instance, (MASK)((int)index), mine);
-  hits->ng = select3(hits->ng, bent, mine);
+  hits->ng = select3(hits->ng, normal, mine);
   hits->u = select(hits->u, (REAL)(0.0f), mine);
   hits->v = select(hits->v, (REAL)(0.0f), mine);
   hits->prim = select(hits->prim, NO_LANES, mine);

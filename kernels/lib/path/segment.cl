@@ -245,7 +245,9 @@ static inline void next_surfaces(const Scene* scene, SceneRays* rays, MASK activ
 // enter_behind(): the children of `lanes`, copies of `rays`, are in the media behind what those have met;
 // thin surfaces change none.
 #if HAS_TOUCHING
-static inline REAL offset_beyond(const Encounters* met, REAL offset) { return real_max(offset, met->apart); }
+static inline REAL offset_beyond(const Encounters* met, REAL offset) {
+  return select(offset, met->apart, MASK_OF(met->apart > 0.0f));
+}
 static inline void enter_behind(const Encounters* met, const SceneRays* rays, MASK lanes, SceneRays* child) {
   child->media_low = select(child->media_low, met->behind_low, lanes);
   child->media_high = select(child->media_high, met->behind_high, lanes);

@@ -35,6 +35,14 @@ typedef struct MarchHits {
   REAL nearest;     // the least estimate on the way, in the field's space; only with HAS_GLOW
 } MarchHits;
 
+// How near a ray at t, which runs at this speed in the field's space, has to come to have arrived.
+static inline REAL march_threshold(__global const SdfField* restrict field, const MarchRays* rays, REAL t,
+                                   REAL speed) {
+  const REAL footprint =
+      fma(t, rays->spread * speed * field->detail, rays->footprint * speed * field->detail);
+  return real_clamp(footprint, (REAL)(field->lower.w), (REAL)(field->upper.w));
+}
+
 // Distance to the surface on the side that each lane travels on: negative when it is on the wrong side.
 static inline REAL march_estimate(u32 field, REAL3 p, MASK active, MASK inside,
                                   __global const float* restrict q) {
@@ -119,6 +127,14 @@ static inline REAL clear_exit(const Scene* scene, u32 field, const MarchRays* ra
   return select(t, clear, MASK_OF(clear < last));
 }
 
+// Hits on an estimated surface where rays continue behind another one: a little behind that, for what starts
+// there must be on the side of it that the rays have come to.
+static inline REAL step_behind(const MarchRays* rays, const MarchHits* hits, REAL first, REAL inverse_speed) {
+  const REAL clear = fma(0.25f * hits->threshold, inverse_speed, rays->t_min);
+  const MASK close = MASK_OF(rays->t_min > 0.0f) & MASK_OF(first == rays->t_min) & MASK_OF(hits->t < clear);
+  return select(hits->t, clear, close);
+}
+
 static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRays* rays) {
   __global const SdfField* restrict field = scene->sdf_fields + index;
   const REAL speed = length3(rays->direction), inverse_speed = 1.0f / speed;
@@ -143,13 +159,10 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
   MASK overshot = NO_LANES;
   REAL clear_at = first;  // the last point on the side that the ray travels on
   const bool uneven = sdf_uneven(index, scene->sdf_parameters);
-  const REAL spread = rays->spread * speed * field->detail,
-             footprint = rays->footprint * speed * field->detail;
-  const REAL least = (REAL)(field->lower.w), greatest = (REAL)(field->upper.w);
   for (u32 i = 0; i < rays->step_limit && any_lane(active); ++i) {
     const REAL3 p = along3(rays->origin, t, rays->direction);
     const REAL f = march_estimate(index, p, active, rays->inside, scene->sdf_parameters) * field->safety;
-    const REAL threshold = real_clamp(fma(t, spread, footprint), least, greatest);
+    const REAL threshold = march_threshold(field, rays, t, speed);
     hits.steps -= active;
     REAL d = f;  // to the surface
     const MASK close = uneven ? active & MASK_OF(f < threshold) : NO_LANES;
@@ -210,6 +223,7 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
   if (SDF_CROSSES && any_lane(out))
     hits.t =
         select(hits.t, clear_exit(scene, index, rays, hits.t, last, inverse_speed, hits.threshold, out), out);
+  if (!smooth) hits.t = select(hits.t, step_behind(rays, &hits, first, inverse_speed), hits.hit & ~hits.cut);
   if (smooth) {
     const MASK on_surface = hits.hit & ~hits.cut;
     const REAL refined = refine_hit(scene, index, rays, hits.t, inverse_speed, hits.threshold, on_surface);

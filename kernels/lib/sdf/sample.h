@@ -29,15 +29,21 @@ static inline REAL square_length4(REAL x, REAL y, REAL z, REAL w) {
 // where the map is a power, else the plain quotient. An orbit that the limit of the iterations ends lies near
 // the surface |z| = bailout of the last iteration, or inside: `level`, the logarithm of the bailout's square
 // or the bailout, makes it the distance to that one, a little below zero inside. For all others it is 0.
+// Where the orbit has a length and its derivative outgrew floats, the surface is as near as can be:
+// growth_of().
+static inline REAL growth_of(REAL square, REAL derivative) {
+  const MASK lost = MASK_OF(square < INFINITY) & ~MASK_OF(derivative < 1e37f);
+  return real_max(select(derivative, (REAL)(1e37f), lost), (REAL)(1e-30f));
+}
 static inline REAL logarithmic_distance(REAL square, REAL derivative, REAL level) {
   const REAL r2 = real_max(real_min(square, (REAL)(1e36f)), (REAL)(1e-30f));
-  const REAL d = 0.25f * (real_log(r2) - level) * (r2 * rough_rsqrt(r2)) *
-                 rough_inverse(real_max(derivative, (REAL)(1e-30f)));
+  const REAL d =
+      0.25f * (real_log(r2) - level) * (r2 * rough_rsqrt(r2)) * rough_inverse(growth_of(square, derivative));
   return fmax(d, (REAL)(-1e-3f));
 }
 static inline REAL linear_distance(REAL square, REAL derivative, REAL level) {
-  const REAL d = (real_sqrt(real_min(square, (REAL)(1e36f))) - level) *
-                 rough_inverse(real_max(derivative, (REAL)(1e-30f)));
+  const REAL d =
+      (real_sqrt(real_min(square, (REAL)(1e36f))) - level) * rough_inverse(growth_of(square, derivative));
   return fmax(d, (REAL)(-1e-3f));
 }
 

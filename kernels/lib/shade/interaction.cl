@@ -72,11 +72,21 @@ static inline REAL offset_distance(REAL3 o, REAL3 p, REAL turned) {
   return real_max(real_max(greatest_size(o), greatest_size(p)), turned) * 0x1p-19f;
 }
 
-// The same on triangles: corners that are far away round the hit as well, in the mesh's space. `normal` is
-// the normal there and `outward` in the world: the quotient of their lengths takes what is measured along it
-// to the world.
-static inline REAL triangle_offset(REAL extent, REAL3 normal, REAL3 outward) {
-  return extent * 0x1p-21f * greatest_size(normal) / nonzero(greatest_size(outward));
+// The same of the space in which the hit was found, along the normals `ng` there: how far that is from the
+// world's origin, and on a solid that is not flat its size. Triangles have their own, since corners that are
+// far away round the hit as well. rounding_offset() takes what is measured along `ng` to the world.
+static inline REAL space_rounding(__global const Instance* instance, REAL3 ng) {
+  const u32 shape = instance->shape;
+  const bool flat =
+      shape == SHAPE_MESH || shape == SHAPE_PLANE || shape == SHAPE_DISK || shape == SHAPE_RECTANGLE;
+  const float size = flat ? 0.0f : 1.0f;
+  const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
+               r2 = instance->object_from_world[2];
+  return greatest_size(
+      multiply3(ng, all3((float3)(fabs(r0.w) + size, fabs(r1.w) + size, fabs(r2.w) + size))));
+}
+static inline REAL rounding_offset(REAL rounding, REAL3 outward) {
+  return rounding * 0x1p-21f / nonzero(greatest_size(outward));
 }
 
 // Takes the positions on a sphere onto its surface by one Newton step; rounding of t is largest for far
@@ -187,7 +197,7 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
   s->medium = faces->medium;
   s->entering = faces->entering;
   set_surface_times(hits, s);
-  REAL extent = (REAL)(0.0f), turned = extent;
+  REAL extent = (REAL)(0.0f), turned = extent, rounding = extent;
   REAL3 color = white;
   MASK on_field = NO_LANES;
   u32 index;
@@ -195,6 +205,8 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
     const MASK mine = take_alike(hits->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
     turned = select(turned, (REAL)(moved_extent(scene, index)), mine);
+    if (!(HAS_SDF && instance->shape == SHAPE_SDF))
+      rounding = select(rounding, space_rounding(instance, hits->ng), mine);
     if (HAS_SPHERE && instance->shape == SHAPE_SPHERE)
       s->p = select3(s->p, settle_on_sphere(scene, index, s), mine);
     if (HAS_MESH && instance->shape == SHAPE_MESH) {
@@ -208,7 +220,8 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
     }
   }
   s->color = select3(white, color, has_color(faces, on_field));
-  s->offset = real_max(triangle_offset(extent, hits->ng, faces->outward), offset_distance(o, s->p, turned));
+  rounding = real_max(rounding, extent * greatest_size(hits->ng));
+  s->offset = real_max(rounding_offset(rounding, faces->outward), offset_distance(o, s->p, turned));
   locate(scene, hits, lanes, s);
 }
 

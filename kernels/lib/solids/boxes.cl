@@ -130,9 +130,10 @@ static inline void closest_in_round_box(float4 parameters, REAL3 o, REAL3 d, REA
                                         SolidHits* hits) {
   const float3 half_size = parameters.xyz;
   const float r = parameters.w;
+  const REAL shift = come_near(&o, d, active);
   const BoxRay ray = make_box_ray(o, d);
   const Span bounds = box_span(&ray, half_size).span;
-  active &= bounds.crosses & MASK_OF(bounds.leave > t_min) & MASK_OF(bounds.enter <= hits->t);
+  active &= bounds.crosses & MASK_OF(shift + bounds.leave > t_min) & MASK_OF(shift + bounds.enter <= hits->t);
   if (!any_lane(active)) return;
   Span span = {(REAL)(INFINITY), (REAL)(-INFINITY), ALL_LANES};
   const float3 core = half_size - r;
@@ -159,11 +160,11 @@ static inline void closest_in_round_box(float4 parameters, REAL3 o, REAL3 d, REA
       span.leave = select(span.leave, real_max(span.leave, edge.leave), leaves);
     }
   }
-  const REAL t = select(span.leave, span.enter, MASK_OF(span.enter > t_min));
+  const REAL t = select(span.leave, span.enter, MASK_OF(shift + span.enter > t_min));
   const REAL3 p = along3(o, t, d), limit = all3(core);
   const REAL3 within = real3(real_clamp(p.x, -limit.x, limit.x), real_clamp(p.y, -limit.y, limit.y),
                              real_clamp(p.z, -limit.z, limit.z));
-  offer(t, subtract3(p, within), NO_LANES, active & MASK_OF(span.enter <= span.leave), t_min, hits);
+  offer(shift + t, subtract3(p, within), NO_LANES, active & MASK_OF(span.enter <= span.leave), t_min, hits);
 }
 
 static inline SurfacePoints points_on_round_box(float4 parameters, REAL3 p, MASK part) {

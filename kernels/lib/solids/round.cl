@@ -7,9 +7,10 @@
 
 static inline void closest_in_sphere(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                      SolidHits* hits) {
+  const REAL shift = come_near(&o, d, active);
   const Span span = round_span(o, d, 1.0f);
-  const REAL t = select(span.leave, span.enter, MASK_OF(span.enter > t_min));
-  offer(t, along3(o, t, d), NO_LANES, active & span.crosses, t_min, hits);
+  const REAL t = select(span.leave, span.enter, MASK_OF(shift + span.enter > t_min));
+  offer(shift + t, along3(o, t, d), NO_LANES, active & span.crosses, t_min, hits);
 }
 
 static inline SurfacePoints points_on_sphere(float4 parameters, REAL3 p, MASK part) {
@@ -96,12 +97,14 @@ static inline REAL tube_curvature(REAL3 p, MASK part) {
 static inline void closest_in_cylinder(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                        SolidHits* hits) {
   const REAL zero = (REAL)(0.0f);
-  const Span span = round_span(real3(o.x, zero, o.z), real3(d.x, zero, d.z), 1.0f);
+  REAL3 near = o;
+  const REAL shift = come_near(&near, d, active);
+  const Span span = round_span(real3(near.x, zero, near.z), real3(d.x, zero, d.z), 1.0f);
   for (u32 i = 0; i < 2u; ++i) {
     const REAL t = i ? span.leave : span.enter;
-    const REAL3 p = along3(o, t, d);
-    offer(t, real3(p.x, zero, p.z), NO_LANES, active & span.crosses & MASK_OF(fabs(p.y) <= 1.0f), t_min,
-          hits);
+    const REAL3 p = along3(near, t, d);
+    offer(shift + t, real3(p.x, zero, p.z), NO_LANES, active & span.crosses & MASK_OF(fabs(p.y) <= 1.0f),
+          t_min, hits);
   }
   if (parameters.x != 0.0f) {
     offer_ring(o, d, 1.0f, 0.0f, 1.0f, 1.0f, 1, t_min, active, hits);

@@ -36,6 +36,22 @@ typedef struct Span {
   MASK crosses;
 } Span;
 
+// Rays from so far off, in a solid's own space, that rounding there comes near its size, begin anew where
+// they are nearest to its middle: of one that is flattened by 1e-7 each ray comes from so far. Returns how
+// much sooner each then meets it. Twice, since the way itself is rounded.
+#define FAR_OFF 0x1p14f
+static inline REAL come_near(REAL3* o, REAL3 d, MASK active) {
+  REAL shift = (REAL)(0.0f);
+  const MASK far = active & MASK_OF(dot3(*o, *o) > FAR_OFF * FAR_OFF) & MASK_OF(dot3(d, d) > 0.0f);
+  if (!any_lane(far)) return shift;
+  for (u32 i = 0; i < 2u; ++i) {
+    const REAL way = select((REAL)(0.0f), -dot3(*o, d) / dot3(d, d), far);
+    *o = along3(*o, way, d);
+    shift += way;
+  }
+  return shift;
+}
+
 // |o + t d| = r in the space of the given vectors (2-D when a component is zero in both), robust where the
 // origin is far off (Haines et al. 2019, Ray Tracing Gems, chapter 7).
 static inline Span round_span(REAL3 o, REAL3 d, float r) {

@@ -34,19 +34,22 @@ NEVER_INLINE bool closest_in_one_torus(float r, float3 o, float3 d, float t_min,
   for (u32 i = 0; i < count; ++i) {
     float x = roots[i];
     float3 p = s + x * e;
-    // Newton on the distance itself, which keeps more digits than the quartic.
-    for (u32 step = 0; step < 2u; ++step) {
+    float off = 0.0f;
+    // Newton on the distance itself, which keeps more digits than the quartic: twice, and along a silhouette,
+    // where the quartic has lost most of them, to the end.
+    for (u32 step = 0; step < 8u; ++step) {
       const float rho = sqrt(fma(p.x, p.x, p.z * p.z));
       const float ring = rho - 1.0f, tube = sqrt(fma(ring, ring, p.y * p.y));
       const float slope =
           ((p.x * e.x + p.z * e.z) * (ring / fmax(rho, 1e-12f)) + p.y * e.y) / fmax(tube, 1e-12f);
-      if (fabs(slope) < 0.05f) break;
-      x -= (tube - r) / slope;
+      off = tube - r;
+      if (step >= 2u && fabs(slope) >= 0.05f) break;
+      x -= clamp(off / copysign(fmax(fabs(slope), 1e-6f), slope), -0.25f * r, 0.25f * r);
       p = s + x * e;
     }
     const float rho = sqrt(fma(p.x, p.x, p.z * p.z)), inward = 1.0f - 1.0f / fmax(rho, 1e-12f);
     const float t = (x + shift) / length_d;
-    if (!(t > t_min && t <= hit->t)) continue;
+    if (!(t > t_min && t <= hit->t) || fabs(off) > 1e-6f) continue;
     hit->t = t;
     hit->ng = (float3)(p.x * inward, p.y, p.z * inward);
     found = true;

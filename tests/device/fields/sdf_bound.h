@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "scene/formula/evaluate.h"
+#include "scene/formula/held_bailout.h"
 #include "sdf_testing.h"
 
 // From random points towards the surface and to its sides, by steps of a seventh of the estimate: where
@@ -23,7 +25,7 @@ static inline REAL3 random_directions(REAL3 middle, float spread, u32 seed) {
   }
   return unit3(d);
 }
-__kernel void bound(__global const SdfField* fields, __global const float* q, __global float* ratios, u32 field, u32 count) {
+__kernel void bound(__global const SdfField* fields, __global const float* q, __global float* ratios, __global float4* places, u32 field, u32 count) {
   const u32 item = get_global_id(0);
   if (item * LANES >= count) return;
   __global const SdfField* f = fields + field;
@@ -50,7 +52,10 @@ __kernel void bound(__global const SdfField* fields, __global const float* q, __
       active &= ~reached;
     }
   }
-  for (u32 i = 0; i < LANES; ++i) ratios[item * LANES + i] = REAL_LANE(ratio, i);
+  for (u32 i = 0; i < LANES; ++i) {
+    ratios[item * LANES + i] = REAL_LANE(ratio, i);
+    places[item * LANES + i] = (float4)(REAL_LANE(p.x, i), REAL_LANE(p.y, i), REAL_LANE(p.z, i), REAL_LANE(first, i));
+  }
 }
 )";
 
@@ -59,7 +64,7 @@ class BoundTester {
   BoundTester(sundog::Device& device, const sundog::CompiledFields& fields)
       : device_(device),
         kernel_(build_fields(device, bound_kernel, fields, 16)
-                    .kernel<Records, Floats, Floats, u32, u32>("bound")),
+                    .kernel<Records, Floats, Floats, Places, u32, u32>("bound")),
         records_(device.upload<sundog::SdfField>(fields.fields)),
         parameters_(device.upload<float>(fields.parameters)) {}
 
@@ -67,22 +72,29 @@ class BoundTester {
   /// points.
   std::vector<float> ratios(sundog::u32 field, sundog::u32 count) {
     auto out = device_.make<float>(count);
-    device_.run(kernel_, {.x = count / 16, .local_x = 16}, records_, parameters_, out, field, count);
+    auto places = device_.make<sundog::float4>(count);
+    device_.run(kernel_, {.x = count / 16, .local_x = 16}, records_, parameters_, out, places, field, count);
     std::vector<float> found(count);
+    places_.resize(count);
     device_.read(out, std::span<float>(found));
+    device_.read(places, std::span<sundog::float4>(places_));
     device_.finish();
     std::sort(found.begin(), found.end());
     return found;
   }
+  /// The points of the last call; w: the estimates there.
+  const std::vector<sundog::float4>& places() const { return places_; }
 
  private:
   using u32 = sundog::u32;
   using Records = sundog::Buffer<sundog::SdfField>;
   using Floats = sundog::Buffer<float>;
+  using Places = sundog::Buffer<sundog::float4>;
   sundog::Device& device_;
-  sundog::Kernel<Records, Floats, Floats, u32, u32> kernel_;
+  sundog::Kernel<Records, Floats, Floats, Places, u32, u32> kernel_;
   Records records_;
   Floats parameters_;
+  std::vector<sundog::float4> places_;
 };
 
 /// `exceptions`: the share of the points where the estimate may be too long, by a factor of 1.8 in a tenth of
@@ -93,4 +105,22 @@ inline void check_bound(const std::vector<float>& ratios, double exceptions, boo
   CHECK(ratios[static_cast<std::size_t>(exceptions * count)] > 0.98f);
   if (!any_length)
     CHECK(ratios[static_cast<std::size_t>(0.1 * exceptions * count)] > (exceptions > 0 ? 0.55f : 0.98f));
+}
+
+/// A formula's estimates are what doubles give, who have room for every orbit: neither longer nor shorter.
+inline void check_against_doubles(const std::vector<sundog::float4>& places,
+                                  sundog::FormulaField formula) {
+  formula.bailout = sundog::held_bailout(formula);  // where the last iteration's surface is
+  sundog::FormulaEvaluator evaluator(formula);
+  std::size_t compared = 0, shorter = 0, longer = 0;
+  for (std::size_t i = 0; i < places.size() && compared < 400; ++i) {
+    const sundog::float4& p = places[i];
+    const auto expected = evaluator.at({double(p.x), double(p.y), double(p.z)});
+    if (expected.inside || !(expected.distance > 1e-3) || !(expected.distance < 1e3)) continue;
+    ++compared;
+    shorter += double(p.w) < 0.9 * expected.distance;
+    longer += double(p.w) > 1.1 * expected.distance;
+  }
+  CHECK(shorter <= compared / 50);  // on the poles of powers
+  CHECK(longer <= compared / 50);
 }

@@ -46,6 +46,8 @@ void check_bounds(const std::vector<Case>& cases) {
     for (u32 f = 0; f < cases.size(); ++f) {
       INFO(cases[f].json);
       check_bound(tester.ratios(f, 20480), cases[f].exceptions, cases[f].any_length);
+      if (const SdfNode& root = descriptions[f].root; root.kind == SdfNode::Kind::formula)
+        check_against_doubles(tester.places(), root.formula);
     }
   });
 }
@@ -141,6 +143,29 @@ TEST_CASE("estimates keep their bound with parameters at the ends of their range
       {R"f("type": "fractal", "formula": "torus_knot", "parameters": {"windings": 5, "turns": 7})f"},
       {R"f("type": "fractal", "formula": "torus_knot", "parameters": {"windings": 1, "turns": 16})f", 0.01},
       {R"f("type": "fractal", "formula": "gyroid", "parameters": {"cell": 0.1, "thickness": 0.02})f"},
+  });
+}
+
+TEST_CASE("estimates have room for what the greatest powers and bailouts make of an orbit") {
+  check_bounds({
+      {R"f("type": "fractal", "formula": "mandelbulb", "parameters": {"power": 16})f", 0.01},
+      {R"f("type": "fractal", "formula": "mandelbulb", "parameters": {"power": 15.5})f", 0.01},
+      {R"f("type": "fractal", "formula": "mandelbulb", "bailout": 1000)f", 0.01},
+      {R"f("type": "fractal", "formula": "mandelbulb", "bailout": 1e9)f", 0.01},
+      {R"f("type": "fractal", "formula": "mandelbulb", "derivative": "jacobian", "bailout": 1e6)f"},
+      {R"f("type": "fractal", "formula": "juliabulb", "parameters": {"power": 16}, "bailout": 1e9)f", 0.01},
+      {R"f("type": "fractal", "formula": "julia", "parameters": {"power": 16}, "iterations": 16)f"},
+      {R"f("type": "fractal", "formula": "julia", "bailout": 1e9, "iterations": 16)f"},
+      {R"f("type": "fractal", "formula": "quaternion_mandelbrot", "parameters": {"power": 16}, "bailout": 1000, "iterations": 16)f"},
+      {R"f("type": "fractal", "formula": "bicomplex", "bailout": 1e9, "iterations": 16)f"},
+      {R"f("type": "fractal", "formula": "tricorn", "parameters": {"power": 16}, "bailout": 1e9)f", 0.01},
+      {R"f("type": "fractal", "formula": "mandelbox", "bailout": 1e6, "iterations": 64)f"},
+      {R"f("type": "formula", "map": "z = z ^ 8 + c", "bailout": 1000)f"},
+      {R"f("type": "formula", "map": "z = z ^ 8 + c", "bailout": 1e9)f"},
+      {R"f("type": "formula", "map": "z = vec3(z.x^3 - 3 * z.x * z.y^2, 3 * z.x^2 * z.y - z.y^3, z.z * z.z * z.z) + c", "bailout": 1e9)f"},
+      {R"f("type": "formula", "map": "z = z ^ 4 + c", "estimate": "linear", "bailout": 1e9)f", 0.01, true},
+      {R"f("type": "hybrid", "steps": [{"type": "fractal", "formula": "mandelbox"}, {"type": "fractal", "formula": "mandelbulb"}], "iterations": 8, "bailout": 1e6)f",
+       0.01},
   });
 }
 
