@@ -108,8 +108,7 @@ inline void check_bound(const std::vector<float>& ratios, double exceptions, boo
 }
 
 /// A formula's estimates are what doubles give, who have room for every orbit: neither longer nor shorter.
-inline void check_against_doubles(const std::vector<sundog::float4>& places,
-                                  sundog::FormulaField formula) {
+inline void check_against_doubles(const std::vector<sundog::float4>& places, sundog::FormulaField formula) {
   formula.bailout = sundog::held_bailout(formula);  // where the last iteration's surface is
   sundog::FormulaEvaluator evaluator(formula);
   std::size_t compared = 0, shorter = 0, longer = 0;
