@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <new>
 #include <stop_token>
 
@@ -92,9 +93,18 @@ sundog_status made(sundog_error* error, Handle** handle, const char* name, const
   });
 }
 
+/// Triangles name vertices by 32 bits. Throws Error (usage) for what no array has, such as a negative number
+/// as a size_t.
+void check_count(std::size_t length) {
+  if (length > std::numeric_limits<std::uint32_t>::max())
+    throw Error(ErrorKind::usage,
+                "a mesh of " + std::to_string(length) + " vertices or triangles: wanted at most 4294967295");
+}
+
 template <std::size_t count, class T>
 std::span<const std::array<T, count>> groups(const T* values, std::size_t length) {
   static_assert(sizeof(std::array<T, count>) == count * sizeof(T));
+  check_count(values ? length : 0);
   return {reinterpret_cast<const std::array<T, count>*>(values), values ? length : 0};
 }
 

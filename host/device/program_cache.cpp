@@ -120,7 +120,9 @@ std::optional<CachedProgram> load_program(const fs::path& file, const std::strin
   if (!known || !reader.good || checksum != hash128(reader.rest)) return std::nullopt;
   const std::size_t key_size = reader.take_size(), variants_size = reader.take_size(),
                     binary_size = reader.take_size();
-  if (!reader.good || key_size != key.size() || variants_size > most_bytes || binary_size > most_bytes)
+  constexpr std::size_t most_growth = 1100;  // of zlib
+  const std::size_t most_unpacked = std::min<std::size_t>(most_bytes, most_growth * reader.rest.size());
+  if (!reader.good || key_size != key.size() || variants_size > most_unpacked || binary_size > most_unpacked)
     return std::nullopt;
   const std::optional<std::string> body = inflated(reader.rest, key_size + variants_size + binary_size);
   if (!body) return std::nullopt;

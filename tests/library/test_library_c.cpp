@@ -277,6 +277,21 @@ TEST_CASE("every function of C reports its errors") {
   sundog_session_free(nullptr);
 }
 
+TEST_CASE("a count of vertices or triangles that no array has is refused before the array is read") {
+  sundog_scene* scene = scene_of(text);
+  const Failure failure;
+  const float positions[9] = {};
+  const std::uint32_t corners[3] = {0, 1, 2};
+  for (const std::size_t count : {SIZE_MAX, SIZE_MAX / 12, std::size_t{1} << 32}) {
+    CHECK(sundog_scene_add_mesh(scene, "m", positions, count, corners, 1, nullptr, nullptr, failure.error) ==
+          SUNDOG_USAGE);
+    CHECK(failure.line().find(std::to_string(count)) != std::string::npos);
+    CHECK(sundog_scene_add_mesh(scene, "m", positions, 3, corners, count, nullptr, nullptr, nullptr) ==
+          SUNDOG_USAGE);
+  }
+  sundog_scene_free(scene);
+}
+
 TEST_CASE("an error handle keeps the last failure, and none is needed") {
   Failure mine, other;
   CHECK(std::strlen(sundog_error_line(mine.error)) == 0);

@@ -32,11 +32,13 @@ Listed list_of(Channel& channel, const std::string& name) {
   while (waited.seconds() < patience_with_drivers) {
     const std::optional<Message> answer = channel.receive(1);
     if (!answer) continue;
-    if (answer->kind == Message::failed)
-      throw DeviceError(fmt::format("{}: {}", name, answer->values.at("what").get<std::string>()));
-    channel.send({Message::close, {}, {}});
-    return {answer->values.at("devices").get<std::vector<DeviceInfo>>(),
-            answer->values.at("cores").get<unsigned>()};
+    return understood(name, [&]() -> Listed {
+      if (answer->kind == Message::failed)
+        throw DeviceError(fmt::format("{}: {}", name, answer->values.at("what").get<std::string>()));
+      channel.send({Message::close, {}, {}});
+      return {answer->values.at("devices").get<std::vector<DeviceInfo>>(),
+              answer->values.at("cores").get<unsigned>()};
+    });
   }
   throw DeviceError(
       fmt::format("{}: its drivers have not listed their devices for {} s", name, patience_with_drivers));

@@ -39,7 +39,7 @@ DeviceInfo find_device(const DeviceInfo& wanted) {
 
 json remote_settings(const RenderCommand& command, const DeviceInfo& device) {
   return {{"scene", command.scene},
-          {"scene_text", is_standard_stream(command.scene) ? json(standard_input()) : json()},
+          {"scene_text", is_standard_input(command.scene) ? json(standard_input()) : json()},
           {"overrides", command.overrides},
           {"frame", command.frame ? json(*command.frame) : json()},
           {"native_code", command.native_code},
@@ -142,11 +142,13 @@ std::vector<DeviceInfo> enumerate_in_worker() {
   while (true) {
     const std::optional<Message> answer = channel->receive(1);
     if (!answer) continue;
-    if (answer->kind == Message::failed) throw DeviceError(answer->values.at("what").get<std::string>());
-    channel->send({Message::close, {}, {}});
-    auto devices = answer->values.at("devices").get<std::vector<DeviceInfo>>();
-    for (DeviceInfo& device : devices) device.environment = program_environment();
-    return devices;
+    return understood("the list of devices", [&] {
+      if (answer->kind == Message::failed) throw DeviceError(answer->values.at("what").get<std::string>());
+      channel->send({Message::close, {}, {}});
+      auto devices = answer->values.at("devices").get<std::vector<DeviceInfo>>();
+      for (DeviceInfo& device : devices) device.environment = program_environment();
+      return devices;
+    });
   }
 }
 

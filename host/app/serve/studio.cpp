@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "app/options/option_values.h"
 #include "app/options/pick_devices.h"
 #include "app/serve/folder.h"
 #include "app/serve/messages.h"
 #include "base/error.h"
+#include "base/limits.h"
 #include "render/device/tuning.h"
 #include "scene/json/parse.h"
 
@@ -21,6 +24,15 @@ constexpr const char* page_file = "the page";
 std::string text_of(const json& message, const char* key) {
   const auto found = message.find(key);
   return found != message.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+/// A pixel's place in a message. Throws UsageError.
+int pixel_of(const json& message, const char* key) {
+  const auto found = message.find(key);
+  const double place = found != message.end() && found->is_number() ? found->get<double>() : std::nan("");
+  if (!(std::abs(place) < most_edge))
+    throw UsageError(fmt::format("wanted a pixel, \"x\" and \"y\" below {}", most_edge));
+  return static_cast<int>(place);
 }
 
 std::vector<Change> changes_of(const json& message) {
@@ -206,7 +218,7 @@ void Studio::set_options(const json& message) {
 }
 
 void Studio::pick(ClientId client, const json& message) {
-  const int x = message.at("x").get<int>(), y = message.at("y").get<int>();
+  const int x = pixel_of(message, "x"), y = pixel_of(message, "y");
   const json id = message.value("id", json(nullptr));
   asks_.post([this, client, x, y, id] {
     json answer = {{"is", "picked"}, {"object", nullptr}};

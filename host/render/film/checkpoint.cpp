@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/input.h"
 #include "base/limits.h"
+#include "render/film/checkpoint_file.h"
 #include "render/film/film.h"
 #include "render/film/hash.h"
 
@@ -32,8 +32,14 @@ void append(std::string& out, const std::vector<T>& values) {
 
 template <class T>
 void take(const std::string& in, std::size_t& at, std::vector<T>& values) {
-  std::memcpy(values.data(), in.data() + at, values.size() * sizeof(T));
-  at += values.size() * sizeof(T);
+  const std::size_t size = values.size() * sizeof(T);
+  if (size > 0) std::memcpy(values.data(), in.data() + at, size);
+  at += size;
+}
+
+std::size_t bytes_of(const Film& film) {
+  return film.sums.size() * sizeof(float4) + film.weights.size() * sizeof(float) +
+         film.aovs.size() * sizeof(float4) + film.rays.size() * sizeof(u32) + film.done.size();
 }
 
 }  // namespace
@@ -47,8 +53,7 @@ void write_checkpoint(const std::filesystem::path& path, const Film& film, std::
   header.height = film.height;
   header.has_aovs = !film.aovs.empty();
   std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
-  bytes.reserve(bytes.size() + film.done.size() * (21 + (film.aovs.empty() ? 0 : 16 * film.vectors)) +
-                sizeof(std::uint64_t));
+  bytes.reserve(sizeof header + bytes_of(film) + sizeof(std::uint64_t));
   append(bytes, film.sums);
   append(bytes, film.weights);
   append(bytes, film.aovs);
@@ -70,11 +75,11 @@ std::optional<std::uint64_t> checkpoint_key(const std::filesystem::path& path) {
 }
 
 void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_t key) {
-  const std::string bytes = read_input(path, most_frame_bytes);
+  const std::size_t expected = sizeof(Header) + bytes_of(film);
+  const std::string bytes = read_checkpoint_bytes(path, expected + sizeof(std::uint64_t));
   Header header{};
   std::uint64_t checksum = 0;
-  const SceneError damaged(path.string(), "",
-                           "is no sundog checkpoint, or is damaged; remove it to start anew");
+  const SceneError damaged = damaged_checkpoint(path);
   if (bytes.size() < sizeof header + sizeof checksum) throw damaged;
   std::memcpy(&header, bytes.data(), sizeof header);
   const std::size_t body = bytes.size() - sizeof checksum;
@@ -82,18 +87,15 @@ void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_
   if (std::memcmp(header.magic, magic, sizeof magic) != 0 || checksum != hash_bytes(bytes.data(), body) ||
       !is_frame_size(header.width, header.height))
     throw damaged;
-  const std::size_t expected = sizeof header + film.sums.size() * sizeof(float4) +
-                               film.weights.size() * sizeof(float) + film.aovs.size() * sizeof(float4) +
-                               film.rays.size() * sizeof(u32) + film.done.size();
   if (header.key != key || header.width != film.width || header.height != film.height || body != expected)
-    throw UsageError(path.string() +
-                     ": is a checkpoint of another scene or of other settings; remove it to start anew");
+    throw other_checkpoint(path);
   std::size_t at = sizeof header;
   take(bytes, at, film.sums);
   take(bytes, at, film.weights);
   take(bytes, at, film.aovs);
   take(bytes, at, film.rays);
   take(bytes, at, film.done);
+  if (!all_flags(film.done)) throw damaged;
 }
 
 }  // namespace sundog

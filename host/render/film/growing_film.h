@@ -31,6 +31,9 @@ std::vector<u32> pixels_above(const std::vector<float>& limits, const std::vecto
 /// pixels that a work-item takes together.
 Pass list_pass(const std::vector<u32>& pixels, u32 first_sample, u32 sample_count);
 
+/// Whether list_pass() may make a pass of that size.
+bool is_list_size(int width, int height);
+
 /// The pixels of a pass in that order.
 std::vector<u32> pixels_of(const Pass& pass);
 
@@ -117,7 +120,8 @@ void write_growing_checkpoint(const std::filesystem::path& path, const GrowingFi
                               const Film& made, std::uint64_t key,
                               const std::shared_ptr<Faults>& faults = nullptr);
 
-/// Reads one into `film`, which has the frame's size, `pass` and `made`. Throws as read_checkpoint() does.
+/// Reads one into `film`, which has the frame's size, `pass` and `made`, all of them checked but for the
+/// pass's samples, which the plan knows (may_be_of()). Throws as read_checkpoint() does.
 void read_growing_checkpoint(const std::filesystem::path& path, GrowingFilm& film, Pass& pass, Film& made,
                              std::uint64_t key);
 

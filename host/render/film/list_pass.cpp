@@ -92,6 +92,11 @@ Pass list_pass(const std::vector<u32>& pixels, u32 first_sample, u32 sample_coun
   return pass;
 }
 
+bool is_list_size(int width, int height) {
+  constexpr int most = static_cast<int>(list_width), edge = static_cast<int>(block);
+  return width > 0 && width <= most && width % edge == 0 && height > 0 && height % edge == 0;
+}
+
 std::vector<u32> pixels_of(const Pass& pass) {
   if (pass.pixels.empty()) return all_pixels(pass.width, pass.height);
   std::vector<u32> pixels(pass.pixels.size());

@@ -13,6 +13,7 @@
 #include "base/input.h"
 #include "base/limits.h"
 #include "base/memory.h"
+#include "render/film/checkpoint_file.h"
 #include "render/film/hash.h"
 #include "render/film/part.h"
 
@@ -23,6 +24,7 @@ using nlohmann::json;
 
 constexpr const char* format_name = "sundog part 1";
 constexpr std::size_t checksum_digits = 16;
+constexpr std::size_t most_header = std::size_t{1} << 20;  // of its JSON, which takes more as values
 
 template <class T>
 void append_done(std::string& bytes, const std::vector<T>& values, const std::vector<std::uint8_t>& done) {
@@ -36,6 +38,7 @@ template <class T>
 bool take_done(const std::string& bytes, std::size_t& at, std::vector<T>& values,
                const std::vector<std::uint8_t>& done) {
   const std::size_t each = values.size() / std::max<std::size_t>(done.size(), 1), size = each * sizeof(T);
+  if (size == 0) return true;
   for (std::size_t i = 0; i < done.size(); ++i) {
     if (!done[i]) continue;
     if (at + size > bytes.size()) return false;
@@ -107,7 +110,7 @@ bool read_film(const std::string& bytes, std::size_t at, const std::vector<std::
   film = Film::with_aovs(film.width, film.height, aovs);
   std::memcpy(film.done.data(), bytes.data() + at, pixels);
   at += pixels;
-  if (std::ranges::any_of(film.done, [](std::uint8_t done) { return done > 1; })) return false;
+  if (!all_flags(film.done)) return false;
   return take_done(bytes, at, film.sums, film.done) && take_done(bytes, at, film.weights, film.done) &&
          take_done(bytes, at, film.aovs, film.done) && take_done(bytes, at, film.rays, film.done) &&
          at == bytes.size();
@@ -144,6 +147,7 @@ PartFile read_part(const std::filesystem::path& path) {
   bytes.resize(bytes.size() - checksum_digits);
   if (sum != checksum(bytes)) throw refuse(damaged.c_str());
   const std::size_t line = std::min(bytes.find('\n'), bytes.size() - 1);
+  if (line > most_header) throw refuse(damaged.c_str());
   std::optional<PartFile> file;
   try {
     file = read_header(json::parse(bytes.substr(0, line)));

@@ -129,6 +129,12 @@ double mean_error(const GrowingFilm& film) {
   return std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
 }
 
+bool may_be_of(const SamplingPlan& plan, const Pass& pass) {
+  const bool looks = plan.settings.subsample && pass.surfaces && pass.first_sample == 0;
+  return (pass.sample_count > 0 || looks) && pass.sample_count <= plan.samples &&
+         pass.first_sample <= plan.samples - pass.sample_count;
+}
+
 std::optional<Pass> next_pass(GrowingFilm& film, const SamplingPlan& plan, const Pass& last) {
   if (plan.settings.subsample) return next_subsampling_pass(film, plan);
   return more_samples(film, plan, last);

@@ -25,6 +25,9 @@ bool needs_surfaces(const Sampling& settings);
 /// is finished. Counts film.step. Its pixels are those of a whole image or of a list.
 std::optional<Pass> next_pass(GrowingFilm& film, const SamplingPlan& plan, const Pass& last = {});
 
+/// Whether the plan may make a pass of those samples: one that is read from a file has to be asked.
+bool may_be_of(const SamplingPlan& plan, const Pass& pass);
+
 /// The mean of the pixels' estimated errors (pixel_errors()); infinite while nothing is known.
 double mean_error(const GrowingFilm& film);
 

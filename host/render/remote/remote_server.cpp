@@ -43,12 +43,14 @@ Message RemoteServer::answer(Message::Kind expected, const StopFlags& flags) {
 RenderTimes RemoteServer::try_open() {
   if (!channel_) channel_ = device_.connect();
   channel_->send({Message::open, device_.settings, {}});
-  const Message ready = answer(Message::ready, {});
-  if (ready.values.at("scene").get<std::uint64_t>() != device_.scene)
-    throw DeviceError(
-        fmt::format("{}: its process read another scene: a file has changed, or sundog's versions differ",
-                    device_.info.label()));
-  return ready.values.at("times").get<RenderTimes>();
+  return understood(device_.info.label(), [&] {
+    const Message ready = answer(Message::ready, {});
+    if (ready.values.at("scene").get<std::uint64_t>() != device_.scene)
+      throw DeviceError(
+          fmt::format("{}: its process read another scene: a file has changed, or sundog's versions differ",
+                      device_.info.label()));
+    return ready.values.at("times").get<RenderTimes>();
+  });
 }
 
 RenderTimes RemoteServer::open() {
@@ -70,9 +72,12 @@ TileResult RemoteServer::render(const TileRequest& request, const StopFlags& fla
     PackedTile packed = pack_request(request);
     packed.values["job"] = job_;
     channel_->send({Message::render, std::move(packed.values), std::move(packed.data)});
-    const Message made = answer(Message::tile, flags);
-    figures_ = made.values.at("figures").get<ServerFigures>();
-    return unpack_tile(made.values, made.data);
+    return understood(device_.info.label(), [&] {
+      const Message made = answer(Message::tile, flags);
+      figures_ = made.values.at("figures").get<ServerFigures>();
+      const auto aovs = device_.settings.at("aovs").get<std::vector<std::string>>();
+      return unpack_tile(made.values, made.data, request, aovs);
+    });
   } catch (const ChannelClosed&) {
     channel_.reset();
     throw;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/limits.h"
 #include "render/plan/tiles.h"
 
 namespace sundog {
@@ -17,9 +18,31 @@ void append(std::string& bytes, const std::vector<T>& values, std::size_t count)
 template <class T>
 std::vector<T> take(const std::string& bytes, std::size_t& at, std::size_t count) {
   std::vector<T> values(count);
-  std::memcpy(values.data(), bytes.data() + at, count * sizeof(T));
+  if (count > 0) std::memcpy(values.data(), bytes.data() + at, count * sizeof(T));
   at += count * sizeof(T);
   return values;
+}
+
+/// An array that is there for each pixel, or not at all.
+std::size_t none_or_all(const nlohmann::json& count, std::size_t pixels) {
+  const auto found = count.get<std::size_t>();
+  if (found != 0 && found != pixels) throw DeviceError("a message has values for some of a tile's pixels");
+  return found;
+}
+
+Tile tile_from(const nlohmann::json& values) {
+  const Tile tile = values.at("tile").get<Tile>();
+  if (tile.x < 0 || tile.x > most_edge || tile.y < 0 || tile.y > most_edge || tile.width < 1 ||
+      tile.width > most_edge || tile.height < 0 || tile.height > most_edge ||
+      std::int64_t{tile.width} * tile.height > most_pixels)
+    throw DeviceError("a message is about a tile that no frame has");
+  return tile;
+}
+
+/// Throws DeviceError unless these are the rows that were asked for, or the first of them.
+void check_asked(const Tile& tile, const Tile& asked) {
+  if (tile.x != asked.x || tile.y != asked.y || tile.width != asked.width || tile.height > asked.height)
+    throw DeviceError("a tile came that was not asked for");
 }
 
 }  // namespace
@@ -41,7 +64,7 @@ PackedTile pack_request(const TileRequest& request) {
 
 TileRequest unpack_request(const nlohmann::json& values, const std::string& data) {
   TileRequest request;
-  request.tile = values.at("tile").get<Tile>();
+  request.tile = tile_from(values);
   if (!values.contains("pass")) return request;
   const nlohmann::json& pass = values.at("pass");
   request.in_pass = true;
@@ -49,8 +72,9 @@ TileRequest unpack_request(const nlohmann::json& values, const std::string& data
   request.sample_count = pass.at("count").get<u32>();
   request.surfaces = pass.at("surfaces").get<bool>();
   request.costs = pass.at("costs").get<bool>();
-  const auto pixels = pass.at("pixels").get<std::size_t>(), sums = pass.at("sums").get<std::size_t>();
-  const auto rays = pass.at("rays").get<std::size_t>();
+  const std::size_t all = pixel_count(request.tile);
+  const std::size_t pixels = none_or_all(pass.at("pixels"), all), sums = none_or_all(pass.at("sums"), all),
+                    rays = none_or_all(pass.at("rays"), all);
   if (data.size() != (pixels + rays) * sizeof(u32) + sums * (sizeof(float4) + sizeof(float)))
     throw DeviceError("a tile was asked for with too many or too few bytes");
   std::size_t at = 0;
@@ -75,14 +99,18 @@ PackedTile pack_tile(const TileResult& result) {
   return packed;
 }
 
-TileResult unpack_tile(const nlohmann::json& values, const std::string& data) {
+TileResult unpack_tile(const nlohmann::json& values, const std::string& data, const TileRequest& request,
+                       const std::vector<std::string>& aov_names) {
   TileResult result;
-  result.tile = values.at("tile").get<Tile>();
+  result.tile = tile_from(values);
+  check_asked(result.tile, request.tile);
   result.counts = values.at("counts").get<RayCounts>();
-  const std::size_t pixels = pixel_count(result.tile), aovs = values.at("aovs").get<std::size_t>(),
-                    rays = values.at("rays").get<std::size_t>();
-  if (aovs > all_aov_vectors * pixels || rays > pixels ||
-      data.size() != pixels * (sizeof(float4) + sizeof(float)) + aovs * sizeof(float4) + rays * sizeof(u32))
+  const std::size_t pixels = pixel_count(result.tile);
+  const bool surfaces = request.in_pass ? request.surfaces : show_surfaces(aov_names);
+  const bool counted = counts_rays(aov_names) || (request.in_pass && request.costs);
+  const std::size_t aovs = none_or_all(values.at("aovs"), surfaces ? aov_vectors(aov_names) * pixels : 0),
+                    rays = none_or_all(values.at("rays"), counted ? pixels : 0);
+  if (data.size() != pixels * (sizeof(float4) + sizeof(float)) + aovs * sizeof(float4) + rays * sizeof(u32))
     throw DeviceError("a tile came with too many or too few bytes");
   std::size_t at = 0;
   result.sums = take<float4>(data, at, pixels);

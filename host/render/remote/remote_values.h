@@ -2,6 +2,7 @@
 #pragma once
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "render/frame/tile_server.h"
 
 namespace sundog {
@@ -19,16 +20,28 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RenderTimes, build_kernels, upload, render, r
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KernelTimes, launches, device_ms, host_ms, first_ms, local_x, local_y)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ServerFigures, kernels, readback_seconds, notes)
 
+/// What `read` makes of a message. Throws DeviceError "FROM: ..." where that lacks what `read` asks for.
+template <class Read>
+auto understood(const std::string& from, const Read& read) {
+  try {
+    return read();
+  } catch (const nlohmann::json::exception&) {
+    throw DeviceError(from + ": its process sent a message that makes no sense");
+  }
+}
+
 /// {tile, counts} and the pixels' bytes.
 struct PackedTile {
   nlohmann::json values;
   std::string data;
 };
 PackedTile pack_request(const TileRequest& request);
-/// Throws DeviceError when the bytes are not those of the request.
+/// Throws DeviceError when the tile is none or the bytes are not those of the request.
 TileRequest unpack_request(const nlohmann::json& values, const std::string& data);
 PackedTile pack_tile(const TileResult& result);
-/// Throws DeviceError when the bytes are not those of the tile.
-TileResult unpack_tile(const nlohmann::json& values, const std::string& data);
+/// Throws DeviceError when it is not the tile that was asked for, with what a frame of these AOVs wants of
+/// it, or the bytes are not those of the tile.
+TileResult unpack_tile(const nlohmann::json& values, const std::string& data, const TileRequest& request,
+                       const std::vector<std::string>& aov_names);
 
 }  // namespace sundog

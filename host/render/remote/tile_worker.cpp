@@ -44,7 +44,7 @@ void Orders::read() {
       take(std::move(*message));
       if (last) return;
     }
-  } catch (const ChannelClosed&) {
+  } catch (const std::exception&) {  // it is gone, or sends what makes no sense
     on_closed_();
     take({});
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "render/film/checkpoint_file.h"
 #include "render/film/hash.h"
 #include "render/plan/frame_tiles.h"
 
@@ -60,6 +61,7 @@ FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devi
   };
   if (!options.resume.empty() && std::filesystem::exists(options.resume)) {
     read_growing_checkpoint(options.resume, passes.film, passes.pass, film, key);
+    if (!may_be_of(passes.plan, passes.pass)) throw damaged_checkpoint(options.resume);
     return passes;
   }
   passes.pass = *next_pass(passes.film, passes.plan);

@@ -280,7 +280,9 @@ TEST_CASE("odd messages are refused in words") {
         "{\"do\":\"edit\",\"changes\":[{\"at\":\"camera\",\"value\":1}]}",
         "{\"do\":\"edit\",\"changes\":[{\"at\":\"/objects/99999999\",\"value\":1}]}",
         "{\"do\":\"edit\",\"changes\":[{\"at\":\"/camera/fov\",\"value\":1e999}]}", "{\"do\":\"pick\"}",
-        "{\"do\":\"devices\",\"specs\":[\"no such\"]}", "{\"do\":\"options\",\"split\":\"1,2,3,4,5,6,7\"}"}) {
+        "{\"do\":\"pick\",\"x\":1e300,\"y\":4}", "{\"do\":\"pick\",\"x\":-3e9,\"y\":4}",
+        "{\"do\":\"pick\",\"x\":\"4\",\"y\":4}", "{\"do\":\"devices\",\"specs\":[\"no such\"]}",
+        "{\"do\":\"options\",\"split\":\"1,2,3,4,5,6,7\"}"}) {
     INFO(text);
     socket.send(text);
     const auto answer = socket.receive_with("\"is\":\"refused\"");

@@ -2,6 +2,7 @@
 #include "render/plan/passes.h"
 
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "base/error.h"
@@ -304,6 +305,70 @@ TEST_CASE("a frame in passes continues from its checkpoint, and takes no other's
   CHECK_THROWS_AS(read_growing_checkpoint(file, smaller, same, part, 42), UsageError);
   std::filesystem::resize_file(file, 500);
   CHECK_THROWS_AS(read_growing_checkpoint(file, back, same, part, 42), SceneError);
+}
+
+TEST_CASE("a checkpoint whose values no frame has is refused, whatever its checksum says") {
+  const TemporaryFolder folder;
+  const auto file = folder / "forged";
+  const SamplingPlan plan = adaptive_plan(0.05, 32);
+  const auto forge = [&](const std::function<void(GrowingFilm&, Pass&, Film&)>& change) {
+    GrowingFilm film(width, height, true);
+    Pass pass = list_pass({3 | 4 << 16, 5 | 6 << 16}, 1, 1);
+    Film made = film_of_pass(film, pass, false);
+    film.stage = 1;
+    change(film, pass, made);
+    write_growing_checkpoint(file, film, pass, made, 42);
+    GrowingFilm back(width, height, true);
+    Pass read;
+    Film part;
+    read_growing_checkpoint(file, back, read, part, 42);
+    return may_be_of(plan, read);
+  };
+  CHECK(forge([](GrowingFilm&, Pass&, Film&) {}));
+  for (const u32 pixel : {0x7fff7fffu, 0x00500000u, u32{width}, u32{height} << 16, 3u | 4u << 16})
+    CHECK_THROWS_AS(forge([&](GrowingFilm&, Pass& pass, Film&) { pass.pixels[1] = pixel; }), SceneError);
+  CHECK_THROWS_AS(forge([](GrowingFilm& film, Pass&, Film&) { film.states[7] = PixelState{9}; }), SceneError);
+  CHECK_THROWS_AS(forge([](GrowingFilm& film, Pass&, Film&) { film.film.done[7] = 2; }), SceneError);
+  CHECK_THROWS_AS(forge([](GrowingFilm&, Pass&, Film& made) { made.done[0] = 255; }), SceneError);
+  CHECK_THROWS_AS(forge([](GrowingFilm&, Pass& pass, Film&) { pass.surfaces = true; }), SceneError);
+  CHECK_THROWS_AS(forge([](GrowingFilm& film, Pass& pass, Film& made) {  // a list that is one pixel high
+                    pass.width = 16 * pass.height / 4, pass.height = 1;
+                    made = film_of_pass(film, pass, false);
+                  }),
+                  SceneError);
+  CHECK_THROWS_AS(forge([](GrowingFilm& film, Pass& pass, Film& made) {  // the image on its side
+                    pass.width = height, pass.height = width;
+                    pass.pixels.clear();
+                    made = film_of_pass(film, pass, false);
+                  }),
+                  SceneError);
+  CHECK_FALSE(forge([](GrowingFilm&, Pass& pass, Film&) { pass.first_sample = 31, pass.sample_count = 2; }));
+  CHECK_FALSE(forge([](GrowingFilm&, Pass& pass, Film&) { pass.sample_count = 0; }));
+  CHECK_FALSE(forge([](GrowingFilm&, Pass& pass, Film&) { pass.first_sample = 3, pass.sample_count = ~0u; }));
+}
+
+TEST_CASE("a short checkpoint of many pixels is refused by its length, before memory is taken") {
+  const TemporaryFolder folder;
+  const auto file = folder / "short";
+  GrowingFilm film(width, height, false), back(width, height, false);
+  Pass pass, read;
+  pass.width = 10000, pass.height = 9000, pass.sample_count = 1;
+  write_growing_checkpoint(file, film, pass, {}, 42);
+  Film part;
+  CHECK_THROWS_WITH(read_growing_checkpoint(file, back, read, part, 42),
+                    ContainsSubstring("10000x9000 pixels in"));
+  CHECK(part.sums.empty());
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 40);  // sparse: it takes no room
+  CHECK_THROWS_AS(read_growing_checkpoint(file, back, read, part, 42), UsageError);
+  CHECK_THROWS_AS(read_checkpoint(file, back.film, 42), UsageError);
+}
+
+TEST_CASE("a checkpoint with pixels that are neither done nor not is refused") {
+  const TemporaryFolder folder;
+  Film film(width, height, false), back(width, height, false);
+  film.done[5] = 3;
+  write_checkpoint(folder / "forged", film, 42);
+  CHECK_THROWS_AS(read_checkpoint(folder / "forged", back, 42), SceneError);
 }
 
 TEST_CASE("the variance of pixels with one sample is that of the colours around") {
