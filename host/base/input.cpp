@@ -15,6 +15,25 @@
 #include "base/faults.h"
 
 namespace sundog {
+
+/// Those that live.
+struct ReadLogs {
+  std::mutex mutex;
+  std::vector<ReadLog*> logs;
+
+  static ReadLogs& all() {
+    static ReadLogs logs;
+    return logs;
+  }
+  void note(const ReadFile& file) {
+    const std::lock_guard lock(mutex);
+    for (ReadLog* log : logs) {
+      const std::lock_guard its_lock(log->mutex_);
+      log->files_.push_back(file);
+    }
+  }
+};
+
 namespace {
 
 /// An open file that is closed at the end.
@@ -66,6 +85,7 @@ std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t 
   if (S_ISDIR(found.st_mode)) fail("is a directory");
   const bool stream = S_ISFIFO(found.st_mode) && is_own_stream(path.string());
   if (!S_ISREG(found.st_mode) && !stream) fail("is no regular file, but a pipe or a device");
+  ReadLogs::all().note({path, {found.st_dev, found.st_ino}});
   const auto size = S_ISREG(found.st_mode) ? static_cast<std::uintmax_t>(found.st_size) : 0;
   if (size > most) fail(fmt::format("is larger than {}", size_text(most)));
   ::fcntl(file.descriptor, F_SETFL, 0);  // a stream is waited for
@@ -74,6 +94,23 @@ std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t 
   if (!read_all(file.descriptor, size, most, bytes)) unreadable();
   if (bytes.size() > most) fail(fmt::format("is larger than {}", size_text(most)));
   return bytes;
+}
+
+ReadLog::ReadLog() {
+  ReadLogs& all = ReadLogs::all();
+  const std::lock_guard lock(all.mutex);
+  all.logs.push_back(this);
+}
+
+ReadLog::~ReadLog() {
+  ReadLogs& all = ReadLogs::all();
+  const std::lock_guard lock(all.mutex);
+  std::erase(all.logs, this);
+}
+
+std::vector<ReadFile> ReadLog::files() const {
+  const std::lock_guard lock(mutex_);
+  return files_;
 }
 
 std::string read_input(const std::filesystem::path& path, std::uintmax_t most,

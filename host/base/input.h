@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <vector>
 
 namespace sundog {
 
@@ -20,5 +22,31 @@ std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t 
 /// The same. Throws SceneError: a file that cannot be read is a bad input.
 std::string read_input(const std::filesystem::path& path, std::uintmax_t most = most_input_bytes,
                        const std::shared_ptr<Faults>& faults = nullptr);
+
+/// A file by its place on a disk: the same under each of its names, be they links.
+struct FileIdentity {
+  std::uint64_t device = 0, inode = 0;
+  friend bool operator==(const FileIdentity&, const FileIdentity&) = default;
+};
+
+struct ReadFile {
+  std::filesystem::path path;  // as it was opened
+  FileIdentity identity;
+};
+
+/// While it lives, each file that any thread reads by read_regular_file() or read_input() is noted in it.
+class ReadLog {
+ public:
+  ReadLog();
+  ~ReadLog();
+  ReadLog(const ReadLog&) = delete;
+  ReadLog& operator=(const ReadLog&) = delete;
+  std::vector<ReadFile> files() const;
+
+ private:
+  friend struct ReadLogs;
+  mutable std::mutex mutex_;
+  std::vector<ReadFile> files_;
+};
 
 }  // namespace sundog

@@ -123,7 +123,9 @@ SceneDescription bench_description(const std::string& file, const BenchOptions& 
     for (const std::string& setting : parse_image_size(options.size)) overrides.push_back(setting);
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
   try {
-    return load_scene(file, overrides, with_streams({.outside_files = options.outside_files}));
+    return load_beside({options.json, options.csv, options.html}, [&] {
+      return load_scene(file, overrides, with_streams({.outside_files = options.outside_files}));
+    });
   } catch (const SceneError& error) {
     for (const std::string& setting : overrides)
       if (error.file == scene_file_name(file) && concerns(setting, error.place))

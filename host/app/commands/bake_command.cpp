@@ -90,9 +90,12 @@ int bake_map(const BakeOptions& options) {
   if (!options.cage.empty()) settings.cage = parse_amount("--cage", options.cage);
   check_output_files({options.out}, {options.high, options.low});
   check_map_name(options.out);
-  const SceneDescription low = load_geometry(options.low, options.outside_files);
+  const auto load = [&](const std::string& file) {
+    return load_beside({options.out}, [&] { return load_geometry(file, options.outside_files); });
+  };
+  const SceneDescription low = load(options.low);
   const std::vector<LowTriangle> triangles = low_triangles(low);
-  const CompiledScene high = compile(load_geometry(options.high, options.outside_files));
+  const CompiledScene high = compile(load(options.high));
   if (high.info.instance_count == 0)
     throw SceneError(options.high, "", "has nothing to bake: wanted meshes or solids");
   if (settings.cage == 0) settings.cage = usual_cage(triangles);

@@ -11,6 +11,7 @@
 
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
+#include "app/options/output_files.h"
 #include "app/options/pick_devices.h"
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
@@ -88,10 +89,19 @@ std::string command_of(const GalleryOptions& options, const std::string& scene) 
   return text;
 }
 
+/// The page and all pictures.
+std::vector<std::string> output_files(const GalleryOptions& options) {
+  const fs::path folder = options.folder;
+  std::vector<std::string> files = {(folder / "index.html").string()};
+  for (const std::string& scene : options.scenes) files.push_back((folder / (stem(scene) + ".png")).string());
+  return files;
+}
+
 GalleryPicture make_picture(const GalleryOptions& options, const std::string& scene, RenderSession& session) {
   LoadOptions load;
   load.outside_files = options.outside_files;
-  const SceneDescription description = load_scene(scene, overrides_of(options), with_streams(load));
+  const SceneDescription description = load_beside(
+      output_files(options), [&] { return load_scene(scene, overrides_of(options), with_streams(load)); });
   if (!options.quiet) print_warnings(description.warnings);
   const auto flat = std::make_shared<const CompiledScene>(compile(description));
   ProgressBar bar(!options.quiet);
@@ -123,6 +133,7 @@ int gallery(GalleryOptions options) {
   if (options.scenes.empty()) options.scenes = shipped_scenes();
   check_names(options.scenes);
   overrides_of(options);
+  check_output_files(output_files(options), options.scenes);
   make_folder(options.folder);
   const fs::path page = fs::path(options.folder) / "index.html";
   check_writable(page);

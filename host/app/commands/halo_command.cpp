@@ -50,8 +50,10 @@ EnvironmentDescription read_halo(const HaloOptions& options) {
     if (!options.overrides.empty()) throw UsageError("--set changes a scene: wanted a SCENE with it");
     return usual_halo();
   }
-  const SceneDescription scene =
-      load_scene(options.scene, options.overrides, with_streams({.outside_files = options.outside_files}));
+  const SceneDescription scene = load_beside({options.picture.out}, [&] {
+    return load_scene(options.scene, options.overrides,
+                      with_streams({.outside_files = options.outside_files}));
+  });
   print_warnings(scene.warnings);
   if (scene.environment.type != EnvironmentType::halo)
     throw SceneError(options.scene, "/environment", "wanted an environment of the type \"halo\"");

@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
@@ -23,6 +25,13 @@ fs::path place(const std::string& name) {
   std::error_code failed;
   const fs::path whole = fs::weakly_canonical(name, failed);
   return failed ? fs::path(name) : whole;
+}
+
+/// Which file that name leads to; none where there is none.
+std::optional<FileIdentity> identity(const std::string& name) {
+  struct stat found{};
+  if (name.empty() || ::stat(name.c_str(), &found) != 0) return std::nullopt;
+  return FileIdentity{found.st_dev, found.st_ino};
 }
 
 /// Devices and pipes: nothing in them is written over.
@@ -56,15 +65,28 @@ void check_picture(const PictureOptions& picture, bool with_aovs) {
 }
 
 void check_output_files(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    if (outputs[i].empty() || holds_nothing(outputs[i])) continue;
-    for (const std::string& input : inputs)
-      if (!is_standard_stream(input) && place(outputs[i]) == place(input))
-        throw UsageError(
-            fmt::format("{}: is read, and would be written over: give the output another name", outputs[i]));
+  std::vector<ReadFile> read;
+  for (const std::string& input : inputs)
+    if (const auto found = identity(input); found && !is_standard_stream(input))
+      read.push_back({input, *found});
+  check_not_read(outputs, read);
+  for (std::size_t i = 0; i < outputs.size(); ++i)
     for (std::size_t k = 0; k < i; ++k)
-      if (!outputs[k].empty() && place(outputs[i]) == place(outputs[k]))
+      if (!outputs[i].empty() && !outputs[k].empty() && !holds_nothing(outputs[i]) &&
+          place(outputs[i]) == place(outputs[k]))
         throw UsageError(fmt::format("{}: is the name of two outputs: give each its own", outputs[i]));
+}
+
+void check_not_read(const std::vector<std::string>& outputs, const std::vector<ReadFile>& files) {
+  for (const std::string& output : outputs) {
+    const auto written = identity(output);
+    if (!written || holds_nothing(output)) continue;
+    const auto found = std::ranges::find(files, *written, &ReadFile::identity);
+    if (found == files.end()) continue;
+    const std::string name = found->path.lexically_normal().string();
+    const bool link = fs::path(output).filename() != found->path.filename();
+    throw UsageError(fmt::format("{}: {}is read, and would be written over: give the output another name",
+                                 output, link ? "is a link to " + name + ", which " : ""));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/options/options.h"
+#include "base/input.h"
 
 namespace sundog {
 
@@ -18,8 +19,20 @@ std::vector<std::string> made_aovs(const RenderCommand& command);
 /// the standard output is a terminal; IoError where the file could not be written.
 void check_picture(const PictureOptions& picture, bool with_aovs);
 
-/// Throws UsageError where two of the outputs are one file, or an output is a file that is read. Empty names
-/// are none; "-" is the standard output, or input.
+/// Throws UsageError where two of the outputs are one file, or an output is a file that is read, under this
+/// name or by a link. Empty names are none; "-" is the standard output, or input.
 void check_output_files(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
+
+/// The same for what was read on the way: a scene's textures and models, and what those name.
+void check_not_read(const std::vector<std::string>& outputs, const std::vector<ReadFile>& files);
+
+/// What `load` returns, unless it has read one of the outputs.
+template <class Load>
+auto load_beside(const std::vector<std::string>& outputs, const Load& load) {
+  const ReadLog log;
+  auto loaded = load();
+  check_not_read(outputs, log.files());
+  return loaded;
+}
 
 }  // namespace sundog

@@ -5,19 +5,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <charconv>
 #include <cstdlib>
-#include <ctime>
+#include <string_view>
 
 #include "app/options/output_files.h"
 #include "app/process/revision.h"
+#include "base/error.h"
 
 namespace sundog {
 namespace {
-
-std::time_t time_of_picture() {
-  const char* set = std::getenv("SOURCE_DATE_EPOCH");
-  return set && *set ? static_cast<std::time_t>(std::strtoll(set, nullptr, 10)) : std::time(nullptr);
-}
 
 std::string settings_text(const RenderCommand& command, const SceneDescription& scene) {
   std::string text =
@@ -39,6 +36,20 @@ std::string devices_text(const RenderResult& result) {
 }
 
 }  // namespace
+
+std::time_t time_of_picture() {
+  constexpr std::time_t most = 253402300799;  // the end of the year 9999
+  const char* set = std::getenv("SOURCE_DATE_EPOCH");
+  if (!set || !*set) return std::time(nullptr);
+  const std::string_view text = set;
+  std::time_t seconds = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  if (error != std::errc() || end != text.data() + text.size() || seconds < 0 || seconds > most)
+    throw UsageError(fmt::format(
+        "SOURCE_DATE_EPOCH={:.40}: wanted a time for --metadata, whole seconds since 1970 from 0 to {}", text,
+        most));
+  return seconds;
+}
 
 ImageTexts metadata(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result) {
   const std::string program = fmt::format("sundog {} ({})", SUNDOG_VERSION, build_revision());

@@ -24,6 +24,7 @@
 #include "app/process/trace_halo_map.h"
 #include "app/process/warnings.h"
 #include "app/render/denoise.h"
+#include "app/render/metadata.h"
 #include "app/render/render_result.h"
 #include "app/render/stats.h"
 #include "base/cache_folder.h"
@@ -68,7 +69,17 @@ void check_extras(const RenderCommand& command) {
       throw UsageError(fmt::format("--aov {}: wants a whole frame: leave --tiles out", name));
   if (command.metadata && !keeps_texts(format_name(command)))
     throw UsageError(fmt::format("{}: --metadata is for .png and .exr files", command.out));
+  if (command.metadata) static_cast<void>(time_of_picture());
   if (command.denoise) static_cast<void>(Denoiser());
+}
+
+/// The files that one frame may write.
+std::vector<std::string> output_files(const RenderCommand& command) {
+  std::vector<std::string> files = {command.out, command.stats, command.resume};
+  if (command.verbose && !is_standard_stream(command.out)) files.push_back(samples_file(command));
+  if (job_rank() >= 0 && command.resume.empty()) files.push_back(command.out + ".checkpoint");
+  if (command.frames && !command.resume.empty()) files.push_back(command.resume + ".frames");
+  return files;
 }
 
 /// What would otherwise be found out after the render.
@@ -79,7 +90,7 @@ void check_outputs(const RenderCommand& command) {
   if (job_rank() >= 0 && is_standard_stream(command.out))
     throw UsageError("-o -: under mpirun, whose standard output is for text, a picture wants a file");
   if (is_standard_stream(command.resume)) throw UsageError("--resume -: a checkpoint wants a file");
-  check_output_files({command.out, command.stats, command.resume}, {command.scene});
+  check_output_files(output_files(command), {command.scene});
   check_write_every(command);
   check_extras(command);
   if (command.part)
@@ -98,10 +109,12 @@ void check_frames(const RenderCommand& command) {
 }
 
 /// An error at a place that an option changed is the command line's.
-SceneDescription load(const RenderCommand& command) {
+SceneDescription load(const RenderCommand& command, const std::vector<std::string>& outputs) {
   try {
-    return load_scene(command.scene, command.overrides,
-                      with_streams({command.frame, command.native_code, command.outside_files}));
+    return load_beside(outputs, [&] {
+      return load_scene(command.scene, command.overrides,
+                        with_streams({command.frame, command.native_code, command.outside_files}));
+    });
   } catch (const SceneError& error) {
     if (error.file == scene_file_name(command.scene))
       for (const std::string& setting : command.overrides)
@@ -171,9 +184,10 @@ CompiledScene compile_traced(const RenderCommand& command, SceneDescription& sce
   return compile(scene);
 }
 
-LoadedScene load_and_compile(const RenderCommand& command, Setup& setup, TimeLedger& times) {
+LoadedScene load_and_compile(const RenderCommand& command, const std::vector<std::string>& outputs,
+                             Setup& setup, TimeLedger& times) {
   LoadedScene scene;
-  scene.description = timed(times.load, [&] { return load(command); });
+  scene.description = timed(times.load, [&] { return load(command, outputs); });
   scene.flat = timed(times.compile_scene, [&] {
     return std::make_shared<const CompiledScene>(compile_traced(command, scene.description, setup));
   });
@@ -244,6 +258,14 @@ RenderCommand frame_command(const RenderCommand& command, int frame) {
   return one;
 }
 
+/// The files of all frames: that the last takes a texture's place is told before the first is made.
+std::vector<std::string> output_files_of_all(const RenderCommand& command) {
+  std::vector<std::string> files;
+  for (int frame = command.frames->first; frame <= command.frames->last; ++frame)
+    for (std::string& file : output_files(frame_command(command, frame))) files.push_back(std::move(file));
+  return files;
+}
+
 int render_frames(const RenderCommand& command, Setup& setup) {
   FrameLog log(command.resume.empty() ? "" : command.resume + ".frames");
   print_warnings(log.warnings());
@@ -253,8 +275,10 @@ int render_frames(const RenderCommand& command, Setup& setup) {
     TimeLedger times;
     const RenderCommand one = frame_command(command, frame);
     stop_loses_nothing(one, setup);
-    const LoadedScene scene = load_and_compile(one, setup, times);
-    if (frame == command.frames->first) print_warnings(scene.description.warnings);
+    const bool first = frame == command.frames->first;
+    const LoadedScene scene =
+        load_and_compile(one, first ? output_files_of_all(command) : output_files(one), setup, times);
+    if (first) print_warnings(scene.description.warnings);
     const std::uint64_t hash = hash_scene(*scene.flat);
     if (log.done({frame, static_cast<int>(scene.flat->info.width), static_cast<int>(scene.flat->info.height),
                   one.out, one.scene, checkpoint_file(one, setup)},
@@ -278,7 +302,7 @@ int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox*
   std::optional<LoadedScene> scene;
   if (!command.frames) {
     stop_loses_nothing(command, setup);
-    scene = load_and_compile(command, setup, times);
+    scene = load_and_compile(command, output_files(command), setup, times);
     print_warnings(scene->description.warnings);
   }
   if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())

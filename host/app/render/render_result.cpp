@@ -42,12 +42,6 @@ std::map<std::string, std::string> settings_of(const RenderCommand& command, con
   return settings;
 }
 
-/// "out.png" -> "out.samples.png".
-std::string samples_file(const RenderCommand& command) {
-  std::filesystem::path path = command.out;
-  return path.replace_extension(".samples.png").string();
-}
-
 /// Where the samples went, in words, and with --verbose as a picture.
 void tell_samples(const RenderCommand& command, const RenderResult& result, u32 each) {
   if (result.taken.empty()) return;
@@ -122,6 +116,11 @@ AovImages asked_aovs(const RenderCommand& command, const RenderResult& result) {
 }
 
 }  // namespace
+
+std::string samples_file(const RenderCommand& command) {
+  std::filesystem::path path = command.out;
+  return path.replace_extension(".samples.png").string();
+}
 
 FrameOutput frame_output(const RenderCommand& command, bool passes) {
   return {format_name(command),

@@ -10,6 +10,9 @@
 
 namespace sundog {
 
+/// Where --verbose shows how the samples were spread: "out.png" -> "out.samples.png".
+std::string samples_file(const RenderCommand& command);
+
 /// What the command's frame takes memory for.
 FrameOutput frame_output(const RenderCommand& command, bool passes);
 
