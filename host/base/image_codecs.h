@@ -20,6 +20,11 @@ std::string encode_jpeg(const Image& image);
 /// The exponent that makes a PNG's samples linear; none: sRGB.
 std::optional<float> png_decoding_exponent(std::string_view bytes);
 
+/// Whether an image file has alpha, by its header.
+bool has_alpha(std::string_view bytes);
+/// The same of an EXR file that check_exr_header() lets pass.
+bool exr_has_alpha(std::string_view bytes);
+
 /// Radiance RGBE: no alpha, nothing negative, about 1 % precision.
 std::string encode_hdr(const Image& image);
 Image decode_hdr(std::string_view file);
@@ -28,6 +33,9 @@ Image decode_hdr(std::string_view file);
 std::string encode_pfm(const Image& image);
 Image decode_pfm(std::string_view bytes);
 
+/// Throws for an EXR file of several parts or samples a pixel, and for one whose header asks for more memory
+/// than its length can have use for: before a decoder, which takes that memory.
+void check_exr_header(std::string_view bytes);
 /// Throws IoError only: there is nothing it refuses.
 std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color,
                        const ImageTexts& texts = {});

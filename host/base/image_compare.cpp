@@ -12,9 +12,10 @@ namespace {
 using Rgb = std::array<float, 3>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-void check_sizes(const Image& a, const Image& b) {
+void check_sizes(const Image& a, const Image& b, int channels) {
   if (a.width != b.width || a.height != b.height) throw std::invalid_argument("the images differ in size");
-  if (a.channels < 3 || b.channels < 3) throw std::invalid_argument("the images need three channels");
+  if (a.channels < channels || b.channels < channels)
+    throw std::invalid_argument("the images lack channels that are to be compared");
 }
 
 double channel_difference(float a, float b) {
@@ -23,14 +24,14 @@ double channel_difference(float a, float b) {
   return std::abs(static_cast<double>(a) - static_cast<double>(b));
 }
 
-double pixel_difference(const float* a, const float* b) {
+double pixel_difference(const float* a, const float* b, int channels) {
   double worst = 0;
-  for (int c = 0; c < 3; ++c) worst = std::max(worst, channel_difference(a[c], b[c]));
+  for (int c = 0; c < channels; ++c) worst = std::max(worst, channel_difference(a[c], b[c]));
   return worst;
 }
 
-bool is_finite(const float* pixel) {
-  return std::isfinite(pixel[0]) && std::isfinite(pixel[1]) && std::isfinite(pixel[2]);
+bool is_finite(const float* pixel, int channels) {
+  return std::all_of(pixel, pixel + channels, [](float value) { return std::isfinite(value); });
 }
 
 /// Calls `visit(pixel of a, pixel of b)` for all pixels.
@@ -62,19 +63,19 @@ Rgb heat(double difference) {
 
 }  // namespace
 
-ImageDifference compare_images(const Image& a, const Image& b, double tolerance) {
-  check_sizes(a, b);
+ImageDifference compare_images(const Image& a, const Image& b, double tolerance, int channels) {
+  check_sizes(a, b, channels);
   ImageDifference result;
   std::vector<double> differences;
   double sum = 0, squares = 0;
   std::uint64_t finite_channels = 0;
   for_each_pixel(a, b, [&](const float* p, const float* q) {
-    const double worst = pixel_difference(p, q);
+    const double worst = pixel_difference(p, q, channels);
     differences.push_back(worst);
     result.differing += worst > 0;
     result.over_tolerance += worst > tolerance;
-    result.non_finite += !is_finite(p) || !is_finite(q);
-    for (int c = 0; c < 3; ++c) {
+    result.non_finite += !is_finite(p, channels) || !is_finite(q, channels);
+    for (int c = 0; c < channels; ++c) {
       const double d = channel_difference(p[c], q[c]);
       if (!std::isfinite(d)) continue;
       sum += d;
@@ -92,12 +93,12 @@ ImageDifference compare_images(const Image& a, const Image& b, double tolerance)
   return result;
 }
 
-Image difference_image(const Image& a, const Image& b) {
-  check_sizes(a, b);
+Image difference_image(const Image& a, const Image& b, int channels) {
+  check_sizes(a, b, channels);
   Image shown(a.width, a.height, 3);
   float* to = shown.data.data();
   for_each_pixel(a, b, [&](const float* p, const float* q) {
-    const double difference = pixel_difference(p, q);
+    const double difference = pixel_difference(p, q, channels);
     const float luminance = 0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2];
     const float grey = std::isfinite(luminance) ? std::clamp(luminance, 0.0f, 1.0f) * 0.2f : 0;
     const Rgb color = difference > 0 ? heat(difference) : Rgb{grey, grey, grey};

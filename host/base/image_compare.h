@@ -6,7 +6,7 @@
 
 namespace sundog {
 
-/// Linear absolute differences of red, green and blue; alpha is left out, since not every format keeps it.
+/// Linear absolute differences of red, green and blue, and of alpha where that is asked for.
 /// The difference of a pixel is that of its worst channel. A value that is not finite differs by infinity
 /// from everything but itself (NaN equals NaN).
 struct ImageDifference {
@@ -20,12 +20,13 @@ struct ImageDifference {
   std::uint64_t non_finite = 0;      // pixels where either image has a value that is not finite
 };
 
-/// Both images have the same size and 3 or 4 channels (std::invalid_argument otherwise).
-ImageDifference compare_images(const Image& a, const Image& b, double tolerance);
+/// Both images have the same size and 3 or 4 channels (std::invalid_argument otherwise). `channels`: 3, or 4
+/// to compare alpha too.
+ImageDifference compare_images(const Image& a, const Image& b, double tolerance, int channels = 3);
 
 /// `a` dimmed to grey; where the images differ, a colour for the size of the difference on a logarithmic
 /// scale: blue (1e-5 and less), cyan (3e-4), green, yellow (3e-2), red (1 and more), magenta for what is not
 /// finite.
-Image difference_image(const Image& a, const Image& b);
+Image difference_image(const Image& a, const Image& b, int channels = 3);
 
 }  // namespace sundog

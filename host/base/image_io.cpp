@@ -116,6 +116,11 @@ void write_image(const Image& image, const fs::path& path, const AovImages& aovs
 
 Image read_image(const fs::path& path) { return read_named(path, decode); }
 
+ImageInFile read_image_in_file(const fs::path& path) {
+  return read_named(path,
+                    [](std::string_view bytes) { return ImageInFile{decode(bytes), has_alpha(bytes)}; });
+}
+
 ImageTexts read_texts(const fs::path& path) {
   return read_named(path, [](std::string_view bytes) {
     return is_exr(bytes) ? decode_exr_texts(bytes) : decode_png_texts(bytes);

@@ -45,6 +45,13 @@ void check_image_path(const std::filesystem::path& path, bool with_aovs);
 /// another gamma). Throws SceneError on a bad file.
 Image read_image(const std::filesystem::path& path);
 
+/// The same, and whether the file itself has alpha: where not, the image's is 1.
+struct ImageInFile {
+  Image image;
+  bool alpha = false;
+};
+ImageInFile read_image_in_file(const std::filesystem::path& path);
+
 /// The texts of a PNG or an EXR; empty for other formats. Throws SceneError on a bad file.
 ImageTexts read_texts(const std::filesystem::path& path);
 

@@ -18,12 +18,13 @@ using nlohmann::json;
 /// JSON has no infinity.
 json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
-json to_json(const CompareCommand& command, const Image& a, const ImageDifference& d) {
+json to_json(const CompareCommand& command, const Image& a, int channels, const ImageDifference& d) {
   return {{"schema", 1},
           {"a", command.a},
           {"b", command.b},
           {"width", a.width},
           {"height", a.height},
+          {"alpha", channels == 4},
           {"pixels", d.pixels},
           {"mean", d.mean},
           {"rms", d.rms},
@@ -74,13 +75,15 @@ int compare_command(const CompareCommand& command) {
     check_image_path(command.diff, false);
     check_writable(command.diff);
   }
-  const Image a = read_image(command.a);
-  const Image b = read_image(command.b);
+  const auto [a, a_has_alpha] = read_image_in_file(command.a);
+  const auto [b, b_has_alpha] = read_image_in_file(command.b);
   if (a.width != b.width || a.height != b.height) return report_sizes(command, a, b);
-  const ImageDifference difference = compare_images(a, b, command.tolerance);
-  if (!command.diff.empty()) write_image(difference_image(a, b), command.diff);
+  const int channels = a_has_alpha && b_has_alpha ? 4 : 3;
+  const ImageDifference difference = compare_images(a, b, command.tolerance, channels);
+  if (!command.diff.empty()) write_image(difference_image(a, b, channels), command.diff);
   if (command.json)
-    fmt::print("{}\n", to_json(command, a, difference).dump(2, ' ', false, json::error_handler_t::replace));
+    fmt::print("{}\n",
+               to_json(command, a, channels, difference).dump(2, ' ', false, json::error_handler_t::replace));
   else
     print_text(command, difference);
   return difference.over_tolerance > 0 ? exit_difference : exit_done;

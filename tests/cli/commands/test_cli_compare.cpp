@@ -52,6 +52,28 @@ TEST_CASE("compare --json gives the figures") {
   CHECK(json::parse(run_sundog({"compare", pair.a, pair.a, "--json"}).out)["psnr"].is_null());
 }
 
+TEST_CASE("alpha is compared where both pictures have it") {
+  const TemporaryFolder folder;
+  Image image(6, 4, 4);
+  std::ranges::fill(image.data, 0.5f);
+  write_image(image, folder / "half.exr");
+  write_image(image, folder / "half.png");
+  for (int x = 0; x < 3; ++x) image.pixel(x, 1)[3] = 1;
+  write_image(image, folder / "holes.exr");
+  write_image(image, folder / "none.pfm");
+  write_image(image, folder / "none.jpg");
+  const auto compare = [&](const char* a, const char* b) {
+    return json::parse(run_sundog({"compare", (folder / a).string(), (folder / b).string(), "--json"}).out);
+  };
+  const json both = compare("half.exr", "holes.exr");
+  CHECK(both["alpha"] == true);
+  CHECK(both["differing"] == 3);
+  CHECK(both["max"] == 0.5);
+  CHECK(compare("half.exr", "half.png")["alpha"] == true);
+  for (const char* none : {"none.pfm", "none.jpg"}) CHECK(compare("holes.exr", none)["alpha"] == false);
+  CHECK(compare("holes.exr", "none.pfm")["differing"] == 0);
+}
+
 TEST_CASE("images of different sizes differ, and stderr says how") {
   const Pair pair;
   write_image(Image(10, 20, 3), pair / "c.pfm");

@@ -83,6 +83,56 @@ TEST_CASE("damaged EXR files are images or errors") {
 }
 TEST_CASE("damaged HDR files are images or errors") { damage(encode_hdr(small_image()), false); }
 
+namespace {
+
+/// Why an EXR is refused whose header begins with this attribute.
+std::string exr_refusal(const std::string& attribute) {
+  std::string bytes = encode_exr(small_image(), {}, ExrColor::half);
+  bytes.insert(8, attribute);
+  try {
+    check_exr_header(bytes);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string number(std::uint64_t value, int bytes = 4) {
+  std::string text;
+  for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> 8 * i & 0xff);
+  return text;
+}
+
+std::string attribute(const std::string& name, const std::string& type, const std::string& value) {
+  return name + '\0' + type + '\0' + number(value.size()) + value;
+}
+
+}  // namespace
+
+TEST_CASE("an EXR header that asks for more memory than the file can use is refused, with the figure") {
+  const std::string two_gib =
+      std::string("\x76\x2f\x31\x01\x02\0\0\0a\0string\0", 17) + number(0x7fffffff) + "x";
+  CHECK_THROWS_WITH(decode_exr(two_gib), ContainsSubstring("says 2147483647 bytes of \"a\", and has 1"));
+  CHECK_THROWS_WITH(decode_stored(two_gib), ContainsSubstring("2147483647"));
+  CHECK(exr_refusal(attribute("owner", "string", "me")).empty());
+  CHECK(exr_refusal(attribute("preview", "preview", number(2) + number(1) + number(0, 8))).empty());
+  CHECK_THAT(exr_refusal(attribute("preview", "preview", number(30000) + number(17000) + number(0, 8))),
+             ContainsSubstring("a preview of 30000x17000 pixels in 8 bytes"));
+  CHECK_THAT(exr_refusal(attribute("v", "stringvector", number(0x7fffffff) + "x")),
+             ContainsSubstring("cut short"));
+  CHECK_THAT(exr_refusal(attribute("m", "idmanifest", number(1ull << 40, 8) + "x")),
+             ContainsSubstring("an idmanifest of 1099511627776 bytes in 1"));
+  CHECK_THAT(exr_refusal(attribute("tiles", "tiledesc", number(1 << 20) + number(1 << 20) + "x")),
+             ContainsSubstring("tiles of 1099511627776 pixels"));
+  std::string channels;
+  for (int i = 0; i < 2000; ++i) channels += "c" + std::to_string(i) + '\0' + number(2) + number(0, 12);
+  channels += '\0';
+  std::string wide = std::string("\x76\x2f\x31\x01\x02\0\0\0", 8);
+  wide += attribute("channels", "chlist", channels) + attribute("compression", "compression", "\x09");
+  wide += attribute("dataWindow", "box2i", number(0) + number(0) + number(65535) + number(0)) + '\0';
+  CHECK_THROWS_WITH(check_exr_header(wide), ContainsSubstring("MiB for each 256 lines"));
+}
+
 TEST_CASE("a JPEG or WebP header that lies about the size is an error") {
   std::string jpeg = encode_jpeg(small_image());
   const std::size_t frame = jpeg.find("\xff\xc0");

@@ -52,11 +52,15 @@ TEST_CASE("the 99th percentile leaves one pixel in a hundred out") {
   CHECK(compare_images(a, b, 0).percentile_99 == 1);  // 197 zeros, then 1, 2, 3: the 198th of 200
 }
 
-TEST_CASE("alpha is not compared") {
+TEST_CASE("alpha is compared where that is asked for") {
   const Image a = constant(2, 2, 0);
   Image b = a;
   b.pixel(0, 0)[3] = 1;
   CHECK(compare_images(a, b, 0).differing == 0);
+  CHECK(compare_images(a, b, 0, 4).differing == 1);
+  CHECK(compare_images(a, b, 0, 4).rms == Approx(std::sqrt(1.0 / 16)));
+  CHECK(difference_image(a, b, 4).pixel(0, 0)[0] == 1);
+  CHECK_THROWS_AS(compare_images(Image(2, 2, 3), b, 0, 4), std::invalid_argument);
 }
 
 TEST_CASE("values that are not finite differ from all others, and do not spoil the means") {
