@@ -159,7 +159,7 @@ void apply_animation(nlohmann::json& document, double frame, const JsonContext& 
   const JsonValue root(original, context);
   const JsonValue list = root.member("animate", "an array of tracks: what the frames change");
   const std::vector<Track> tracks = read_tracks(list);
-  const std::vector<JsonValue> places = list.items("tracks");
+  const JsonItems places = list.items("tracks");
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const std::vector<double> now = standing(document, tracks[i], places[i]);
     if (tracks[i].kind == Track::Kind::rotate && now.size() != 3)

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/input.h"
+#include "scene/json/json_memory.h"
 #include "scene/json/value.h"
 
 namespace sundog {
@@ -165,6 +166,7 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
 
 json parse_json(std::string_view text, const fs::path& file) {
   check_bytes(text, file);
+  check_json_memory(text, file);
   DocumentBuilder builder(text, file);
   json::sax_parse(text.begin(), text.end(), &builder, json::input_format_t::json, /*strict=*/true,
                   /*ignore_comments=*/true);

@@ -149,12 +149,15 @@ glm::dvec3 JsonValue::color(const Range& each) const {
   return vec3(each);
 }
 
-std::vector<JsonValue> JsonValue::items(std::string_view what) const {
+JsonItems JsonValue::items(std::string_view what) const {
   if (!json_->is_array()) wanted(fmt::format("an array of {}", what));
-  std::vector<JsonValue> result;
-  result.reserve(json_->size());
-  for (const nlohmann::json& item : *json_) result.push_back(child(std::to_string(result.size()), item));
-  return result;
+  return JsonItems(*this);
+}
+
+std::size_t JsonItems::size() const { return array_.json().size(); }
+
+JsonValue JsonItems::operator[](std::size_t index) const {
+  return array_.child(std::to_string(index), array_.json()[index]);
 }
 
 std::vector<std::pair<std::string, JsonValue>> JsonValue::members(std::string_view what) const {

@@ -45,6 +45,7 @@ struct JsonContext {
 /// Keys or choices; pass a static array of them.
 using Names = std::span<const std::string_view>;
 
+class JsonItems;
 class JsonObject;
 
 /// A JSON value and where it stands. Refers to the document and the context, which must outlive it.
@@ -83,7 +84,7 @@ class JsonValue {
   glm::dvec3 color(const Range& each = color_range) const;
 
   /// The items of an array; `what` completes "wanted an array of ...".
-  std::vector<JsonValue> items(std::string_view what) const;
+  JsonItems items(std::string_view what) const;
   /// The members of an object whose keys are free names.
   std::vector<std::pair<std::string, JsonValue>> members(std::string_view what) const;
   /// One member of an object, by a key that must be there (but not recorded as asked for): to find out its
@@ -96,12 +97,44 @@ class JsonValue {
   auto object(std::string_view kind, Read read) const;
 
  private:
+  friend class JsonItems;
   friend class JsonObject;
   JsonValue child(std::string_view key, const nlohmann::json& value) const;
 
   const nlohmann::json* json_;
   const JsonContext* context_;
   std::string pointer_;
+};
+
+/// The items of an array. Each is made when it is asked for: the first bad one of millions is found without
+/// memory for the others.
+class JsonItems {
+ public:
+  explicit JsonItems(JsonValue array) : array_(std::move(array)) {}
+
+  class Iterator {
+   public:
+    Iterator(const JsonItems& items, std::size_t at) : items_(&items), at_(at) {}
+    JsonValue operator*() const { return (*items_)[at_]; }
+    Iterator& operator++() {
+      ++at_;
+      return *this;
+    }
+    bool operator==(const Iterator& other) const { return at_ == other.at_; }
+
+   private:
+    const JsonItems* items_;
+    std::size_t at_;
+  };
+
+  std::size_t size() const;
+  bool empty() const { return size() == 0; }
+  JsonValue operator[](std::size_t index) const;
+  Iterator begin() const { return {*this, 0}; }
+  Iterator end() const { return {*this, size()}; }
+
+ private:
+  JsonValue array_;
 };
 
 /// A JSON object of which every key must be asked for. Made by JsonValue::object().

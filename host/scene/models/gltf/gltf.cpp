@@ -10,6 +10,7 @@
 #include <numbers>
 #include <set>
 
+#include "scene/json/json_memory.h"
 #include "scene/models/gltf/gltf_meshes.h"
 #include "scene/models/gltf/gltf_unread.h"
 #include "scene/models/gltf/gltf_views.h"
@@ -275,6 +276,7 @@ void name_unread_extensions(const JsonAt& root, Model& model) {
 }
 
 nlohmann::json parse(const Source& source, std::string_view text) {
+  check_json_memory(text, source.path);
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::exception& error) {
