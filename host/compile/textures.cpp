@@ -114,7 +114,12 @@ class TextureCompiler {
     if (index >= static_cast<int>(scene_.textures.size()))
       throw SceneError(scene_.file.string(), "",
                        "material \"" + material.name + "\" names a texture that does not exist");
-    if (below + 2 > MOST_TEXTURE_STACK || out_.texture_nodes.size() > most_nodes)
+    if (out_.texture_nodes.size() >= most_nodes)
+      throw SceneError(scene_.file.string(), "/textures",
+                       fmt::format("the materials' textures take more than {} images, patterns and colours, "
+                                   "the most that a scene can have: \"{}\" is one too many",
+                                   most_nodes, material.name));
+    if (below + 2 > MOST_TEXTURE_STACK)
       throw SceneError(
           scene_.file.string(), "/textures",
           "material \"" + material.name + "\" has a texture of too many others inside each other");

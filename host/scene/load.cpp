@@ -75,11 +75,15 @@ SceneDescription read_with_overrides(json document, const fs::path& file,
 
 }  // namespace
 
-std::string scene_file_name(const fs::path& path) { return path == "-" ? "standard input" : path.string(); }
+bool is_standard_input(const fs::path& path) { return path == "-" || path == "/dev/stdin"; }
+
+std::string scene_file_name(const fs::path& path) {
+  return is_standard_input(path) ? "standard input" : path.string();
+}
 
 SceneDescription load_scene(const fs::path& path, const std::vector<std::string>& overrides,
                             const LoadOptions& options) {
-  if (path == "-" && options.standard_input) {
+  if (is_standard_input(path) && options.standard_input) {
     const fs::path name = scene_file_name(path);
     return read_with_overrides(parse_json(options.standard_input(), name), name, overrides, options,
                                std::nullopt);

@@ -23,7 +23,10 @@ struct LoadOptions {
   std::shared_ptr<Faults> faults{};                      // of reading a scene file
 };
 
-/// The name that errors give a scene's file: "standard input" for "-", else the path.
+/// Whether the path means the standard input: "-", or /dev/stdin.
+bool is_standard_input(const std::filesystem::path& path);
+
+/// The name that errors give a scene's file: "standard input", or the path.
 std::string scene_file_name(const std::filesystem::path& path);
 
 /// Loads sundog's .json ("-": from the standard input, files that it names beside the current folder), or

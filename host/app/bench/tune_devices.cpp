@@ -23,6 +23,7 @@
 #include "bench/report/report.h"
 #include "bench/tune/tuner.h"
 #include "render/device/tuning.h"
+#include "scene/load.h"
 
 namespace sundog {
 namespace {
@@ -137,7 +138,7 @@ std::vector<std::string> worker_arguments(const TuneOptions& options, const Devi
 /// The standard input again for each worker, where a scene comes from there.
 std::vector<HandedDown> worker_streams(const TuneOptions& options) {
   std::vector<HandedDown> streams{{STDERR_FILENO, STDERR_FILENO}};
-  if (std::ranges::any_of(options.bench.scenes, [](const auto& file) { return is_standard_stream(file); }))
+  if (std::ranges::any_of(options.bench.scenes, [](const auto& file) { return is_standard_input(file); }))
     streams.push_back({memory_file(standard_input()), STDIN_FILENO});
   return streams;
 }

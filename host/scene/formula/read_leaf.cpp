@@ -153,8 +153,9 @@ FormulaDefinition read_listed(JsonObject& object) {
   if (!listed) {
     std::vector<std::string> names;
     for (const FormulaDefinition& d : formula_list()) names.push_back(d.name);
-    name.fail(fmt::format("no surface \"{}\" in the list: {}", name.text(),
-                          did_you_mean(name.text(), names, "sundog formulas prints it")));
+    if (const auto near = nearest_name(name.text(), names))
+      name.fail(fmt::format("no surface \"{}\" in the list: did you mean \"{}\"?", name.text(), *near));
+    name.wanted("the name of a surface of the list (sundog formulas prints it)");
   }
   FormulaDefinition d = *listed;
   read_arguments(object, d);

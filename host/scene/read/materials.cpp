@@ -94,15 +94,23 @@ void read_index(JsonObject& object, MediumDescription& medium) {
     }
 }
 
+/// Other programs' files have {"texture": NAME} where a scene has the name.
+void refuse_texture_object(const JsonValue& value) {
+  if (value.json().is_object() && value.json().contains("texture"))
+    value.fail("a texture is taken by its name alone: wanted the name of one of /textures as a string");
+}
+
 }  // namespace
 
 Pattern read_plain_color(const JsonValue& value, TextureLibrary& textures, const Range& range) {
+  refuse_texture_object(value);
   if (value.json().is_string()) return {dvec3(1), dvec3(1), textures.use(value, TextureUse::color)};
   const dvec3 color = value.color(range);
   return {color, color, -1};
 }
 
 double read_number(const JsonValue& value, TextureLibrary& textures, const Range& range, int* texture) {
+  refuse_texture_object(value);
   if (!value.json().is_string()) return value.number(range);
   *texture = textures.use(value, TextureUse::number);
   return 1;
@@ -122,6 +130,7 @@ struct TermRules {
 /// One term of the shading: a coefficient on the material's colour, the name of a texture, or {"color",
 /// "coefficient"} (and for specular "exponent").
 Pattern read_term(const JsonValue& value, TextureLibrary& textures, const TermRules& rules) {
+  refuse_texture_object(value);
   if (value.json().is_number()) return scale(rules.color, value.number(rules.range));
   if (value.json().is_string()) return scale(read_plain_color(value, textures), rules.coefficient);
   if (!value.json().is_object())
@@ -149,6 +158,7 @@ Pattern read_color(JsonObject& object, MaterialDescription& material, TextureLib
   if (!color->json().is_object())
     color->wanted(
         "a colour [r, g, b], a texture's name or {\"checker\": [colour, colour], \"size\": number}");
+  refuse_texture_object(*color);
   color->object("checker", [&](JsonObject& checker) {
     const JsonValue pair = checker.at("checker", "two colours");
     const auto colors = pair.items("2 colours");

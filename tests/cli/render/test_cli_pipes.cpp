@@ -106,11 +106,12 @@ TEST_CASE("a scene is read from the standard input, its files beside the current
   CommandOptions there;
   there.folder = folder.path();
   REQUIRE(run_sundog({"render", scene, "-o", folder.file("a.png")}).status == 0);
-  for (const char* more : {"", " --isolate"}) {
-    const CommandResult result =
-        run_line(std::string("\"$0\" render - -o b.png < \"$1\"") + more, {scene}, there);
-    CAPTURE(more, result.err);
-    CHECK(result.status == 0);
+  for (const char* from : {"- -o b.png < \"$1\"", "- --isolate -o b.png < \"$1\"",
+                           "/dev/stdin -o b.png < \"$1\"", "/dev/stdin --isolate -o b.png < \"$1\""}) {
+    std::filesystem::remove(folder / "b.png");
+    const CommandResult result = run_line(std::string("\"$0\" render ") + from, {scene}, there);
+    CAPTURE(from, result.err);
+    REQUIRE(result.status == 0);
     CHECK((read_file(folder.file("b.png")) == read_file(folder.file("a.png"))));
   }
   const CommandResult info = run_line("\"$0\" info - < \"$1\"", {scene}, there);

@@ -44,6 +44,24 @@ const TextureDescription& texture_of(const SceneDescription& scene, int index) {
 
 }  // namespace
 
+TEST_CASE("the most textures that a scene can have are named where it has more") {
+  const auto scene_of = [](int count) {
+    std::string textures, materials;
+    for (int i = 0; i < count; ++i) {
+      const std::string name = std::to_string(i), comma = i > 0 ? "," : "";
+      textures += comma + "\"t" + name + "\":{\"type\":\"noise\"}";
+      materials += comma + "\"m" + name + "\":{\"color\":\"t" + name + "\"}";
+    }
+    const TemporaryFolder folder;
+    return load_scene(folder.write("scene.json", R"({"textures":{)" + textures + R"(},"materials":{)" +
+                                                     materials +
+                                                     R"(},"objects":[{"type":"sphere","material":"m0"}]})"));
+  };
+  CHECK(compile(scene_of(4096)).texture_nodes.size() == 4096);
+  CHECK_THROWS_WITH(compile(scene_of(4097)), ContainsSubstring("/textures: the materials' textures take more "
+                                                               "than 4096 images, patterns and colours"));
+}
+
 TEST_CASE("a material takes colours and numbers from textures by name") {
   const Folder folder;
   const SceneDescription scene = folder.scene(R"("textures": {"t": {"type": "image", "file": "two.png"}},

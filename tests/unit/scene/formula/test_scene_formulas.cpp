@@ -39,6 +39,15 @@ void check_map_refused(const nlohmann::json& map, const std::string& words) {
 
 }  // namespace
 
+TEST_CASE("a long text in the place of a formula's name is not quoted whole") {
+  const std::string formula = "z = z ^ 2 + c; " + std::string(300, 'z');
+  const auto load = [&] {
+    load_scene_text(R"({"objects": [{"type": "fractal", "formula": ")" + formula + R"("}]})");
+  };
+  CHECK_THROWS_WITH(load(), ContainsSubstring("wanted the name of a surface of the list") &&
+                                ContainsSubstring("z = z ^ 2") && !ContainsSubstring(std::string(100, 'z')));
+}
+
 TEST_CASE("a formula in a scene is accepted as one string or as lines") {
   CHECK(load_scene_text(scene_of_formula({{"map", "z = z ^ 8 + c"}})).fields.size() == 1);
   CHECK(load_scene_text(scene_of_formula({{"map", {"t = 8", "z = z ^ 8 + c"}}})).fields.size() == 1);
