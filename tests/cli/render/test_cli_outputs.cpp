@@ -25,13 +25,16 @@ struct ReadingFolder : CliFolder {
       "buffers": [{"uri": "shape.bin", "byteLength": 36}],
       "bufferViews": [{"buffer": 0, "byteLength": 36}],
       "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]})");
-    scene = write("reading.json", R"({"image": {"width": 16, "height": 12}, "lights": [{"type": "ambient"}],
+    scene =
+        write(
+            "reading.json",
+            R"({"image": {"width": 16, "height": 12, "background": [0, 0, 0]}, "lights": [{"type": "ambient"}],
       "environment": {"type": "image", "file": "sky.hdr"},
       "textures": {"t": {"type": "image", "file": "texture.png"}},
       "materials": {"m": {"color": "t"}},
       "objects": [{"type": "sphere", "material": "m"}, {"type": "model", "file": "shape.obj"},
                   {"type": "model", "file": "shape.gltf"}]})")
-                .string();
+            .string();
   }
 };
 
@@ -82,7 +85,9 @@ TEST_CASE("an animation's last frame takes no texture's place, which is told bef
   fs::rename(folder / "texture.png", folder / "t_0003.png");
   write_file(folder.scene, [&] {
     std::string text = read_file(folder.scene);
-    return text.replace(text.find("texture.png"), 11, "t_0003.png");
+    text.replace(text.find("texture.png"), 11, "t_0003.png");
+    return text.insert(1, R"("animate": [{"type": "linear", "value": "/image/background/0",
+      "keys": [{"frame": 1, "value": 0}, {"frame": 3, "value": 1}]}], )");
   }());
   check_refused(folder, {"render", folder.scene, "--frames", "1..3", "-o", folder.file("t.png")},
                 "t_0003.png");
@@ -103,8 +108,9 @@ TEST_CASE("no output of bake, halo, gallery, bench or compare takes the place of
       folder,
       {"compare", folder.file("sky.hdr"), folder.file("sky.hdr"), "--diff", folder.file("difference.hdr")},
       "sky.hdr");
-  folder.write("halo.json",
-               R"({"environment": {"type": "halo"}, "objects": [{"type": "model", "file": "shape.obj"}]})");
+  folder.write(
+      "halo.json",
+      R"({"environment": {"type": "halo", "crystals": [{"shape": "plate"}]}, "objects": [{"type": "model", "file": "shape.obj"}]})");
   check_refused(folder, {"halo", folder.file("halo.json"), "-o", folder.file("mapped.png")}, "mapped.png");
 }
 
