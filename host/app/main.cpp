@@ -16,6 +16,7 @@
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/interrupt.h"
+#include "app/process/standard_streams.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "device/driver_folder.h"
@@ -86,6 +87,8 @@ void bound_the_end(int status) {
 }  // namespace sundog
 
 int main(int argc, char** argv) {
+  sundog::open_standard_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // what a limit on files refuses to write is an error like a full disk's
   sundog::keep_freed_memory();
   const int status = sundog::exit_status_of([&] { return sundog::run_command_line(argc, argv); });
   if (sundog::driver_threads()->count() > 0) sundog::end_beside_drivers(status);

@@ -4,6 +4,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
+
 #include "base/error.h"
 
 namespace sundog {
@@ -14,7 +17,10 @@ namespace {
 /// Why a folder is not the user's own; empty where it is, and where there is none.
 std::string refusal(const fs::path& folder) {
   struct stat found{};
-  if (::stat(folder.c_str(), &found) != 0) return "";
+  if (::stat(folder.c_str(), &found) != 0)
+    return errno == EACCES ? fmt::format("{}: {}: name a folder of your own by XDG_CACHE_HOME",
+                                         folder.string(), std::strerror(errno))
+                           : "";
   if (!S_ISDIR(found.st_mode)) return fmt::format("{} is not a folder", folder.string());
   if (found.st_uid != ::geteuid())
     return fmt::format("{} belongs to another user: name a folder of your own by XDG_CACHE_HOME",

@@ -5,8 +5,8 @@
 
 namespace sundog {
 
-/// Why `cache` (HostEnvironment::cache) is not used: another user owns it or one of its folders, or others
-/// may write there. Empty when it is used, or when there is none to use.
+/// Why `cache` (HostEnvironment::cache) is not used: another user owns it or one of its folders, others may
+/// write there, or it cannot be looked into. Empty when it is used, or when there is none to use.
 std::string cache_refusal(const std::filesystem::path& cache);
 
 /// The folder of that name in `cache`; empty when there is no cache folder, or it is refused.

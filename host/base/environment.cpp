@@ -1,9 +1,12 @@
 // See environment.h. The only source below `app` that asks for variables.
 #include "base/environment.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <sstream>
 #include <thread>
 
 #include "base/clock.h"
@@ -30,6 +33,8 @@ std::filesystem::path cache_directory() {
   return {};
 }
 
+constexpr const char* usual_folders = "/usr/local/bin:/usr/bin:/bin";
+
 std::map<std::string, std::string> driver_variables() {
   std::map<std::string, std::string> result = {
       // PoCL compiles a kernel for each local size and again for grids below 65536, and once more to give its
@@ -40,12 +45,14 @@ std::map<std::string, std::string> driver_variables() {
       // its compile time; pictures are the same to the bit, by the wide tracer as fast, by the compact one
       // slower.
       {"CL_CONFIG_USE_VECTORIZER", "False"},
-      {"PATH", "/usr/local/bin:/usr/bin:/bin"},  // PoCL ends a process in which it finds no linker
+      {"PATH", usual_folders},
   };
   for (const char* name :
        {"POCL_WORK_GROUP_SPECIALIZATION", "CL_CONFIG_USE_VECTORIZER", "PATH", "POCL_EXTRA_BUILD_FLAGS",
         "POCL_WORK_GROUP_METHOD", "POCL_CACHE_DIR", "HWLOC_SYNTHETIC", "HWLOC_XMLFILE", "HWLOC_FSROOT"})
     if (const char* value = std::getenv(name)) result[name] = value;
+  // PoCL ends a process in which it finds no linker.
+  if (std::string& path = result["PATH"]; !has_program(path, "ld")) path += std::string(":") + usual_folders;
   return result;
 }
 
@@ -54,6 +61,13 @@ std::map<std::string, std::string> driver_variables() {
 std::string HostEnvironment::driver(const std::string& name) const {
   const auto found = drivers.find(name);
   return found == drivers.end() ? std::string() : found->second;
+}
+
+bool has_program(const std::string& path, const std::string& name) {
+  std::istringstream folders(path);
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (::access((folder + "/" + name).c_str(), X_OK) == 0) return true;
+  return false;
 }
 
 const HostEnvironment& value_of(const EnvironmentPtr& environment) {

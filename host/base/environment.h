@@ -62,6 +62,9 @@ struct HostEnvironment {
   std::string driver(const std::string& name) const;
 };
 
+/// Whether one of the folders of `path`, which colons part, has the program.
+bool has_program(const std::string& path, const std::string& name);
+
 /// A HostEnvironment as it is handed down; nobody changes it. Null stands for one without anything.
 using EnvironmentPtr = std::shared_ptr<const HostEnvironment>;
 

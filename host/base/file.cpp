@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -23,9 +24,27 @@
 namespace sundog {
 namespace fs = std::filesystem;
 
+bool is_pipe_or_device(const fs::path& path) {
+  const std::string name = path.string();
+  for (const char* own : {"/dev/stdout", "/dev/stderr", "/dev/fd/", "/proc/self/fd/"})
+    if (name.starts_with(own)) return true;
+  struct stat found = {};
+  return ::stat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode) && !S_ISDIR(found.st_mode);
+}
+
 std::string read_file(const fs::path& path) { return read_regular_file(path); }
 
 namespace {
+
+/// The name's beginning where the whole leaves no room for what a temporary adds to it.
+std::string shortened(std::string name) {
+  constexpr std::size_t most = 200;  // of 255
+  if (name.size() <= most) return name;
+  std::size_t size = most;
+  while (size > 0 && (static_cast<unsigned char>(name[size]) & 0xC0u) == 0x80u) --size;  // no half letter
+  name.resize(size);
+  return name;
+}
 
 /// Temporaries are PATH.HOST.PID.N.tmp and locked while they are written: one whose lock is free has lost its
 /// writer. The host's name is in it because a lock may not be seen from another machine.
@@ -35,7 +54,40 @@ std::string temporary_prefix(const fs::path& path) {
     ::gethostname(name, sizeof name - 1);
     return fmt::format("{:08x}", std::hash<std::string>()(name) & 0xFFFFFFFFu);
   }();
-  return fmt::format("{}.{}.", path.filename().string(), host);
+  return fmt::format("{}.{}.", shortened(path.filename().string()), host);
+}
+
+/// Where symbolic links lead in the end, whether something is there or not.
+fs::path behind_links(fs::path path) {
+  constexpr int most_links = 40;  // as the kernel follows
+  std::error_code no_link;
+  for (int i = 0; i < most_links; ++i) {
+    const fs::path next = fs::read_symlink(path, no_link);
+    if (no_link) break;
+    path = path.parent_path() / next;
+  }
+  return path;
+}
+
+/// Sets errno where it fails.
+bool write_all(int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(file, bytes.data(), bytes.size());
+    if (count < 0 && errno != EINTR) return false;
+    if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+/// write_all() to a pipe or a device; waits for a pipe's reader.
+bool write_into(const fs::path& path, std::string_view bytes) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY);
+  if (file < 0) return false;
+  const bool written = write_all(file, bytes);
+  const int code = errno;
+  ::close(file);
+  errno = code;
+  return written;
 }
 
 /// An open, locked file beside its final place; removed at the end unless it was moved there.
@@ -60,11 +112,7 @@ class Temporary {
   /// These set errno where they fail.
   bool is_open() const { return file_ >= 0; }
   bool write(std::string_view bytes) const {
-    while (!bytes.empty()) {
-      const ssize_t count = ::write(file_, bytes.data(), bytes.size());
-      if (count < 0 && errno != EINTR) return false;
-      if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
-    }
+    if (!write_all(file_, bytes)) return false;
     const int twin = ::dup(file_);  // closing reports what the disk refuses late; the lock stays
     return twin < 0 || ::close(twin) == 0;
   }
@@ -94,16 +142,22 @@ class Temporary {
 
 void write_file(const fs::path& path, std::string_view bytes, const std::shared_ptr<Faults>& faults) {
   const auto fail = [&](int code) {
-    throw IoError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(code ? code : EIO)));
+    throw IoError(fmt::format("{}: cannot be written: {}", path.string(), write_error(code ? code : EIO)));
   };
   if (fault(faults, "write", path.filename().string())) fail(ENOSPC);
-  Temporary temporary(path);
+  if (is_pipe_or_device(path)) {
+    if (!write_into(path, bytes)) fail(errno);
+    return;
+  }
+  const fs::path place = behind_links(path);
+  Temporary temporary(place);
   if (!temporary.is_open()) fail(errno);
   while (fault(faults, "stall", path.filename().string())) std::this_thread::sleep_for(std::chrono::hours(1));
-  if (!temporary.write(bytes) || !temporary.move_to(path)) fail(errno);
+  if (!temporary.write(bytes) || !temporary.move_to(place)) fail(errno);
 }
 
-void remove_left_over(const fs::path& path) {
+void remove_left_over(const fs::path& named) {
+  const fs::path path = behind_links(named);
   const std::string prefix = temporary_prefix(path);
   std::error_code failed;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -124,12 +178,49 @@ void check_writable(const fs::path& path) {
   const auto fail = [&](std::string_view reason) {
     throw IoError(fmt::format("{}: cannot be written: {}", path.string(), reason));
   };
+  struct stat found = {};
+  if (::stat(path.c_str(), &found) != 0 && (errno == ENAMETOOLONG || errno == ELOOP))
+    fail(std::strerror(errno));
   if (fs::is_directory(path, status)) fail("it is a directory");
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (is_pipe_or_device(path)) {
+    if (::access(path.c_str(), W_OK) != 0) fail(std::strerror(errno));
+    return;
+  }
+  const fs::path place = behind_links(path);
+  const fs::path folder = place.has_parent_path() ? place.parent_path() : fs::path(".");
   if (!fs::exists(folder, status)) fail(fmt::format("there is no folder {}", folder.string()));
   if (!fs::is_directory(folder, status)) fail(fmt::format("{} is not a folder", folder.string()));
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
     fail(fmt::format("folder {}: {}", folder.string(), std::strerror(errno)));
+  if (::stat(folder.c_str(), &found) == 0 && found.st_nlink == 0)
+    fail(fmt::format("the folder {} has been deleted: go to another", folder.string()));
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code failed;
+  return fs::exists(path, failed);
+}
+
+fs::path working_folder() {
+  std::error_code failed;
+  fs::path folder = fs::current_path(failed);
+  if (failed)
+    throw IoError(fmt::format("the folder that sundog runs in: {}: go to another", failed.message()));
+  return folder;
+}
+
+fs::path temporary_folder() {
+  std::error_code failed;
+  const fs::path folder = fs::temp_directory_path(failed);
+  return failed ? fs::path("/tmp") : folder;
+}
+
+std::string write_error(int code) {
+  rlimit limit = {};
+  if (code != EFBIG || ::getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return std::strerror(code);
+  return fmt::format("{}: the limit on files (`ulimit -f`) is {} KiB: raise it", std::strerror(code),
+                     limit.rlim_cur >> 10);
 }
 
 }  // namespace sundog

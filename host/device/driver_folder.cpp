@@ -5,13 +5,17 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/resource.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "base/cache_folder.h"
 #include "base/environment.h"
@@ -24,11 +28,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A descriptor that holds the folder's lock; negative when another has it, or there is none to hold.
+/// A descriptor that holds the folder's lock; negative, with the reason in errno, when another has it
+/// (EWOULDBLOCK), or there is none to hold.
 int lock_folder(const fs::path& folder, int more_flags) {
   const int file = ::open((folder / "lock").c_str(), O_RDWR | O_CLOEXEC | more_flags, 0600);
-  if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
-  if (file >= 0) ::close(file);
+  if (file < 0 || ::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+  const int reason = errno;
+  ::close(file);
+  errno = reason;
   return -1;
 }
 
@@ -67,6 +74,25 @@ std::optional<std::uintmax_t> room_in(const fs::path& folder, const HostEnvironm
   return space.available;
 }
 
+/// PoCL loads what it has compiled as libraries.
+bool forbids_execution(const fs::path& folder) {
+  struct statvfs found = {};
+  return ::statvfs(folder.c_str(), &found) == 0 && (found.f_flag & ST_NOEXEC) != 0;
+}
+
+/// Bytes that a file may have; none: as many as there is room for.
+std::optional<std::uintmax_t> file_limit() {
+  rlimit limit = {};
+  if (::getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
+  return limit.rlim_cur;
+}
+
+/// PoCL's compiler calls `ld`, and ends the process where there is none.
+bool finds_linker(const HostEnvironment& environment) {
+  const std::string path = environment.driver("PATH");
+  return path.empty() || has_program(path, "ld");
+}
+
 void try_to_make(const fs::path& folder) {
   try {
     make_cache_folder(folder);
@@ -75,30 +101,33 @@ void try_to_make(const fs::path& folder) {
 }
 
 /// A new folder below `root`, locked; empty: none can be made. Another process that removes folders left over
-/// may take one before it is locked: then another is made.
+/// may take one before it is locked: then another is made. Where the file system has no locks nobody can take
+/// one: it does as it is.
 std::string make_locked_below(const fs::path& root, std::string_view beginning) {
   for (int attempt = 0; attempt < 10; ++attempt) {
     std::string folder = (root / beginning).string() + "XXXXXX";
     if (!::mkdtemp(folder.data())) break;
     std::error_code error;
     const int lock = lock_folder(folder, O_CREAT);
-    if (lock >= 0 && fs::exists(fs::path(folder) / "lock", error)) return folder;
+    const bool taken = lock < 0 && errno == EWOULDBLOCK;
+    if (!taken && fs::exists(fs::path(folder) / "lock", error)) return folder;
     if (lock >= 0) ::close(lock);
+    if (!taken) fs::remove_all(folder, error);
   }
   return "";
 }
 
-/// A new locked folder in the cache, or where that cannot be written or is full, among the temporary files;
-/// empty: neither can.
+/// A new locked folder in the cache, or where that cannot be written, is full or mounted noexec, among the
+/// temporary files; empty: neither can.
 std::string make_folder(const HostEnvironment& environment) {
   std::error_code error;
   const fs::path root = cache_folder(environment.cache, "pocl");
   if (!root.empty()) try_to_make(root);
   if (!root.empty() && fs::is_directory(root, error)) remove_left_over(root, "");
-  if (!root.empty() && room_in(root, environment).value_or(0) >= ample_room) {
+  if (!root.empty() && room_in(root, environment).value_or(0) >= ample_room && !forbids_execution(root)) {
     if (std::string folder = make_locked_below(root, ""); !folder.empty()) return folder;
   }
-  const fs::path temporary = fs::temp_directory_path(error);
+  const fs::path temporary = temporary_folder();
   remove_left_over(temporary, temporary_name);
   return make_locked_below(temporary, temporary_name);
 }
@@ -132,12 +161,21 @@ std::string DriverFolder::problem(const HostEnvironment& environment) const {
   if (folder.empty())
     return "no folder can be made for what PoCL writes: name one that can be written by XDG_CACHE_HOME or "
            "TMPDIR";
-  const auto room = room_in(folder, environment);
-  if (!room || *room >= least_room) return "";
-  return fmt::format(
-      "{}, where PoCL writes, has room for {} KiB, and {} are needed: make room, or name another "
-      "folder by {}",
-      folder, *room >> 10, least_room >> 10, users.empty() ? "XDG_CACHE_HOME or TMPDIR" : "POCL_CACHE_DIR");
+  const std::string where = folder + ", where PoCL writes, ",
+                    other = std::string("name another folder by ") +
+                            (users.empty() ? "XDG_CACHE_HOME or TMPDIR" : "POCL_CACHE_DIR");
+  if (forbids_execution(folder))
+    return where + "is mounted noexec, and PoCL runs what it compiles from there: " + other;
+  if (const auto room = room_in(folder, environment); room && *room < least_room)
+    return where + fmt::format("has room for {} KiB, and {} are needed: make room, or {}", *room >> 10,
+                               least_room >> 10, other);
+  if (const auto most = file_limit(); most && *most < least_room)
+    return fmt::format(
+        "a file may have {} KiB (`ulimit -f`), and PoCL writes files of up to {}: raise the limit",
+        *most >> 10, least_room >> 10);
+  if (!finds_linker(environment))
+    return "PoCL finds no linker `ld` in the folders of PATH: install it (Debian: binutils)";
+  return "";
 }
 
 const DriverFolder& driver_folder(const HostEnvironment& environment) {

@@ -18,6 +18,7 @@
 #include "device/driver_folder.h"
 #include "device/estimate.h"
 #include "device/machine_topology.h"
+#include "device/thread_limits.h"
 
 namespace sundog {
 namespace {
@@ -154,6 +155,8 @@ DeviceInfo describe(DeviceInfo info, cl_device_id device) {
   return info;
 }
 
+constexpr const char* rusticl_mend = "it wants the name of one, RUSTICL_ENABLE=llvmpipe for the processor";
+
 void list_platform(DeviceInfo platform, cl_platform_id id, std::vector<DeviceInfo>& rows) {
   const auto problem = [&](const std::string& what) {
     platform.problem = what;
@@ -163,7 +166,9 @@ void list_platform(DeviceInfo platform, cl_platform_id id, std::vector<DeviceInf
   cl_int status = clGetDeviceIDs(id, CL_DEVICE_TYPE_ALL, 0, nullptr, &count);
   if (status == CL_DEVICE_NOT_FOUND || (status == CL_SUCCESS && count == 0)) {
     const HostEnvironment& environment = value_of(platform.environment);
-    const std::string why = is_pocl(platform) ? driver_folder(environment).problem(environment) : "";
+    const std::string why = is_pocl(platform) ? driver_folder(environment).problem(environment)
+                            : platform.platform_name == "rusticl" ? rusticl_mend
+                                                                  : "";
     return problem("the platform has no device" + (why.empty() ? "" : ": " + why));
   }
   if (status != CL_SUCCESS) return problem("clGetDeviceIDs: " + cl_status_name(status));
@@ -193,11 +198,13 @@ void enlarge_thread_stacks() {
 /// Drivers' settings that must stand before the first OpenCL call; what the user set stays. They know no
 /// other way than the process's own variables.
 bool prepare_drivers(const HostEnvironment& environment) {
-  for (const auto& [name, value] : environment.drivers) setenv(name.c_str(), value.c_str(), 0);
+  for (const auto& [name, value] : environment.drivers)
+    setenv(name.c_str(), value.c_str(), name == "PATH" ? 1 : 0);  // folders may have come to it
   if (!environment.build_log.empty()) bypass_driver_caches();
   (void)driver_folder(environment);
   describe_machine_to_drivers(environment);
   enlarge_thread_stacks();
+  check_thread_limits(std::thread::hardware_concurrency(), thread_stack);
   return true;
 }
 

@@ -274,6 +274,7 @@ bool begin_program(const DeviceInfo& info, const std::string& source, const Buil
   std::string key = program_key(info, options, source);
   if (prepared.begun && prepared.begun->key == key) return true;
   prepared.begun.reset();
+  if (is_pocl(info) && !driver_folder(environment).problem(environment).empty()) return false;
   // A part of a device has no processors for it to spare.
   if (wants_log(environment, wish) || info.sub_units > 0 || is_program_cached(info, source, wish, prepared))
     return false;

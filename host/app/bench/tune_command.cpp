@@ -73,7 +73,8 @@ int forget(const TuneOptions& options) {
     for (const DeviceInfo& device : bench_devices(options.bench)) files.push_back(tuning_path(device));
   }
   std::size_t removed = 0;
-  for (const fs::path& file : files) removed += fs::remove(file);
+  std::error_code kept;
+  for (const fs::path& file : files) removed += fs::remove(file, kept);
   fmt::print("{} file{} removed from {}\n", removed, removed == 1 ? "" : "s",
              tuning_folder(*program_environment()).string());
   return exit_done;

@@ -17,6 +17,7 @@
 #include "app/process/exit_status.h"
 #include "app/process/progress.h"
 #include "app/process/save_image.h"
+#include "app/process/spawn_self.h"
 #include "app/process/warnings.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -41,7 +42,7 @@ struct GalleryOptions {
 /// The scenes that come with sundog: beside an installed program, or in the source tree of a build.
 std::vector<std::string> shipped_scenes() {
   std::error_code failed;
-  const fs::path here = fs::read_symlink("/proc/self/exe", failed).parent_path();
+  const fs::path here = program_file().parent_path();
   for (const char* place : {"../share/sundog/scenes", "../../scenes"}) {
     const fs::path folder = here / place;
     if (!fs::exists(folder / "scene.schema.json", failed)) continue;

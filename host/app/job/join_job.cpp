@@ -10,7 +10,9 @@
 
 #include "app/job/job.h"
 #include "app/process/environment.h"
+#include "app/process/spawn_self.h"
 #include "base/error.h"
+#include "base/file.h"
 
 namespace sundog {
 namespace {
@@ -48,9 +50,9 @@ void undo_default_binding() {
 
 /// Beside the program, or where it is installed.
 fs::path find_library() {
-  const fs::path folder = fs::read_symlink("/proc/self/exe").parent_path();
+  const fs::path folder = program_file().parent_path();
   for (const char* where : {"", SUNDOG_LIBRARY_FOLDER})
-    if (const fs::path file = folder / where / library; fs::exists(file)) return file;
+    if (const fs::path file = folder / where / library; is_there(file)) return file;
   return {};
 }
 

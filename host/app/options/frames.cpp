@@ -93,14 +93,15 @@ bool is_picture(const std::string& file, int width, int height) {
 }  // namespace
 
 FrameLog::FrameLog(std::string path) : path_(std::move(path)) {
-  if (path_.empty() || !fs::exists(path_)) return;
+  if (path_.empty() || !is_there(path_)) return;
   if (auto hashes = read_list(read_file(path_))) {
     hashes_ = std::move(*hashes);
     return;
   }
   damaged_ = true;
   const std::string aside = path_ + ".damaged";
-  fs::rename(path_, aside);
+  std::error_code stays;  // then it is written over
+  fs::rename(path_, aside, stays);
   warnings_.push_back(fmt::format(
       "{}: is no list of an animation's frames, or is damaged: it is now {}; frames whose pictures "
       "are there, whole and newer than the scene, count as done",
@@ -109,7 +110,7 @@ FrameLog::FrameLog(std::string path) : path_(std::move(path)) {
 
 bool FrameLog::done(const FrameFiles& files, std::uint64_t hash) {
   if (const auto found = hashes_.find(files.frame); found != hashes_.end())
-    return found->second == fmt::format("{:016x}", hash) && fs::exists(files.image);
+    return found->second == fmt::format("{:016x}", hash) && is_there(files.image);
   if (!damaged_ || !has_picture(files, hash)) return false;
   add(files.frame, hash);
   return true;
@@ -132,7 +133,8 @@ void FrameLog::add(int frame, std::uint64_t hash) {
 }
 
 void FrameLog::remove() {
-  if (!path_.empty()) fs::remove(path_);
+  std::error_code stays;
+  if (!path_.empty()) fs::remove(path_, stays);
 }
 
 }  // namespace sundog

@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "app/process/warnings.h"
@@ -20,6 +25,22 @@ void write_message(std::string message) {
   std::ranges::replace(message, '\n', ' ');
   std::ranges::replace_if(message, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
   tell(fmt::format("sundog: {}\n", with_option_names(std::move(message))));
+}
+
+/// The end of a message about memory, where the process may not have all of the machine's.
+std::string memory_limit() {
+  rlimit space = {};
+  if (::getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur == RLIM_INFINITY) return "";
+  return fmt::format(": the limit on address space (`ulimit -v`, or a batch system's) is {} MiB: raise it",
+                     space.rlim_cur >> 20);
+}
+
+/// The end of a message by which a thread could not be started.
+std::string thread_limit(std::string_view message) {
+  if (message.find(std::strerror(EAGAIN)) == std::string_view::npos) return "";
+  return ": no thread can be started: raise the limits on them (`ulimit -u`, or the container's) and on "
+         "address "
+         "space (`ulimit -v`)";
 }
 
 }  // namespace
@@ -42,9 +63,9 @@ int exit_status_of(const std::function<int()>& command, bool speaks) {
     if (speaks && !error.log.empty()) tell(error.log + (error.log.ends_with('\n') ? "" : "\n"));
     return exit_build;
   } catch (const std::bad_alloc&) {
-    return fail(exit_failure, "out of memory");
+    return fail(exit_failure, ("out of memory" + memory_limit()).c_str());
   } catch (const std::exception& error) {
-    return fail(exit_failure, error.what());
+    return fail(exit_failure, (error.what() + thread_limit(error.what())).c_str());
   }
 }
 

@@ -1,11 +1,13 @@
 #include "app/process/save_image.h"
 
 #include <fmt/format.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 #include "app/process/environment.h"
 #include "app/process/standard_streams.h"
 #include "base/error.h"
+#include "base/file.h"
 
 namespace sundog {
 namespace {
@@ -42,15 +44,15 @@ std::string rescue(const Picture& picture, const fs::path& path, const char* wha
   if (keep_checkpoint(picture))
     return fmt::format("; all of it is in {}: make room and give the same command again",
                        picture.checkpoint.string());
-  std::error_code none;
-  const fs::path elsewhere =
-      fs::temp_directory_path(none) /
-      fmt::format("sundog-{}-{}", ::getpid(), named(picture, path).filename().string());
+  std::string folder = (temporary_folder() / "sundog-XXXXXX").string();  // nobody else's link lies in its way
+  const fs::path elsewhere = (::mkdtemp(folder.data()) ? fs::path(folder) : temporary_folder()) /
+                             (what + named(picture, path).extension().string());
   try {
     write_to(elsewhere);
     return fmt::format("; the {} is in {}", what, elsewhere.string());
   } catch (const IoError&) {
-    return "; there is no room for it elsewhere either, and it is lost";
+    ::rmdir(folder.c_str());
+    return fmt::format("; {} cannot be written either, and it is lost", temporary_folder().string());
   }
 }
 

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/auxv.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -57,7 +58,18 @@ class SpawnedSelf : public StartedProgram {
   std::optional<ProgramEnd> end_;
 };
 
+constexpr const char* own_link = "/proc/self/exe";
+
+/// What the kernel was told to start. Relative where the user's shell said so: nothing changes the folder.
+const char* started_file() { return reinterpret_cast<const char*>(::getauxval(AT_EXECFN)); }
+
 }  // namespace
+
+std::filesystem::path program_file() {
+  std::error_code failed;
+  const std::filesystem::path file = std::filesystem::read_symlink(own_link, failed);
+  return failed ? std::filesystem::canonical(started_file(), failed) : file;
+}
 
 pid_t spawn_self(std::vector<std::string> arguments, std::vector<HandedDown> descriptors,
                  const std::vector<std::string>& variables) {
@@ -79,8 +91,9 @@ pid_t spawn_self(std::vector<std::string> arguments, std::vector<HandedDown> des
   ::posix_spawnattr_setsigmask(&attributes, &none);
   ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
   pid_t process = 0;
-  const int failed = ::posix_spawn(&process, "/proc/self/exe", &actions, &attributes,
-                                   pointers(arguments).data(), pointers(environment).data());
+  const char* file = ::access(own_link, X_OK) == 0 ? own_link : started_file();
+  const int failed = ::posix_spawn(&process, file, &actions, &attributes, pointers(arguments).data(),
+                                   pointers(environment).data());
   ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) throw IoError(std::string("sundog cannot start itself: ") + std::strerror(failed));

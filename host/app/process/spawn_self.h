@@ -2,6 +2,7 @@
 #pragma once
 #include <sys/types.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,6 +10,9 @@
 #include "base/environment.h"
 
 namespace sundog {
+
+/// This program's file, by its path; also where /proc is not mounted.
+std::filesystem::path program_file();
 
 /// Starts this very program with `arguments` (without its own name); `variables` ("NAME=VALUE") are added to
 /// its environment, `descriptors` handed down; its stdin and stdout, unless they are among these, are

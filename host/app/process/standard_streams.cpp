@@ -24,6 +24,7 @@ constexpr std::size_t most_input = std::size_t{1} << 30;
 std::mutex mutex;
 std::optional<std::string> input;
 int output = STDOUT_FILENO;
+bool output_is_closed = false;
 
 std::string read_standard_input() {
   if (::isatty(STDIN_FILENO))
@@ -41,7 +42,27 @@ std::string read_standard_input() {
   }
 }
 
+/// A named pipe's reader that leaves early is an error, and no signal, while this is here.
+class BrokenPipesAreErrors {
+ public:
+  BrokenPipesAreErrors() = default;
+  ~BrokenPipesAreErrors() { std::signal(SIGPIPE, before_); }
+  BrokenPipesAreErrors(const BrokenPipesAreErrors&) = delete;
+  BrokenPipesAreErrors& operator=(const BrokenPipesAreErrors&) = delete;
+
+ private:
+  void (*before_)(int) = std::signal(SIGPIPE, SIG_IGN);
+};
+
 }  // namespace
+
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) >= 0) continue;
+    output_is_closed |= stream == STDOUT_FILENO;
+    ::open("/dev/null", O_RDWR);  // takes the lowest number that is free
+  }
+}
 
 bool is_standard_stream(const std::filesystem::path& path) { return path == "-"; }
 
@@ -57,6 +78,7 @@ void set_standard_input(std::string text) {
 }
 
 void claim_standard_output() {
+  if (output_is_closed) throw UsageError("-: the standard output is closed: send it to a file or a pipe");
   std::fflush(stdout);
   const int kept = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
   if (kept < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
@@ -67,12 +89,14 @@ void claim_standard_output() {
 
 void write_output(const std::filesystem::path& path, std::string_view bytes,
                   const std::shared_ptr<Faults>& faults) {
-  if (!is_standard_stream(path)) return write_file(path, bytes, faults);
+  if (!is_standard_stream(path)) {
+    const BrokenPipesAreErrors scope;
+    return write_file(path, bytes, faults);
+  }
   while (!bytes.empty()) {
     const ssize_t size = ::write(output, bytes.data(), bytes.size());
     if (size < 0 && errno == EINTR) continue;
-    if (size < 0)
-      throw IoError(fmt::format("the standard output cannot be written: {}", std::strerror(errno)));
+    if (size < 0) throw IoError(fmt::format("the standard output cannot be written: {}", write_error(errno)));
     bytes.remove_prefix(static_cast<std::size_t>(size));
   }
 }

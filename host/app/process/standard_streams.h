@@ -9,6 +9,10 @@ namespace sundog {
 
 class Faults;
 
+/// A standard stream that is closed becomes /dev/null, before a file of a driver takes its number and with it
+/// what is printed.
+void open_standard_streams();
+
 bool is_standard_stream(const std::filesystem::path& path);
 
 /// The text of the standard input: it is read once, and kept. Throws UsageError where it is a terminal,

@@ -26,7 +26,8 @@ constexpr int cpu_device = 1, three_floats = 3;  // OIDN_DEVICE_TYPE_CPU, OIDN_F
 std::vector<std::string> candidates() {
   const char* named = std::getenv("SUNDOG_OIDN");
   if (!named || !*named) return {std::begin(file_names), std::end(file_names)};
-  if (!fs::is_directory(named)) return {named};
+  std::error_code none;
+  if (!fs::is_directory(named, none)) return {named};
   std::vector<std::string> files;
   for (const char* file : file_names) files.push_back((fs::path(named) / file).string());
   return files;

@@ -53,7 +53,8 @@ auto timed(double& seconds, const Step& step) {
 
 /// What is written again and again needs a file's name.
 void check_write_every(const RenderCommand& command) {
-  if (command.write_every > 0 && (command.part || is_standard_stream(command.out)))
+  if (command.write_every > 0 &&
+      (command.part || is_standard_stream(command.out) || is_pipe_or_device(command.out)))
     throw UsageError(fmt::format("-o {}: --write-every wants an image file", command.out));
 }
 

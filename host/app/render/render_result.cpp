@@ -150,7 +150,8 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
     save_part(picture, {*command.part, picture.key, command.scene, settings_of(command, flat), command.aovs},
               command.out);
   if (!result.checkpoint_error.empty()) throw IoError(result.checkpoint_error);
-  if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint);
+  std::error_code stays;  // the picture is there
+  if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint, stays);
 }
 
 void write_so_far(const RenderCommand& command, const ToneMap& tone_map, const Film& film) {

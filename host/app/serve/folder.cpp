@@ -76,7 +76,7 @@ std::string safe_file_name(const std::string& name) {
 namespace {
 
 fs::path private_folder() {
-  std::string name = (fs::temp_directory_path() / "sundog-XXXXXX").string();
+  std::string name = (temporary_folder() / "sundog-XXXXXX").string();
   if (!::mkdtemp(name.data()))
     throw IoError(fmt::format("{}: a folder for uploads cannot be made: {}", name, std::strerror(errno)));
   return name;

@@ -16,6 +16,7 @@
 #include "app/process/warnings.h"
 #include "app/serve/studio.h"
 #include "base/error.h"
+#include "base/file.h"
 
 namespace sundog {
 namespace {
@@ -50,9 +51,9 @@ constexpr const char* first_scene = R"({
 SceneDocument first_document(const ServeOptions& options) {
   SceneDocument document;
   if (options.scene.empty())
-    document.replace(nlohmann::json::parse(first_scene), fs::current_path() / "untitled.json");
+    document.replace(nlohmann::json::parse(first_scene), working_folder() / "untitled.json");
   else
-    document.open(fs::absolute(options.scene));
+    document.open(working_folder() / options.scene);
   return document;
 }
 
@@ -74,7 +75,7 @@ int serve(const ServeOptions& options) {
   const StopOnSignal signal;
   SceneDocument document = first_document(options);
   print_warnings(document.scene()->warnings);
-  StudioSetup setup{fs::current_path(), list_devices(), {}};
+  StudioSetup setup{working_folder(), list_devices(), {}};
   setup.picked =
       pick_devices(setup.devices, options.devices.empty() ? devices_of_environment() : options.devices);
   WebServer server(options.port.empty() ? 0 : parse_number("--port", options.port, 0, 65535), {});

@@ -92,7 +92,7 @@ json to_json(const TuningFile& file) {
 
 std::optional<TuningFile> load_tuning(const DeviceInfo& device) {
   const std::filesystem::path path = tuning_path(device);
-  if (path.empty() || !std::filesystem::exists(path)) return {};
+  if (path.empty() || !is_there(path)) return {};
   try {
     TuningFile file = read_tuning_file(path);
     if (file.kernels == kernels_hash(value_of(device.environment))) return file;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "render/film/checkpoint_file.h"
 #include "render/film/hash.h"
 #include "render/plan/frame_tiles.h"
@@ -59,7 +60,7 @@ FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devi
   passes.tiles = [options, shares = estimates(devices)](const Film& of_pass) {
     return plan_tiles(options, of_pass, shares);
   };
-  if (!options.resume.empty() && std::filesystem::exists(options.resume)) {
+  if (!options.resume.empty() && is_there(options.resume)) {
     read_growing_checkpoint(options.resume, passes.film, passes.pass, film, key);
     if (!may_be_of(passes.plan, passes.pass)) throw damaged_checkpoint(options.resume);
     return passes;
@@ -73,8 +74,7 @@ FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devi
 Film begin_film(const CompiledScene& scene, const RenderOptions& options, std::uint64_t key) {
   Film film =
       Film::with_aovs(static_cast<int>(scene.info.width), static_cast<int>(scene.info.height), options.aovs);
-  if (!options.resume.empty() && std::filesystem::exists(options.resume))
-    read_checkpoint(options.resume, film, key);
+  if (!options.resume.empty() && is_there(options.resume)) read_checkpoint(options.resume, film, key);
   return film;
 }
 

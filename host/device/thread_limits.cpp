@@ -1,0 +1,72 @@
+// What there is room for is tried: a container's limit on threads is nowhere to be read.
+#include "device/thread_limits.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+
+#include <cerrno>
+#include <cstring>
+#include <mutex>
+#include <vector>
+
+#include "base/error.h"
+
+namespace sundog {
+namespace {
+
+// Beside those of a driver, one a processor: a frame's own. A process that compiles beside it has as many.
+constexpr unsigned frame_threads = 4;
+// Program, libraries and compiler without stacks, beyond what is there already: with PoCL 3.1 320 MiB in all.
+constexpr std::size_t other_memory = std::size_t{256} << 20;
+
+void* wait_for_all(void* all) {
+  const std::lock_guard started(*static_cast<std::mutex*>(all));
+  return nullptr;
+}
+
+/// Whether so many more threads can be there at once.
+bool can_start(unsigned count) {
+  pthread_attr_t attributes;
+  if (::pthread_attr_init(&attributes) != 0) return false;
+  ::pthread_attr_setstacksize(&attributes, std::size_t{256} << 10);
+  std::vector<pthread_t> threads;
+  std::mutex all;
+  bool started = true;
+  {
+    const std::lock_guard lock(all);
+    while (started && threads.size() < count) {
+      pthread_t thread{};
+      started = ::pthread_create(&thread, &attributes, wait_for_all, &all) == 0;
+      if (started) threads.push_back(thread);
+    }
+  }
+  for (const pthread_t thread : threads) ::pthread_join(thread, nullptr);
+  ::pthread_attr_destroy(&attributes);
+  return started;
+}
+
+bool can_reserve(std::size_t bytes) {
+  void* memory = ::mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (memory == MAP_FAILED) return false;
+  ::munmap(memory, bytes);
+  return true;
+}
+
+}  // namespace
+
+void check_thread_limits(unsigned processors, std::size_t stack) {
+  rlimit space = {};
+  const std::size_t needed = (processors + frame_threads) * stack + other_memory;
+  if (::getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY && !can_reserve(needed))
+    throw IoError(fmt::format(
+        "the limit on address space (`ulimit -v`, or a batch system's) of {} MiB leaves no room for "
+        "the {} that {} processors take ({} a thread, for its stack): raise it",
+        space.rlim_cur >> 20, needed >> 20, processors, stack >> 20));
+  if (const unsigned threads = 2 * (processors + frame_threads); !can_start(threads))
+    throw IoError(fmt::format(
+        "{} threads cannot be started: raise the limit on them (`ulimit -u`, or the container's)", threads));
+}
+
+}  // namespace sundog
