@@ -50,10 +50,10 @@ std::vector<DeviceInfo> enumerate_devices(const std::shared_ptr<const HostEnviro
 
 /// The devices that `specs` mean, in the order first matched, without doubles. No specs: the usable device
 /// with the greatest estimate. Grammar: P:D | cpu | gpu | accelerator | all | part of "platform/device" (any
-/// case), each with /N, or !SPEC. A /N takes the next units of each device that has them. Throws DeviceError
-/// with the list of candidates when nothing matches or no match can give a /N, UsageError for a malformed
-/// SPEC. `warnings` takes what else was likely meant otherwise: a !SPEC that matches nothing, a device
-/// without the units.
+/// case) or a name that people use (pocl, nvidia, intel, amd), each with /N, or !SPEC, or !SPEC? for what may
+/// be missing. A /N takes the next units of each device that has them. Throws DeviceError with the list of
+/// candidates when nothing matches, no match can give a /N or a !SPEC takes nothing away, UsageError for a
+/// malformed SPEC. `warnings` takes what else was likely meant otherwise: a device without the units.
 std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all, const std::vector<std::string>& specs,
                                        std::vector<std::string>* warnings = nullptr);
 

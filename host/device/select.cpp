@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "device/choice.h"
 #include "device/devices.h"
+#include "device/driver_folder.h"
 
 namespace sundog {
 namespace {
@@ -28,10 +29,16 @@ std::optional<unsigned> whole_number(std::string_view text) {
   return value;
 }
 
+/// Of no device: it stands in the names of many.
+bool is_number(std::string_view text) {
+  return text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 struct Spec {
   std::string text;     // as given
   std::string pattern;  // lower case, without ! and /N
   bool exclude = false;
+  bool may_miss = false;   // an exclusion's: with a ? at its end
   unsigned sub_units = 0;  // 0: the whole device
 };
 
@@ -39,6 +46,8 @@ struct Spec {
 Spec parse_spec(const std::string& text) {
   Spec spec{text, lower(text), text.starts_with('!')};
   if (spec.exclude) spec.pattern.erase(0, 1);
+  spec.may_miss = spec.exclude && spec.pattern.ends_with('?');
+  if (spec.may_miss) spec.pattern.pop_back();
   const std::size_t slash = spec.pattern.rfind('/');
   if (slash != std::string::npos) {
     const std::string tail = spec.pattern.substr(slash + 1);
@@ -60,6 +69,14 @@ Spec parse_spec(const std::string& text) {
   return spec;
 }
 
+/// Names that people use, where no platform and no device has them.
+bool is_called(const std::string& name, const DeviceInfo& device) {
+  if (name == "pocl") return is_pocl(device);
+  const std::string vendor = lower(device.vendor);
+  if (name == "amd") return vendor.find("advanced micro devices") != std::string::npos;
+  return (name == "nvidia" || name == "intel") && vendor.find(name) != std::string::npos;
+}
+
 bool matches(const Spec& spec, const DeviceInfo& device) {
   const std::string& pattern = spec.pattern;
   if (pattern == "all" || pattern == device.type) return true;
@@ -70,7 +87,9 @@ bool matches(const Spec& spec, const DeviceInfo& device) {
     if (platform && index)
       return device.platform == static_cast<int>(*platform) && device.device == static_cast<int>(*index);
   }
-  return lower(device.platform_name + "/" + device.name).find(pattern) != std::string::npos;
+  if (is_number(pattern)) return false;
+  return is_called(pattern, device) ||
+         lower(device.platform_name + "/" + device.name).find(pattern) != std::string::npos;
 }
 
 std::string candidates(std::span<const DeviceInfo> all) {
@@ -125,8 +144,10 @@ std::vector<DeviceInfo> matching(std::span<const DeviceInfo> all, const Spec& sp
   const char* several =
       spec.text.find(',') == std::string::npos ? "" : "several are chosen by several specs; ";
   if (found.empty())
-    throw DeviceError(
-        fmt::format("the device spec {}: no such device; {}{}", spec.text, several, candidates(all)));
+    throw DeviceError(fmt::format(
+        "the device spec {}: {}; {}{}", spec.text,
+        is_number(spec.pattern) ? "a number alone means no device, an index P:D does" : "no such device",
+        several, candidates(all)));
   return found;
 }
 
@@ -155,6 +176,18 @@ void add(Selection& selection, const Spec& spec, const std::vector<DeviceInfo>& 
   for (const std::string& why : refused) selection.warnings.push_back(why + "; it is left out");
 }
 
+/// What takes nothing away would leave a render on the device that was not wanted.
+void check_exclusions(std::span<const DeviceInfo> all, const std::vector<Spec>& specs) {
+  for (const Spec& spec : specs)
+    if (spec.exclude && !spec.may_miss && std::ranges::none_of(all, [&](const DeviceInfo& device) {
+          return device.device >= 0 && matches(spec, device);
+        }))
+      throw DeviceError(fmt::format(
+          "the device spec {0}: takes nothing away, no device matches it (where it may be missing, "
+          "write '{0}?'); {1}",
+          spec.text, candidates(all)));
+}
+
 DeviceInfo fastest(std::span<const DeviceInfo> all) {
   const DeviceInfo* best = nullptr;
   for (const DeviceInfo& device : all)
@@ -178,6 +211,7 @@ std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all, const st
   if (specs.empty()) return {fastest(all)};
   std::vector<Spec> parsed;
   for (const std::string& spec : specs) parsed.push_back(parse_spec(spec));
+  check_exclusions(all, parsed);
   const bool only_exclusions = std::ranges::all_of(parsed, &Spec::exclude);
   if (only_exclusions) parsed.insert(parsed.begin(), parse_spec("all"));
   const auto excluded = [&](const DeviceInfo& device) {
@@ -193,12 +227,6 @@ std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all, const st
   }
   if (selection.devices.empty())
     throw DeviceError(fmt::format("no device is left after the exclusions; {}", candidates(all)));
-  for (const Spec& spec : parsed)
-    if (spec.exclude && std::ranges::none_of(all, [&](const DeviceInfo& device) {
-          return device.device >= 0 && matches(spec, device);
-        }))
-      selection.warnings.push_back(fmt::format(
-          "the device spec '{}' takes nothing away: no device matches it; {}", spec.text, candidates(all)));
   if (warnings) *warnings = selection.warnings;
   return selection.devices;
 }

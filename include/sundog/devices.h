@@ -38,9 +38,10 @@ struct Device {
 SUNDOG_API std::vector<Device> devices();
 
 /// The devices that `specs` mean, each once. No spec: the one estimated fastest. A spec is "P:D" (indices),
-/// "cpu", "gpu", "accelerator", "all" or a part of "platform/device" in any case, each with "/N" for a
-/// sub-device of N units, or "!SPEC" to leave out. Throws Error: device where nothing matches, usage for
-/// another text. `warnings`, when given, gets what was likely meant otherwise. Any thread.
+/// "cpu", "gpu", "accelerator", "all", a part of "platform/device" in any case, or "pocl", "nvidia", "intel",
+/// "amd", each with "/N" for a sub-device of N units, or "!SPEC" to leave out ("!SPEC?": if it is there).
+/// Throws Error: device where nothing matches or is left out, usage for another text. `warnings`, when given,
+/// gets what was likely meant otherwise. Any thread.
 SUNDOG_API std::vector<Device> choose_devices(const std::vector<std::string>& specs = {},
                                               std::vector<std::string>* warnings = nullptr);
 

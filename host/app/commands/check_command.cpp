@@ -3,11 +3,11 @@
 #include "app/commands/check_command.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +17,9 @@
 #include "app/options/pick_devices.h"
 #include "app/process/child_process.h"
 #include "app/process/environment.h"
+#include "app/process/warnings.h"
+#include "base/clock.h"
+#include "base/error.h"
 #include "base/file.h"
 #include "bench/rays/self_check.h"
 #include "bench/report/machine.h"
@@ -80,18 +83,48 @@ json listed_devices(const std::vector<std::string>& variables, double seconds, s
   return json::array();
 }
 
-/// What may be advised depends on whether something else works.
-void add_advice(json& rows, const auto& advice_on, const auto& is_sound) {
-  const bool others = std::ranges::any_of(rows, is_sound);
+/// What may be advised depends on whether something else works. `unasked`: there are more than these rows.
+void add_advice(json& rows, bool unasked, const auto& advice_on, const auto& is_sound) {
+  const Others others = std::ranges::any_of(rows, is_sound) ? Others::sound
+                        : unasked                           ? Others::unasked
+                                                            : Others::none;
   for (json& row : rows) {
     const json& problem = row.at("problem");
-    row["advice"] = problem.is_string() ? json(advice_on(problem, others)) : json(nullptr);
+    const std::string text = problem.is_string() ? advice_on(problem, others) : "";
+    row["advice"] = text.empty() ? json(nullptr) : json(text);
   }
+}
+
+/// Reports on stderr what is looked at, when it begins and how it ended: some drivers take minutes.
+json told(const std::string& what, const std::function<json()>& look, const auto& result_text) {
+  tell(fmt::format("checking {}\n", what));
+  const Stopwatch clock;
+  json result = look();
+  tell(fmt::format("  {}: {}, after {:.1f} s\n", what, result_text(result), clock.seconds()));
+  return result;
 }
 
 fs::path vendors_folder() {
   const char* own = std::getenv("OCL_ICD_VENDORS");
   return own && *own ? own : "/etc/OpenCL/vendors";
+}
+
+json check_driver(const fs::path& file, double seconds) {
+  std::string problem, library;
+  try {
+    library = read_file(file);
+  } catch (const IoError& error) {
+    problem = error.what();
+  }
+  library = library.substr(0, library.find('\n'));
+  json rows = json::array();
+  if (problem.empty()) rows = listed_devices({"OCL_ICD_VENDORS=" + file.string()}, seconds, problem);
+  const auto devices = std::ranges::count_if(rows, [](const json& row) { return row.contains("index"); });
+  if (problem.empty() && rows.empty()) problem = "cannot be loaded, or has no platform";
+  return {{"file", file.filename().string()},
+          {"library", library},
+          {"devices", devices},
+          {"problem", problem.empty() ? json(nullptr) : json(problem)}};
 }
 
 /// Each .icd file alone.
@@ -102,18 +135,11 @@ json check_drivers(const fs::path& folder, double seconds) {
   for (const auto& entry : fs::directory_iterator(folder, none))
     if (entry.path().extension() == ".icd") files.push_back(entry.path());
   std::ranges::sort(files);
-  for (const fs::path& file : files) {
-    std::string problem, library = read_file(file);
-    library = library.substr(0, library.find('\n'));
-    const json rows = listed_devices({"OCL_ICD_VENDORS=" + file.string()}, seconds, problem);
-    const auto devices = std::ranges::count_if(rows, [](const json& row) { return row.contains("index"); });
-    if (problem.empty() && rows.empty()) problem = "cannot be loaded, or has no platform";
-    drivers.push_back({{"file", file.filename().string()},
-                       {"library", library},
-                       {"devices", devices},
-                       {"problem", problem.empty() ? json(nullptr) : json(problem)}});
-  }
-  add_advice(drivers, driver_advice,
+  for (const fs::path& file : files)
+    drivers.push_back(told(
+        "the driver " + file.filename().string(), [&] { return check_driver(file, seconds); },
+        [](const json& driver) { return driver.at("problem").is_null() ? "listed" : "failed"; }));
+  add_advice(drivers, false, driver_advice,
              [](const json& driver) { return driver.at("devices") > 0 && driver.at("problem").is_null(); });
   return drivers;
 }
@@ -140,6 +166,7 @@ DeviceInfo as_device(const json& row) {
   if (!row.contains("index")) return device;
   device.device = row.at("device");
   device.name = row.at("name");
+  device.vendor = row.at("vendor");
   device.type = row.at("type");
   device.compute_units = row.at("compute_units");
   device.max_sub_devices = row.at("max_sub_devices");
@@ -167,23 +194,24 @@ std::string spec_of(const json& row) {
   return row.contains("sub_units") ? fmt::format("{}/{}", index, row.at("sub_units").get<unsigned>()) : index;
 }
 
-json check_devices(const json& rows, const CheckOptions& options) {
+/// `unasked`: there are devices beside these rows.
+json check_devices(const json& rows, bool unasked, const CheckOptions& options) {
   json devices = json::array();
   for (const json& row : rows) {
     json device = {{"platform", row.at("platform_name")}};
     for (const char* key : {"index", "sub_units", "name", "driver", "version"})
       if (row.contains(key)) device[key] = row.at(key);
     if (row.at("usable") == true) {
-      if (!options.json && isatty(STDERR_FILENO))
-        fmt::print(stderr, "\r\x1b[Kchecking {}", row.at("name").get<std::string>());
-      device.update(check_one(spec_of(row), options.timeout));
+      device.update(told(
+          fmt::format("{} {}", spec_of(row), row.at("name").get<std::string>()),
+          [&] { return check_one(spec_of(row), options.timeout); },
+          [](const json& result) { return result.at("status").get<std::string>(); }));
     } else {
       device.update({{"status", "not usable"}, {"problem", row.at("problem")}});
     }
     devices.push_back(std::move(device));
   }
-  if (!options.json && isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K");
-  add_advice(devices, advice, [](const json& device) { return device.at("status") == "ok"; });
+  add_advice(devices, unasked, advice, [](const json& device) { return device.at("status") == "ok"; });
   return devices;
 }
 
@@ -195,20 +223,26 @@ int exit_status(const json& devices) {
   return has("failed") || !has("ok") ? exit_device : exit_done;
 }
 
+std::ptrdiff_t usable(const json& rows) {
+  return std::ranges::count_if(rows, [](const json& row) { return row.at("usable") == true; });
+}
+
 int check(const CheckOptions& options) {
   const fs::path folder = vendors_folder();
   std::string problem;
   const json rows = listed_devices({}, options.timeout, problem);
   const json wanted = wanted_rows(rows, options.devices);
-  json report = {{"schema", 1},
-                 {"sundog", SUNDOG_VERSION},
-                 {"compiler", compiler_text()},
-                 {"vendors", folder.string()},
-                 {"note", topology_note()},
-                 {"drivers", check_drivers(folder, options.timeout)},
-                 {"caches", cache_figures()},
-                 {"devices", check_devices(wanted, options)},
-                 {"problem", problem.empty() ? json(nullptr) : json("listing the devices " + problem)}};
+  json report = {
+      {"schema", 1},
+      {"sundog", SUNDOG_VERSION},
+      {"compiler", compiler_text()},
+      {"vendors", folder.string()},
+      {"note", topology_note()},
+      {"drivers", check_drivers(folder, options.timeout)},
+      {"caches", cache_figures()},
+      {"devices", check_devices(wanted, usable(wanted) < usable(rows), options)},
+      {"problem", problem.empty() ? json(nullptr)
+                                  : json("listing the devices " + problem + ": `sundog devices` says why")}};
   const std::string text =
       options.json ? report.dump(2, ' ', false, json::error_handler_t::replace) + "\n" : check_text(report);
   fmt::print("{}", text);
@@ -221,10 +255,9 @@ void add_check(Arguments& root, Command& chosen) {
   const auto options = std::make_shared<CheckOptions>();
   Arguments* app =
       root.add_subcommand("check", "Check drivers, caches and devices; exit status 6 when a picture differs");
-  values(
-      app, "--device", "SPEC", options->devices,
-      "only these devices: P:D, cpu, gpu, accelerator, all, part of a name, or !SPEC to take away; /N for N "
-      "compute units (default: SUNDOG_DEVICE, or every device)");
+  values(app, "--device", "SPEC", options->devices,
+         "only these devices: P:D, cpu, gpu, accelerator, all, part of a name, or !SPEC to take away "
+         "(!SPEC?: if it is there); /N for N compute units (default: SUNDOG_DEVICE, or every device)");
   app->add_option("--timeout", options->timeout, "seconds that one device may take (default 600)")
       ->type_name("N")
       ->range(1, 86400);

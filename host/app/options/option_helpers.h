@@ -10,7 +10,8 @@ namespace sundog {
 inline constexpr const char* scene_help =
     "a .json scene (-: from the standard input), or a .gltf .glb .obj .ply .stl .nff model";
 inline constexpr const char* device_help =
-    "P:D, cpu, gpu, accelerator, all, part of a name, or !SPEC to take away; /N for N compute units "
+    "P:D, cpu, gpu, accelerator, all, part of a name (pocl, nvidia, ...), or !SPEC to take away (!SPEC?: "
+    "if it is there); /N for N compute units "
     "(default: SUNDOG_DEVICE, or the fastest)";
 
 template <class T>

@@ -132,21 +132,26 @@ SelfCheck check_device(const DeviceInfo& info, const std::function<void(const st
   return check;
 }
 
-std::string advice(const std::string& problem, bool others) {
+std::string advice(const std::string& problem, Others others) {
   const auto says = [&](const char* part) { return problem.find(part) != std::string::npos; };
-  std::string leave = others
-                          ? "leave it out: --device '!P:D'"
-                          : "no other device here is sound: install another driver (Debian: pocl-opencl-icd)";
+  const bool can_leave = others != Others::none;
+  const std::string leave =
+      others == Others::sound ? "leave it out: --device '!P:D'"
+      : others == Others::unasked
+          ? "leave it out, --device '!P:D', if one of those that were not asked for is sound: `sundog check` "
+            "looks at all"
+          : "no other device here is sound: install another driver (Debian: pocl-opencl-icd)";
+  if (says("where PoCL writes") || says("what PoCL writes") || says("raise the limit") || says("no linker") ||
+      says("RUSTICL_ENABLE"))
+    return "";
   if (says("no device"))
-    return "its driver finds no hardware that it serves: remove its package, or leave it (rusticl wants "
-           "RUSTICL_ENABLE, as in "
-           "RUSTICL_ENABLE=llvmpipe)";
+    return "its driver finds no hardware that it serves: remove its package, or leave it";
   if (says("crashed") || says("did not come back"))
-    return (others ? "update or remove its driver; until then " : "update its driver; ") + leave;
+    return (can_leave ? "update or remove its driver; until then " : "update its driver; ") + leave;
   if (says("did not build") || says("no kernels"))
     return "a fault of its compiler or of sundog: SUNDOG_DUMP_KERNELS=FOLDER keeps the program for a "
            "report; " +
-           (others ? "until then " + leave : leave);
+           (can_leave ? "until then " + leave : leave);
   if (says("cannot be loaded")) return "install the library, or remove the .icd file";
   if (says("OpenCL C")) return "it is too old; a newer driver may speak OpenCL C 1.2";
   if (says("MEM_OBJECT") || says("OUT_OF"))
@@ -154,12 +159,13 @@ std::string advice(const std::string& problem, bool others) {
   return leave;
 }
 
-std::string driver_advice(const std::string& problem, bool others) {
+std::string driver_advice(const std::string& problem, Others others) {
   // Every driver is loaded to list the devices: --device comes too late for one that ends the process.
   if (problem.find("crashed") == std::string::npos && problem.find("did not come back") == std::string::npos)
     return advice(problem, others);
-  return others ? "update or remove it; until then name a folder with the other .icd files by OCL_ICD_VENDORS"
-                : "update it, or install another driver (Debian: pocl-opencl-icd)";
+  return others == Others::none
+             ? "update it, or install another driver (Debian: pocl-opencl-icd)"
+             : "update or remove it; until then name a folder with the other .icd files by OCL_ICD_VENDORS";
 }
 
 }  // namespace sundog

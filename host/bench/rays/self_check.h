@@ -26,11 +26,14 @@ struct SelfCheck {
 /// Never throws; a driver that crashes takes the process along, so `on_stage` hears what is tried next.
 SelfCheck check_device(const DeviceInfo& info, const std::function<void(const std::string&)>& on_stage);
 
-/// What a person can do about a problem of a driver, by what it says.
-/// `others`: another device is sound, so this one can be left out.
-std::string advice(const std::string& problem, bool others);
+/// What there is beside a device or a driver: a sound one, so that this one can be left out; some that nobody
+/// asked to look at; none that works.
+enum class Others { sound, unasked, none };
 
-/// The same of a driver whose devices were listed alone; `others`: another driver has devices.
-std::string driver_advice(const std::string& problem, bool others);
+/// What a person can do about a problem of a driver, by what it says; empty where the problem names its mend.
+std::string advice(const std::string& problem, Others others);
+
+/// The same of a driver whose devices were listed alone.
+std::string driver_advice(const std::string& problem, Others others);
 
 }  // namespace sundog

@@ -100,6 +100,25 @@ TEST_CASE("check finds a device whose picture is wrong, and one whose kernels do
   }
 }
 
+TEST_CASE("check reports what it looks at when it begins and ends, and its advice knows what was not asked") {
+  const TemporaryFolder vendors;
+  vendors.write("a.icd", SUNDOG_FAKE_DRIVER "\n");
+  vendors.write("b.icd", std::string(pocl) + "\n");
+  CommandOptions options;
+  options.environment["OCL_ICD_VENDORS"] = vendors.path().string() + "/";
+  const CommandResult result = run_sundog({"check", "--json", "--device", "fake crashing"}, options);
+  CAPTURE(result.out, result.err);
+  CHECK(result.status == 4);
+  for (const char* line : {"checking the driver a.icd\n", "  the driver b.icd: listed, after "})
+    CHECK_THAT(result.err, ContainsSubstring(line));
+  CHECK_THAT(result.err, ContainsSubstring(": failed, after "));
+  const json rows = json::parse(result.out).at("devices");
+  REQUIRE(rows.size() == 1);
+  CHECK_THAT(
+      rows[0].at("advice").get<std::string>(),
+      ContainsSubstring("if one of those that were not asked for is sound: `sundog check` looks at all"));
+}
+
 TEST_CASE("check does not advise to leave out the only driver or device") {
   int status = -1;
   SECTION("a device that crashes when it is used") {

@@ -146,6 +146,8 @@ TEST_CASE("a device that is not there is status 4, with those that are") {
   CHECK(run_sundog({"render", folder.scene, "-o", folder.file("a.png"), "--device", "cpu"}, options).status ==
         0);
   options.environment["SUNDOG_DEVICE"] = "cpu, !nonesuch";
+  CHECK(run_sundog({"render", folder.scene, "-o", folder.file("b.png")}, options).status == 4);
+  options.environment["SUNDOG_DEVICE"] = "cpu, !nonesuch?";
   CHECK(run_sundog({"render", folder.scene, "-o", folder.file("b.png")}, options).status == 0);
 }
 

@@ -171,16 +171,48 @@ TEST_CASE("a device is put in a class by its type and its vectors") {
   CHECK(device_class(vectors) == DeviceClass::cpu);
 }
 
-TEST_CASE("an exclusion that takes nothing away is reported, with the devices that exist") {
-  std::vector<std::string> warnings;
-  select_devices(machine(), {"cpu", "gpu", "!0:0", "!geforce"}, &warnings);
-  CHECK(warnings.empty());
-  select_devices(machine(), {"all", "!radeon", "!7:0", "!broken"}, &warnings);
-  REQUIRE(warnings.size() == 2);
-  CHECK_THAT(warnings[0],
-             ContainsSubstring("the device spec '!radeon' takes nothing away: no device matches it"));
-  CHECK_THAT(warnings[0], ContainsSubstring("2:0 NVIDIA CUDA / GeForce 4090/D"));
-  CHECK_THAT(warnings[1], ContainsSubstring("'!7:0'"));
+TEST_CASE("an exclusion that takes nothing away is refused with the devices that exist, unless it says ?") {
+  CHECK(selected({"cpu", "gpu", "!0:0", "!geforce", "!broken"}) == "0:1");
+  CHECK_THROWS_AS(selected({"all", "!7:0"}), DeviceError);
+  CHECK_THROWS_WITH(selected({"all", "!radeon"}), ContainsSubstring("!radeon: takes nothing away") &&
+                                                      ContainsSubstring("'!radeon?'") &&
+                                                      ContainsSubstring("2:0 NVIDIA CUDA / GeForce 4090/D"));
+  CHECK(selected({"gpu", "!radeon?"}) == "2:0");
+  CHECK(selected({"cpu", "!basic?"}) == "0:1");
+  CHECK_THROWS_AS(selected({"!?"}), UsageError);
+}
+
+TEST_CASE("devices are found by the names that people use for their drivers and makers") {
+  std::vector<DeviceInfo> rows = {row(0, 0, "Portable Computing Language", "cpu-haswell", "cpu", 1),
+                                  row(1, 0, "rusticl", "llvmpipe (LLVM 15.0.6, 256 bits)", "cpu", 1),
+                                  row(2, 0, "NVIDIA CUDA", "Tesla T4", "gpu", 1),
+                                  row(3, 0, "Some Platform", "UHD Graphics", "gpu", 1),
+                                  row(4, 0, "Some Other", "gfx1100", "gpu", 1)};
+  rows[3].vendor = "Intel(R) Corporation";
+  rows[4].vendor = "Advanced Micro Devices, Inc.";
+  const auto platforms = [&](const std::string& spec) {
+    std::string text;
+    for (const DeviceInfo& device : select_devices(rows, {spec})) text += std::to_string(device.platform);
+    return text;
+  };
+  CHECK(platforms("pocl") == "0");
+  CHECK(platforms("!PoCL") == "1234");
+  CHECK(platforms("rusticl") == "1");
+  CHECK(platforms("llvmpipe") == "1");
+  CHECK(platforms("nvidia") == "2");
+  CHECK(platforms("Intel") == "3");
+  CHECK(platforms("amd") == "4");
+}
+
+TEST_CASE("a number alone is no device, whatever has it in its name: the error lists the indices") {
+  for (const std::string spec : {"1", "0", "4090", "4090/2"}) {
+    CAPTURE(spec);
+    CHECK_THROWS_AS(selected({spec}), DeviceError);
+    CHECK_THROWS_WITH(selected({spec}),
+                      ContainsSubstring("a number alone means no device, an index P:D does") &&
+                          ContainsSubstring("0:1 Portable"));
+  }
+  CHECK_THROWS_AS(selected({"all", "!1"}), DeviceError);
 }
 
 TEST_CASE("the default is reported with its estimate and those it was preferred to") {
