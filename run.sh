@@ -5,11 +5,15 @@
 set -eu
 root=$(readlink -f -- "${BASH_SOURCE[0]}")
 root=${root%/*}
-sundog=$root/build/release/sundog
-stamp=$root/build/release/built-program  # younger than every source: there is nothing to do
+build=$root/build/release
+if [[ ! -w $root && ! -w $build ]]; then  # a clone that cannot be written
+  build=${XDG_CACHE_HOME:-${HOME:-/tmp}/.cache}/sundog-build$root
+fi
+sundog=$build/sundog
+stamp=$build/built-program  # younger than every source: there is nothing to do
 sources=("$root"/{host,kernels,cmake,third_party,CMakeLists.txt,CMakePresets.json})
 
 if [[ ! -x $sundog || ! -e $stamp || -n $(find "${sources[@]}" -newer "$stamp" -print -quit) ]]; then
-  "$root/cmake/prepare.sh" program >&2
+  "$root/cmake/prepare.sh" program "$build" >&2
 fi
 exec "$sundog" "$@"

@@ -17,6 +17,7 @@ left_out() { echo "sundog: no $1 here: the tests $2 are left out" >&2; }
 [[ -e build/release/sundog_mpi.so ]] || left_out "Open MPI (libopenmpi-dev, openmpi-bin)" "of mpirun"
 [[ -e build/release/embree_rays ]] || left_out "Embree (libembree-dev)" "that compare with it"
 command -v chromedriver >/dev/null || left_out "chromedriver (chromium-driver)" "of the viewer in a browser"
+[[ -e build/release/axe-core/package/axe.min.js ]] || left_out "axe-core (cmake/FetchAxe.cmake fetches it where there is a network)" "of its rules"
 command -v oclgrind >/dev/null || left_out "Oclgrind" "of memory accesses"
 # One test more at once than there are processors: some wait for processes and timers.
 exec ctest --preset release --parallel "$(($(nproc) + 1))" "$@"

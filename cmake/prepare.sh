@@ -1,11 +1,11 @@
 #!/bin/bash
-# Makes build/release ready: `prepare.sh program` for sundog alone, `prepare.sh tests` for the tests too; `prepare.sh packages`
-# installs what the latter needs, and builds the program meanwhile. Packages come from apt, and only those that are missing. Quiet
-# unless there is something to do; else it says first how much that is.
+# Makes build/release, or the folder named second, ready: `prepare.sh program` for sundog alone, `prepare.sh tests` for the tests
+# too; `prepare.sh packages` installs what the latter needs, and builds the program meanwhile. Packages come from apt, and only those
+# that are missing. Quiet unless there is something to do; else it says first how much that is.
 set -eu
 goal=$1
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
-build=$root/build/release
+build=${2:-$root/build/release}
 
 # The build cannot do without these. PoCL is among them, so that the first picture needs no GPU.
 needed=(g++ cmake ninja-build ocl-icd-opencl-dev opencl-clhpp-headers pocl-opencl-icd libglm-dev libstb-dev
@@ -32,24 +32,31 @@ missing_of() {
   for package; do grep -qx "$package installed" <<<"$installed" || echo "$package"; done | xargs
 }
 
-as_root() {
-  if [[ $EUID == 0 ]]; then
-    "$@"
-  elif command -v sudo >/dev/null; then
-    sudo "$@"
-  else
-    say "cannot install packages: neither root nor sudo. Ask an administrator for: apt-get install $missing"
-    exit 1
-  fi
+may_install() { [[ $EUID == 0 ]] || command -v sudo >/dev/null; }
+
+# apt-get, by root or sudo, which waits while another program has apt's locks, as a system's own upgrade has for minutes.
+patient_apt() {
+  local become=() log=$build/apt.log waited=0
+  [[ $EUID == 0 ]] || become=(sudo)
+  until "${become[@]}" env LC_ALL=C DEBIAN_FRONTEND=noninteractive apt-get "$@" 2>"$log"; do
+    if ! grep -qE 'Could not get lock|Unable to (acquire|lock)' "$log" || ((waited >= 1800)); then
+      cat "$log" >&2
+      return 1
+    fi
+    if ((waited == 0)); then say "apt is locked by another program, perhaps the system's own upgrade: waiting for it"; fi
+    sleep 2
+    waited=$((waited + 2))
+  done
 }
 
-# "75 packages, 210 MB to fetch, 900 MB on disk", of apt-get's own reckoning.
+# "75 packages, 210 MB to fetch, 900 MB on disk", of apt's own reckoning: it installs nothing and needs no right.
 size_of() {
-  LC_ALL=C apt-get install --assume-no --no-install-recommends "$@" 2>/dev/null | awk '
-    / newly installed/ { for (i = 2; i <= NF; i++) if ($i == "newly") out = $(i - 1) " packages" }
-    /^Need to get / { sub(/^Need to get /, ""); sub(/ of archives.*/, ""); sub(/.*\//, ""); out = out ", " $0 " to fetch" }
-    /^After this operation, / { sub(/^After this operation, /, ""); sub(/ of additional.*/, ""); out = out ", " $0 " on disk" }
-    END { print out }' || true
+  local all fetched stored
+  all=$(apt-get -s -qq install --no-install-recommends "$@" 2>/dev/null | awk '$1 == "Inst" { print $2 }' | xargs)
+  fetched=$(apt-get --print-uris -qq install --no-install-recommends "$@" 2>/dev/null | awk '{ n += $3 } END { print n }')
+  # shellcheck disable=SC2086  # a list of names
+  stored=$(apt-cache show --no-all-versions $all 2>/dev/null | awk '/^Installed-Size:/ { n += $2 } END { print n }')
+  echo "$(wc -w <<<"$all") packages, $(((${fetched:-0} + 500000) / 1000000)) MB to fetch, $(((${stored:-0} + 500) / 1000)) MB on disk"
 }
 
 # "about 3 minutes on 2 cores" for so many seconds of one core.
@@ -62,6 +69,7 @@ duration_of() {
 
 # Installs the packages named that are missing; those this distribution does not have are left out.
 install_missing() {
+  local missing package available=()
   missing=$(missing_of "$@")
   [[ -n $missing ]] || return 0
   if ! command -v apt-get >/dev/null; then
@@ -69,17 +77,39 @@ install_missing() {
     return 0
   fi
   say "packages are missing; asking apt for them"
-  as_root apt-get update -qq
-  local package available=()
+  patient_apt update -qq
   for package in $missing; do
     if apt-cache show "$package" >/dev/null 2>&1; then available+=("$package"); else say "no package $package here"; fi
   done
   [[ ${#available[@]} == 0 ]] && return 0
   say "installing ${available[*]}: with what they need $(size_of "${available[@]}"); one to three minutes, mostly the download"
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${available[@]}"
+  patient_apt install -y -qq --no-install-recommends "${available[@]}"
 }
 
-mkdir -p "$build"
+# What the build cannot do without.
+install_needed() {
+  local missing
+  missing=$(missing_of "${needed[@]}")
+  if [[ -n $missing ]] && command -v apt-get >/dev/null && ! may_install; then
+    say "packages are missing, and there is neither root nor sudo to install them: ask an administrator for: apt-get install $missing"
+    exit 1
+  fi
+  install_missing "${needed[@]}"
+}
+
+# What tests compare with: without it they are left out.
+install_peers() {
+  if may_install; then
+    install_missing "${peers[@]}" "${checkers[@]}"
+  else
+    say "neither root nor sudo: tests are left out that need $(missing_of "${peers[@]}" "${checkers[@]}")"
+  fi
+}
+
+if ! mkdir -p "$build" 2>/dev/null || [[ ! -w $build ]]; then
+  say "$build cannot be written: copy the clone to a folder that can be, and build there"
+  exit 1
+fi
 exec 9>"$build/lock"
 flock 9  # two calls at once take turns
 
@@ -89,7 +119,7 @@ build() {
   touch "$build/started"  # what changes during the build is built the next time
   local first=() target=sundog
   if [[ ! -e $build/CMakeCache.txt ]]; then first=(-DSUNDOG_UNITY=ON -DSUNDOG_UNITY_TESTS=ON); fi  # a folder of a developer keeps its way
-  cmake --preset release "${first[@]}" >"$build/configure.log" 2>&1 || { cat "$build/configure.log" >&2; exit 1; }
+  cmake --preset release -B "$build" "${first[@]}" >"$build/configure.log" 2>&1 || { cat "$build/configure.log" >&2; exit 1; }
   if [[ $1 == tests ]]; then target=all; fi
   if [[ ! -e $build/built-$1 ]]; then
     say "building for the first time: $(duration_of "$([[ $1 == tests ]] && echo "$tests_work" || echo "$program_work")")"
@@ -98,17 +128,26 @@ build() {
   touch -r "$build/started" "$build/built-program" "$build/built-$1"
 }
 
-install_missing "${needed[@]}"
+# Builds the program while packages come: the download waits for the network, the compiler does not. What fails first ends both.
+build_beside_packages() {
+  install_peers &
+  local packages=$! program
+  set -m  # a process group, so that all of it can be ended
+  build program &
+  program=$!
+  set +m
+  trap 'kill -- "-$program" 2>/dev/null || true' EXIT
+  wait -n || { wait "$packages" || say "the packages could not be installed"; exit 1; }
+  wait "$packages" || { say "the packages could not be installed"; exit 1; }
+  wait "$program"
+  trap - EXIT
+}
+
+install_needed
 case $goal in
-  packages)
-    if [[ -n $(missing_of "${peers[@]}" "${checkers[@]}") ]]; then  # the download waits for the network, the compiler does not
-      install_missing "${peers[@]}" "${checkers[@]}" &
-      build program
-      wait $!
-    fi
-    ;;
+  packages) if [[ -n $(missing_of "${peers[@]}" "${checkers[@]}") ]]; then build_beside_packages; fi ;;
   tests)
-    install_missing "${peers[@]}" "${checkers[@]}"
+    install_peers
     build tests
     ;;
   *) build program ;;

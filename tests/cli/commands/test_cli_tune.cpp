@@ -18,7 +18,7 @@ struct TuneFolder : CliFolder {
   TuneFolder() {
     const fs::path kernels = sundog::plain_environment()->cache / "kernels";
     sundog::make_cache_folder(kernels);
-    fs::create_directories(*this / "cache/sundog");
+    sundog::make_cache_folder(*this / "cache/sundog/tuning");  // the user's alone at every umask
     fs::create_directory_symlink(kernels, *this / "cache/sundog/kernels");
   }
   CommandResult run(std::vector<std::string> arguments, CommandOptions options = {}) const {
@@ -90,6 +90,18 @@ TEST_CASE("what tune finds is kept in one file a device, and a render with it gi
   folder.write("kept.json", kept.dump());
   CHECK_THAT(folder.run({"--import", folder.file("kept.json")}).out,
              ContainsSubstring("skipped: it was measured with other kernels"));
+}
+
+TEST_CASE("tune names what it rejects, with the reason") {
+  const TuneFolder folder;
+  REQUIRE(folder.render("before.exr").status == 0);
+  CommandOptions options;
+  options.environment["SUNDOG_FAULTS"] = "build@0:0#4";  // a small frame and the defaults come before
+  const CommandResult tuned = folder.run({folder.scene, "--device", "0:0", "--budget", "5"}, options);
+  CAPTURE(tuned.out, tuned.err);
+  CHECK(tuned.status == 0);
+  CHECK_THAT(tuned.out, ContainsSubstring(" tried, 1 rejected") && ContainsSubstring("\n  rejected: work-group ") &&
+                            ContainsSubstring(" did not build on 0:0 "));
 }
 
 TEST_CASE("tune keeps its budget where one frame takes longer: it measures on smaller ones") {

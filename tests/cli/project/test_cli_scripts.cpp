@@ -1,56 +1,14 @@
-// run.sh and cmake/prepare.sh in a tree and with tools of the test's own: when they build, what they install,
+// run.sh and the scripts that check sources, in a tree and with tools of the test's own: when they build,
 // what they pass on.
-#include <base/file.h>
-
 #include <filesystem>
 
 #include "catch.h"
-#include "run_command.h"
-#include "temporary_folder.h"
+#include "script_tree.h"
 
 namespace fs = std::filesystem;
 using sundog::read_file;
 
 namespace {
-
-/// A tree with the project's scripts, a "sundog" that prints its arguments, and a folder of tools for the
-/// PATH that note their calls in the file `calls`.
-struct ScriptTree : TemporaryFolder {
-  fs::path root = *this / "a tree", tools = *this / "tools", calls = *this / "calls";
-
-  ScriptTree() {
-    for (const char* script : {"run.sh", "cmake/prepare.sh"}) {
-      fs::create_directories((root / script).parent_path());
-      fs::copy_file(fs::path(SUNDOG_SOURCE_DIR) / script, root / script);
-    }
-    for (const char* folder : {"host", "kernels", "third_party", "build/release"})
-      fs::create_directories(root / folder);
-    for (const char* file : {"CMakeLists.txt", "CMakePresets.json"}) write("a tree/" + std::string(file), "");
-    script("a tree/build/release/sundog", "printf '<%s>' \"$@\"");
-    tool("cmake", "echo building");
-    tool("sudo", "\"$@\"");
-    tool("apt-get", "");
-    tool("apt-cache", "[[ $2 != povray ]]");
-    tool("dpkg-query",
-         "for p in \"${@:4}\"; do [[ $p == libstb-dev || $p == povray ]] || echo \"$p installed\"; done");
-  }
-
-  void script(const std::string& name, const std::string& text) const {
-    fs::permissions(write(name, "#!/bin/bash\n" + text + "\n"), fs::perms::owner_all);
-  }
-  void tool(const std::string& name, const std::string& text) const {
-    script("tools/" + name, "echo \"" + name + " $*\" >>'" + calls.string() + "'\n" + text);
-  }
-  CommandResult run(const std::vector<std::string>& arguments) const {
-    fs::remove(calls);
-    CommandOptions options;
-    options.folder = path();
-    options.environment["PATH"] = tools.string() + ":/usr/bin:/bin";
-    return run_command(arguments, options);
-  }
-  CommandResult run_script() const { return run({(root / "run.sh").string(), "render", "a scene.json", ""}); }
-  std::string called() const { return fs::exists(calls) ? read_file(calls) : ""; }
-};
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -101,45 +59,6 @@ TEST_CASE("a failed build is run.sh's failure, and the next call tries again") {
   tree.tool("cmake", "");
   CHECK(tree.run_script().status == 0);
   CHECK(contains(tree.called(), "cmake --preset release"));
-}
-
-TEST_CASE("only the packages that are missing are installed") {
-  const ScriptTree tree;
-  const std::string prepare = (tree.root / "cmake/prepare.sh").string();
-  CHECK(tree.run({prepare, "program"}).status == 0);
-  CHECK(contains(tree.called(), "install -y -qq --no-install-recommends libstb-dev\n"));
-  CHECK_FALSE(contains(tree.called(), "povray"));
-  tree.tool("dpkg-query", "for p in \"${@:4}\"; do echo \"$p installed\"; done");
-  CHECK(tree.run({prepare, "program"}).status == 0);
-  CHECK_FALSE(contains(tree.called(), "apt"));
-}
-
-TEST_CASE("a package that this distribution does not have is reported and left out") {
-  const ScriptTree tree;
-  const CommandResult result = tree.run({(tree.root / "cmake/prepare.sh").string(), "tests"});
-  CAPTURE(result.err);
-  CHECK(result.status == 0);
-  CHECK(contains(result.err, "no package povray here"));
-  CHECK_FALSE(contains(tree.called(), "recommends povray"));
-  CHECK(contains(tree.called(), "--target all"));
-}
-
-TEST_CASE("without apt the build continues and names what it needs") {
-  const ScriptTree tree;
-  fs::remove(tree.tools / "apt-get");
-  fs::create_directory(tree / "bin");  // all that the script calls but apt-get
-  for (const char* name :
-       {"bash", "env", "readlink", "dirname", "mkdir", "flock", "grep", "xargs", "touch", "cat", "echo"})
-    fs::create_symlink(fs::path("/usr/bin") / name, tree / "bin" / name);
-  fs::remove(tree.calls);
-  CommandOptions options;
-  options.environment["PATH"] = tree.tools.string() + ":" + (tree / "bin").string();
-  const CommandResult result = run_command({(tree.root / "cmake/prepare.sh").string(), "program"}, options);
-  CAPTURE(result.err);
-  CHECK(result.status == 0);
-  CHECK(contains(result.err, "there is no apt-get here"));
-  CHECK(contains(result.err, "libstb-dev"));
-  CHECK(contains(tree.called(), "cmake --build"));
 }
 
 TEST_CASE("the build notes the git commit, whether files differ from it, and nothing outside git") {
