@@ -34,8 +34,8 @@ out=$(readlink -f -- "$out")
 bench=() rays=() groups=() peers=()
 if [[ $quick ]]; then
   bench=(--repeat 1)
-  rays=(--size 32)
-  groups=(--size 16 --kernel occluded_rays)
+  rays=(--rays 32)
+  groups=(--rays 16 --kernel occluded_rays)
   peers=(--repeats 1 --size 32)
 fi
 here=() failed=() missing=()

@@ -21,7 +21,7 @@ namespace sundog {
 namespace {
 
 struct RaysOptions : BenchOptions {
-  std::string size = "1024", kinds;
+  std::string rays = "1024", kinds;
   bool no_times = false;
 };
 
@@ -140,7 +140,7 @@ std::string describe(const CompiledScene& scene) {
 }
 
 int bench_rays(const RaysOptions& options) {
-  const RaysWanted wanted{static_cast<unsigned>(parse_number("--size", options.size, 1, 16384)),
+  const RaysWanted wanted{static_cast<unsigned>(parse_number("--rays", options.rays, 1, 16384)),
                           parse_kinds(options.kinds)};
   Report report = new_report("rays", "Rays a second by kind", options);
   report.measurements.columns = {{"scene", ""},       {"device", ""},  {"kind", ""},         {"rays", ""},
@@ -179,7 +179,7 @@ void add_bench_rays(Arguments& bench, Command& chosen) {
   Arguments* app =
       bench.add_subcommand("rays", "Rays a second by kind: camera, shadow, bounce, reflection, glass");
   add_bench_options(app, *options);
-  value(app, "--size", "N", options->size, "pixels a side of the camera's rays (default 1024)");
+  value(app, "--rays", "N", options->rays, "camera rays a side (default 1024)");
   value(app, "--kinds", "NAMES", options->kinds,
         fmt::format("some of {} (default all)", fmt::join(ray_kinds, ",")));
   app->add_flag("--no-times", options->no_times, "only check the answers");

@@ -167,13 +167,13 @@ void add_bench_threads(Arguments& bench, Command& chosen) {
   Arguments* app =
       bench.add_subcommand("threads", "Times by image size and number of threads, speed-up, efficiency");
   add_bench_options(app, *options);
-  value(app, "--size,--sizes", "N,N...", options->sizes, "pixels a side (default 128,256,352,448,512,640)");
+  value(app, "--sizes", "N,N...", options->sizes, "pixels a side (default 128,256,352,448,512,640)");
   value(app, "--counts", "N,N...", options->counts,
         "threads (default: powers of two up to the machine's cores)");
   app->add_option(
          "--budget", options->budget,
          "about how long it may take: larger sizes of plain C++, frames, then larger images are left out "
-         "(default 100, or no limit with --size)")
+         "(default 100, or no limit with --sizes)")
       ->type_name("SECONDS")
       ->range(0, 1e6);
   app->add_flag("--no-plain", options->no_plain, "without the column of plain single-threaded C++");

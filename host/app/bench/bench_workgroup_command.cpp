@@ -151,7 +151,7 @@ void add_bench_workgroup(Arguments& bench, Command& chosen) {
   add_bench_options(app, *options);
   values(app, "--kernel", "NAME", options->kernels,
          fmt::format("one of {} (default: all)", fmt::join(kernel_names, ", ")));
-  app->add_option("--size,--rays", options->rays, "camera rays a side for the tracer's kernels (default 512)")
+  app->add_option("--rays", options->rays, "camera rays a side for the tracer's kernels (default 512)")
       ->type_name("N")
       ->range(16, 16384);
   app->callback([options, &chosen] {

@@ -65,14 +65,16 @@ void say(const std::string& line) {
 std::string outcome_text(const DeviceInfo& device, const TuneOutcome& outcome) {
   const TuningEntry& entry = outcome.entry;
   const bool faster = entry.tuned_ms < entry.default_ms;
-  return fmt::format(
+  std::string text = fmt::format(
       "{}, {} ({}), {}: {}\n  {} ms with the defaults, {} ms tuned: {}; {} tried, {} rejected{}{}",
       device.label(), entry.scene_class, entry.scene, entry.kernel, tuning_text(entry.tuning),
       number_text(entry.default_ms), number_text(entry.tuned_ms),
       faster ? fmt::format("{:.1f} % less time", 100 * (1 - entry.tuned_ms / entry.default_ms)) : "no gain",
-      outcome.tried, outcome.rejected,
+      outcome.tried, outcome.rejected.size(),
       outcome.left_out > 0 ? fmt::format(", at least {} left out for lack of time", outcome.left_out) : "",
       outcome.frames.empty() ? "" : fmt::format("; frames of {}", outcome.frames));
+  for (const std::string& rejected : outcome.rejected) text += "\n  rejected: " + rejected;
+  return text;
 }
 
 /// The scenes in turn; each may take its share of the remaining budget. Returns what there was no time

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <set>
+#include <utility>
 
 #include "base/clock.h"
 #include "base/error.h"
@@ -183,20 +184,26 @@ TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, co
   const double first_seconds = usual.run();
   const double default_seconds = time.has_started_in_time(first_seconds) ? usual.median(runs) : first_seconds;
   problem.affordable = [&](const TunePoint& point) { return time.is_enough_for(program_of(point)); };
+  std::vector<std::string> rejected;
   problem.measure = [&](const TunePoint& point) -> std::optional<double> {
     if (point == problem.start) return default_seconds;
-    tell(tuning_text(choices.at(point)));
+    const std::string settings = tuning_text(choices.at(point));
+    const auto reject = [&](const std::string& why) -> std::optional<double> {
+      rejected.push_back(fmt::format("{}: {}", settings, why));
+      return {};
+    };
+    tell(settings);
     try {
       Candidate candidate(device, scene, choices, point);
       time.add(candidate, program_of(point));
-      if (!are_same(candidate.film(), expected)) return {};
+      if (!are_same(candidate.film(), expected)) return reject("another picture than with the defaults");
       // The default beside it: a machine that has become slower meanwhile slows both.
       const auto [own, beside] = duel(candidate, usual, runs);
       return default_seconds * own / beside;
-    } catch (const DeviceError&) {
-      return {};
-    } catch (const BuildError&) {
-      return {};
+    } catch (const DeviceError& error) {
+      return reject(error.what());
+    } catch (const BuildError& error) {
+      return reject(error.what());
     }
   };
   problem.measure_again = [&](const TunePoint&, const TunePoint& best) {
@@ -208,7 +215,7 @@ TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, co
   return {{choices.kernel, scene_class(scene), scene_name, choices.at(found.best),
            1e3 * found.default_seconds, 1e3 * found.best_seconds},
           found.tried,
-          found.rejected,
+          std::move(rejected),
           found.left_out,
           {}};
 }

@@ -10,9 +10,10 @@ namespace sundog {
 
 struct TuneOutcome {
   TuningEntry entry;  // of one kernel; the defaults, with equal times, where nothing was faster
-  std::size_t tried = 0, rejected = 0;
-  std::size_t left_out = 0;  // there was no time for them
-  std::string frames;        // what was drawn instead of whole frames: "200x150 pixels and 1 sample a pixel"
+  std::size_t tried = 0;
+  std::vector<std::string> rejected;  // the settings and why
+  std::size_t left_out = 0;           // there was no time for them
+  std::string frames;  // what was drawn instead of whole frames: "200x150 pixels and 1 sample a pixel"
 };
 
 /// The most that has been measured on a device so far, in seconds; 0: nothing yet.

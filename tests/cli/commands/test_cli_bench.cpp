@@ -11,7 +11,7 @@ using nlohmann::json;
 TEST_CASE("bench threads times every size and count on sub-devices, more than there are cores too") {
   const CliFolder folder;
   const CommandResult result =
-      run_sundog({"bench", "threads", folder.scene, "--device", "portable", "--size", "24,16", "--counts",
+      run_sundog({"bench", "threads", folder.scene, "--device", "portable", "--sizes", "24,16", "--counts",
                   "1,2,5", "--repeat", "2", "--json", folder.file("t.json"), "--csv", folder.file("t.csv"),
                   "--html", folder.file("t.html")});
   CAPTURE(result.out, result.err);
@@ -74,7 +74,7 @@ TEST_CASE(
     "bench workgroup times each kernel with every size that the device takes, and the driver's choice") {
   const CliFolder folder;
   const CommandResult result =
-      run_sundog({"bench", "workgroup", folder.scene, "--device", "portable", "--size", "16", "--repeat", "1",
+      run_sundog({"bench", "workgroup", folder.scene, "--device", "portable", "--rays", "16", "--repeat", "1",
                   "--json", folder.file("w.json"), "--html", folder.file("w.html"), "--quiet"});
   CAPTURE(result.err);
   REQUIRE(result.status == 0);
@@ -95,7 +95,7 @@ TEST_CASE(
 TEST_CASE("bench rays times every kind of ray and checks the hits") {
   const CliFolder folder;
   const CommandResult result =
-      run_sundog({"bench", "rays", SUNDOG_SOURCE_DIR "/scenes/spheres.json", "--device", "portable", "--size",
+      run_sundog({"bench", "rays", SUNDOG_SOURCE_DIR "/scenes/spheres.json", "--device", "portable", "--rays",
                   "32", "--repeat", "2", "--json", folder.file("r.json")});
   CAPTURE(result.out, result.err);
   REQUIRE(result.status == 0);
@@ -122,7 +122,7 @@ TEST_CASE("bench rays takes the kinds that are asked for, and checks alone witho
   const std::string scene = SUNDOG_SOURCE_DIR "/tests/support/mesh_and_solids.json";
   for (const char* tracer : {"wide", "compact"}) {
     const CommandResult result = run_sundog(
-        {"bench", "rays", scene, "--device", "portable", "--size", "16", "--no-times", "--kinds",
+        {"bench", "rays", scene, "--device", "portable", "--rays", "16", "--no-times", "--kinds",
          "glass,primary", "--set", std::string("/render/tracer=") + tracer, "--json", folder.file("k.json")});
     CAPTURE(result.out, result.err);
     REQUIRE(result.status == 0);
@@ -152,7 +152,7 @@ TEST_CASE("bench rays fails where a kernel tells wrong distances") {
   CommandOptions options;
   options.environment["SUNDOG_KERNEL_DIR"] = kernels.string();
   const CommandResult result = run_sundog(
-      {"bench", "rays", folder.scene, "--device", "portable", "--size", "32", "--repeat", "1"}, options);
+      {"bench", "rays", folder.scene, "--device", "portable", "--rays", "32", "--repeat", "1"}, options);
   CAPTURE(result.out, result.err);
   CHECK(result.status == 4);
   CHECK_THAT(result.err, ContainsSubstring("wrong answers"));
@@ -210,7 +210,7 @@ TEST_CASE("bench rays says that it leaves distance fields out, and times nothing
   const CliFolder folder;
   const CommandResult result = run_sundog({"bench", "rays", SUNDOG_SOURCE_DIR "/scenes/mandelbulb.json",
                                            SUNDOG_SOURCE_DIR "/scenes/julia.json", "--device", "portable",
-                                           "--size", "16", "--repeat", "1", "--json", folder.file("r.json")});
+                                           "--rays", "16", "--repeat", "1", "--json", folder.file("r.json")});
   CAPTURE(result.out, result.err);
   REQUIRE(result.status == 0);
   const json report = json::parse(sundog::read_file(folder.file("r.json")));
