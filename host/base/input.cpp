@@ -113,6 +113,11 @@ std::vector<ReadFile> ReadLog::files() const {
   return files_;
 }
 
+void note_file(const std::filesystem::path& path) {
+  struct stat found{};
+  if (::stat(path.c_str(), &found) == 0) ReadLogs::all().note({path, {found.st_dev, found.st_ino}});
+}
+
 std::string read_input(const std::filesystem::path& path, std::uintmax_t most,
                        const std::shared_ptr<Faults>& faults) {
   try {

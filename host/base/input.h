@@ -34,7 +34,8 @@ struct ReadFile {
   FileIdentity identity;
 };
 
-/// While it lives, each file that any thread reads by read_regular_file() or read_input() is noted in it.
+/// While it lives, each file that any thread reads by read_regular_file() or read_input() is noted in it, and
+/// those that note_file() names.
 class ReadLog {
  public:
   ReadLog();
@@ -48,5 +49,8 @@ class ReadLog {
   mutable std::mutex mutex_;
   std::vector<ReadFile> files_;
 };
+
+/// Notes a file that is named, and may not be read: nothing must take its place either.
+void note_file(const std::filesystem::path& path);
 
 }  // namespace sundog

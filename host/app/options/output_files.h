@@ -23,7 +23,7 @@ void check_picture(const PictureOptions& picture, bool with_aovs);
 /// name or by a link. Empty names are none; "-" is the standard output, or input.
 void check_output_files(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
-/// The same for what was read on the way: a scene's textures and models, and what those name.
+/// The same for what was read or named on the way: a scene's textures and models, and what those name.
 void check_not_read(const std::vector<std::string>& outputs, const std::vector<ReadFile>& files);
 
 /// What `load` returns, unless it has read one of the outputs.

@@ -191,6 +191,7 @@ void require_readable(const fs::path& file, const fs::path& named_in, std::strin
   }
   if (fs::is_directory(found)) fail("is a folder, wanted a file");
   if (::access(file.c_str(), R_OK) != 0) fail(fmt::format("cannot be read: {}", std::strerror(errno)));
+  note_file(file);
 }
 
 }  // namespace sundog

@@ -66,6 +66,13 @@ TEST_CASE("no output of render takes the place of a file that the scene names, o
   CHECK_FALSE(fs::exists(out));
 }
 
+TEST_CASE("a texture that nothing uses is kept as well") {
+  const ReadingFolder folder;
+  std::string text = read_file(folder.scene);
+  write_file(folder.scene, text.replace(text.find(R"("color": "t")"), 12, R"("ior": 1)"));
+  check_refused(folder, {"render", folder.scene, "-o", folder.file("texture.png")}, "texture.png");
+}
+
 TEST_CASE("links to a file that is read count as that file") {
   const ReadingFolder folder;
   fs::create_symlink("texture.png", folder / "soft.png");
