@@ -6,12 +6,9 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 
-#include <cerrno>
-#include <cstring>
 #include <mutex>
+#include <stdexcept>
 #include <vector>
-
-#include "base/error.h"
 
 namespace sundog {
 namespace {
@@ -60,12 +57,12 @@ void check_thread_limits(unsigned processors, std::size_t stack) {
   rlimit space = {};
   const std::size_t needed = (processors + frame_threads) * stack + other_memory;
   if (::getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY && !can_reserve(needed))
-    throw IoError(fmt::format(
+    throw std::runtime_error(fmt::format(
         "the limit on address space (`ulimit -v`, or a batch system's) of {} MiB leaves no room for "
         "the {} that {} processors take ({} a thread, for its stack): raise it",
         space.rlim_cur >> 20, needed >> 20, processors, stack >> 20));
   if (const unsigned threads = 2 * (processors + frame_threads); !can_start(threads))
-    throw IoError(fmt::format(
+    throw std::runtime_error(fmt::format(
         "{} threads cannot be started: raise the limit on them (`ulimit -u`, or the container's)", threads));
 }
 

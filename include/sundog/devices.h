@@ -34,7 +34,7 @@ struct Device {
 };
 
 /// Every device, and each platform that has none; one that fails has a `problem`. Any thread; the first call
-/// loads the drivers, which can take a second. Throws Error (internal) for want of memory only.
+/// loads the drivers, which can take a second. Throws Error (internal) for want of memory or of threads only.
 SUNDOG_API std::vector<Device> devices();
 
 /// The devices that `specs` mean, each once. No spec: the one estimated fastest. A spec is "P:D" (indices),
