@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compile/fields/held_bailout.h"
 #include "compile/fields/sdf_leaf_emitter.h"
-#include "scene/formula/held_bailout.h"
 
 namespace sundog {
 namespace {

@@ -130,8 +130,9 @@ static inline void closest_in_round_box(float4 parameters, REAL3 o, REAL3 d, REA
                                         SolidHits* hits) {
   const float3 half_size = parameters.xyz;
   const float r = parameters.w;
-  const REAL shift = come_near(&o, d, active);
-  const BoxRay ray = make_box_ray(o, d);
+  REAL3 near = o;
+  const REAL shift = come_near(&near, d, active);
+  const BoxRay ray = make_box_ray(near, d);
   const Span bounds = box_span(&ray, half_size).span;
   active &= bounds.crosses & MASK_OF(shift + bounds.leave > t_min) & MASK_OF(shift + bounds.enter <= hits->t);
   if (!any_lane(active)) return;
@@ -144,7 +145,7 @@ static inline void closest_in_round_box(float4 parameters, REAL3 o, REAL3 d, REA
   for (u32 corner = 0; corner < 8u; ++corner) {
     const REAL3 center = all3((float3)(corner & 1u ? core.x : -core.x, corner & 2u ? core.y : -core.y,
                                        corner & 4u ? core.z : -core.z));
-    const REAL3 c = subtract3(o, center);
+    const REAL3 c = subtract3(near, center);
     unite_spans(&span, round_span(c, d, r));
 #pragma unroll 1
     for (u32 axis = 0; axis < 3u; ++axis) {  // each edge once: from the corner on its negative end
@@ -153,7 +154,7 @@ static inline void closest_in_round_box(float4 parameters, REAL3 o, REAL3 d, REA
           all3((float3)(axis == 0u ? 0.0f : 1.0f, axis == 1u ? 0.0f : 1.0f, axis == 2u ? 0.0f : 1.0f));
       const Span edge = round_span(multiply3(c, keep), multiply3(d, keep), r);
       const float extent = axis == 0u ? core.x : axis == 1u ? core.y : core.z;
-      const REAL oa = component(o, axis), da = component(d, axis);
+      const REAL oa = component(near, axis), da = component(d, axis);
       const MASK enters = edge.crosses & MASK_OF(fabs(fma(edge.enter, da, oa)) <= extent),
                  leaves = edge.crosses & MASK_OF(fabs(fma(edge.leave, da, oa)) <= extent);
       span.enter = select(span.enter, real_min(span.enter, edge.enter), enters);
@@ -161,7 +162,7 @@ static inline void closest_in_round_box(float4 parameters, REAL3 o, REAL3 d, REA
     }
   }
   const REAL t = select(span.leave, span.enter, MASK_OF(shift + span.enter > t_min));
-  const REAL3 p = along3(o, t, d), limit = all3(core);
+  const REAL3 p = along3(near, t, d), limit = all3(core);
   const REAL3 within = real3(real_clamp(p.x, -limit.x, limit.x), real_clamp(p.y, -limit.y, limit.y),
                              real_clamp(p.z, -limit.z, limit.z));
   offer(shift + t, subtract3(p, within), NO_LANES, active & MASK_OF(span.enter <= span.leave), t_min, hits);

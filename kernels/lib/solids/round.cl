@@ -7,10 +7,11 @@
 
 static inline void closest_in_sphere(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                      SolidHits* hits) {
-  const REAL shift = come_near(&o, d, active);
-  const Span span = round_span(o, d, 1.0f);
+  REAL3 near = o;
+  const REAL shift = come_near(&near, d, active);
+  const Span span = round_span(near, d, 1.0f);
   const REAL t = select(span.leave, span.enter, MASK_OF(shift + span.enter > t_min));
-  offer(shift + t, along3(o, t, d), NO_LANES, active & span.crosses, t_min, hits);
+  offer(shift + t, along3(near, t, d), NO_LANES, active & span.crosses, t_min, hits);
 }
 
 static inline SurfacePoints points_on_sphere(float4 parameters, REAL3 p, MASK part) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "compile/fields/held_bailout.h"
 #include "scene/formula/evaluate.h"
-#include "scene/formula/held_bailout.h"
 #include "sdf_testing.h"
 
 // From random points towards the surface and to its sides, by steps of a seventh of the estimate: where

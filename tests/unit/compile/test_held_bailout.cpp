@@ -1,6 +1,6 @@
 // How far an orbit may go before floats end.
 #include "catch.h"
-#include "scene/formula/held_bailout.h"
+#include "compile/fields/held_bailout.h"
 #include "scene/formula/list.h"
 
 using namespace sundog;

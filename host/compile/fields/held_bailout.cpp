@@ -1,5 +1,5 @@
 // See held_bailout.h.
-#include "scene/formula/held_bailout.h"
+#include "compile/fields/held_bailout.h"
 
 #include <algorithm>
 #include <cmath>
