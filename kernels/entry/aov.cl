@@ -139,6 +139,7 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
   add_parallax(scene, rays.d, hit, &s);
   add_relief(scene, rays.d, hit, &s);
   const Bsdfs bsdf = make_bsdfs(scene, &s, met.before, met.after, hit);
+  const REAL3 albedo = albedo_of(&bsdf);
   const REAL sunk = ways_to_heights(scene, &s, rays.d, hit);
   const REAL3 world = add3(add3(along3(s.p, sunk, rays.d), all3(scene->info->origin_rest.xyz)),
                            all3(scene->info->origin.xyz));
@@ -154,7 +155,7 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
     }
     out[0] = (float4)(get3(&s.ns, i), REAL_LANE(depth, i));
     out[1] = (float4)(get3(&world, i), (float)scene->instances[MASK_LANE(met.hit.instance, i)].object);
-    out[2] = (float4)(get3(&bsdf.diffuse, i), (float)MASK_LANE(met.face.material, i));
+    out[2] = (float4)(get3(&albedo, i), (float)MASK_LANE(met.face.material, i));
   }
   write_more(scene, stack, x, y, lanes, hit, &s, counts, aovs + AOV_VECTORS * first);
   add_finished(counters, lane_count(lanes), pixel_count);

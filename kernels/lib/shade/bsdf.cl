@@ -47,7 +47,13 @@ static inline void add_layers(const Scene* scene, const SurfaceInteractions* s, 
   }
 }
 static inline void start_opaque(Bsdfs* bsdf) { bsdf->there = (REAL)(1.0f); }
+// The colour of surfaces, of metals as of what scatters light below.
+static inline REAL3 albedo_of(const Bsdfs* bsdf) {
+  const MASK layered = MASK_OF((bsdf->flags & (int)MATERIAL_LAYERED) != 0);
+  return select3(bsdf->diffuse, scale3(bsdf->base, bsdf->there), layered);
+}
 #else
+static inline REAL3 albedo_of(const Bsdfs* bsdf) { return bsdf->diffuse; }
 static inline void add_layers(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {}
 static inline void start_opaque(Bsdfs* bsdf) {}
 #endif
