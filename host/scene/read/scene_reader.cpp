@@ -17,6 +17,7 @@
 #include "scene/json/parse.h"
 #include "scene/lamps.h"
 #include "scene/procedural/procedural.h"
+#include "scene/read/dark_world.h"
 #include "scene/read/library.h"
 #include "scene/read/motion.h"
 #include "scene/read/parts.h"
@@ -64,6 +65,7 @@ class SceneReader {
       scene_.camera = frame(bounds_of(scene_.objects, scene_.meshes, scene_.fields),
                             static_cast<double>(scene_.image.width) / scene_.image.height, scene_.camera);
     add_lamps(scene_);
+    warn_of_dark_world(scene_);
   }
 
   void read_tables(JsonObject& object) {

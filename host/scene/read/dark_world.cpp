@@ -1,0 +1,42 @@
+// See dark_world.h.
+#include "scene/read/dark_world.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "scene/integrators.h"
+
+namespace sundog {
+namespace {
+
+bool shines_from_afar(const SceneDescription& scene) {
+  const bool sky = scene.environment.type != EnvironmentType::none && scene.environment.intensity > 0 &&
+                   scene.environment.color != dvec3(0);
+  return sky || std::ranges::any_of(scene.lights, [](const LightDescription& light) {
+           return light.type == LightType::directional && light.intensity > 0 && light.color != dvec3(0);
+         });
+}
+
+std::array<double, 3> numbers(const dvec3& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+void warn_of_dark_world(SceneDescription& scene) {
+  const MediumDescription& world = scene.media[0];
+  const bool fog = traces_paths(scene.render.integrator) && scene.fog.anisotropy && scene.fog.density > 0;
+  const dvec3 scattering = world.scattering +
+                           (fog ? scene.fog.density * glm::min(scene.fog.color, dvec3(1)) : dvec3(0)),
+              taken = world.scattering + world.absorption + (fog ? dvec3(scene.fog.density) : dvec3(0));
+  if (taken == dvec3(0) || !shines_from_afar(scene)) return;
+  scene.warnings.push_back(
+      fmt::format("{}: no light of a sun, a sky or a directional light gets through what has no end; put the "
+                  "scene into a "
+                  "box instead, of a medium with \"scattering\": [{:.4g}], \"absorption\": [{:.4g}]",
+                  fog ? "/world/fog" : "/world/medium", fmt::join(numbers(scattering), ", "),
+                  fmt::join(numbers(taken - scattering), ", ")));
+}
+
+}  // namespace sundog
