@@ -40,12 +40,12 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
       const u32 i = lowest_bit(bits), to = first - launch->first + i;
       const float3 p = get3(&landings.p, i), flux = get3(&landings.flux, i);
       const float2 wi = pack_direction(get3(&landings.wi, i));
-      landed[2u * to] = (float4)(p, wi.x);
-      // The second number is in [-1, 1].
-      landed[2u * to + 1u] = (float4)(flux, wi.y + 4.0f * (float)MASK_LANE(landings.sent_on, i));
+      const u32 slice = photon_slice(REAL_LANE(starts.time, i));
+      landed[2u * to] = (float4)(p, with_count(wi.x, slice));
+      landed[2u * to + 1u] = (float4)(flux, with_count(wi.y, (u32)MASK_LANE(landings.sent_on, i)));
       const float3 zero = (p + flux) * 0.0f;  // NaN where one is not finite
       if (zero.x + zero.y + zero.z == 0.0f)
-        cells[to] = photon_cell(photon_cube(p, launch->inverse_edge)) & (NO_PHOTON >> 1);
+        cells[to] = photon_cell(photon_cube(p, launch->inverse_edge), slice) & (NO_PHOTON >> 1);
     }
   }
 }

@@ -34,10 +34,10 @@ bool sends_on(const SceneDescription& scene, const Instance& instance, const Com
 
 glm::dvec3 middle_of(const float4& ball) { return {ball.x, ball.y, ball.z}; }
 
-/// A ball about the instance: a sphere's own, where its scale is the same along all axes.
-float4 ball_about(const Instance& instance, const Bounds& box) {
+/// A ball about the instance, wherever it moves: a sphere's own, where its scale is the same along all axes.
+float4 ball_about(const SceneDescription& scene, const Instance& instance, const Bounds& box) {
   float4 ball = sphere_around(box);
-  if (instance.shape != SHAPE_SPHERE) return ball;
+  if (instance.shape != SHAPE_SPHERE || scene.objects[instance.object].moves()) return ball;
   const auto row = [&](int i) { return middle_of(instance.object_from_world[i]); };
   const double square = glm::dot(row(0), row(0)), least = 1e-5 * square;
   for (const int i : {0, 1, 2})
@@ -62,7 +62,7 @@ std::vector<float4> find_balls(const SceneDescription& scene, std::span<const Bo
     all.extend(boxes[i]);
     if (!sends) continue;
     smooth.extend(boxes[i]);
-    balls.push_back(ball_about(instance, boxes[i]));
+    balls.push_back(ball_about(scene, instance, boxes[i]));
   }
   if (balls.size() > most_targets + 1) balls = {{}, sphere_around(smooth)};
   balls[0] = all.lower[0] <= all.upper[0] ? sphere_around(all) : float4{};
@@ -130,6 +130,22 @@ std::vector<float> share_photons(const std::vector<float4>& balls, const Compile
   return sums;
 }
 
+/// Planes behind the balls, with a weight below 0 and where no number chooses them
+/// (kernels/lib/pathtracer/photon_start.cl): where they are when the shutter opens, and those that move also
+/// where they are when it closes.
+void append_planes(const SceneDescription& scene, const CompiledScene& out,
+                   std::vector<PhotonTarget>& targets) {
+  for (const Instance& instance : out.instances.rows()) {
+    if (instance.shape != SHAPE_PLANE) continue;
+    float4 plane = instance.object_from_world[1];
+    targets.push_back({plane, -1, 2, 0, 0});
+    const dvec3 move = scene.objects[instance.object].moves_by;
+    if (move == dvec3(0)) continue;
+    plane.w -= static_cast<float>(glm::dot(middle_of(plane), move));
+    targets.push_back({plane, -1, 2, 0, 0});
+  }
+}
+
 /// Photons go to balls in proportion to their radii: small things throw the sharpest light.
 std::vector<PhotonTarget> share_balls(const std::vector<float4>& balls) {
   double sum = 0, all = 0;
@@ -168,7 +184,9 @@ void add_photon_targets(const SceneDescription& scene, std::span<const Bounds> b
   std::vector<float> shares = share_photons(balls, out);
   if (shares.empty()) return;
   out.photon_lights = std::move(shares);
-  out.photon_targets = share_balls(balls);
+  std::vector<PhotonTarget> targets = share_balls(balls);
+  append_planes(scene, out, targets);
+  out.photon_targets = std::move(targets);
   out.photons_by.count = static_cast<u32>(scene.render.photons);
   const double radius =
       scene.render.photon_radius > 0 ? scene.render.photon_radius : usual_radius(balls, scene.render.photons);

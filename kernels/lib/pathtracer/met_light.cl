@@ -60,7 +60,7 @@ static inline REAL3 weighed_emission(const Scene* scene, const Walks* walks, REA
     lamp = select(lamp, light_of_instance(scene, index, hits->prim), mine);
   }
   const MASK lamps = lanes & MASK_OF(lamp != (int)NO_LIGHT), chosen = lamps & MASK_OF(walks->density > 0.0f);
-  const REAL3 left = select3(light, all3((float3)(0.0f)), lamps & found_by_photons(walks));
+  const REAL3 left = left_by_photons(walks, light, lamps);
   if (!any_lane(chosen)) return left;
   const REAL weight = weight_of_met(scene, walks, chosen_density(scene, walks, d, at->s.p, lamp, chosen));
   return select3(left, scale3(left, weight), chosen);
@@ -96,15 +96,15 @@ static inline REAL3 met_sky(const Scene* scene, const Walks* walks, REAL3 d, MAS
   if (sees_environment(scene)) {
     const REAL chosen = density * chance;
     light = scale3(light, weight_of_met(scene, walks, density_on_stretch(walks, 0, chosen)));
-    if (HAS_CAUSTICS) light = select3(light, all3((float3)(0.0f)), found_by_photons(walks));
+    light = left_by_photons(walks, light, lanes);
   }
   for (u32 index = 0; index < scene->info->table_lights; ++index) {
     __global const Light* sun = scene->lights + index;
     if (sun->kind != LIGHT_SUN) continue;
     const REAL chosen = density_on_stretch(walks, 0, (REAL)(sun_density(sun, chance)));
     const REAL weight = weight_of_met(scene, walks, chosen);
-    light = select3(light, along3(light, weight, all3(sun->color.xyz)),
-                    in_sun(sun, d) & ~found_by_photons(walks));
+    const REAL3 seen = left_by_photons(walks, all3(sun->color.xyz), lanes);
+    light = select3(light, along3(light, weight, seen), in_sun(sun, d));
   }
   return light;
 }

@@ -4,12 +4,30 @@
 #include "lib/core/sampler.cl"
 #include "shared/photons.h"
 
+// Where things move, light that is seen at one time has come at that time: photons lie in slices of the time
+// for which the shutter is open, each of which stands for the whole.
+#if HAS_OBJECT_MOTION
+#define PHOTON_SLICES 16u
+static inline u32 photon_slice(float time) {
+  return min((u32)(time * (float)PHOTON_SLICES), PHOTON_SLICES - 1u);
+}
+#else
+#define PHOTON_SLICES 1u
+static inline u32 photon_slice(float time) { return 0u; }
+#endif
+
 static inline int3 photon_cube(float3 p, float inverse_edge) {
   return convert_int3_sat_rtn(p * inverse_edge);
 }
-static inline u32 photon_cell(int3 cube) {
-  return hash_u32((u32)cube.x + hash_u32((u32)cube.y + hash_u32((u32)cube.z)));
+static inline u32 photon_cell(int3 cube, u32 slice) {
+  const u32 above = hash_u32((u32)cube.z + slice * 0x9e3779b9u);
+  return hash_u32((u32)cube.x + hash_u32((u32)cube.y + above));
 }
+
+// A number in [-1, 1] with a whole number in the same float, and the whole number again.
+static inline float with_count(float value, u32 count) { return value + 4.0f * (float)count; }
+static inline u32 count_of(float packed) { return (u32)floor((packed + 2.0f) * 0.25f); }
+static inline float without_count(float packed) { return packed - 4.0f * (float)count_of(packed); }
 
 // A unit direction as two numbers in [-1, 1]: the octahedron unfolded (Cigolle and others 2014, "A Survey of
 // Efficient Representations for Independent Unit Vectors").

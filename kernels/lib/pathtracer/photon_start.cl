@@ -54,6 +54,10 @@ static inline u32 choose_photon_light(const Scene* scene, float u, float* share)
   return low;
 }
 
+// Planes follow the balls in the table, with a weight below 0, where dot(ball.xyz, p) + ball.w = 0; no number
+// chooses them.
+static inline bool is_plane(__global const PhotonTarget* target) { return target->weight < 0.0f; }
+
 static inline u32 choose_ball(const Scene* scene, u32 targets, float u) {
   u32 ball = 1u;
   while (ball + 1u < targets && scene->photon_targets[ball + 1u].before <= u) ++ball;
@@ -70,7 +74,7 @@ static inline float cone_span(float4 ball, float3 p) {
 // The density, per steradian, with which photons leave p in the direction d.
 static inline float density_to_balls(const Scene* scene, u32 targets, float3 p, float3 d) {
   float density = 0.0f;
-  for (u32 i = 1; i < targets; ++i) {
+  for (u32 i = 1; i < targets && !is_plane(scene->photon_targets + i); ++i) {
     const float4 ball = scene->photon_targets[i].ball;
     const float span = cone_span(ball, p);
     const float3 way = ball.xyz - p, chord = d - way * rsqrt(fmax(dot(way, way), 1e-30f));
@@ -93,7 +97,7 @@ static inline float3 direction_to_ball(float4 ball, float3 p, float a, float b) 
 // The same for parallel light along d: the density per area across it, and a place before everything.
 static inline float density_across(const Scene* scene, u32 targets, float3 p, float3 d) {
   float density = 0.0f;
-  for (u32 i = 1; i < targets; ++i) {
+  for (u32 i = 1; i < targets && !is_plane(scene->photon_targets + i); ++i) {
     const float4 ball = scene->photon_targets[i].ball;
     const float3 way = p - ball.xyz, across = way - dot(way, d) * d;
     if (dot(across, across) <= ball.w * ball.w)
@@ -111,6 +115,18 @@ static inline float3 place_across(const Scene* scene, float4 ball, float3 d, flo
   return p - (dot(p - all.xyz, d) + 1.01f * all.w + ball.w) * d;
 }
 
+// How far before p light along d meets the first of the planes that stand in its way: they have no end, and
+// the ball about everything leaves them out.
+static inline float way_to_planes(const Scene* scene, u32 targets, float3 p, float3 d) {
+  float way = 0.0f;
+  for (u32 i = targets - 1u; i > 0u && is_plane(scene->photon_targets + i); --i) {
+    const float4 plane = scene->photon_targets[i].ball;
+    const float to_plane = (dot(plane.xyz, p) + plane.w) / dot(plane.xyz, d);
+    if (to_plane < INFINITY) way = fmax(way, to_plane);
+  }
+  return way;
+}
+
 // A direction to a sun.
 static inline float3 direction_in_sun(__global const Light* light, float c, float e) {
   const float drop = c * fabs(light->direction.w), side = sqrt(drop * (2.0f - drop));
@@ -125,6 +141,7 @@ static inline void start_from_afar(const Scene* scene, u32 targets, float4 ball,
                                    const PhotonNumbers* u, PhotonStart* start) {
   start->o = place_across(scene, ball, start->d, u->a, u->b);
   start->flux = sent / density_across(scene, targets, start->o, start->d);
+  start->o -= 1.001f * way_to_planes(scene, targets, start->o, start->d) * start->d;
 }
 
 static inline void start_on_light(const Scene* scene, u32 targets, float4 ball, __global const Light* light,

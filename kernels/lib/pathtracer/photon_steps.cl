@@ -96,7 +96,7 @@ NEVER_INLINE MASK step_photons(const Scene* scene, Photons* photons, SceneRays* 
   const BsdfSamples sample = sample_perfect_lobes(&at.bsdf, &lobes, wo, u.z, hit);
   const MASK perfect = hit & sample.specular, some = MASK_OF(greatest3(sample.weight) > 0.0f);
   // On a surface that scatters and mirrors, chance decides which of the two the photon represents.
-  const REAL one = (REAL)(1.0f), rest = lobes.matte + lobes.glossy + lobes.facets;
+  const REAL one = (REAL)(1.0f), rest = scattered_share(&lobes);
   const MASK lands = hit & ~perfect & photons->bent & MASK_OF(rest > 0.0f) &
                      MASK_OF(carry_greatest(walks->throughput) > 0.0f);
   landed->p = at.s.p;

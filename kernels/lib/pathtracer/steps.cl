@@ -41,7 +41,7 @@ NEVER_INLINE MASK scatter(const Scene* scene, const Encounters* met, const Shadi
   walks->density = select(walks->density, select(sample.density, zero, sample.specular), turns);
   walks->from = select3(walks->from, at->s.p, turns);
   leave_stretch(walks, turns);
-  note_gathered(walks, sample.specular, turns);
+  note_gathered(walks, sample.specular, narrow_part(scene, &at->bsdf, lobes, wo, &sample, lanes), turns);
   MASK going = some & MASK_OF(walks->depth <= (int)scene->info->max_depth);
   counts[COUNT_DEPTH_LIMIT] += lane_count(some & ~going);
   going = play_roulette(scene, walks, dimension, going);

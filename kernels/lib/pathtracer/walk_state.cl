@@ -22,6 +22,7 @@ typedef struct Walks {
   Wavelengths wavelengths;
 #if HAS_CAUSTICS
   MASK gathered;  // GATHERED_*
+  REAL3 narrow;   // the part of the throughput that is of narrow lobes of the surface that gathered
 #endif
 #if HAS_SCATTERING
   Scattered scattered;  // the density is then that of the place on the stretch and of the direction
@@ -76,31 +77,38 @@ static inline void forget_stretches(Walks* walks) {}
 #endif
 
 // Light that photons have brought to a path's last surface, which it must not meet again through what has
-// mirrored or bent it since: the lights that photons leave.
+// mirrored or bent it since: the lights that photons leave. Narrow lobes do not get it from photons.
 #if HAS_CAUSTICS
 #define GATHERED_NOTHING 0
 #define GATHERED_HERE 1    // at the surface that the ray leaves, or before interfaces that let it pass
 #define GATHERED_BEFORE 2  // at one before it; the ray was mirrored or bent since
 static inline void forget_gathered(Walks* walks, MASK lanes) {
   walks->gathered = select(walks->gathered, (MASK)(GATHERED_NOTHING), lanes);
+  walks->narrow = select3(walks->narrow, all3((float3)(0.0f)), lanes);
 }
 static inline void join_gathered(Walks* walks, const Walks* other, MASK lanes) {
   walks->gathered = select(walks->gathered, other->gathered, lanes);
+  walks->narrow = select3(walks->narrow, other->narrow, lanes);
 }
-// The paths of `turns` leave surfaces that have gathered photons, unless they are mirrored or bent there.
-static inline void note_gathered(Walks* walks, MASK specular, MASK turns) {
+// The paths of `turns` leave surfaces that have gathered photons, unless they are mirrored or bent there;
+// `narrow` is the part of their weights by narrow lobes.
+static inline void note_gathered(Walks* walks, MASK specular, REAL3 narrow, MASK turns) {
   const MASK before =
       select((MASK)(GATHERED_NOTHING), (MASK)(GATHERED_BEFORE), MASK_OF(walks->gathered != GATHERED_NOTHING));
   walks->gathered = select(walks->gathered, select((MASK)(GATHERED_HERE), before, specular), turns);
+  walks->narrow = select3(walks->narrow, narrow, turns & ~specular);
 }
 static inline MASK found_by_photons(const Walks* walks) {
   return MASK_OF(walks->gathered == GATHERED_BEFORE);
 }
+static inline REAL3 left_by_photons(const Walks* walks, REAL3 light, MASK lanes) {
+  return select3(light, multiply3(light, walks->narrow), lanes & found_by_photons(walks));
+}
 #else
 static inline void forget_gathered(Walks* walks, MASK lanes) {}
 static inline void join_gathered(Walks* walks, const Walks* other, MASK lanes) {}
-static inline void note_gathered(Walks* walks, MASK specular, MASK turns) {}
-static inline MASK found_by_photons(const Walks* walks) { return NO_LANES; }
+static inline void note_gathered(Walks* walks, MASK specular, REAL3 narrow, MASK turns) {}
+static inline REAL3 left_by_photons(const Walks* walks, REAL3 light, MASK lanes) { return light; }
 #endif
 
 // The first dimension of the numbers from `offset` (BOUNCE_...) on of the surfaces that the rays meet.

@@ -115,7 +115,6 @@ static inline void start_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo,
   lobes->layered = sum_of_shares(&lobes->layers);
 }
 static inline REAL past_layers_of(const Lobes* lobes, REAL at) { return at + lobes->layered; }
-static inline MASK scatters_by_layers(const Lobes* lobes) { return MASK_OF(lobes->layered > 0.0f); }
 static inline MASK matte_layers(const Lobes* lobes) { return MASK_OF(lobes->layers.matte > 0.0f); }
 static inline void add_layer_scatter(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
                                      REAL3 wi, MASK lanes, REAL3* value, REAL* chosen) {
@@ -130,7 +129,6 @@ static inline void send_by_layers(const Scene* scene, const Bsdfs* bsdf, const L
 #else
 static inline void start_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes, Lobes* lobes) {}
 static inline REAL past_layers_of(const Lobes* lobes, REAL at) { return at; }
-static inline MASK scatters_by_layers(const Lobes* lobes) { return NO_LANES; }
 static inline MASK matte_layers(const Lobes* lobes) { return NO_LANES; }
 static inline void add_layer_scatter(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
                                      REAL3 wi, MASK lanes, REAL3* value, REAL* chosen) {}
@@ -241,10 +239,11 @@ static inline BsdfSamples sample_perfect_lobes(const Bsdfs* bsdf, const Lobes* l
   return sample;
 }
 
-// The surfaces whose lobes send light in more directions than single ones.
-static inline MASK scatters(const Lobes* lobes) {
-  return MASK_OF(lobes->matte + lobes->glossy + lobes->facets > 0.0f) | scatters_by_layers(lobes);
+// The share of the lobes that send light in more directions than single ones.
+static inline REAL scattered_share(const Lobes* lobes) {
+  return past_layers_of(lobes, lobes->matte + lobes->glossy + lobes->facets);
 }
+static inline MASK scatters(const Lobes* lobes) { return MASK_OF(scattered_share(lobes) > 0.0f); }
 
 static inline BsdfSamples bsdf_sample(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL u_term, REAL u_x,
                                       REAL u_y, MASK lanes) {

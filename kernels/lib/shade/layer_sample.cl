@@ -41,7 +41,9 @@ static inline REAL3 left_where_there(const Bsdfs* bsdf, REAL3 through, REAL3 lef
 static inline LayerShares make_shares(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes,
                                       SpecularSplits* split) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), c = dot3(bsdf->ns, wo);
-  LayerShares shares = {zero, zero, zero, zero};
+  LayerShares shares;
+  shares.fuzz = shares.coat = shares.shine = shares.matte = zero;
+  leave_nothing_out(&shares);
   u32 index;
   for (u32 left = lane_bits(layered_lanes(bsdf, lanes)); left;) {
     const MASK mine = take_alike(bsdf->material, &left, &index);

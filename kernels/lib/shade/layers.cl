@@ -13,7 +13,21 @@
 // How much of the samples each kind of lobe gets.
 typedef struct LayerShares {
   REAL fuzz, coat, shine, matte;
+#if HAS_CAUSTICS
+  REAL least;  // facets narrower than this are left out; 0: none are
+#endif
 } LayerShares;
+
+// 0 where facets of these widths are left out, else 1.
+#if HAS_CAUSTICS
+static inline REAL if_wide(const LayerShares* shares, REAL alpha_x, REAL alpha_y) {
+  return select((REAL)(1.0f), (REAL)(0.0f), MASK_OF(alpha_x * alpha_y < shares->least * shares->least));
+}
+static inline void leave_nothing_out(LayerShares* shares) { shares->least = (REAL)(0.0f); }
+#else
+static inline void leave_nothing_out(LayerShares* shares) {}
+static inline REAL if_wide(const LayerShares* shares, REAL alpha_x, REAL alpha_y) { return (REAL)(1.0f); }
+#endif
 
 static inline REAL3 into_frame(const Bsdfs* bsdf, REAL3 w) {
   return real3(dot3(w, bsdf->tangent), dot3(w, bsdf->bitangent), dot3(w, bsdf->ns));
@@ -109,7 +123,8 @@ static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, 
     const REAL gains = coat_gain(scene, m, wo, coated) * coat_gain(scene, m, wi, coated);
     const FacetLobe lobe = facet_lobe(wo, wi, h, (REAL)(m->coat_alpha), (REAL)(m->coat_alpha_y), gains);
     const REAL part = mend_share(interface_reflectance(wo_h, (REAL)(m->coat_eta)), lobe.more);
-    const REAL coat = select((REAL)(0.0f), coat_weight(m, base) * part * lobe.value * kept, coated);
+    const REAL wide = if_wide(shares, (REAL)(m->coat_alpha), (REAL)(m->coat_alpha_y));
+    const REAL coat = select((REAL)(0.0f), coat_weight(m, base) * part * lobe.value * kept * wide, coated);
     value = add3(value, real3(coat, coat, coat));
     kept = real_min(past_layers(scene, m, base, wo.z, coated), past_layers(scene, m, base, wi.z, coated));
     tint = multiply3(coat_tints(m, base, wo.z), coat_tints(m, base, wi.z));
@@ -120,7 +135,8 @@ static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, 
   const FacetLobe shine = facet_lobe(wo, wi, h, base->alpha_x, base->alpha_y, gains);
   chance += shares->shine * shine.density;
   const REAL3 color = mend_shares(shine_color(scene, m, base, bsdf->base, wo_h, lanes), shine.more);
-  REAL3 own = scale3(color, shine.value * (sharp * base->shine_scale) * select(one, kept, coated));
+  const REAL wide = if_wide(shares, base->alpha_x, base->alpha_y);
+  REAL3 own = scale3(color, shine.value * (sharp * base->shine_scale) * select(one, kept, coated) * wide);
   const REAL ground = (1.0f - base->metal) * (1.0f - base->glass);
   if (any_lane(lanes & MASK_OF(ground > 0.0f))) {
     const REAL3 matte = matte_lobe(wo, wi, bsdf->base, m->matte_roughness);
@@ -147,7 +163,9 @@ static inline MASK layered_lanes(const Bsdfs* bsdf, MASK lanes) {
 static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes,
                                   REAL3 light) {
   MASK layered = layered_lanes(bsdf, lanes & MASK_OF(dot3(bsdf->ng, wi) > 0.0f));
-  const LayerShares none = {(REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f)};
+  LayerShares none;
+  none.fuzz = none.coat = none.shine = none.matte = (REAL)(0.0f);
+  leave_nothing_out(&none);
   const REAL3 o = into_frame(bsdf, wo), i = into_frame(bsdf, wi);
   REAL3 sum = light;
   u32 index;

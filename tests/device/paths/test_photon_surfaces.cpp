@@ -1,0 +1,139 @@
+// Photons on layered and glossy surfaces, of glass that moves, and where planes stand in their way: they
+// bring the light that paths find by chance, and no other.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "compile/compiled_scene.h"
+#include "path_testing.h"
+#include "scene/json/parse.h"
+#include "scene/read/scene_reader.h"
+
+using namespace sundog;
+using namespace sundog::paths;
+
+namespace {
+
+SceneDescription scene_of(const std::string& text) {
+  const nlohmann::json document = parse_json(text, "test.json");
+  const JsonContext context{"test.json"};
+  return read_scene(JsonValue(document, context));
+}
+
+constexpr const char* ball_lamp =
+    R"({"type": "sphere", "position": [0, 5, -5], "radius": 1.5, "intensity": 8})";
+constexpr const char* small_spot =
+    R"({"type": "spot", "position": [0, 5, -5], "target": [0, 0.5, 0], "outer_angle": 30, "intensity": 2})";
+
+/// The light of a lamp behind a ball of glass on a floor.
+SceneDescription floor_behind_ball(const std::string& lamp, const std::string& floor) {
+  return scene_of(fmt::format(
+      R"({{"camera": {{"position": [0, 4, 5], "target": [0, 0, 1.1], "fov": 7}},
+      "image": {{"width": 16, "height": 16}},
+      "render": {{"integrator": "path", "caustics": true, "samples": 64, "max_depth": 8}},
+      "lights": [{}],
+      "materials": {{"floor": {}, "glass": {{"type": "dielectric", "ior": 1.5}}}},
+      "objects": [{{"type": "box", "min": [-5, -0.4, -5], "max": [5, 0, 5], "material": "floor"}},
+        {{"type": "sphere", "center": [0, 0.9, 0], "radius": 0.85, "material": "glass"}}]}})",
+      lamp, floor));
+}
+
+double greatest_over_mean(const Image& image) {
+  double most = 0, sum = 0;
+  for (std::size_t i = 0; i < image.data.size(); i += 4) {
+    most = std::max(most, double(image.data[i]));
+    sum += double(image.data[i]);
+  }
+  return most * double(image.data.size()) / 4 / sum;
+}
+
+/// A ball of glass under a lamp, seen from above; it moves, or stands where it is at the time.
+SceneDescription moving_ball(std::optional<double> time) {
+  const double at = time.value_or(0), way = time ? 0 : 1;
+  return scene_of(fmt::format(
+      R"({{"camera": {{"position": [0, 6, 0.01], "target": [0.3, 0, 0.1], "up": [0, 0, -1], "fov": 20}},
+      "image": {{"width": 16, "height": 16}},
+      "render": {{"integrator": "path", "caustics": true, "samples": 32, "max_depth": 12}},
+      "lights": [{{"type": "sphere", "position": [1, 3, 1], "radius": 0.35, "intensity": 20}}],
+      "materials": {{"white": {{"color": [0.7, 0.7, 0.7], "ambient": 0, "diffuse": 1}},
+        "glass": {{"type": "dielectric", "ior": 1.5}}}},
+      "objects": [{{"type": "plane", "material": "white"}},
+        {{"type": "sphere", "radius": 0.6, "center": [{}, 0.8, {}], "material": "glass", "moves_by": [{}, 0, {}]}}]}})",
+      0.8 * at, 0.3 * at, 0.8 * way, 0.3 * way));
+}
+
+}  // namespace
+
+TEST_CASE("layered and glossy surfaces have from photons, and narrow lobes from paths, what paths find") {
+  const char* floors[] = {
+      R"({"type": "openpbr", "base_color": [0.4, 0.4, 0.4], "specular_roughness": 0.42})",
+      R"({"type": "openpbr", "base_color": [0.4, 0.4, 0.4], "coat_weight": 1, "coat_roughness": 0.2})",
+      R"({"type": "openpbr", "base_color": [0.8, 0.8, 0.8], "base_metalness": 1, "specular_roughness": 0.3})",
+      R"({"type": "openpbr", "base_color": [0.8, 0.8, 0.8], "base_metalness": 1, "specular_roughness": 0.5})",
+      R"({"color": [0.2, 0.2, 0.2], "diffuse": 1, "reflection": 0.3, "roughness": 0.3})",
+      R"({"color": [0.2, 0.2, 0.2], "diffuse": 1, "specular": {"color": [0.3, 0.3, 0.3], "exponent": 400}})"};
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const char* floor : floors) {
+      SceneDescription scene = floor_behind_ball(ball_lamp, floor);
+      const Mean brought = mean_on(device, scene);
+      scene.render.caustics = false;
+      scene.render.samples = 256;
+      const Mean met = mean_on(device, scene);
+      CAPTURE(floor, brought.value.x, met.value.x);
+      CHECK(brought.value.x == Approx(met.value.x).epsilon(0.04));
+    }
+  });
+}
+
+TEST_CASE("photons leave no specks on a glossy floor") {
+  const auto speckled = [](const DeviceInfo& device, double reflection) {
+    SceneDescription scene = floor_behind_ball(
+        small_spot,
+        fmt::format(R"({{"color": [0.2, 0.2, 0.2], "diffuse": 1, "reflection": {}, "roughness": 0.2}})",
+                    reflection));
+    scene.camera.fov = 18;
+    scene.render.samples = 16;
+    return greatest_over_mean(scenes::render_on(device, scene).image);
+  };
+  on_picture_devices([&](const DeviceInfo& device) {
+    CHECK(speckled(device, 0.3) == Approx(speckled(device, 0)).epsilon(0.02));
+  });
+}
+
+TEST_CASE("photons of moving glass make the mean of its stills") {
+  on_picture_devices([&](const DeviceInfo& device) {
+    constexpr int stills = 8;
+    double sum = 0;
+    for (int i = 0; i < stills; ++i) sum += mean_on(device, moving_ball((i + 0.5) / stills)).value.x;
+    CHECK(mean_on(device, moving_ball({})).value.x == Approx(sum / stills).epsilon(0.04));
+  });
+}
+
+TEST_CASE("a plane without end between the sun and everything stops photons, as a box does") {
+  const auto behind = [](const std::string& wall, const std::string& more) {
+    return scene_of(fmt::format(
+        R"({{"camera": {{"position": [0, 3, 7], "target": [0, 0, 1], "fov": 20}},
+        "image": {{"width": 16, "height": 16}},
+        "render": {{"integrator": "path", "caustics": true, "samples": 4}},
+        "lights": [{{"type": "directional", "direction": [0.3, -0.6, 0.7], "intensity": 2{}}}],
+        "materials": {{"white": {{"color": [0.8, 0.8, 0.8], "diffuse": 1, "ambient": 0}},
+          "glass": {{"type": "dielectric", "ior": 1.5}}}},
+        "objects": [{{"type": "plane", "material": "white"}}, {},
+          {{"type": "sphere", "center": [0, 1, 0], "radius": 0.9, "material": "glass"}}]}})",
+        more, wall));
+  };
+  const std::string
+      opaque = R"({"type": "plane", "point": [0, 0, -12], "normal": [0, 0, 1], "material": "white"})",
+      box = R"({"type": "box", "min": [-99, -1, -13], "max": [99, 99, -12], "material": "white"})",
+      moving = R"({"type": "plane", "point": [0, 0, -12], "normal": [0, 0, 1], "material": "white",
+                      "moves_by": [0, 0, -3]})";
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const std::string& sun : {std::string(), std::string(R"(, "angle": 2)")})
+      for (const std::string& wall : {opaque, box, moving}) {
+        CAPTURE(sun, wall);
+        CHECK(mean_on(device, behind(wall, sun)).value.x == 0);
+      }
+  });
+}
