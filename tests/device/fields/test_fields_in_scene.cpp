@@ -90,6 +90,23 @@ TEST_CASE("distance fields look like exact solids") {
   CHECK(difference.over_tolerance < 100);  // of 9216: silhouettes
 }
 
+TEST_CASE("a closed form without thickness is lit as a thin one") {
+  const auto wall = [](const char* formula, const char* size, double thickness) {
+    return still_life(fmt::format(
+        R"({{"type": "fractal", "formula": "{}", "material": "matte", "parameters": {{"{}": {}}}}})", formula,
+        size, thickness));
+  };
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const auto& [formula, size] : {std::pair{"gyroid", "thickness"}, {"cylinder", "half_height"}}) {
+      CAPTURE(formula);
+      const Image thin = scenes::render_on(device, wall(formula, size, 0.002)).image;
+      const ImageDifference d =
+          compare_images(scenes::render_on(device, wall(formula, size, 0)).image, thin, 0.1);
+      CHECK(d.over_tolerance < d.pixels / 30);  // silhouettes
+    }
+  });
+}
+
 TEST_CASE("light through a field is absorbed over the length inside, as far as the interval reaches") {
   struct Cut {
     std::string interval;
