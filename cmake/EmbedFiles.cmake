@@ -75,13 +75,15 @@ function(sundog_embed_page target)
   sundog_embed_files(${target} page_files PageFile app/serve/page_files.h ${pairs})
 endfunction()
 
-# Adds the source of built_lobe_energy() to a target, which a program of the build's own computes.
-function(sundog_write_lobe_energy target)
-  set(output ${CMAKE_CURRENT_BINARY_DIR}/built_lobe_energy.cpp)
-  add_executable(write_lobe_energy ${PROJECT_SOURCE_DIR}/cmake/write_lobe_energy.cpp ${CMAKE_CURRENT_SOURCE_DIR}/compile/lobe_energy.cpp)
-  target_include_directories(write_lobe_energy PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/kernels)
-  target_link_libraries(write_lobe_energy PRIVATE sundog_warnings sundog_glm TBB::tbb)
-  add_custom_command(OUTPUT ${output} COMMAND write_lobe_energy ${output} DEPENDS write_lobe_energy
+# Adds the source of built_lobe_energy() and built_layer_tables() to a target, which a program of the build's own computes.
+function(sundog_write_surface_tables target)
+  set(output ${CMAKE_CURRENT_BINARY_DIR}/built_surface_tables.cpp)
+  set(compile ${CMAKE_CURRENT_SOURCE_DIR}/compile)
+  add_executable(write_surface_tables ${PROJECT_SOURCE_DIR}/cmake/write_surface_tables.cpp ${compile}/lobe_energy.cpp
+    ${compile}/layers/facets.cpp ${compile}/layers/albedos.cpp)
+  target_include_directories(write_surface_tables PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/kernels)
+  target_link_libraries(write_surface_tables PRIVATE sundog_warnings sundog_glm TBB::tbb)
+  add_custom_command(OUTPUT ${output} COMMAND write_surface_tables ${output} DEPENDS write_surface_tables
     COMMENT "Computing the tables of rough surfaces" VERBATIM)
   target_sources(${target} PRIVATE ${output})
   set_source_files_properties(${output} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

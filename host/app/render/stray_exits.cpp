@@ -5,13 +5,35 @@
 
 #include <algorithm>
 #include <map>
+#include <unordered_set>
 
 #include "scene/mesh_faults.h"
 
 namespace sundog {
 namespace {
 
-using ObjectNames = std::vector<std::string>;
+/// Names of objects, each once: the first few as they are, the others as a number.
+class ObjectNames {
+ public:
+  void add(const std::string& name) {
+    if (known_.insert(name).second && shown_.size() < most_shown + 1) shown_.push_back(name);
+  }
+  std::size_t size() const { return known_.size(); }
+  bool empty() const { return known_.empty(); }
+
+  /// "a, b, c, d and 5 more"
+  std::string list() const {
+    const std::size_t shown = size() > most_shown + 1 ? most_shown : size();
+    std::string text = shown_[0];
+    for (std::size_t i = 1; i < shown; ++i) text += (i + 1 == size() ? " and " : ", ") + shown_[i];
+    return shown < size() ? fmt::format("{} and {} more", text, size() - shown) : text;
+  }
+
+ private:
+  static constexpr std::size_t most_shown = 4;
+  std::unordered_set<std::string> known_;
+  std::vector<std::string> shown_;
+};
 
 struct Suspects {
   ObjectNames inside_out, turned, open, flat, all;
@@ -48,18 +70,14 @@ std::string name_of(const SceneDescription& scene, const Object& object) {
   return fmt::format("object {}", &object - scene.objects.data());
 }
 
-void add_name(ObjectNames& names, const std::string& name) {
-  if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-}
-
 Suspects find_suspects(const SceneDescription& scene) {
   Suspects found;
   std::map<int, MeshFaults> faults;  // by mesh
   for (const Object& object : scene.objects) {
     if (!has_interior(scene, object)) continue;
     const std::string name = name_of(scene, object);
-    add_name(found.all, name);
-    if (is_flat(object.shape)) add_name(found.flat, name);
+    found.all.add(name);
+    if (is_flat(object.shape)) found.flat.add(name);
     const auto* shape = std::get_if<MeshShape>(&object.shape);
     if (!shape) continue;
     auto known = faults.find(shape->mesh);
@@ -67,21 +85,13 @@ Suspects find_suspects(const SceneDescription& scene) {
       known =
           faults.emplace(shape->mesh, find_faults(scene.meshes[static_cast<std::size_t>(shape->mesh)])).first;
     if (known->second.open_edges > 0)
-      add_name(found.open, name);
+      found.open.add(name);
     else if (known->second.turned_edges > 0)
-      add_name(found.turned, name);
+      found.turned.add(name);
     else if (known->second.inside_out > 0)
-      add_name(found.inside_out, name);
+      found.inside_out.add(name);
   }
   return found;
-}
-
-std::string list(const ObjectNames& names) {
-  constexpr std::size_t most = 4;
-  const std::size_t shown = names.size() > most + 1 ? most : names.size();
-  std::string text = names[0];
-  for (std::size_t i = 1; i < shown; ++i) text += (i + 1 == names.size() ? " and " : ", ") + names[i];
-  return shown < names.size() ? fmt::format("{} and {} more", text, names.size() - shown) : text;
 }
 
 }  // namespace
@@ -91,7 +101,7 @@ std::vector<std::string> explain_stray_exits(std::uint64_t count, const SceneDes
   std::vector<std::string> sentences;
   const auto say = [&](const ObjectNames& names, const char* one, const char* several) {
     if (!names.empty())
-      sentences.push_back(fmt::format("{} {}", list(names), names.size() > 1 ? several : one));
+      sentences.push_back(fmt::format("{} {}", names.list(), names.size() > 1 ? several : one));
   };
   say(found.inside_out, "is inside out: its triangles face inwards; turn them round in the model",
       "are inside out: their triangles face inwards; turn them round in the models");
@@ -102,7 +112,7 @@ std::vector<std::string> explain_stray_exits(std::uint64_t count, const SceneDes
   say(found.flat, "has an interior, but its shape is not closed",
       "have an interior, but their shapes are not closed");
   std::string all = fmt::format("{} rays left a solid that they had not entered", count);
-  if (sentences.empty() && !found.all.empty()) all += ": surfaces of " + list(found.all) + " may coincide";
+  if (sentences.empty() && !found.all.empty()) all += ": surfaces of " + found.all.list() + " may coincide";
   sentences.insert(sentences.begin(), all);
   return sentences;
 }

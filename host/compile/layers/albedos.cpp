@@ -4,8 +4,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace sundog {
 namespace {
@@ -19,15 +21,9 @@ double matte_part(double c, double roughness) {
   return 1 + roughness * d * (0.0571085289 + d * (0.491881867 + d * (-0.332181442 + d * 0.0714429953)));
 }
 
-/// A white matte ground's value times pi.
-double matte(const dvec3& wo, const dvec3& wi, double roughness) {
-  const double a = 1 / (1 + (0.5 - 2 / (3 * half_turn)) * roughness);
-  const double mean = a * (1 + (2.0 / 3 - 28 / (15 * half_turn)) * roughness);
-  const double s = wo.x * wi.x + wo.y * wi.y;
-  const double single = a * (1 + roughness * (s > 0 ? s / std::max(wo.z, wi.z) : s));
-  if (mean >= 1) return single;
-  return single + (1 - a * matte_part(wo.z, roughness)) * (1 - a * matte_part(wi.z, roughness)) / (1 - mean);
-}
+constexpr int matte_viewers = 12;
+
+dvec3 matte_viewer(int k) { return viewer(std::max(k / 11.0, 0.01), 0); }
 
 /// The sum over directions, by cosine and turn, of `value(wi)` times the cosine's share of the hemisphere.
 template <class Value>
@@ -70,13 +66,56 @@ AlbedoRow fuzz_albedo(double alpha) {
   return albedo;
 }
 
+namespace {
+
+/// Sums over directions wi of what a white matte ground's value is made of, by the column of `past` that each
+/// is weighed with: 1, the part of wi alone, and for each viewer the part of both.
+struct MatteSums {
+  AlbedoRow plain{}, part{};
+  std::array<AlbedoRow, matte_viewers> both{};
+};
+
+MatteSums make_matte_sums() {
+  MatteSums sums;
+  constexpr int rows = 32, columns = 48;
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) {
+      const double z = (i + 0.5) / rows, side = std::sqrt(1 - z * z), turn = half_turn * (j + 0.5) / columns;
+      const double weight = z * 2 / (rows * columns), x = z * (LAYER_STEPS - 1);
+      const auto left = std::min(static_cast<std::size_t>(x), std::size_t{LAYER_STEPS - 2});
+      const auto add = [&](AlbedoRow& to, double value) {
+        to[left] += weight * value * (1 - (x - double(left)));
+        to[left + 1] += weight * value * (x - double(left));
+      };
+      add(sums.plain, 1);
+      add(sums.part, matte_part(z, 1) - 1);
+      for (int k = 0; k < matte_viewers; ++k) {
+        const dvec3 wo = matte_viewer(k);
+        const double s = wo.x * side * std::cos(turn);
+        add(sums.both[static_cast<std::size_t>(k)], s > 0 ? s / std::max(wo.z, z) : s);
+      }
+    }
+  return sums;
+}
+
+double weighed(const AlbedoRow& sums, const AlbedoRow& past) {
+  return std::inner_product(sums.begin(), sums.end(), past.begin(), 0.0);
+}
+
+}  // namespace
+
 double matte_albedo(double roughness, const AlbedoRow& past) {
+  static const MatteSums sums = make_matte_sums();
+  const double a = 1 / (1 + (0.5 - 2 / (3 * half_turn)) * roughness);
+  const double mean = a * (1 + (2.0 / 3 - 28 / (15 * half_turn)) * roughness);
+  const double plain = weighed(sums.plain, past), part = weighed(sums.part, past);
   double most = 0;
-  for (int k = 0; k < (roughness == 0 ? 1 : 12); ++k) {
-    const dvec3 wo = viewer(std::max(k / 11.0, 0.01), 0);
-    most = std::max(most, over_hemisphere(32, 48, [&](const dvec3& wi) {
-                      return matte(wo, wi, roughness) * at_cosine(past, wi.z);
-                    }));
+  for (int k = 0; k < (roughness == 0 ? 1 : matte_viewers); ++k) {
+    double value = a * (plain + roughness * weighed(sums.both[static_cast<std::size_t>(k)], past));
+    if (mean < 1)
+      value += (1 - a * matte_part(matte_viewer(k).z, roughness)) * ((1 - a) * plain - a * roughness * part) /
+               (1 - mean);
+    most = std::max(most, value);
   }
   return std::max(most, 1e-3);
 }

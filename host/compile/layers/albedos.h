@@ -17,6 +17,7 @@ double at_cosine(const AlbedoRow& row, double cosine);
 /// A direction at the cosine to z, turned about it.
 glm::dvec3 viewer(double cosine, double turn);
 
+inline constexpr double least_fuzz_alpha = 0.01;
 AlbedoRow fuzz_albedo(double alpha);
 
 /// The most that a white matte ground returns of light that arrives by `past`.

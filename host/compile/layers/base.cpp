@@ -96,7 +96,8 @@ std::array<BaseInterface, steps> make_steps(const GridSteps& of, const GainGrid&
                                             std::span<const BaseSurroundings> around) {
   std::array<BaseInterface, steps> made;
   tbb::parallel_for(std::size_t{0}, steps, [&](std::size_t i) {
-    made[i] = base_interface(of.widths_at(double(i)), gains[i], around[std::min(i, around.size() - 1)]);
+    const BaseSurroundings& here = around[std::min(i, around.size() - 1)];
+    made[i] = base_interface(facet_albedo(of.widths_at(double(i)), gains[i], here.interface), here);
     made[i].shine_scale = std::min(made[i].shine_scale, scales[i]);
   });
   return made;
@@ -141,9 +142,7 @@ FacetWidths wide_enough(const FacetWidths& widths) {
   return {float(std::max(widths.x, least)), float(std::max(widths.y, least))};
 }
 
-BaseInterface base_interface(const FacetWidths& widths, const FacetGains& gains,
-                             const BaseSurroundings& around) {
-  const FacetAlbedo shine = facet_albedo(widths, gains, around.interface);
+BaseInterface base_interface(const FacetAlbedo& shine, const BaseSurroundings& around) {
   BaseInterface base;
   AlbedoRow past_all;
   for (std::size_t i = 0; i < LAYER_STEPS; ++i) {

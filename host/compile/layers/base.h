@@ -23,8 +23,7 @@ struct BaseInterface {
   double straight, shine_scale, matte_scale, matte_scale_bare;  // members of Layers
 };
 
-BaseInterface base_interface(const FacetWidths& widths, const FacetGains& gains,
-                             const BaseSurroundings& around);
+BaseInterface base_interface(const FacetAlbedo& shine, const BaseSurroundings& around);
 
 /// Widths that the kernels take: none is below LEAST_LAYER_ALPHA.
 FacetWidths wide_enough(const FacetWidths& widths);

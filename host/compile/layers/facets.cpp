@@ -4,11 +4,13 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "compile/lattice_turns.h"
+#include "compile/layers/round_facets.h"
 
 namespace sundog {
 namespace {
@@ -149,6 +151,71 @@ FacetAlbedo facet_albedo(const FacetWidths& widths, const FacetGains& gains, con
   });
   albedo.scale = 1 / std::max(1.0, *std::ranges::max_element(most));
   return albedo;
+}
+
+namespace {
+
+/// Neighbours by cosine, each group with as much of the light.
+std::array<FacetGroup, round_groups> grouped(std::vector<SentLight> sent, const FacetGains& gains) {
+  std::ranges::sort(sent, {}, &SentLight::cosine);
+  double all = 0;
+  for (const SentLight& one : sent) all += one.part;
+  std::array<dvec3, round_groups> sums{};  // of cosines, parts and gained parts
+  double before = 0;
+  for (const SentLight& one : sent) {
+    const double end = before + one.part;
+    // A draw that lies across the groups' limits is shared between them.
+    for (double from = before; from < end;) {
+      const auto group = std::min(static_cast<std::size_t>(from / all * round_groups), round_groups - 1);
+      const double limit =
+          group + 1 == round_groups ? end : std::min(end, all * double(group + 1) / round_groups);
+      const double share = limit > from ? limit - from : end - from;
+      sums[group] += share * dvec3(one.cosine, 1, gain_at(gains, one.from));
+      from += share;
+    }
+    before = end;
+  }
+  std::array<FacetGroup, round_groups> groups;
+  for (std::size_t i = 0; i < round_groups; ++i)
+    groups[i] = {float(sums[i].x / sums[i].y), float(sums[i].y / facet_draws),
+                 float(sums[i].z / facet_draws)};
+  return groups;
+}
+
+}  // namespace
+
+RoundFacets make_round_facets(double alpha) {
+  const FacetWidths widths{alpha, alpha};
+  const FacetGains gains = facet_gains(widths);
+  RoundFacets facets{};
+  facets.most = 0;
+  for (std::size_t i = 0; i < LAYER_STEPS; ++i) {
+    const dvec3 wo = viewer(layer_cosine(i), 0);
+    const std::vector<SentLight> sent = light_sent_to(wo, widths, true);
+    facets.gains[i] = float(gains[0][i]);
+    facets.most = std::max(facets.most, float(white_returned(gains, place_of(wo, true), sent)));
+    facets.groups[i] = grouped(sent, gains);
+  }
+  return facets;
+}
+
+double round_width(std::size_t row) {
+  const double root = std::lerp(std::sqrt(double(LEAST_LAYER_ALPHA)), 1.0, double(row) / (round_widths - 1));
+  return root * root;
+}
+
+std::vector<float> make_layer_tables() {
+  std::vector<float> tables;
+  for (std::size_t row = 0; row < round_widths; ++row) {
+    const auto values = std::bit_cast<std::array<float, sizeof(RoundFacets) / sizeof(float)>>(
+        make_round_facets(round_width(row)));
+    tables.insert(tables.end(), values.begin(), values.end());
+  }
+  for (std::size_t row = 0; row < round_widths; ++row) {
+    const AlbedoRow fuzz = fuzz_albedo(std::max(round_width(row), least_fuzz_alpha));
+    tables.insert(tables.end(), fuzz.begin(), fuzz.end());
+  }
+  return tables;
 }
 
 }  // namespace sundog

@@ -9,6 +9,7 @@
 #include "compile/layers/albedos.h"
 #include "compile/layers/base.h"
 #include "compile/layers/film.h"
+#include "compile/layers/round_facets.h"
 #include "scene/materials/by_integrator.h"
 #include "scene/pack.h"
 
@@ -91,10 +92,11 @@ Above layers_above(const OpenPbr& v, const Layers& to) {
   Above above;
   FacetAlbedo coat{};
   if (v.coat_weight > 0) {
-    above.coat_gains = facet_gains(coat_widths);
-    coat = facet_albedo(coat_widths, above.coat_gains, {v.coat_ior, 0, {}});
+    const Facets facets(coat_widths);
+    above.coat_gains = facets.gains();
+    coat = facets.albedo({v.coat_ior, 0, {}});
   }
-  const AlbedoRow fuzz = v.fuzz_weight > 0 ? fuzz_albedo(to.fuzz_alpha) : AlbedoRow{};
+  const AlbedoRow fuzz = v.fuzz_weight > 0 ? fuzz_between(to.fuzz_alpha) : AlbedoRow{};
   above.fuzz_weight = v.fuzz_weight / std::max(1.0, *std::ranges::max_element(fuzz));
   for (std::size_t i = 0; i < LAYER_STEPS; ++i) {
     above.past_fuzz[i] = 1 - above.fuzz_weight * fuzz[i];
@@ -138,7 +140,7 @@ void set_numbers(const OpenPbr& v, Layers& to) {
   const FacetWidths coat = wide_enough(facet_widths(v.coat_roughness, v.coat_roughness_anisotropy));
   to.coat_alpha = float(coat.x), to.coat_alpha_y = float(coat.y);
   to.coat_eta = float(v.coat_ior);
-  to.fuzz_alpha = float(std::max(v.fuzz_roughness * v.fuzz_roughness, 0.01));
+  to.fuzz_alpha = float(std::max(v.fuzz_roughness * v.fuzz_roughness, least_fuzz_alpha));
   to.metal = float(std::min(v.specular_weight, 1.0));
   to.matte_roughness = float(v.base_diffuse_roughness);
   to.glass = float(v.transmission_weight);
@@ -183,9 +185,8 @@ Layers make_layers(const OpenPbr& v, const MaterialTextures& textures, LayerRows
   const FilmColors film = film_colors(v, v.coat_weight);
   const Above above = layers_above(v, to);
   const BaseSurroundings around = surroundings(v, v.coat_weight, above, film);
-  const FacetWidths widths{to.alpha_x, to.alpha_y};
-  const FacetGains gains = facet_gains(widths);
-  const BaseInterface base = base_interface(widths, gains, around);
+  const Facets facets({to.alpha_x, to.alpha_y});
+  const BaseInterface base = base_interface(facets.albedo(around.interface), around);
   const double of_glass = std::lerp(1.0, v.specular_roughness, base.straight);
   to.straight = float(base.straight);
   to.inner =
@@ -201,7 +202,7 @@ Layers make_layers(const OpenPbr& v, const MaterialTextures& textures, LayerRows
   for (const AlbedoRow* row : {&above.past_fuzz, &past, &base.past})
     rows.values.insert(rows.values.end(), row->begin(), row->end());
   write_film(film, rows.values);
-  for (const AlbedoRow& row : gains) rows.values.insert(rows.values.end(), row.begin(), row.end());
+  for (const AlbedoRow& row : facets.gains()) rows.values.insert(rows.values.end(), row.begin(), row.end());
   to.grid = to.coat_grid = NO_LAYER_GRID;
   if (maps_coat(v, textures))
     add_coat_steps(v, textures.roughness >= 0, above, rows, to);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace sundog {
 namespace {
@@ -56,6 +57,37 @@ Surface make_surface(const RoundSolid& solid, const Curvature& bends) {
   return {solid.unit, inverse, shrinks, bends.greatest * norm(back) * norm(back) * norm(across)};
 }
 
+struct Ball {
+  dvec3 center;
+  double radius;
+};
+
+/// A sphere that is stretched by the same factor along each axis.
+std::optional<Ball> as_ball(const RoundSolid& solid) {
+  if (solid.unit.shape != SHAPE_SPHERE) return std::nullopt;
+  const glm::dmat3 linear(solid.world_from_unit);
+  const double square = glm::dot(linear[0], linear[0]);
+  for (int i = 0; i < 3; ++i)
+    if (!(std::abs(glm::dot(linear[i], linear[i]) - square) <= 1e-9 * square &&
+          std::abs(glm::dot(linear[i], linear[(i + 1) % 3])) <= 1e-9 * square))
+      return std::nullopt;
+  return Ball{dvec3(solid.world_from_unit[3]), std::sqrt(square)};
+}
+
+/// Whether the balls' surfaces stay apart, or cross at an angle that CellSearch sees in each of its smallest
+/// cells: it looks at points up to `reach` away from both surfaces, where the angle's cosine differs by no
+/// more than twice the bend.
+bool part_or_cross(const Ball& a, const Ball& b, double reach) {
+  const double apart = glm::distance(a.center, b.center), both = a.radius + b.radius;
+  const double nested = std::abs(a.radius - b.radius);
+  if (apart > both + 4 * reach || apart < nested - 4 * reach) return true;
+  const double bend = 1.25 * reach * (1 / a.radius + 1 / b.radius);
+  const double cosine =
+      std::abs(a.radius * a.radius + b.radius * b.radius - apart * apart) / (2 * a.radius * b.radius) +
+      2 * bend;
+  return cosine < 1 && std::sqrt(1 - cosine * cosine) > 0.02 + 2 * bend;
+}
+
 struct CellSearch {
   const Surface &a, &b;
   double tolerance, least;  // radius of a cell in which nothing more is asked
@@ -98,8 +130,11 @@ bool round_surfaces_touch(const RoundSolid& a, const RoundSolid& b, const Bounds
   const dvec3 lower(box.lower[0], box.lower[1], box.lower[2]),
       upper(box.upper[0], box.upper[1], box.upper[2]);
   const dvec3 half = 0.5 * glm::max(upper - lower, dvec3(0)) + tolerance;
+  const double least = 4 * tolerance + 1e-3 * glm::length(half);
+  const auto ball_a = as_ball(a), ball_b = as_ball(b);
+  if (ball_a && ball_b && part_or_cross(*ball_a, *ball_b, least + tolerance)) return false;
   const Surface of_a = make_surface(a, *bends_a), of_b = make_surface(b, *bends_b);
-  CellSearch search{of_a, of_b, tolerance, 4 * tolerance + 1e-3 * glm::length(half)};
+  CellSearch search{of_a, of_b, tolerance, least};
   return search.run(0.5 * (lower + upper), half);
 }
 

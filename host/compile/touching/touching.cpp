@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compile/shapes.h"
+#include "compile/touching/box_tree.h"
 #include "compile/touching/round_surfaces.h"
 #include "compile/touching/touching_triangles.h"
 
@@ -32,14 +33,6 @@ struct Body {
   bool transmits, plane;
   std::vector<Face> faces;  // flat ones of a solid
 };
-
-bool overlap(const Bounds& a, const Bounds& b, double slack) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (double(a.lower[axis]) > double(b.upper[axis]) + slack ||
-        double(b.lower[axis]) > double(a.upper[axis]) + slack)
-      return false;
-  return true;
-}
 
 double greatest(const Bounds& box) {
   double most = 0;
@@ -183,13 +176,14 @@ class Search {
   bool run() {
     std::sort(bodies_.begin(), bodies_.end(),
               [](const Body& a, const Body& b) { return a.box.lower[0] < b.box.lower[0]; });
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    std::vector<LooseBox> boxes;
+    for (const Body& body : bodies_) boxes.push_back({body.box, tolerance(body, body)});
+    const BoxTree tree(boxes);
+    std::vector<u32> others;
+    for (u32 i = 0; i < bodies_.size(); ++i) {
       look_within(bodies_[i]);
-      for (std::size_t k = i + 1; k < bodies_.size(); ++k) {
-        const double slack = tolerance(bodies_[i], bodies_[k]);
-        if (double(bodies_[k].box.lower[0]) > double(bodies_[i].box.upper[0]) + slack) break;
-        look_between(bodies_[i], bodies_[k], slack);
-      }
+      tree.find(boxes[i], i, others);
+      for (const u32 k : others) look_between(bodies_[i], bodies_[k], tolerance(bodies_[i], bodies_[k]));
     }
     return found_;
   }
@@ -223,7 +217,7 @@ class Search {
       return double(body.instance->touch) >= size * 0x1p-21 * 0.999 && body.instance->touch > 0;
     };
     if (!(a.transmits || b.transmits) || (marked(a) && marked(b))) return;
-    if (!overlap(a.box, b.box, slack) || !touch(a, b, slack)) return;
+    if (!touch(a, b, slack)) return;
     mark(a, size);
     mark(b, size);
   }

@@ -179,7 +179,7 @@ JsonObject::JsonObject(const JsonValue& value, std::string_view kind) : value_(v
 }
 
 void JsonObject::ask(std::string_view key) {
-  asked_.emplace(key);
+  asked_.emplace_back(key);
   if (auto* all = value_.context().asked) (*all)[kind_].emplace(key);
 }
 
@@ -194,7 +194,7 @@ JsonValue JsonObject::at(std::string_view key, std::string_view what) {
   if (auto found = find(key)) return *found;
   std::vector<std::string> unknown;
   for (const auto& [name, value] : value_.json().items())
-    if (!asked_.contains(name)) unknown.push_back(name);
+    if (std::ranges::find(asked_, name) == asked_.end()) unknown.push_back(name);
   const auto near = nearest_name(key, unknown);
   value_.fail(fmt::format("missing key \"{}\": wanted {}{}", key, what,
                           near ? fmt::format(", found {}", json(*near).dump()) : std::string()));
@@ -255,9 +255,10 @@ void JsonObject::not_both(std::string_view first, std::string_view second) {
 
 void JsonObject::refuse_unasked() const {
   for (const auto& [name, value] : value_.json().items()) {
-    if (asked_.contains(name)) continue;
+    if (std::ranges::find(asked_, name) != asked_.end()) continue;
+    const std::set<std::string> wanted(asked_.begin(), asked_.end());
     const std::string mend =
-        did_you_mean(name, {asked_.begin(), asked_.end()}, fmt::format("wanted {}", fmt::join(asked_, ", ")));
+        did_you_mean(name, {wanted.begin(), wanted.end()}, fmt::format("wanted {}", fmt::join(wanted, ", ")));
     value_.child(name, value).fail(fmt::format("unknown key {}: {}", json(name).dump(), mend));
   }
 }

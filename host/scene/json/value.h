@@ -175,7 +175,7 @@ class JsonObject {
 
   JsonValue value_;
   std::string kind_;
-  std::set<std::string, std::less<>> asked_;
+  std::vector<std::string> asked_;  // as often as they were asked for
 };
 
 /// "a, b or c", each in quotes.

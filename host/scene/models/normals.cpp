@@ -2,7 +2,11 @@
 // In: triangles, perhaps some normals. Out: parallel normals, vertices split along creases.
 #include "scene/models/normals.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <compare>
 #include <limits>
@@ -10,6 +14,7 @@
 #include <numeric>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 namespace sundog::models {
 namespace {
@@ -33,23 +38,71 @@ uint32_t corner_vertex(const Mesh& mesh, uint32_t corner) {
   return mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
 }
 
-// What lies around one point: the corners that want a normal, joined into smooth fans.
+template <class Body>
+void in_parallel(std::size_t count, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+  });
+}
+
+/// Unit, or 0 for a face without area.
+std::vector<glm::vec3> face_normals(const Mesh& mesh) {
+  std::vector<glm::vec3> normals(mesh.triangles.size());
+  in_parallel(normals.size(), [&](std::size_t i) {
+    const glm::uvec3 t = mesh.triangles[i];
+    const dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+    if (!normalize(glm::cross(b - a, c - a), normals[i])) normals[i] = glm::vec3(0);
+  });
+  return normals;
+}
+
+/// The corners that want a normal, gathered by point, in their order: corners[first[p] .. first[p + 1]).
+struct CornersByPoint {
+  std::vector<uint32_t> first, corners;
+
+  std::size_t points() const { return first.size() - 1; }
+  std::span<const uint32_t> around(std::size_t point) const {
+    return std::span(corners).subspan(first[point], first[point + 1] - first[point]);
+  }
+};
+
+/// What all points share, while their normals are made.
+struct Surroundings {
+  const Mesh& mesh;
+  const std::vector<uint32_t>& points;  // of vertices; empty: each is a point
+  double cosine;                        // of the crease
+  std::vector<glm::vec3> face_normals;
+
+  uint32_t point(uint32_t vertex) const { return points.empty() ? vertex : points[vertex]; }
+  uint32_t neighbour(uint32_t corner, uint32_t step) const {
+    return corner_vertex(mesh, corner - corner % 3 + (corner % 3 + step) % 3);
+  }
+  bool has_area(uint32_t corner) const { return face_normals[corner / 3] != glm::vec3(0); }
+  double angle(uint32_t corner) const {
+    const dvec3 at = mesh.positions[corner_vertex(mesh, corner)];
+    const dvec3 a = dvec3(mesh.positions[neighbour(corner, 1)]) - at;
+    const dvec3 b = dvec3(mesh.positions[neighbour(corner, 2)]) - at;
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+  }
+};
+
+/// A vertex of the result. The first fan of a vertex keeps it; each further one gets a copy.
+struct FanVertex {
+  uint32_t vertex;
+  bool copied;
+  glm::vec3 normal;
+};
+
+/// The corners around one point, joined into smooth fans.
 class PointFans {
  public:
-  PointFans(Mesh& mesh, double crease_degrees, std::vector<uint32_t> points)
-      : mesh_(mesh), points_(std::move(points)), cosine_(std::cos(crease_degrees * std::numbers::pi / 180)) {
-    face_normals_.resize(mesh.triangles.size());
-    for (std::size_t i = 0; i < face_normals_.size(); ++i) {
-      const glm::uvec3 t = mesh.triangles[i];
-      const dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
-      if (!normalize(glm::cross(b - a, c - a), face_normals_[i])) face_normals_[i] = glm::vec3(0);
-    }
-  }
+  explicit PointFans(const Surroundings& shared) : shared_(shared) {}
 
-  void finish(std::span<const uint32_t> corners) {
+  /// Appends the vertices around a point to `vertices`, and says for each corner which of them it gets.
+  void add(std::span<const uint32_t> corners, std::vector<FanVertex>& vertices, uint32_t* vertex_of) {
     join_across_edges(corners);
     sum_fans(corners);
-    give_normals(corners);
+    claim_vertices(corners, vertices, vertex_of);
   }
 
  private:
@@ -57,20 +110,14 @@ class PointFans {
     uint32_t to, corner;  // the edge's other point; a number in `corners`
   };
 
-  uint32_t point(uint32_t vertex) const { return points_.empty() ? vertex : points_[vertex]; }
-  uint32_t neighbour(uint32_t corner, uint32_t step) const {
-    return corner_vertex(mesh_, corner - corner % 3 + (corner % 3 + step) % 3);
-  }
-  bool has_area(uint32_t corner) const { return face_normals_[corner / 3] != glm::vec3(0); }
-
   uint32_t root(uint32_t i) {
     while (fan_[i] != i) i = fan_[i] = fan_[fan_[i]];
     return i;
   }
 
   void join_if_smooth(uint32_t i, uint32_t j, std::span<const uint32_t> corners) {
-    const dvec3 a = face_normals_[corners[i] / 3], b = face_normals_[corners[j] / 3];
-    if (glm::dot(a, b) < cosine_ - 1e-7) return;
+    const dvec3 a = shared_.face_normals[corners[i] / 3], b = shared_.face_normals[corners[j] / 3];
+    if (glm::dot(a, b) < shared_.cosine - 1e-7) return;
     const uint32_t first = root(i), second = root(j);
     fan_[std::max(first, second)] = std::min(first, second);
   }
@@ -80,8 +127,9 @@ class PointFans {
     std::iota(fan_.begin(), fan_.end(), 0u);
     spokes_.clear();
     for (uint32_t i = 0; i < corners.size(); ++i)
-      if (has_area(corners[i]))
-        for (const uint32_t step : {1u, 2u}) spokes_.push_back({point(neighbour(corners[i], step)), i});
+      if (shared_.has_area(corners[i]))
+        for (const uint32_t step : {1u, 2u})
+          spokes_.push_back({shared_.point(shared_.neighbour(corners[i], step)), i});
     std::sort(spokes_.begin(), spokes_.end(),
               [](Spoke a, Spoke b) { return a.to != b.to ? a.to < b.to : a.corner < b.corner; });
     for (std::size_t begin = 0, end = 0; begin < spokes_.size(); begin = end) {
@@ -93,99 +141,154 @@ class PointFans {
     }
   }
 
-  double angle(uint32_t corner) const {
-    const dvec3 at = mesh_.positions[corner_vertex(mesh_, corner)];
-    const dvec3 a = dvec3(mesh_.positions[neighbour(corner, 1)]) - at;
-    const dvec3 b = dvec3(mesh_.positions[neighbour(corner, 2)]) - at;
-    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-  }
-
   void sum_fans(std::span<const uint32_t> corners) {
     sums_.assign(corners.size(), dvec3(0));
     for (uint32_t i = 0; i < corners.size(); ++i)
-      if (has_area(corners[i])) sums_[root(i)] += angle(corners[i]) * dvec3(face_normals_[corners[i] / 3]);
+      if (shared_.has_area(corners[i]))
+        sums_[root(i)] += shared_.angle(corners[i]) * dvec3(shared_.face_normals[corners[i] / 3]);
   }
 
-  // Each (vertex, fan) is one vertex of the result; the first fan keeps the vertex. Faces without area,
-  // sorted last, take what the fan before them got.
-  void give_normals(std::span<const uint32_t> corners) {
+  // Each (vertex, fan) is one vertex of the result. Faces without area, sorted last, take what the fan before
+  // them got.
+  void claim_vertices(std::span<const uint32_t> corners, std::vector<FanVertex>& vertices,
+                      uint32_t* vertex_of) {
     claims_.clear();
     for (uint32_t i = 0; i < corners.size(); ++i)
       claims_.push_back(
-          {corner_vertex(mesh_, corners[i]), has_area(corners[i]) ? root(i) : no_fan, corners[i]});
+          {corner_vertex(shared_.mesh, corners[i]), shared_.has_area(corners[i]) ? root(i) : no_fan, i});
     std::sort(claims_.begin(), claims_.end());
-    uint32_t result = 0;
     for (std::size_t i = 0; i < claims_.size(); ++i) {
       const Claim& claim = claims_[i];
       const bool new_vertex = i == 0 || claims_[i - 1].vertex != claim.vertex;
-      if (new_vertex || (claims_[i - 1].fan != claim.fan && claim.fan != no_fan)) {
-        result = new_vertex ? claim.vertex : copy(claim.vertex);
-        set_normal(result, claim.fan, corners);
-      }
-      mesh_.triangles[claim.corner / 3][static_cast<int>(claim.corner % 3)] = result;
+      if (new_vertex || (claims_[i - 1].fan != claim.fan && claim.fan != no_fan))
+        vertices.push_back({claim.vertex, !new_vertex, normal_of(claim.fan, corners)});
+      vertex_of[claim.corner] = static_cast<uint32_t>(vertices.size() - 1);
     }
   }
 
-  void set_normal(uint32_t vertex, uint32_t fan, std::span<const uint32_t> corners) {
-    glm::vec3& normal = mesh_.normals[vertex];
-    if (fan == no_fan) {
-      normal = any_direction;
-    } else if (!normalize(sums_[fan], normal)) {
-      normal = face_normals_[corners[fan] / 3];
-    }
-  }
-
-  uint32_t copy(uint32_t vertex) {
-    const auto again = [vertex](auto& values) {
-      if (values.empty()) return;
-      const auto value = values[vertex];
-      values.push_back(value);
-    };
-    again(mesh_.positions);
-    again(mesh_.normals);
-    again(mesh_.uvs);
-    for (auto& set : mesh_.further_uvs) again(set);
-    again(mesh_.tangents);
-    again(mesh_.colors);
-    again(points_);
-    return static_cast<uint32_t>(mesh_.positions.size() - 1);
+  glm::vec3 normal_of(uint32_t fan, std::span<const uint32_t> corners) const {
+    glm::vec3 normal = any_direction;
+    if (fan != no_fan && !normalize(sums_[fan], normal)) normal = shared_.face_normals[corners[fan] / 3];
+    return normal;
   }
 
   static constexpr uint32_t no_fan = std::numeric_limits<uint32_t>::max();
   struct Claim {
-    uint32_t vertex, fan, corner;
+    uint32_t vertex, fan, corner;  // a number in `corners`
     auto operator<=>(const Claim&) const = default;
   };
 
-  Mesh& mesh_;
-  std::vector<uint32_t> points_;
-  double cosine_;
-  std::vector<glm::vec3> face_normals_;  // unit, or 0 for a face without area
-  std::vector<uint32_t> fan_;            // union-find over the corners at hand
+  const Surroundings& shared_;
+  std::vector<uint32_t> fan_;  // union-find over the corners at hand
   std::vector<Spoke> spokes_;
   std::vector<dvec3> sums_;
   std::vector<Claim> claims_;
 };
 
-// The corners that want a normal, gathered by point: corners[first[p] .. first[p + 1]).
-struct CornersByPoint {
-  std::vector<uint32_t> first, corners;
-};
-
 CornersByPoint gather(const Mesh& mesh, const std::vector<bool>& has_normal,
                       const std::vector<uint32_t>& points) {
-  const auto point = [&](uint32_t vertex) { return points.empty() ? vertex : points[vertex]; };
+  const std::size_t corner_count = mesh.triangles.size() * 3;
+  const auto of_wanting = [&](std::size_t corner, const auto& use) {
+    const uint32_t vertex = corner_vertex(mesh, static_cast<uint32_t>(corner));
+    if (!has_normal[vertex]) use(points.empty() ? vertex : points[vertex]);
+  };
   CornersByPoint by_point;
-  by_point.first.assign(mesh.positions.size() + 1, 0);
-  const auto corner_count = static_cast<uint32_t>(mesh.triangles.size() * 3);
-  for (uint32_t c = 0; c < corner_count; ++c)
-    if (!has_normal[corner_vertex(mesh, c)]) ++by_point.first[point(corner_vertex(mesh, c)) + 1];
-  std::partial_sum(by_point.first.begin(), by_point.first.end(), by_point.first.begin());
-  by_point.corners.resize(by_point.first.back());
-  std::vector<uint32_t> next(by_point.first.begin(), by_point.first.end() - 1);
-  for (uint32_t c = 0; c < corner_count; ++c)
-    if (!has_normal[corner_vertex(mesh, c)]) by_point.corners[next[point(corner_vertex(mesh, c))]++] = c;
+  std::vector<uint32_t>& first = by_point.first;
+  first.assign(mesh.positions.size() + 1, 0);
+  in_parallel(corner_count, [&](std::size_t c) {
+    of_wanting(
+        c, [&](uint32_t point) { std::atomic_ref(first[point]).fetch_add(1, std::memory_order_relaxed); });
+  });
+  std::exclusive_scan(first.begin(), first.end(), first.begin(), 0u);
+  by_point.corners.resize(first.back());
+  // Each point's place moves to its end, which is where the next one begins.
+  in_parallel(corner_count, [&](std::size_t c) {
+    of_wanting(c, [&](uint32_t point) {
+      by_point.corners[std::atomic_ref(first[point]).fetch_add(1, std::memory_order_relaxed)] =
+          static_cast<uint32_t>(c);
+    });
+  });
+  std::shift_right(first.begin(), first.end(), 1);
+  first[0] = 0;
+  in_parallel(by_point.points(), [&](std::size_t p) {
+    std::sort(by_point.corners.begin() + first[p], by_point.corners.begin() + first[p + 1]);
+  });
   return by_point;
+}
+
+/// The points [first, last), whose corners are in a row.
+struct Block {
+  std::size_t first, last;
+  std::vector<FanVertex> vertices;
+  std::size_t copies = 0;
+};
+
+std::vector<Block> make_blocks(std::size_t points) {
+  constexpr std::size_t size = 8192;
+  std::vector<Block> blocks;
+  for (std::size_t first = 0; first < points; first += size)
+    blocks.push_back({first, std::min(first + size, points), {}});
+  return blocks;
+}
+
+void append_copies(Mesh& mesh, const std::vector<Block>& blocks) {
+  const auto again = [&](auto& values) {
+    if (values.empty()) return;
+    for (const Block& block : blocks)
+      for (const FanVertex& v : block.vertices)
+        if (v.copied) {
+          const auto value = values[v.vertex];
+          values.push_back(value);
+        }
+  };
+  again(mesh.positions);
+  again(mesh.normals);
+  again(mesh.uvs);
+  for (auto& set : mesh.further_uvs) again(set);
+  again(mesh.tangents);
+  again(mesh.colors);
+}
+
+/// Gives a block's vertices their places, normals and corners; copies stand from `next_copy` on.
+void place_block(std::span<glm::vec3> normals, std::span<glm::uvec3> triangles, const Block& block,
+                 const CornersByPoint& around, const std::vector<uint32_t>& vertex_of,
+                 std::size_t next_copy) {
+  std::vector<uint32_t> place;
+  place.reserve(block.vertices.size());
+  for (const FanVertex& v : block.vertices) {
+    place.push_back(v.copied ? static_cast<uint32_t>(next_copy++) : v.vertex);
+    normals[place.back()] = v.normal;
+  }
+  for (std::size_t i = around.first[block.first]; i < around.first[block.last]; ++i) {
+    const uint32_t corner = around.corners[i];
+    triangles[corner / 3][static_cast<int>(corner % 3)] = place[vertex_of[i]];
+  }
+}
+
+void give_normals(Mesh& mesh, const CornersByPoint& around, double crease_degrees,
+                  const std::vector<uint32_t>& points) {
+  std::vector<uint32_t> vertex_of(around.corners.size());  // for each of these its vertex of the block
+  std::vector<Block> blocks = make_blocks(around.points());
+  {
+    const Surroundings shared{mesh, points, std::cos(crease_degrees * std::numbers::pi / 180),
+                              face_normals(mesh)};
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+      Block& block = blocks[b];
+      PointFans fans(shared);
+      for (std::size_t p = block.first; p < block.last; ++p)
+        fans.add(around.around(p), block.vertices, vertex_of.data() + around.first[p]);
+      block.copies = static_cast<std::size_t>(std::ranges::count(block.vertices, true, &FanVertex::copied));
+    });
+  }
+  std::vector<std::size_t> next_copy;
+  std::size_t next = mesh.positions.size();
+  for (const Block& block : blocks) next_copy.push_back(std::exchange(next, next + block.copies));
+  append_copies(mesh, blocks);
+  const std::span normals(mesh.normals.values());
+  const std::span triangles(mesh.triangles.values());
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+    place_block(normals, triangles, blocks[b], around, vertex_of, next_copy[b]);
+  });
 }
 
 }  // namespace
@@ -208,11 +311,7 @@ void complete_normals(Mesh& mesh, std::vector<bool> has_normal, double crease_de
   }
   for (std::size_t i = 0; i < has_normal.size(); ++i)
     if (!has_normal[i]) mesh.normals[i] = any_direction;  // a vertex of no triangle keeps it
-  const CornersByPoint around = gather(mesh, has_normal, point_of_vertex);
-  PointFans fans(mesh, crease_degrees, std::move(point_of_vertex));
-  for (std::size_t p = 0; p + 1 < around.first.size(); ++p)
-    if (around.first[p] < around.first[p + 1])
-      fans.finish(std::span(around.corners).subspan(around.first[p], around.first[p + 1] - around.first[p]));
+  give_normals(mesh, gather(mesh, has_normal, point_of_vertex), crease_degrees, point_of_vertex);
 }
 
 std::vector<std::uint32_t> weld_positions(const Mesh& mesh) {

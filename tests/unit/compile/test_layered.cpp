@@ -7,6 +7,7 @@
 #include "catch.h"
 #include "compile/layers/film.h"
 #include "compile/layers/layers.h"
+#include "compile/layers/round_facets.h"
 #include "scene_text.h"
 
 using namespace sundog;
@@ -167,4 +168,31 @@ TEST_CASE("numbers alone have no grid") {
   CHECK_FALSE(scene.features.coat_maps);
   CHECK(scene.layers[0].grid == NO_LAYER_GRID);
   CHECK(scene.layer_rows.size() == LAYER_ROWS * LAYER_STEPS);
+}
+
+TEST_CASE("the tables of facets are computed when sundog is built") {
+  CHECK(std::ranges::equal(built_layer_tables(), make_layer_tables()));
+}
+
+TEST_CASE("facets between the rows of their tables are those of a quadrature") {
+  Interface film{1.5, 0.7, {}};
+  for (std::size_t i = 0; i < LAYER_STEPS; ++i) film.film_row[i] = 0.5 + 0.5 * std::cos(0.4 * double(i));
+  for (const double roughness : {0.05, 0.17, 0.31, 0.5, 0.77, 0.98}) {
+    const FacetWidths widths{roughness * roughness, roughness * roughness};
+    const FacetGains gains = facet_gains(widths);
+    const Facets facets(widths);
+    for (const Interface& interface :
+         {Interface{1.5, 0, {}}, Interface{3, 0, {}}, Interface{1.05, 0, {}}, film}) {
+      INFO("roughness " << roughness << ", index " << interface.eta << ", film " << interface.film);
+      const FacetAlbedo wanted = facet_albedo(widths, gains, interface), found = facets.albedo(interface);
+      for (std::size_t i = 0; i < LAYER_STEPS; ++i) {
+        CHECK(facets.gains()[3][i] == Approx(gains[0][i]).epsilon(1e-3));
+        CHECK(found.of_interface[i] == Approx(wanted.of_interface[i]).margin(1e-3));
+      }
+      CHECK(found.scale == Approx(wanted.scale).epsilon(1e-4));
+    }
+  }
+  for (const double alpha : {0.01, 0.3, 0.8})
+    for (std::size_t i = 0; i < LAYER_STEPS; ++i)
+      CHECK(fuzz_between(alpha)[i] == Approx(fuzz_albedo(alpha)[i]).margin(1e-3));
 }

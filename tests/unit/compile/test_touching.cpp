@@ -1,8 +1,10 @@
 // Which instances are marked as touching others: all that do, and none of the usual ones that do not.
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "catch.h"
 #include "compile/compiled_scene.h"
+#include "compile/touching/box_tree.h"
 #include "compile/touching/touching_triangles.h"
 #include "scene/load.h"
 #include "scenes.h"
@@ -88,4 +90,35 @@ TEST_CASE("triangles lie on others, but not on their neighbours") {
   CHECK_FALSE(lies_on(t, triangle({1, 0, 0}, {1, 1, 0}, {0, 1, 0}), 1e-6));
   CHECK_FALSE(lies_on(t, triangle({0, 0, 0}, {1, 0, 0}, {0, -1, 0}), 1e-6));
   CHECK_FALSE(lies_on(t, triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0.1}), 1e-6));
+}
+
+TEST_CASE("balls that cross at an angle are not marked, those that lie against each other are") {
+  for (const double apart : {0.3, 0.9, 1.5, 1.9, 2.1})
+    CHECK_FALSE(touch(ball, dmat4(1), ball, at({0, apart, 0})));
+  const Shape small = SphereShape{0.25};
+  CHECK_FALSE(touch(ball, dmat4(1), small, at({0.5, 0, 0})));
+  CHECK(touch(ball, dmat4(1), small, at({0.75, 0, 0})));
+  CHECK(touch(ball, dmat4(1), small, at({0, 1.25, 0})));
+  CHECK_FALSE(touch(ball, dmat4(1), small, at({0, 1, 0})));
+}
+
+TEST_CASE("a tree of boxes finds all that overlap a box, and no other") {
+  std::vector<LooseBox> boxes;
+  for (int i = 0; i < 300; ++i) {
+    const auto place = [&](int step) { return float(std::fmod(i * step * 0.6180339887, 10)); };
+    const float x = place(1), y = place(7), z = place(13), half = 0.1f + float(i % 7) * 0.1f;
+    boxes.push_back({{Lanes{x - half, y - half, z - half, 0}, Lanes{x + half, y + half, z + half, 0}},
+                     i % 50 == 0 ? 1.0 : 1e-6});
+  }
+  boxes.push_back({{lanes(-INFINITY), lanes(INFINITY)}, 0});
+  const BoxTree tree(boxes);
+  std::vector<u32> found;
+  for (u32 i = 0; i < boxes.size(); ++i) {
+    std::vector<u32> expected;
+    for (u32 k = i + 1; k < boxes.size(); ++k)
+      if (overlap(boxes[i].box, boxes[k].box, std::max(boxes[i].slack, boxes[k].slack)))
+        expected.push_back(k);
+    tree.find(boxes[i], i, found);
+    CHECK(found == expected);
+  }
 }

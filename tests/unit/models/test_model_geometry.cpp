@@ -147,6 +147,27 @@ TEST_CASE("a cube's edges are creases, and each side keeps four vertices", "[mod
   }
 }
 
+TEST_CASE("a model of many points has the normals and vertices of its parts", "[models]") {
+  Mesh many;
+  constexpr unsigned cubes = 3000;  // more points than one thread takes at once
+  const Mesh part = cube();
+  for (unsigned i = 0; i < cubes; ++i) {
+    for (const glm::vec3& p : part.positions) many.positions.push_back(p + glm::vec3(2.0f * float(i), 0, 0));
+    for (const glm::uvec3& t : part.triangles) many.triangles.push_back(t + 8 * i);
+  }
+  models::complete_normals(many, {}, 45);
+  REQUIRE(many.positions.size() == 24 * cubes);
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < many.triangles.size(); ++i) {
+    const glm::uvec3 t = many.triangles[i];
+    const glm::vec3 a = many.positions[t.x], b = many.positions[t.y], c = many.positions[t.z];
+    const glm::vec3 ng = glm::normalize(glm::cross(b - a, c - a));
+    wrong += std::floor(a.x / 2) != float(i / 12);
+    for (int k = 0; k < 3; ++k) wrong += !(glm::length(many.normals[t[k]] - ng) < 1e-6f);
+  }
+  CHECK(wrong == 0);
+}
+
 TEST_CASE("triangles without area are kept, and make no normal that is not a number", "[models]") {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {5, 5, 5}, {1e-30f, 0, 0}, {0, 1e-30f, 0}};
