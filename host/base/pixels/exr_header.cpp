@@ -112,7 +112,7 @@ void read_attribute(std::string_view name, std::string_view type, Walk value, Sh
     shape.tile_pixels = std::uint64_t{value.number<std::uint32_t>()} * value.number<std::uint32_t>();
 }
 
-Shape read_header(std::string_view bytes) {
+Shape read_shape(std::string_view bytes) {
   Walk walk(bytes);
   walk.take(8);  // magic and version
   Shape shape;
@@ -128,13 +128,13 @@ Shape read_header(std::string_view bytes) {
 
 }  // namespace
 
-bool exr_has_alpha(std::string_view bytes) { return read_header(bytes).alpha; }
+bool exr_has_alpha(std::string_view bytes) { return read_shape(bytes).alpha; }
 
 void check_exr_header(std::string_view bytes) {
   const unsigned flags = bytes.size() > 5 ? static_cast<unsigned char>(bytes[5]) : 0;
   if (flags & 0x08) throw std::runtime_error("a deep EXR file; wanted one sample a pixel");
   if (flags & 0x10) throw std::runtime_error("an EXR file of several parts; wanted one image");
-  const Shape shape = read_header(bytes);
+  const Shape shape = read_shape(bytes);
   const std::uint64_t most_pixels_here = pixels_a_byte * bytes.size();
   if (!is_frame_size(shape.width, shape.height) ||
       static_cast<std::uint64_t>(shape.width * shape.height) / pixels_a_byte > bytes.size())
