@@ -102,7 +102,7 @@ std::vector<CoarseStart> coarse_starts(const SceneDescription& scene, const dvec
       start = start_on_solid(unit, seen);
     }
     if (!(start.away > std::max(least, most_share * start.distance))) continue;
-    start.object = object.name;
+    start.object = object.name.empty() ? object.place : object.name;
     found.push_back(start);
   }
   return found;

@@ -44,7 +44,7 @@ void add_field_warnings(const SceneDescription& scene, const CompiledScene& flat
       warnings.push_back(fmt::format(
           "the camera is so near to \"{}\" that doubles do not tell its pixels apart, and its light and "
           "shadows are lost: move it back, or widen fov",
-          object.name));
+          object.name.empty() ? object.place : object.name));
 }
 
 void add_size_warnings(const SceneDescription& scene, const CompiledScene& flat,

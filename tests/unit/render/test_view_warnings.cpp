@@ -66,6 +66,9 @@ TEST_CASE("an object is named where rays leave it by more than a hundredth of it
   const std::string sky = begin + R"("type": "sphere", "radius": 1e6})";
   const std::string plane = begin + R"("type": "plane"})";
   CHECK(found(ball, 3).empty());
+  const std::string nameless =
+      R"({"type": "sphere", "radius": 1000, "center": [0, -1000, 0], "material": "m"})";
+  CHECK(found(nameless, 0.03).at(0).find("/objects/0") != std::string::npos);
   CHECK(found(box, 1e3).empty());
   for (const std::string& harmless : {slab, disk, sky, plane}) CHECK(found(harmless, 3).empty());
   for (const auto& warnings : {found(ball, 0.03), found(box, 10)}) {
