@@ -63,12 +63,22 @@ double percent_done(const RenderResult& result) {
   return 100 * static_cast<double>(std::ranges::count(done, 1)) / pixels;
 }
 
+/// Whether it would be a black picture, perhaps over a good one.
+bool is_empty(const RenderResult& result) {
+  return !result.complete && std::ranges::count(result.film.done, 1) == 0;
+}
+
 std::string part_text(const RenderCommand& command, const RenderResult& result) {
-  if (command.part)
-    return fmt::format("{} is not written{}", command.out,
+  if (command.part || is_empty(result))
+    return fmt::format("{}{} is not written{}", is_empty(result) ? "no pixel was made; " : "", command.out,
                        command.resume.empty() ? "" : "; the same command continues from its checkpoint");
   return fmt::format("{:.3g} % of the pixels are in {}{}", percent_done(result), command.out,
                      command.resume.empty() ? "" : "; the same command continues from there");
+}
+
+/// From the frame's beginning to its end.
+double seconds_of(const RenderTimes& times) {
+  return times.build_kernels + times.upload + times.render + times.readback;
 }
 
 void warn(const SceneDescription& scene, const RenderResult& result) {
@@ -144,9 +154,9 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
                   command.format, scene.image.tone_map,
                   texts};
   if (picture.key == 0) picture.key = hash_scene(flat);
-  if (!command.part)
+  if (!command.part && !is_empty(result))
     save_image(picture, command.out);
-  else if (result.complete)
+  else if (command.part && result.complete)
     save_part(picture, {*command.part, picture.key, command.scene, settings_of(command, flat), command.aovs},
               command.out);
   if (!result.checkpoint_error.empty()) throw IoError(result.checkpoint_error);
@@ -180,7 +190,8 @@ int conclude(const RenderCommand& command, const RenderResult& result, bool told
   if (result.complete) return exit_done;
   if (result.time_limited && !result.failure) {
     if (!command.quiet)
-      fmt::print("  the time limit of {} s ended it: {}\n", command.time_limit, part_text(command, result));
+      fmt::print("  the time limit of {} s ended it, passed by {:.2f} s: {}\n", command.time_limit,
+                 seconds_of(result.times) - command.time_limit, part_text(command, result));
     return exit_done;
   }
   if (result.failure) {

@@ -90,12 +90,18 @@ void write_state(const std::filesystem::path& path, const Film& film,
     write_checkpoint(path, film, key, faults);
 }
 
+/// Whether there is a pixel of the frame. The caller holds its mutex.
+bool has_pixels(const Frame& frame) {
+  return frame.pixels_done > 0 || (frame.passes && frame.passes->film.stage > 0);
+}
+
 /// Shows the picture so far, every so often.
 void show_picture(Frame& frame) {
   if (!frame.options.on_picture || frame.since_picture.seconds() < frame.options.picture_seconds) return;
   GrowingFilm film;
   {
     const std::lock_guard lock(frame.mutex);
+    if (!has_pixels(frame)) return;
     film = film_so_far(frame);
   }
   frame.options.on_picture(film.film);
@@ -108,11 +114,22 @@ void show_progress(Frame& frame) {
   if (frame.since_progress.seconds() >= progress_seconds) report_progress(frame);
 }
 
+/// Whether the frame may end at its time limit. In passes it first makes a whole one to show, and gets
+/// further than a checkpoint that it began with: else it would not if its kernels are compiled for longer.
+/// The caller holds its mutex.
+bool may_end(const Frame& frame) {
+  if (!frame.passes) return true;
+  return frame.passes->film.stage > 0 && std::ranges::any_of(frame.servers, [](const Frame::Server& server) {
+           return server.report.pixels > 0;
+         });
+}
+
 /// Ends the frame when its time is over.
 void look_at_clock(Frame& frame) {
   if (!(frame.options.time_limit > 0) || frame.clock.seconds() < frame.options.time_limit) return;
   {
     const std::lock_guard lock(frame.mutex);
+    if (!may_end(frame)) return;
     frame.limited = true;
   }
   frame.stop = true;

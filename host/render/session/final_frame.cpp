@@ -150,6 +150,13 @@ void keep_checkpoint(const Frame& frame, RenderResult& result) {
   }
 }
 
+/// Of a frame in passes. One that its time limit has ended shows its whole passes: with what there is of
+/// another, parts of the picture would have twice the samples of others.
+GrowingFilm shown_film(Frame& frame, const RenderResult& result) {
+  if (result.time_limited && frame.passes->film.stage > 0) frame.film = Film();
+  return result.complete ? std::move(frame.passes->film) : film_so_far(frame);
+}
+
 /// Gathers the film, complete or not.
 RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   const std::lock_guard lock(frame.mutex);
@@ -160,7 +167,7 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   result.time_limited = frame.limited && !result.complete;
   keep_checkpoint(frame, result);
   if (frame.passes) {
-    GrowingFilm film = result.complete ? std::move(frame.passes->film) : film_so_far(frame);
+    GrowingFilm film = shown_film(frame, result);
     if (std::ranges::count(frame.options.aovs, "variance") > 0)
       result.aovs["variance"] = develop_variance(film);
     result.film = std::move(film.film);

@@ -141,6 +141,11 @@ TEST_CASE("a frame that its time limit ends is saved, and continues from its che
   CHECK_FALSE(result.complete);
   CHECK(result.time_limited);
   CHECK(result.checkpoint_kept);
+  // Its whole passes are shown, which ended in the middle of another: all pixels have the samples of one.
+  REQUIRE(result.taken.front() > 0);
+  CHECK(std::ranges::count(result.taken, result.taken.front()) == std::ssize(result.taken));
+  scene.render.samples = static_cast<int>(result.taken.front());
+  CHECK(same_bits(result.image, scenes::render_on(test_devices().front(), scene).image));
 }
 
 TEST_CASE("a part of a frame in passes is refused") {
