@@ -124,14 +124,11 @@ bool may_end(const Frame& frame) {
          });
 }
 
-/// Ends the frame when its time is over.
+/// Ends the frame when its time is over. The caller holds its mutex.
 void look_at_clock(Frame& frame) {
   if (!(frame.options.time_limit > 0) || frame.clock.seconds() < frame.options.time_limit) return;
-  {
-    const std::lock_guard lock(frame.mutex);
-    if (!may_end(frame)) return;
-    frame.limited = true;
-  }
+  if (!may_end(frame)) return;
+  frame.limited = true;
   frame.stop = true;
   frame.queue.close();
 }
@@ -181,6 +178,7 @@ void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
   if (!frame.stop) plan_next_pass(frame);
   report_progress(frame);
   look_for_stop(frame);
+  look_at_clock(frame);
 }
 
 /// Takes a failure down. Returns false when the server has failed too often.
@@ -259,7 +257,10 @@ void watch(Frame& frame) {
   while (!frame.queue.wait(look_again)) {
     show_progress(frame);
     look_for_stop(frame);
-    look_at_clock(frame);
+    {
+      const std::lock_guard lock(frame.mutex);
+      look_at_clock(frame);
+    }
     keep_checkpoint(frame);
     show_picture(frame);
     for (std::size_t i = 0; i < frame.servers.size(); ++i) {
