@@ -15,7 +15,7 @@ namespace {
 constexpr double spacing = 0x1p-21, scene_spacing = 0x1p-19;  // as in interaction.cl
 constexpr double most_share = 0.01;                           // of the camera's distance
 
-double greatest(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+double greatest_of(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 /// The camera, and the origin of the tables' coordinates, in an object's space.
 struct Seen {
@@ -40,21 +40,21 @@ double distance_of(const UnitShape& unit, const dvec3& q) {
 
 /// The direction away from a solid's surface, unit.
 dvec3 away_from(const UnitShape& unit, const dvec3& q) {
-  const double step = 1e-4 * std::max(1.0, greatest(q));
+  const double step = 1e-4 * std::max(1.0, greatest_of(q));
   dvec3 slope(0);
   for (int axis = 0; axis < 3; ++axis) {
     dvec3 aside(0);
     aside[axis] = step;
     slope[axis] = distance_of(unit, q + aside) - distance_of(unit, q - aside);
   }
-  return greatest(slope) > 1e-3 * step ? glm::normalize(slope) : dvec3(0, 1, 0);
+  return greatest_of(slope) > 1e-3 * step ? glm::normalize(slope) : dvec3(0, 1, 0);
 }
 
 CoarseStart start_on_solid(const UnitShape& unit, const Seen& seen) {
   const dvec3 normal = away_from(unit, seen.camera);
   const bool flat = unit.shape == SHAPE_PLANE || unit.shape == SHAPE_DISK || unit.shape == SHAPE_RECTANGLE;
   const double size = flat ? 0 : 1;
-  const double rounding = spacing * greatest(normal * (glm::abs(seen.origin) + size));
+  const double rounding = spacing * greatest_of(normal * (glm::abs(seen.origin) + size));
   return {{}, seen.in_world(rounding, normal), seen.in_world(distance_of(unit, seen.camera), normal)};
 }
 
@@ -66,7 +66,7 @@ CoarseStart start_on_mesh(const Mesh& mesh, const Seen& seen) {
     const glm::vec3 &a = mesh.positions[corners.x], &b = mesh.positions[corners.y],
                     &c = mesh.positions[corners.z];
     const dvec3 low(glm::min(glm::min(a, b), c)), high(glm::max(glm::max(a, b), c));
-    const double away = scale * spacing * std::max(greatest(high - low), greatest(seen.origin));
+    const double away = scale * spacing * std::max(greatest_of(high - low), greatest_of(seen.origin));
     const dvec3 beside = glm::max(glm::max(low - seen.camera, seen.camera - high), dvec3(0));
     const double distance = scale * glm::length(beside);
     if (away * worst.distance > worst.away * distance) worst = {{}, away, distance};
@@ -79,7 +79,7 @@ bool may_be_coarse(const Mesh& mesh, const Seen& seen, double least) {
   glm::vec3 low(std::numeric_limits<float>::infinity()), high = -low;
   for (const glm::vec3& p : mesh.positions) low = glm::min(low, p), high = glm::max(high, p);
   const double scale = 1 / std::cbrt(std::abs(glm::determinant(seen.normals)));
-  return scale * spacing * std::max(greatest(dvec3(high) - dvec3(low)), greatest(seen.origin)) > least;
+  return scale * spacing * std::max(greatest_of(dvec3(high) - dvec3(low)), greatest_of(seen.origin)) > least;
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ bool may_be_coarse(const Mesh& mesh, const Seen& seen, double least) {
 std::vector<CoarseStart> coarse_starts(const SceneDescription& scene, const dvec3& origin) {
   const Camera& camera = scene.camera;
   // No more than what rounding at the camera's own place asks for.
-  const double least = scene_spacing * greatest(camera.position - origin);
+  const double least = scene_spacing * greatest_of(camera.position - origin);
   std::vector<CoarseStart> found;
   for (const Object& object : scene.objects) {
     if (std::holds_alternative<FieldShape>(object.shape)) continue;
