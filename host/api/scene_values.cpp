@@ -49,7 +49,8 @@ json light_json(const Light& light) {
 }
 
 json material_json(const Material& material) {
-  json value{{"type", material.type}, {"color", material.color}};
+  json value{{"type", material.type}};
+  if (material.color != Vec3{1, 1, 1}) value["color"] = material.color;  // glass has none
   const auto put = [&](const char* key, const std::optional<double>& number) {
     if (number) value[key] = *number;
   };

@@ -41,7 +41,7 @@ struct Camera {
 /// Fresnel equations decide, and `ior` must be set.
 struct Material {
   std::string type = "phong";            ///< "phong" or "dielectric"
-  Vec3 color{1, 1, 1};                   ///< of the ambient and the diffuse term, from 0
+  Vec3 color{1, 1, 1};                   ///< of the ambient and the diffuse term, from 0; white: not set
   std::optional<double> ambient{};       ///< ka, from 0; default 0.1, of a dielectric 0
   std::optional<double> diffuse{};       ///< kd, from 0; default 0.8, of a dielectric 0
   double specular = 0;                   ///< ks, from 0
