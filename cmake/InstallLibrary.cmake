@@ -7,7 +7,8 @@ target_link_libraries(sundog_shared PRIVATE sundog_render)
 # Templates of other libraries are visible in spite of the compiler's options: the linker exports the public names alone.
 set(symbols ${PROJECT_SOURCE_DIR}/host/api/symbols.map)
 # Two copies in a process, each brought by a plug-in, call their own functions.
-target_link_options(sundog_shared PRIVATE -Wl,--version-script=${symbols} -Wl,--no-undefined -Wl,-Bsymbolic-functions)
+# Once loaded it stays: threads of drivers and of oneTBB are still in it at a dlclose().
+target_link_options(sundog_shared PRIVATE -Wl,--version-script=${symbols} -Wl,--no-undefined -Wl,-Bsymbolic-functions -Wl,-z,nodelete)
 set_target_properties(sundog_shared PROPERTIES LINK_DEPENDS ${symbols} VERSION ${PROJECT_VERSION}
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 
@@ -27,6 +28,7 @@ foreach(library sundog_shared sundog_static)
   target_include_directories(${library} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${library} INTERFACE cxx_std_20)
+  add_library(sundog::${exported} ALIAS ${library})  # for add_subdirectory() and FetchContent, as find_package() has it
   set_target_properties(${library} PROPERTIES OUTPUT_NAME sundog EXPORT_NAME ${exported} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}
     ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
   set(exported sundog_static)
@@ -50,5 +52,8 @@ list(JOIN private_libraries " " private_libraries)
 # A prefix may be moved: paths count from the file's own folder.
 file(RELATIVE_PATH pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 string(REGEX REPLACE "/$" "" pc_to_prefix "${pc_to_prefix}")
-configure_file(${PROJECT_SOURCE_DIR}/cmake/sundog.pc.in ${CMAKE_CURRENT_BINARY_DIR}/sundog.pc @ONLY)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/sundog.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+# Two files: a Requires.private would have the other libraries' development packages wanted for the shared library too.
+foreach(name sundog sundog-static)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/${name}.pc.in ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+endforeach()

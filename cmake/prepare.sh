@@ -114,17 +114,17 @@ exec 9>"$build/lock"
 flock 9  # two calls at once take turns
 
 cd "$root"
-# Configures, and builds the program, or with `tests` everything.
+# Configures, and builds the program with its library, or with `tests` everything.
 build() {
   touch "$build/started"  # what changes during the build is built the next time
-  local first=() target=sundog
+  local first=() targets=(sundog sundog_shared sundog_static)  # what `cmake --install` wants
   if [[ ! -e $build/CMakeCache.txt ]]; then first=(-DSUNDOG_UNITY=ON -DSUNDOG_UNITY_TESTS=ON); fi  # a folder of a developer keeps its way
   cmake --preset release -B "$build" "${first[@]}" >"$build/configure.log" 2>&1 || { cat "$build/configure.log" >&2; exit 1; }
-  if [[ $1 == tests ]]; then target=all; fi
+  if [[ $1 == tests ]]; then targets=(all); fi
   if [[ ! -e $build/built-$1 ]]; then
     say "building for the first time: $(duration_of "$([[ $1 == tests ]] && echo "$tests_work" || echo "$program_work")")"
   fi
-  cmake --build "$build" --target "$target"
+  cmake --build "$build" --target "${targets[@]}"
   touch -r "$build/started" "$build/built-program" "$build/built-$1"
 }
 

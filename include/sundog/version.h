@@ -1,5 +1,8 @@
 // The library's version, and what its names are made visible with.
 #pragma once
+#if __cplusplus < 201709L  // C++20, as GCC 10 numbers it
+#error "sundog's C++ headers need C++20: compile with -std=c++20, or use the C interface, <sundog/sundog.h>"
+#endif
 #include <string>
 
 /// Semantic version: programs built against MAJOR.MINOR run with every library of the same MAJOR and, while

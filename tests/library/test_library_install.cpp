@@ -1,5 +1,7 @@
 // The installed library: the examples are built and run against it, outside of the build folder.
 #include <filesystem>
+#include <map>
+#include <regex>
 
 #include "file_bytes.h"
 #include "installed.h"
@@ -47,10 +49,11 @@ TEST_CASE("pkg-config finds the installed library, wherever its prefix is moved"
   const TemporaryFolder folder;
   const fs::path prefix = install_library(folder.path());
   const std::string file = find_below(prefix, "sundog.pc");
+  // Where only that file is found, as on a system without other libraries' development packages:
   const std::string source = (fs::path(SUNDOG_SOURCE_DIR) / "examples/plain_c.c").string(),
                     program = (folder / "c").string();
   const std::string flags =
-      "$(PKG_CONFIG_PATH=" + fs::path(file).parent_path().string() + " pkg-config --cflags --libs sundog)";
+      "$(PKG_CONFIG_LIBDIR=" + fs::path(file).parent_path().string() + " pkg-config --cflags --libs sundog)";
   must({"sh", "-c", "cc " + source + " -o " + program + " " + flags});
   CommandOptions options;
   options.environment["LD_LIBRARY_PATH"] =
@@ -58,4 +61,43 @@ TEST_CASE("pkg-config finds the installed library, wherever its prefix is moved"
   const CommandResult usage = run_command({program}, options);
   CHECK(usage.status == 2);
   CHECK(usage.err.find("usage") != std::string::npos);
+}
+
+TEST_CASE("./run.sh builds what `cmake --install` takes from the build folder") {
+  const std::string script = file_bytes(fs::path(SUNDOG_SOURCE_DIR) / "cmake/prepare.sh"),
+                    install = file_bytes(fs::path(SUNDOG_BINARY).parent_path() / "host/cmake_install.cmake");
+  std::smatch targets;
+  REQUIRE(std::regex_search(script, targets, std::regex(R"(targets=\(([^)]*)\))")));
+  // The program has MPI's library built with it.
+  const std::map<std::string, std::string> target_of{{"sundog", "sundog"},
+                                                     {"sundog_mpi.so", "sundog"},
+                                                     {"libsundog.so", "sundog_shared"},
+                                                     {"libsundog.a", "sundog_static"}};
+  const std::regex taken(R"re(TYPE (?:EXECUTABLE|MODULE|SHARED_LIBRARY|STATIC_LIBRARY) FILES\s+"([^"]+)")re");
+  int files = 0;
+  for (std::sregex_iterator it(install.begin(), install.end(), taken), end; it != end; ++it, ++files) {
+    std::string name = fs::path((*it)[1].str()).filename().string();
+    if (const std::size_t version = name.find(".so."); version != std::string::npos) name.resize(version + 3);
+    CAPTURE(name);
+    REQUIRE(target_of.contains(name));
+    CHECK(std::regex_search(targets[1].str(), std::regex("\\b" + target_of.at(name) + "\\b")));
+  }
+  CHECK(files > 3);
+}
+
+TEST_CASE("a project that has sundog's sources in itself links sundog::sundog, and gets no tests") {
+  const TemporaryFolder folder;
+  folder.write("main.cpp", "#include <sundog/sundog.hpp>\nint main() { sundog::Scene scene; }\n");
+  folder.write("CMakeLists.txt",
+               "cmake_minimum_required(VERSION 3.22)\nproject(host_app LANGUAGES C CXX)\n"
+               "set(CMAKE_CXX_STANDARD 17)\nadd_subdirectory(\"" SUNDOG_SOURCE_DIR
+               "\" sundog)\n"
+               "foreach(library sundog sundog_static)\n  add_executable(with_${library} main.cpp)\n"
+               "  target_link_libraries(with_${library} PRIVATE sundog::${library})\nendforeach()\n");
+  const std::string build = (folder / "build").string();
+  must({"cmake", "-G", "Ninja", "-S", folder.path().string(), "-B", build});
+  const std::string rules = file_bytes(folder / "build/build.ninja");
+  CHECK(rules.find("-std=gnu++20") != std::string::npos);  // of the project's own sources
+  CHECK(rules.find("tests/") == std::string::npos);
+  CHECK_FALSE(fs::exists(folder / "build/CPackConfig.cmake"));
 }

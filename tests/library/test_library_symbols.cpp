@@ -123,3 +123,16 @@ TEST_CASE("public headers compile without a warning, the one for C as C99") {
     CHECK(compiled.status == 0);
   }
 }
+
+TEST_CASE("a program that is compiled as C++17 is told first that C++20 is wanted") {
+  for (const char* header : {"sundog.hpp", "scene.h", "image.h", "devices.h", "session.h", "error.h"}) {
+    const CommandResult compiled =
+        run_command({"c++", "-std=c++17", "-xc++", "-fsyntax-only", "-I" SUNDOG_SOURCE_DIR "/include",
+                     "-include", std::string("sundog/") + header, "/dev/null"});
+    CAPTURE(header, compiled.err);
+    CHECK(compiled.status != 0);
+    const std::size_t error = compiled.err.find("error: ");
+    REQUIRE(error != std::string::npos);
+    CHECK(compiled.err.substr(error, 60).find("C++20") != std::string::npos);
+  }
+}
