@@ -11,12 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-void put_placement(json& object, const Placement& placement) {
-  if (!placement.material.empty()) object["material"] = placement.material;
-  if (!placement.name.empty()) object["name"] = placement.name;
-  if (placement.transform != identity) object["transform"] = json::array({{{"matrix", placement.transform}}});
-}
-
 /// A member of the document, made `empty` where there is none. Throws Error (usage) for one of another kind.
 json& member(json& document, const char* key, const json& empty) {
   const std::string place = document.is_object() ? std::string("/") + key : "";
@@ -32,6 +26,19 @@ json& member(json& document, const char* key, const json& empty) {
 
 void append(json& document, const char* list, json value) {
   member(document, list, json::array()).push_back(std::move(value));
+}
+
+/// Adds an object. One without a material has the default one, which the document gets too: each object of it
+/// names one.
+void place(json& document, json object, const Placement& placement) {
+  json& objects = member(document, "objects", json::array());
+  const std::string material = placement.material.empty() ? "default" : placement.material;
+  if (placement.material.empty())
+    member(document, "materials", json::object()).emplace(material, json::object());
+  object["material"] = material;
+  if (!placement.name.empty()) object["name"] = placement.name;
+  if (placement.transform != identity) object["transform"] = json::array({{{"matrix", placement.transform}}});
+  objects.push_back(std::move(object));
 }
 
 json light_json(const Light& light) {
@@ -154,29 +161,25 @@ Scene& Scene::add_mesh(const std::string& name, const MeshView& mesh) {
 
 Scene& Scene::add_instance(const std::string& mesh, const Placement& placement) {
   json object{{"type", "mesh"}, {"mesh", mesh}};
-  put_placement(object, placement);
-  append(impl_->document, "objects", std::move(object));
+  place(impl_->document, std::move(object), placement);
   return *this;
 }
 
 Scene& Scene::add_sphere(const Vec3& center, double radius, const Placement& placement) {
   json object{{"type", "sphere"}, {"center", center}, {"radius", radius}};
-  put_placement(object, placement);
-  append(impl_->document, "objects", std::move(object));
+  place(impl_->document, std::move(object), placement);
   return *this;
 }
 
 Scene& Scene::add_box(const Vec3& low, const Vec3& high, const Placement& placement) {
   json object{{"type", "box"}, {"min", low}, {"max", high}};
-  put_placement(object, placement);
-  append(impl_->document, "objects", std::move(object));
+  place(impl_->document, std::move(object), placement);
   return *this;
 }
 
 Scene& Scene::add_plane(const Vec3& point, const Vec3& normal, const Placement& placement) {
   json object{{"type", "plane"}, {"point", point}, {"normal", normal}};
-  put_placement(object, placement);
-  append(impl_->document, "objects", std::move(object));
+  place(impl_->document, std::move(object), placement);
   return *this;
 }
 
@@ -187,8 +190,7 @@ Scene& Scene::add_formula(const Formula& formula, const Placement& placement) {
   for (const auto& [name, value] : formula.parameters) object["parameters"][name] = value;
   if (formula.iterations != 0) object["iterations"] = formula.iterations;
   if (formula.bailout != 0) object["bailout"] = formula.bailout;
-  put_placement(object, placement);
-  append(impl_->document, "objects", std::move(object));
+  place(impl_->document, std::move(object), placement);
   return *this;
 }
 

@@ -85,7 +85,7 @@ struct MeshView {
 
 /// A distance field by formulas (docs/formula-language.md): `map` is one iteration, `distance` an expression.
 struct Formula {
-  std::string map{};                                         ///< one iteration; empty: none
+  std::string map{};                                         ///< one iteration, as z = z^8 + c; empty: none
   std::string distance{};                                    ///< an expression; empty: by the map's escape
   std::vector<std::pair<std::string, double>> parameters{};  ///< names in the formulas, with their values
   int iterations = 0;                                        ///< at most; 0: the default, 8
@@ -96,7 +96,7 @@ struct Formula {
 
 /// Where things stand. `transform` goes from the object's to the world's coordinates.
 struct Placement {
-  std::string material{};     ///< a name of add_material()'s; empty: the default material
+  std::string material{};     ///< a name of add_material()'s; empty: "default", made where there is none
   std::string name{};         ///< that Session::pick() gives; may be empty
   Mat4 transform = identity;  ///< from the object's to the world's coordinates; invertible
 };

@@ -101,8 +101,9 @@ TEST_CASE("a camera, a formula and a placement may leave out whatever has a defa
         sundog::Camera{.up = {1, 0, 0}, .fov = 179, .lens_radius = 0.1, .focus = 3}})
     CHECK(tiny_scene().set_camera(camera).check().empty());
   for (const sundog::Formula& formula :
-       {sundog::Formula{.map = "z^2 + c"}, sundog::Formula{.distance = "length(p) - 1"},
-        sundog::Formula{.map = "z^power + c", .parameters = {{"power", 8}}, .iterations = 5, .bailout = 4},
+       {sundog::Formula{.map = "z = z^2 + c"}, sundog::Formula{.distance = "length(p) - 1"},
+        sundog::Formula{
+            .map = "z = z^power + c", .parameters = {{"power", 8}}, .iterations = 5, .bailout = 4},
         sundog::Formula{.distance = "length(p) - 1", .low = {-2, -2, -2}, .high = {2, 2, 2}}}) {
     CAPTURE(formula.map, formula.distance);
     CHECK_NOTHROW((void)tiny_scene().add_formula(formula, sundog::Placement{}).check());
