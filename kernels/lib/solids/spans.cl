@@ -42,8 +42,9 @@ typedef struct Span {
 #define FAR_OFF 0x1p14f
 static inline REAL come_near(REAL3* o, REAL3 d, MASK active) {
   REAL shift = (REAL)(0.0f);
-  const MASK far = active & MASK_OF(dot3(*o, *o) > FAR_OFF * FAR_OFF) & MASK_OF(dot3(d, d) > 0.0f);
+  MASK far = MASK_OF(dot3(*o, *o) > FAR_OFF * FAR_OFF);
   if (!any_lane(far)) return shift;
+  far &= active & MASK_OF(dot3(d, d) > 0.0f);
   for (u32 i = 0; i < 2u; ++i) {
     const REAL way = select((REAL)(0.0f), -dot3(*o, d) / dot3(d, d), far);
     *o = along3(*o, way, d);
