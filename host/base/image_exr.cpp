@@ -90,22 +90,35 @@ std::vector<half> halves_of(const Image& image) {
   return halves;
 }
 
+std::int64_t width_of(const Imath::Box2i& window) { return std::int64_t{window.max.x} - window.min.x + 1; }
+std::int64_t height_of(const Imath::Box2i& window) { return std::int64_t{window.max.y} - window.min.y + 1; }
+
+/// Pixels of the display window that a file may have without pixels of its own in them.
+constexpr std::int64_t most_empty_pixels = std::int64_t{1} << 24;
+
+/// Reads the picture that the file shows, its display window: what lies outside of it is cut off, and what
+/// the data window does not hold is 0.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : stream_(bytes), file_(stream_) {
     const Imath::Box2i window = file_.header().dataWindow();
-    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-    const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+    const std::int64_t width = width_of(window), height = height_of(window);
     width_ = static_cast<int>(width);
     height_ = static_cast<int>(height);
     origin_ = window.min;
+    shown_ = file_.header().displayWindow();
+    const std::int64_t columns = width_of(shown_), rows = height_of(shown_);
+    if (!is_frame_size(columns, rows) || (columns * rows > most_empty_pixels &&
+                                          columns * rows / 2000 > static_cast<std::int64_t>(bytes.size())))
+      throw std::runtime_error(fmt::format("the EXR file says a display window of {}x{} pixels in {} bytes",
+                                           columns, rows, bytes.size()));
   }
 
   const Imf::Header& header() const { return file_.header(); }
   const Imf::ChannelList& channels() const { return file_.header().channels(); }
   bool has(const std::string& name) const { return channels().findChannel(name) != nullptr; }
 
-  /// Reads the named channels into one image, in that order; absent ones get `fill`.
+  /// Reads the named channels into one image, in that order; absent ones are `fill` everywhere.
   Image read(const Suffixes& names, const std::array<float, 4>& fill = {}) {
     Image image(width_, height_, static_cast<int>(names.size()));
     Imf::FrameBuffer buffer;
@@ -118,10 +131,29 @@ class Reader {
     shift(buffer, image.channels);
     file_.setFrameBuffer(buffer);
     file_.readPixels(origin_.y, origin_.y + height_ - 1);
-    return image;
+    if (shown_ == file_.header().dataWindow()) return image;
+    std::vector<float> outside;
+    for (std::size_t c = 0; c < names.size(); ++c) outside.push_back(has(names[c]) ? 0 : fill[c]);
+    return show(image, outside);
   }
 
  private:
+  Image show(const Image& data, const std::vector<float>& outside) const {
+    Image image(static_cast<int>(width_of(shown_)), static_cast<int>(height_of(shown_)), data.channels);
+    for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = outside[i % outside.size()];
+    const int left = std::max(shown_.min.x, origin_.x),
+              right = std::min<int>(shown_.max.x, file_.header().dataWindow().max.x);
+    for (int y = std::max(shown_.min.y, origin_.y);
+         y <= std::min(shown_.max.y, file_.header().dataWindow().max.y) && left <= right; ++y) {
+      const auto at = [&](const Imath::V2i& origin, int width) {
+        return ((std::ptrdiff_t{y} - origin.y) * width + left - origin.x) * data.channels;
+      };
+      std::copy_n(data.data.begin() + at(origin_, width_), (std::ptrdiff_t{right} - left + 1) * data.channels,
+                  image.data.begin() + at(shown_.min, image.width));
+    }
+    return image;
+  }
+
   /// The library addresses pixels by their place in the data window: the base is that of pixel (0, 0).
   void shift(Imf::FrameBuffer& buffer, int channels) const {
     const std::ptrdiff_t pixels = std::ptrdiff_t{origin_.y} * width_ + origin_.x;
@@ -132,6 +164,7 @@ class Reader {
   MemoryIn stream_;
   Imf::InputFile file_;
   Imath::V2i origin_;
+  Imath::Box2i shown_;
   int width_ = 0, height_ = 0;
 };
 

@@ -45,7 +45,7 @@ void check_attributes(const SceneDescription& scene, std::size_t index) {
   const std::size_t n = mesh.positions.size();
   if (!attribute_fits(mesh.normals.size(), n) || !attribute_fits(mesh.uvs.size(), n) ||
       !attribute_fits(mesh.tangents.size(), n) || !attribute_fits(mesh.colors.size(), n) ||
-      !attribute_fits(mesh.materials.size(), mesh.triangles.size()))
+      !attribute_fits(mesh.alphas.size(), n) || !attribute_fits(mesh.materials.size(), mesh.triangles.size()))
     fail(scene, index,
          "normals, uvs, tangents or colours are not one a vertex, or materials not one a triangle");
   for (const int material : mesh.materials)

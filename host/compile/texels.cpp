@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "base/pixels/image_levels.h"
-
 namespace sundog {
 namespace {
 
@@ -92,9 +90,10 @@ std::size_t texel_bytes(const StoredImage& image) {
   return lay_out_levels(image, 0, levels) * TEXEL_UNIT;
 }
 
-void write_levels(const ImageDescription& image, const TexelLevel* levels, const TexelPages& pages) {
-  const RowWriter write(image.pixels, pages);
-  each_level_row(image.pixels, image.srgb, [&](std::size_t level, int y, const std::uint8_t* samples) {
+void write_levels(const StoredImage& image, SampleUse use, const TexelLevel* levels,
+                  const TexelPages& pages) {
+  const RowWriter write(image, pages);
+  each_level_row(image, use, [&](std::size_t level, int y, const std::uint8_t* samples) {
     write(levels[level], static_cast<u32>(y), samples);
   });
 }

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "scene/texture_description.h"
+#include "base/pixels/image_levels.h"
 #include "shared/textures.h"
 
 namespace sundog {
@@ -23,6 +23,6 @@ struct TexelPages {
 };
 
 /// Writes the image and its smaller levels to their places.
-void write_levels(const ImageDescription& image, const TexelLevel* levels, const TexelPages& pages);
+void write_levels(const StoredImage& image, SampleUse use, const TexelLevel* levels, const TexelPages& pages);
 
 }  // namespace sundog

@@ -42,6 +42,8 @@ class TextureCompiler {
     for (std::size_t i = 0; i < scene_.materials.size(); ++i)
       if (const MaterialDescription& material = surface_for(scene_, scene_.materials[i]);
           has_maps(material)) {
+        cut_images_.clear();
+        find_cut_images(material.textures.opacity, material);
         out_.materials.edit()[i].maps = static_cast<u32>(out_.material_maps.size());
         add_maps(material);
       }
@@ -83,8 +85,22 @@ class TextureCompiler {
     out_.features.parallax |= maps.parallax > 0;
     maps.occlusion = static_cast<float>(material.occlusion);
     maps.coat = static_cast<float>(material.coat);
+    maps.normal_turn = normal_turn(textures.normal, material);
     if (textures.normal >= 0 || textures.height >= 0) add_relief(textures, maps);
     out_.material_maps.push_back(maps);
+  }
+
+  /// The ways in which the texture's own u and v grow on the surface: a normal map turns with its picture, as
+  /// heights do.
+  float4 normal_turn(int texture, const MaterialDescription& material) const {
+    glm::dvec2 u(1, 0), v(0, 1);
+    if (texture >= 0) {
+      const TextureDescription& map = texture_at(texture, material);
+      const glm::dvec2 across(map.uv[0][0], map.uv[1][0]), up(map.uv[0][1], map.uv[1][1]);
+      if (map.mapping == Mapping::uv && across != glm::dvec2(0) && up != glm::dvec2(0))
+        u = glm::normalize(across), v = glm::normalize(up);
+    }
+    return pack4({u, v});
   }
 
   /// Tangents and steps along the surface need its coordinates.
@@ -97,13 +113,49 @@ class TextureCompiler {
       maps.height_texels = node.scale;
   }
 
+  const TextureDescription& texture_at(int index, const MaterialDescription& material) const {
+    if (index >= static_cast<int>(scene_.textures.size()))
+      throw SceneError(scene_.file.string(), "",
+                       "material \"" + material.name + "\" names a texture that does not exist");
+    return scene_.textures[static_cast<std::size_t>(index)];
+  }
+
+  const ImageDescription& image_at(int index) const {
+    return scene_.images.at(static_cast<std::size_t>(index));
+  }
+
+  /// Adds the images whose alpha a texture takes. `depth` ends graphs that add_graph() refuses.
+  void find_cut_images(int index, const MaterialDescription& material, u32 depth = 0) {
+    if (index < 0 || depth > MOST_TEXTURE_STACK) return;
+    const TextureDescription& texture = texture_at(index, material);
+    if (texture.image >= 0 && texture.channel == 3) cut_images_.push_back(&image_at(texture.image));
+    for (const int of : texture.of) find_cut_images(of, material, depth + 1);
+  }
+
+  /// Colours count by their alpha in materials that take their opacity from it.
+  bool counts_by_alpha(const ImageDescription& image) const {
+    return image.srgb && image.pixels.channels == 4 &&
+           std::ranges::any_of(cut_images_,
+                               [&](const ImageDescription* cut) { return same_picture(*cut, image); });
+  }
+
+  bool any_counts_by_alpha(int index, const MaterialDescription& material, u32 depth = 0) const {
+    if (index < 0 || cut_images_.empty() || depth > MOST_TEXTURE_STACK) return false;
+    const TextureDescription& texture = texture_at(index, material);
+    if (texture.image >= 0 && counts_by_alpha(image_at(texture.image))) return true;
+    return any_counts_by_alpha(texture.of[0], material, depth + 1) ||
+           any_counts_by_alpha(texture.of[1], material, depth + 1);
+  }
+
   /// The first node of a texture, whose own node comes after those that it works on.
   u32 first_node(int texture, const MaterialDescription& material) {
     if (texture < 0) return NO_TEXTURE;
-    const auto found = nodes_.find(texture);
+    // Materials share a texture's nodes, but for those of images that count by alpha in one of them alone.
+    const std::pair key(texture, any_counts_by_alpha(texture, material) ? cut_images_ : CutImages());
+    const auto found = nodes_.find(key);
     if (found != nodes_.end()) return found->second;
     const auto first = static_cast<u32>(out_.texture_nodes.size());
-    nodes_.emplace(texture, first);
+    nodes_.emplace(key, first);
     add_graph(texture, material, 0);
     out_.texture_nodes.edit().back().flags |= TEXTURE_LAST;
     return first;
@@ -111,9 +163,7 @@ class TextureCompiler {
 
   /// Adds the nodes of a texture; `below` values wait on the stack.
   void add_graph(int index, const MaterialDescription& material, u32 below) {
-    if (index >= static_cast<int>(scene_.textures.size()))
-      throw SceneError(scene_.file.string(), "",
-                       "material \"" + material.name + "\" names a texture that does not exist");
+    const TextureDescription& texture = texture_at(index, material);
     if (out_.texture_nodes.size() >= most_nodes)
       throw SceneError(scene_.file.string(), "/textures",
                        fmt::format("the materials' textures take more than {} images, patterns and colours, "
@@ -123,7 +173,6 @@ class TextureCompiler {
       throw SceneError(
           scene_.file.string(), "/textures",
           "material \"" + material.name + "\" has a texture of too many others inside each other");
-    const TextureDescription& texture = scene_.textures[static_cast<std::size_t>(index)];
     for (u32 i = 0; i < 2; ++i)
       if (texture.of[i] >= 0) add_graph(texture.of[i], material, below + i);
     const bool works = texture.of[0] >= 0;
@@ -152,7 +201,8 @@ class TextureCompiler {
     if (texture.kind == TEXTURE_IMAGE) set_image(texture, node);
     if (texture.kind == TEXTURE_RAMP) set_stops(texture, node);
     if (texture.kind == TEXTURE_FORMULA) set_formula(texture, node);
-    if (texture.kind != TEXTURE_COLOR && texture.mapping == Mapping::uv) {
+    const bool placed = texture.kind != TEXTURE_COLOR && texture.kind != TEXTURE_VERTEX_COLOR;
+    if (placed && texture.mapping == Mapping::uv) {
       out_.features.surface_coordinates = true;
       out_.features.extra_uvs = std::max(out_.features.extra_uvs, static_cast<u32>(texture.uv_set));
     }
@@ -186,8 +236,11 @@ class TextureCompiler {
   }
 
   void set_image(const TextureDescription& texture, TextureNode& node) {
-    const ImageDescription& image = scene_.images.at(static_cast<std::size_t>(texture.image));
-    const auto [found, added] = levels_.try_emplace(texture.image, 0u, 0u);
+    const ImageDescription& image = image_at(texture.image);
+    const SampleUse use = !image.srgb              ? SampleUse::data
+                          : counts_by_alpha(image) ? SampleUse::color_by_alpha
+                                                   : SampleUse::color;
+    const auto [found, added] = levels_.try_emplace({texture.image, use}, 0u, 0u);
     auto& [first, count] = found->second;
     if (added) {
       first = static_cast<u32>(out_.texel_levels.size());
@@ -211,18 +264,21 @@ class TextureCompiler {
     if (units_ > std::numeric_limits<u32>::max())
       throw SceneError(scene_.file.string(), "", "the images take more than 64 GiB; use smaller ones");
     const TexelPages pages = add_texel_pages(units_, TEXEL_PAGE_BYTES / TEXEL_UNIT, out_);
-    const std::vector<std::pair<int, std::pair<u32, u32>>> images(levels_.begin(), levels_.end());
+    const std::vector<std::pair<std::pair<int, SampleUse>, std::pair<u32, u32>>> images(levels_.begin(),
+                                                                                        levels_.end());
     tbb::parallel_for(std::size_t{0}, images.size(), [&](std::size_t i) {
-      write_levels(scene_.images[static_cast<std::size_t>(images[i].first)],
-                   &out_.texel_levels[images[i].second.first], pages);
+      const auto& [image, levels] = images[i];
+      write_levels(image_at(image.first).pixels, image.second, &out_.texel_levels[levels.first], pages);
     });
   }
 
   const SceneDescription& scene_;
   CompiledScene& out_;
-  std::map<int, u32> nodes_;                   // by texture
-  std::map<int, std::pair<u32, u32>> levels_;  // by image: the first one, how many
-  std::vector<float> stops_;                   // of ramps and formulas, behind the values of bytes
+  using CutImages = std::vector<const ImageDescription*>;
+  CutImages cut_images_;                            // whose alpha is the opacity of the material at hand
+  std::map<std::pair<int, CutImages>, u32> nodes_;  // by texture, and the images that count by alpha in it
+  std::map<std::pair<int, SampleUse>, std::pair<u32, u32>> levels_;  // by image: the first one, how many
+  std::vector<float> stops_;  // of ramps and formulas, behind the values of bytes
   std::vector<PatternFormula> formulas_;
   std::size_t units_ = 0;
 };
@@ -257,6 +313,20 @@ void add_textures(const SceneDescription& scene, CompiledScene& out) {
   TextureCompiler(scene, out).compile();
 }
 
+namespace {
+
+/// Calls put(vertex of the table, vertex of the mesh) for each vertex that vertices.cpp makes.
+void each_vertex(const Mesh& mesh, std::size_t first_vertex, const auto& put) {
+  if (!mesh.normals.empty())
+    for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) put(first_vertex + vertex, vertex);
+  else  // three a triangle
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (int corner = 0; corner < 3; ++corner)
+        put(first_vertex + 3 * t + static_cast<std::size_t>(corner), mesh.triangles[t][corner]);
+}
+
+}  // namespace
+
 void add_further_uvs(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
                      CompiledScene& out) {
   const std::size_t sets = out.features.extra_uvs;
@@ -268,20 +338,31 @@ void add_further_uvs(const SceneDescription& scene, const std::vector<PlacedMesh
     for (std::size_t set = 0; set < std::min(sets, mesh.further_uvs.size()); ++set) {
       const MeshArray<glm::vec2>& uvs = mesh.further_uvs[set];
       if (uvs.empty()) continue;
-      const auto put = [&](std::size_t vertex, std::size_t from) {
-        float* to = &table[2 * ((meshes[i].first_vertex + vertex) * sets + set)];
+      each_vertex(mesh, meshes[i].first_vertex, [&](std::size_t vertex, std::size_t from) {
+        float* to = &table[2 * (vertex * sets + set)];
         to[0] = uvs[from].x;
         to[1] = uvs[from].y;
-      };
-      if (!mesh.normals.empty())
-        for (std::size_t vertex = 0; vertex < uvs.size(); ++vertex) put(vertex, vertex);
-      else  // three vertices a triangle, as vertices.cpp makes them
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-          for (int corner = 0; corner < 3; ++corner)
-            put(3 * t + static_cast<std::size_t>(corner), mesh.triangles[t][corner]);
+      });
     }
   }
   out.extra_uvs = std::move(table);
+}
+
+bool takes_vertex_colors(const SceneFeatures& features) {
+  return (features.texture_kinds >> TEXTURE_VERTEX_COLOR & 1u) != 0;
+}
+
+void add_vertex_alphas(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
+                       CompiledScene& out) {
+  if (!takes_vertex_colors(out.features)) return;
+  std::vector<float> table(out.vertices.size(), 1.0f);
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const Mesh& mesh = scene.meshes[i];
+    if (!meshes[i].used || mesh.alphas.empty()) continue;
+    each_vertex(mesh, meshes[i].first_vertex,
+                [&](std::size_t vertex, std::size_t from) { table[vertex] = mesh.alphas[from]; });
+  }
+  out.vertex_alphas = std::move(table);
 }
 
 }  // namespace sundog

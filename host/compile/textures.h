@@ -15,6 +15,13 @@ void add_textures(const SceneDescription& scene, CompiledScene& out);
 void add_further_uvs(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
                      CompiledScene& out);
 
+/// Whether some texture is the colour of vertices.
+bool takes_vertex_colors(const SceneFeatures& features);
+
+/// The alpha of all vertices, where a texture takes it. After add_meshes().
+void add_vertex_alphas(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
+                       CompiledScene& out);
+
 /// A tangent in object space, and whether the bitangent is against the normal's cross product with it.
 struct CornerTangent {
   dvec3 tangent;

@@ -7,6 +7,7 @@
 #include <map>
 #include <new>
 #include <string_view>
+#include <tuple>
 
 #include "base/error.h"
 #include "base/pixels/image_levels.h"
@@ -16,12 +17,12 @@ namespace {
 
 /// Images of the same bytes and use become one.
 void merge_images(SceneDescription& scene) {
-  std::map<std::pair<std::string_view, bool>, int> first;
+  std::map<std::tuple<std::string_view, bool, bool>, int> first;
   std::vector<int> index_of;
   std::vector<bool> kept;
   int count = 0;
   for (const ImageDescription& image : scene.images) {
-    const auto [found, added] = first.try_emplace({image.encoded, image.srgb}, count);
+    const auto [found, added] = first.try_emplace({image.encoded, image.srgb, image.plain}, count);
     kept.push_back(added || image.encoded.empty());
     index_of.push_back(kept.back() ? count++ : found->second);
   }
@@ -37,6 +38,7 @@ void decode(ImageDescription& image) {
   if (image.encoded.empty() && image.pixels.width > 0) return;  // made, not read
   try {
     image.pixels = decode_stored(image.encoded);
+    if (image.plain) image.pixels.exponent.reset();
     settle_samples(image.pixels, image.srgb);
   } catch (const std::bad_alloc&) {
     throw SceneError(image.file, image.place,
@@ -46,13 +48,56 @@ void decode(ImageDescription& image) {
   }
   image.file_width = image.pixels.width;
   image.file_height = image.pixels.height;
+  image.content = std::max<std::uint64_t>(std::hash<std::string>()(image.encoded), 1);
   image.encoded.clear();
   image.encoded.shrink_to_fit();
+}
+
+/// What a model names and cannot be decoded becomes one white pixel.
+void decode_or_white(ImageDescription& image, std::string& failure) {
+  try {
+    decode(image);
+  } catch (const SceneError& error) {
+    if (!image.of_model) throw;
+    failure = fmt::format("{}; materials go without it", error.what());
+    image.encoded.clear();
+    image.pixels = StoredImage();
+    image.pixels.width = image.pixels.height = 1;
+    image.pixels.data.assign(4, 255);
+    image.file_width = image.file_height = 1;
+  }
+}
+
+/// White is a factor of one, but neither a normal nor a height.
+void drop_reliefs(MaterialDescription& material, const std::vector<bool>& white,
+                  const SceneDescription& scene) {
+  const auto drop = [&](int& texture) {
+    if (texture < 0) return;
+    const int image = scene.textures[static_cast<std::size_t>(texture)].image;
+    if (image >= 0 && white[static_cast<std::size_t>(image)]) texture = -1;
+  };
+  drop(material.textures.normal);
+  drop(material.textures.height);
+  drop(material.displaced_by);
+  if (!material.by_paths) return;
+  auto other = std::make_shared<MaterialDescription>(*material.by_paths);
+  drop_reliefs(*other, white, scene);
+  material.by_paths = std::move(other);
 }
 
 /// With its smaller levels.
 std::size_t device_bytes(const ImageDescription& image) {
   return image.pixels.pixel_count() * image.pixels.pixel_bytes() * 4 / 3;
+}
+
+/// Colours count by their alpha where some texture takes that.
+SampleUse use_of(const ImageDescription& image, const SceneDescription& scene) {
+  if (!image.srgb) return SampleUse::data;
+  const bool cut = std::ranges::any_of(scene.textures, [&](const TextureDescription& texture) {
+    return texture.image >= 0 && texture.channel == 3 &&
+           same_picture(image, scene.images[static_cast<std::size_t>(texture.image)]);
+  });
+  return cut ? SampleUse::color_by_alpha : SampleUse::color;
 }
 
 void fit_images(SceneDescription& scene) {
@@ -64,7 +109,7 @@ void fit_images(SceneDescription& scene) {
     ImageDescription& image = *greatest();
     if (image.pixels.pixel_count() == 1) break;
     total -= device_bytes(image);
-    image.pixels = half_size(image.pixels, image.srgb);
+    image.pixels = half_size(image.pixels, use_of(image, scene));
     total += device_bytes(image);
   }
   for (const ImageDescription& image : scene.images)
@@ -82,7 +127,16 @@ void fit_images(SceneDescription& scene) {
 void decode_images(SceneDescription& scene) {
   if (scene.images.empty()) return;
   merge_images(scene);
-  tbb::parallel_for(std::size_t{0}, scene.images.size(), [&](std::size_t i) { decode(scene.images[i]); });
+  std::vector<std::string> failures(scene.images.size());
+  tbb::parallel_for(std::size_t{0}, failures.size(),
+                    [&](std::size_t i) { decode_or_white(scene.images[i], failures[i]); });
+  std::vector<bool> white;
+  for (const std::string& failure : failures) {
+    white.push_back(!failure.empty());
+    if (white.back() && std::ranges::count(scene.warnings, failure) == 0) scene.warnings.push_back(failure);
+  }
+  if (std::ranges::count(white, true) > 0)
+    for (MaterialDescription& material : scene.materials) drop_reliefs(material, white, scene);
   fit_images(scene);
 }
 

@@ -193,8 +193,8 @@ struct MaterialDescription {
   std::shared_ptr<const MaterialDescription> by_paths{};
 };
 
-/// Triangles with shared vertices. `normals` (empty: flat shading), `uvs`, `tangents` and `colors` are empty
-/// or as long as `positions`; all colours linear.
+/// Triangles with shared vertices. `normals` (empty: flat shading), `uvs`, `tangents`, `colors` and `alphas`
+/// are empty or as long as `positions`; all colours linear.
 struct Mesh {
   std::string name;
   MeshArray<glm::vec3> positions;
@@ -203,6 +203,7 @@ struct Mesh {
   std::vector<MeshArray<glm::vec2>> further_uvs;  // sets 1, 2, ..., each empty or as long as `positions`
   MeshArray<glm::vec4> tangents;  // along u; w: the bitangent's sign. Empty: compile() makes them
   MeshArray<glm::vec3> colors;
+  MeshArray<float> alphas;  // of the colours, for TEXTURE_VERTEX_COLOR; empty: 1
   MeshArray<glm::uvec3> triangles;
   std::vector<int> materials;  // per triangle, index into SceneDescription::materials; empty: the object's
   std::size_t source_vertex_count = 0;  // as the file stores them: before vertices are split or dropped

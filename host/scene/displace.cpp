@@ -45,6 +45,7 @@ class Middles {
     add_mean(mesh_.normals, a, b);
     add_mean(mesh_.uvs, a, b);
     add_mean(mesh_.colors, a, b);
+    add_mean(mesh_.alphas, a, b);
     for (auto& uvs : mesh_.further_uvs) add_mean(uvs, a, b);
   }
 

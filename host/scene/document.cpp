@@ -65,7 +65,7 @@ void share_meshes(SceneDescription& scene) {
   };
   for (Mesh& mesh : scene.meshes) {
     share(mesh.positions), share(mesh.normals), share(mesh.uvs);
-    share(mesh.tangents), share(mesh.colors), share(mesh.triangles);
+    share(mesh.tangents), share(mesh.colors), share(mesh.alphas), share(mesh.triangles);
   }
 }
 

@@ -46,8 +46,13 @@ void read_radius(JsonObject& object, LightDescription& light) {
   light.radius = object.number("radius", light.radius, lamp_range);
 }
 
+void read_range(JsonObject& object, LightDescription& light) {
+  light.range = object.number("range", light.range, {.low = 0, .high = 1e15});
+}
+
 void read_spot(JsonObject& object, LightDescription& light) {
   const Range angle{.low = 0, .high = 90, .low_open = true, .high_open = true};
+  light.square_edge = object.boolean("square_edge", light.square_edge);
   light.outer_angle = object.number("outer_angle", light.outer_angle, angle);
   light.inner_angle =
       object.number("inner_angle", light.outer_angle * 2 / 3, {.low = 0, .high = 90, .high_open = true});
@@ -125,6 +130,10 @@ void pack_sun(const LightDescription& light, Light& packed) {
   packed.direction.w = static_cast<float>(light.visible ? cap : -cap);
 }
 
+void pack_range(const LightDescription& light, Light& packed) {
+  if (light.range > 0) packed.edge_v.x = static_cast<float>(1 / light.range);
+}
+
 /// Whether the list of lights ends with those of an extent, from LIGHT_RECTANGLE on: kernels tell them by
 /// that.
 constexpr bool extents_come_last() {
@@ -163,7 +172,9 @@ void read_light_kind(JsonObject& object, LightDescription& light) {
   if (facts_of(light.type).can_be_met()) read_light_visible(object, light.visible);
   switch (light.type) {
     case LightType::ambient:
+      break;
     case LightType::point:
+      read_range(object, light);
       break;
     case LightType::directional:
       light.direction = object.at("direction", "the way the light travels [x, y, z]").direction();
@@ -174,6 +185,7 @@ void read_light_kind(JsonObject& object, LightDescription& light) {
     case LightType::spot:
       read_aim(object, light);
       read_spot(object, light);
+      read_range(object, light);
       break;
     case LightType::rectangle:
       read_rectangle(object, light);
@@ -202,6 +214,7 @@ Light pack_light(const NamedLight& named, const dvec3& origin) {
       throw std::logic_error("an ambient light is no entry of the table of lights");
     case LightType::point:
       packed.kind = LIGHT_POINT;
+      pack_range(light, packed);
       break;
     case LightType::directional:
       packed.kind = LIGHT_DIRECTIONAL;
@@ -212,6 +225,9 @@ Light pack_light(const NamedLight& named, const dvec3& origin) {
       packed.kind = LIGHT_SPOT;
       packed.direction = pack(unit_direction(named), cosine(light.outer_angle));
       packed.color.w = static_cast<float>(cosine(light.inner_angle));
+      packed.edge_u.x = light.square_edge ? 1.0f : 3.0f;
+      packed.edge_u.y = light.square_edge ? 0.0f : 2.0f;
+      pack_range(light, packed);
       break;
     case LightType::rectangle:
       packed.kind = LIGHT_RECTANGLE;

@@ -33,11 +33,13 @@ json to_json(const LightDescription& light) {
     result["position"] = to_json(light.position);
     result["falloff"] = {
         {"constant", light.falloff.x}, {"linear", light.falloff.y}, {"quadratic", light.falloff.z}};
+    if (light.range > 0) result["range"] = light.range;
   }
   if (light.type == LightType::spot) {
     // glTF lets a cone open to a full half space.
     result["outer_angle"] = std::min(light.outer_angle, 89.99);
     result["inner_angle"] = std::min(light.inner_angle, 89.99);
+    result["square_edge"] = light.square_edge;
   }
   return result;
 }

@@ -1,5 +1,6 @@
 // Textures as plain values: images, and nodes that take their colours or numbers from them.
 #pragma once
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>
@@ -16,9 +17,17 @@ struct ImageDescription {
   std::string file, place;  // for messages
   std::string encoded;      // the file's bytes, until decode_images() has made `pixels` of them
   int file_width = 0, file_height = 0;
+  std::uint64_t content = 0;  // a hash of the file's bytes; 0: made, not read
   StoredImage pixels;
   bool srgb = true;
+  bool plain = false;     // what the file says of its colour space is left aside
+  bool of_model = false;  // where it cannot be decoded, materials go without it
 };
+
+/// Whether two images show the same file, perhaps one as colours and one as data.
+inline bool same_picture(const ImageDescription& a, const ImageDescription& b) {
+  return &a == &b || (a.content != 0 && a.content == b.content);
+}
 
 enum class Wrap { repeat, mirror, clamp };
 enum class TextureFilter { trilinear, bilinear, nearest };

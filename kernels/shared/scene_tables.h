@@ -56,6 +56,7 @@
   TABLE(u32, u32, texels2, "images")                                     \
   TABLE(u32, u32, texels3, "images")                                     \
   TABLE(float, float, extra_uvs, "further texture coordinates")          \
+  TABLE(float, float, vertex_alphas, "alpha of vertices")                \
   TABLE(u32, u32, tangents, "tangents")
 
 #endif

@@ -25,7 +25,8 @@ SUNDOG_SHARED_BEGIN
   TEXTURE(WOOD, wood)         /* rings about y; parameters as of marble */                                  \
   TEXTURE(RAMP, ramp)         /* the stops at `first` by the red of the value on the stack */               \
   TEXTURE(PRODUCT, product)   /* of the two values on the stack */                                          \
-  TEXTURE(FORMULA, formula)   /* number `count` of generated/patterns.cl, its numbers at `first` */
+  TEXTURE(FORMULA, formula)   /* number `count` of generated/patterns.cl, its numbers at `first` */         \
+  TEXTURE(VERTEX_COLOR, vertex_color) /* of meshes, with alpha; white elsewhere */
 // clang-format on
 
 #define TEXTURE_CONSTANT(constant, name) TEXTURE_##constant,
@@ -125,7 +126,7 @@ typedef enum MapSlot SUNDOG_ENUM_OF_U32 { MAP_SLOTS(MAP_CONSTANT) MAP_COUNT } Ma
 #define NO_TEXTURE 0xFFFFFFFFu
 #define NO_MAPS 0u
 
-// 128 bytes: what a material has beside Material, which counts these from 1. Entry 0 is not used.
+// 144 bytes: what a material has beside Material, which counts these from 1. Entry 0 is not used.
 typedef struct MaterialMaps {
   u32 slot[16];  // by MAP_*: the first node of a texture, or NO_TEXTURE
   float4 base;   // of a material by metalness and roughness: its colour; w = metalness
@@ -141,8 +142,9 @@ typedef struct MaterialMaps {
   float bump_uv;        // the same height in units of u and v
   float coat;           // a clear layer's mirror above all else
   u32 pad;
+  float4 normal_turn;  // of a normal map's picture: the ways in u and v, of length 1, that its x and y go
 } MaterialMaps;
-SUNDOG_SHARED_SIZE(MaterialMaps, 128)
+SUNDOG_SHARED_SIZE(MaterialMaps, 144)
 
 #define SRGB_VALUES 256u  // linear values of bytes, at the start of texture_values
 

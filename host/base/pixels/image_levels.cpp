@@ -90,7 +90,9 @@ class LevelReader {
 template <std::size_t channels>
 class SampleReader {
  public:
-  SampleReader(const StoredImage& image, bool srgb) : image_(image), by_alpha_(srgb && channels == 4) {
+  SampleReader(const StoredImage& image, SampleUse use)
+      : image_(image), by_alpha_(use == SampleUse::color_by_alpha && channels == 4) {
+    const bool srgb = use != SampleUse::data;
     for (std::size_t i = 0; i < 256; ++i) {
       plain_[i] = static_cast<float>(i) / 255;
       table_[i] = srgb ? linear_bytes()[i] : plain_[i];
@@ -177,12 +179,13 @@ std::uint16_t word_of(float value, Sample kind) {
 }
 
 /// Writes `count` pixels of linear floats as samples. `table` is that of sRGB bytes, or none where they are
-/// linear; colours (`srgb`) are divided by their alpha.
+/// linear; colours that count by their alpha are divided by it.
 template <std::size_t channels>
-void store_pixels(const float* from, std::size_t count, Sample kind, bool srgb, std::uint8_t* to) {
-  const std::uint8_t* table = srgb ? srgb_bytes().data() : nullptr;
+void store_pixels(const float* from, std::size_t count, Sample kind, SampleUse use, std::uint8_t* to) {
+  const bool by_alpha = use == SampleUse::color_by_alpha && channels == 4;
+  const std::uint8_t* table = use != SampleUse::data ? srgb_bytes().data() : nullptr;
   for (std::size_t i = 0; i < count; ++i, from += channels) {
-    const float alpha = srgb && channels == 4 ? from[channels - 1] : 1;
+    const float alpha = by_alpha ? from[channels - 1] : 1;
     const float scale = alpha == 1 ? 1 : alpha > 0 ? 1 / alpha : 0;
     for (std::size_t c = 0; c < channels; ++c) {
       const float value = c == 3 ? from[c] : from[c] * scale;
@@ -206,9 +209,9 @@ template <std::size_t channels, class Read>
 class LevelMaker {
  public:
   /// `read` reads level number `level`.
-  LevelMaker(const Read& read, int width, int height, std::size_t level, Sample kind, bool srgb,
+  LevelMaker(const Read& read, int width, int height, std::size_t level, Sample kind, SampleUse use,
              const TakeRow& take)
-      : read_(read), width_(width), height_(height), level_(level), kind_(kind), srgb_(srgb), take_(take) {}
+      : read_(read), width_(width), height_(height), level_(level), kind_(kind), use_(use), take_(take) {}
 
   /// As many levels as halve evenly, up to `most`, and one if none does. Returns the last one, and adds their
   /// number to `made`.
@@ -265,7 +268,7 @@ class LevelMaker {
         std::copy(mean.begin(), mean.end(), to + x * channels);
       }
     }
-    store_pixels<channels>(to, columns, kind_, srgb_, scratch.samples.data());
+    store_pixels<channels>(to, columns, kind_, use_, scratch.samples.data());
     take_(level_ + static_cast<std::size_t>(step), y, scratch.samples.data());
   }
 
@@ -285,33 +288,34 @@ class LevelMaker {
   int width_, height_;
   std::size_t level_;
   Sample kind_;
-  bool srgb_, even_ = false;
+  SampleUse use_;
+  bool even_ = false;
   const TakeRow& take_;
 };
 
 template <std::size_t channels>
-void make_levels(const StoredImage& image, bool srgb, std::size_t most, const TakeRow& take) {
+void make_levels(const StoredImage& image, SampleUse use, std::size_t most, const TakeRow& take) {
   std::size_t made = 0;
   const auto next = [&](const auto& read, int width, int height) {
     using Read = std::decay_t<decltype(read)>;
-    LevelMaker<channels, Read> maker(read, width, height, made, image.sample, srgb, take);
+    LevelMaker<channels, Read> maker(read, width, height, made, image.sample, use, take);
     return maker.make(static_cast<int>(std::min<std::size_t>(most_steps, most - made)), made);
   };
-  const SampleReader<channels> read(image, srgb);
+  const SampleReader<channels> read(image, use);
   if (most == 0 || image.pixel_count() == 1) return read.pass_rows(0, image.height, take);
   LinearLevel level = next(read, image.width, image.height);
   while (made < most && (level.width > 1 || level.height > 1))
     level = next(LevelReader<channels>(level.data.data()), level.width, level.height);
 }
 
-void make_levels(const StoredImage& image, bool srgb, std::size_t most, const TakeRow& take) {
+void make_levels(const StoredImage& image, SampleUse use, std::size_t most, const TakeRow& take) {
   if (image.channels == 1)
-    make_levels<1>(image, srgb, most, take);
+    make_levels<1>(image, use, most, take);
   else
-    make_levels<4>(image, srgb, most, take);
+    make_levels<4>(image, use, most, take);
 }
 
-std::vector<StoredImage> levels_of(const StoredImage& image, bool srgb, std::size_t most) {
+std::vector<StoredImage> levels_of(const StoredImage& image, SampleUse use, std::size_t most) {
   std::vector<StoredImage> levels;
   for (int width = image.width, height = image.height; (width > 1 || height > 1) && levels.size() < most;) {
     StoredImage& level = levels.emplace_back();
@@ -321,7 +325,7 @@ std::vector<StoredImage> levels_of(const StoredImage& image, bool srgb, std::siz
     level.sample = image.sample;
     level.data.resize(level.pixel_count() * level.pixel_bytes());
   }
-  make_levels(image, srgb, levels.size(), [&](std::size_t number, int y, const std::uint8_t* samples) {
+  make_levels(image, use, levels.size(), [&](std::size_t number, int y, const std::uint8_t* samples) {
     if (number == 0) return;
     StoredImage& level = levels[number - 1];
     const std::size_t row = static_cast<std::size_t>(level.width) * level.pixel_bytes();
@@ -360,16 +364,16 @@ void settle_samples(StoredImage& image, bool srgb) {
   image.exponent.reset();
 }
 
-void each_level_row(const StoredImage& image, bool srgb, const TakeRow& take) {
-  make_levels(image, srgb, std::numeric_limits<std::size_t>::max(), take);
+void each_level_row(const StoredImage& image, SampleUse use, const TakeRow& take) {
+  make_levels(image, use, std::numeric_limits<std::size_t>::max(), take);
 }
 
-std::vector<StoredImage> smaller_levels(const StoredImage& image, bool srgb) {
-  return levels_of(image, srgb, std::numeric_limits<std::size_t>::max());
+std::vector<StoredImage> smaller_levels(const StoredImage& image, SampleUse use) {
+  return levels_of(image, use, std::numeric_limits<std::size_t>::max());
 }
 
-StoredImage half_size(const StoredImage& image, bool srgb) {
-  return std::move(levels_of(image, srgb, 1).front());
+StoredImage half_size(const StoredImage& image, SampleUse use) {
+  return std::move(levels_of(image, use, 1).front());
 }
 
 }  // namespace sundog

@@ -109,12 +109,14 @@ LightSample sample_light(const Light& light, const vec3& p) {
   const float d = sample.distance = glm::length(to);
   sample.wi = to / d;
   sample.radiance /= light.falloff_constant + light.falloff_linear * d + light.falloff_quadratic * d * d;
+  const float part = d * light.edge_v.x;
+  sample.radiance *= std::max(1 - part * part * part * part, 0.0f);
   if (light.kind == LIGHT_SPOT) {
     const float cosine = -glm::dot(sample.wi, rgb(light.direction)), outer = light.direction.w,
                 inner = light.color.w;
     const float s =
         inner > outer ? std::clamp((cosine - outer) / (inner - outer), 0.0f, 1.0f) : cosine >= outer;
-    sample.radiance *= s * s * (3 - 2 * s);
+    sample.radiance *= s * s * (light.edge_u.x - light.edge_u.y * s);
   }
   return sample;
 }

@@ -153,10 +153,12 @@ KeyMaker& KeyMaker::add(const MediumDescription& medium) {
 }
 
 KeyMaker& KeyMaker::add(const ImageDescription& image) {
-  const auto& [name, file, place, encoded, file_width, file_height, pixels, srgb] = image;
-  (void)name, (void)file, (void)place, (void)encoded, (void)file_width, (void)file_height;
+  const auto& [name, file, place, encoded, file_width, file_height, content, pixels, srgb, plain, of_model] =
+      image;
+  (void)name, (void)file, (void)place, (void)encoded, (void)file_width, (void)file_height, (void)plain,
+      (void)of_model;
   sundog::add(*this, pixels);
-  return add(srgb);
+  return add(srgb).add(content);
 }
 
 KeyMaker& KeyMaker::add(const TextureDescription& texture) {
@@ -200,7 +202,7 @@ KeyMaker& KeyMaker::add(const MaterialDescription& material) {
 }
 
 KeyMaker& KeyMaker::add(const Mesh& mesh) {
-  const auto& [name, positions, normals, uvs, further_uvs, tangents, colors, triangles, materials,
+  const auto& [name, positions, normals, uvs, further_uvs, tangents, colors, alphas, triangles, materials,
                source_vertex_count] = mesh;
   (void)name, (void)source_vertex_count;
   add_rows(*this, positions);
@@ -210,6 +212,7 @@ KeyMaker& KeyMaker::add(const Mesh& mesh) {
   for (const auto& set : further_uvs) add_rows(*this, set);
   add_rows(*this, tangents);
   add_rows(*this, colors);
+  add_rows(*this, alphas);
   add_rows(*this, triangles);
   add_rows(*this, materials);
   return *this;

@@ -41,7 +41,12 @@ MeshesPart make_meshes(const SceneDescription& scene, const SurfacesPart& surfac
 
 ContentKey mapping_key(const MeshesPart& meshes, const SurfacesPart& surfaces) {
   const SceneFeatures& features = surfaces.made.features;
-  return KeyMaker().add(meshes.key).add(features.extra_uvs).add(features.relief).key();
+  return KeyMaker()
+      .add(meshes.key)
+      .add(features.extra_uvs)
+      .add(features.relief)
+      .add(takes_vertex_colors(features))
+      .key();
 }
 
 ScenePart make_mapping(const SceneDescription& scene, const MeshesPart& meshes,
@@ -49,9 +54,11 @@ ScenePart make_mapping(const SceneDescription& scene, const MeshesPart& meshes,
   CompiledScene all = meshes.made;
   all.features = surfaces.made.features;
   add_further_uvs(scene, meshes.placed, all);
+  add_vertex_alphas(scene, meshes.placed, all);
   add_tangents(scene, meshes.placed, all);
   ScenePart part;
   part.made.extra_uvs = all.extra_uvs;
+  part.made.vertex_alphas = all.vertex_alphas;
   part.made.tangents = all.tangents;
   return part;
 }

@@ -86,14 +86,15 @@ fs::path find_image(const JsonValue& value) {
 
 void TextureLibrary::read(const JsonValue& value, const std::string& name) {
   static constexpr auto types = [] {
-    std::array<std::string_view, pattern_types.size() + 3> all{"image", "ramp", "product"};
-    std::copy(pattern_types.begin(), pattern_types.end(), all.begin() + 3);
+    std::array<std::string_view, pattern_types.size() + 4> all{"image", "vertex_color", "ramp", "product"};
+    std::copy(pattern_types.begin(), pattern_types.end(), all.begin() + 4);
     return all;
   }();
   const std::string type = value.member("type", list_names(types)).choice(types);
   Entry entry = value.object(type + "_texture", [&](JsonObject& object) {
     object.at("type", "");
     if (type == "image") return read_image(object);
+    if (type == "vertex_color") return read_vertex_color(object);
     if (type == "ramp") return read_ramp(object);
     if (type == "product") return read_product(object);
     return read_pattern(object, type);
@@ -247,6 +248,20 @@ TextureLibrary::Entry TextureLibrary::read_product(JsonObject& object) {
   return entry;
 }
 
+static int read_channel(JsonObject& object) {
+  static constexpr std::array channels = {NamedValue<int>{"red", 0}, NamedValue<int>{"green", 1},
+                                          NamedValue<int>{"blue", 2}, NamedValue<int>{"alpha", 3},
+                                          NamedValue<int>{"all", -1}};
+  return object.choose("channel", -1, channels);
+}
+
+TextureLibrary::Entry TextureLibrary::read_vertex_color(JsonObject& object) {
+  Entry entry;
+  entry.texture.kind = TEXTURE_VERTEX_COLOR;
+  entry.texture.channel = read_channel(object);
+  return entry;
+}
+
 TextureLibrary::Entry TextureLibrary::read_image(JsonObject& object) const {
   using Encoding = Entry::Encoding;
   static constexpr std::array encodings = {NamedValue<Encoding>{"auto", Encoding::by_use},
@@ -255,9 +270,6 @@ TextureLibrary::Entry TextureLibrary::read_image(JsonObject& object) const {
   static constexpr std::array filters = {NamedValue<TextureFilter>{"trilinear", TextureFilter::trilinear},
                                          NamedValue<TextureFilter>{"bilinear", TextureFilter::bilinear},
                                          NamedValue<TextureFilter>{"nearest", TextureFilter::nearest}};
-  static constexpr std::array channels = {NamedValue<int>{"red", 0}, NamedValue<int>{"green", 1},
-                                          NamedValue<int>{"blue", 2}, NamedValue<int>{"alpha", 3},
-                                          NamedValue<int>{"all", -1}};
   Entry entry;
   TextureDescription& texture = entry.texture;
   texture.kind = TEXTURE_IMAGE;
@@ -269,7 +281,7 @@ TextureLibrary::Entry TextureLibrary::read_image(JsonObject& object) const {
   read_wraps(object, texture);
   read_mapping(object, Mapping::uv, texture);
   texture.uv = read_uv(object);
-  texture.channel = object.choose("channel", -1, channels);
+  texture.channel = read_channel(object);
   return entry;
 }
 

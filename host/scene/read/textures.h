@@ -42,6 +42,7 @@ class TextureLibrary {
     enum class Encoding { by_use, srgb, linear } encoding = Encoding::by_use;
   };
   Entry read_image(JsonObject& object) const;
+  static Entry read_vertex_color(JsonObject& object);
   Entry read_pattern(JsonObject& object, const std::string& type);
   Entry read_ramp(JsonObject& object);
   Entry read_product(JsonObject& object);

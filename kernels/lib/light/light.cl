@@ -28,13 +28,17 @@ static inline LightSamples way_to_lamp(__global const Light* light, REAL3 p) {
     sample.radiance =
         real3(sample.radiance.x / falloff, sample.radiance.y / falloff, sample.radiance.z / falloff);
   }
+  if (light->edge_v.x > 0.0f) {  // as KHR_lights_punctual suggests
+    const REAL part = d * light->edge_v.x, square = part * part;
+    sample.radiance = scale3(sample.radiance, real_max(1.0f - square * square, (REAL)(0.0f)));
+  }
   if (light->kind == LIGHT_SPOT) {
     const REAL cosine = -dot3(sample.wi, all3(light->direction.xyz));
     const float outer = light->direction.w, inner = light->color.w;
     const REAL one = (REAL)(1.0f), zero = (REAL)(0.0f);
     const REAL s = inner > outer ? real_clamp((cosine - outer) / (inner - outer), zero, one)
                                  : select(zero, one, MASK_OF(cosine >= outer));
-    sample.radiance = scale3(sample.radiance, s * s * (3.0f - 2.0f * s));
+    sample.radiance = scale3(sample.radiance, s * s * (light->edge_u.x - light->edge_u.y * s));
   }
   return sample;
 }

@@ -88,7 +88,9 @@ static inline REAL3 mapped_normals(const Scene* scene, __global const MaterialMa
   const REAL3 mean =
       real3(fma(value.x, (REAL)(2.0f), (REAL)(-1.0f)), fma(value.y, (REAL)(2.0f), (REAL)(-1.0f)), z);
   *even = select(*even, real_min(length3(mean) + EVEN_ROUNDING, (REAL)(1.0f)), lanes);
-  return add3(add3(scale3(frame->tangent, x), scale3(frame->bitangent, y)), scale3(frame->normal, z));
+  const float4 turn = maps->normal_turn;
+  const REAL u = fma(x, (REAL)(turn.x), y * turn.z), v = fma(x, (REAL)(turn.y), y * turn.w);
+  return add3(add3(scale3(frame->tangent, u), scale3(frame->bitangent, v)), scale3(frame->normal, z));
 }
 
 // The same by its heights, from three of them: here, and a step along each of dpdu and dpdv.

@@ -181,12 +181,41 @@ static inline REAL pattern_value(__global const TextureNode* node, MappedPoints 
   return real_clamp(q.x, (REAL)(0.0f), (REAL)(1.0f));
 }
 
+// The colours of meshes' vertices.
+#if HAS_KIND(13) && HAS_MESH
+static inline REAL4 vertex_colors(const Scene* scene, const TexturePoints* at, MASK lanes) {
+  const REAL one = (REAL)(1.0f);
+  REAL4 colors = real4(one, one, one, one);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    if (scene->instances[MASK_LANE(at->instance, i)].shape != SHAPE_MESH) continue;
+    __global const u32* corner = scene->triangles[MASK_LANE(at->prim, i)].vertex;
+    const float b = REAL_LANE(at->b, i), c = REAL_LANE(at->c, i), share[3] = {1.0f - b - c, b, c};
+    float4 sum = (float4)(0.0f);
+    for (u32 k = 0; k < 3u; ++k) {
+      __global const Vertex* vertex = scene->vertices + corner[k];
+      sum += share[k] * (float4)(vertex->r, vertex->g, vertex->b, scene->vertex_alphas[corner[k]]);
+    }
+    REAL_LANE(colors.x, i) = sum.x;
+    REAL_LANE(colors.y, i) = sum.y;
+    REAL_LANE(colors.z, i) = sum.z;
+    REAL_LANE(colors.w, i) = sum.w;
+  }
+  return colors;
+}
+#else
+static inline REAL4 vertex_colors(const Scene* scene, const TexturePoints* at, MASK lanes) {
+  return real4((REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f));
+}
+#endif
+
 // What a node's kind gives at points.
 static inline REAL4 node_values(const Scene* scene, __global const TextureNode* node, const TexturePoints* at,
                                 MASK lanes) {
   const REAL zero = (REAL)(0.0f);
   if (node->kind == TEXTURE_COLOR) return real4(zero, zero, zero, zero);
   if (TEXEL_FORMATS && node->kind == TEXTURE_IMAGE) return image_values(scene, node, at, lanes);
+  if (HAS_KIND(13) && node->kind == TEXTURE_VERTEX_COLOR) return vertex_colors(scene, at, lanes);
   const MappedPoints mapped = map_points(scene, node, at, lanes);
   const REAL width = at->footprint * mapped.density;
   if (HAS_KIND(12) && node->kind == TEXTURE_FORMULA)

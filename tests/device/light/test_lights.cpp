@@ -51,6 +51,31 @@ TEST_CASE("a spot's light is full within the inner cone, none beyond the outer, 
   });
 }
 
+TEST_CASE("a light fades to nothing at its range, and glTF's spots by a square between their cones") {
+  LightDescription light;
+  light.type = LightType::spot;
+  light.position = {0, 2, 0};
+  light.inner_angle = 0;
+  light.outer_angle = 40;
+  light.square_edge = true;
+  on_picture_devices([&](const DeviceInfo& device) {
+    const auto lit = [&](double degrees, double range) {
+      light.direction = {std::sin(glm::radians(degrees)), -std::cos(glm::radians(degrees)), 0};
+      light.range = range;
+      return scenes::pixel_on(device, floor_under(light)).x;
+    };
+    const double outer = std::cos(glm::radians(40.0));
+    const auto squared = [&](double degrees) {
+      const double s = (std::cos(glm::radians(degrees)) - outer) / (1 - outer);
+      return s * s;
+    };
+    for (const double degrees : {10.0, 25.0, 33.0})
+      CHECK(lit(degrees, 0) == Approx(squared(degrees)).epsilon(1e-5));
+    CHECK(lit(25, 2.5) == Approx(squared(25) * (1 - std::pow(0.8, 4))).epsilon(1e-5));
+    CHECK(lit(0, 1.9) == 0);
+  });
+}
+
 TEST_CASE("a light behind a surface does not shine on it, nor one whose way is blocked behind half of it") {
   LightDescription light;
   on_picture_devices([&](const DeviceInfo& device) {

@@ -91,6 +91,26 @@ TEST_CASE("bent normals leak no light from behind the surface, and end softly at
   });
 }
 
+TEST_CASE("a normal map turns with its picture, as heights do") {
+  on_every_device([&](const DeviceInfo& info) {
+    for (const int degrees : {0, 90, 180, 217}) {
+      for (const double flip : {1.0, -1.0}) {
+        SceneDescription scene = white_plane();
+        scene.materials[0].textures.normal = add_image(scene, pixel({204, 128, 230, 255}));  // (0.6, 0, 0.8)
+        const double c = std::cos(glm::radians(double(degrees))), s = std::sin(glm::radians(double(degrees)));
+        scene.textures[0].uv = glm::dmat3(2 * flip, 0, 0, 0, 3, 0, 0, 0, 1) *
+                               glm::dmat3(glm::dvec3(c, -s, 0), glm::dvec3(s, c, 0), glm::dvec3(0.3, 0.1, 1));
+        // u of the plane is x, v is -z.
+        const dvec3 n = xyz(surfaces::shade(info, surfaces::Part::relief, scene, above()).normal);
+        INFO(degrees << ", " << flip);
+        CHECK(n.x == Approx(0.6 * flip * c).margin(5e-3));
+        CHECK(-n.z == Approx(0.6 * flip * s).margin(5e-3));
+        CHECK(n.y == Approx(0.8).margin(5e-3));
+      }
+    }
+  });
+}
+
 TEST_CASE("bent normals return no more light than comes, however far they are bent") {
   // A white Lambert surface under light from all sides: the mean of 2 (n . wi) over the hemisphere.
   std::vector<surfaces::Point> points;

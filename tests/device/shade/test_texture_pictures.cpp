@@ -190,6 +190,42 @@ TEST_CASE("heights on a further set of coordinates bend normals and sink in as o
   });
 }
 
+TEST_CASE("a texture of the colour of vertices lies between them, with its alpha for rays and for light") {
+  on_picture_devices([&](const DeviceInfo& info) {
+    SceneDescription scene = under_the_sun();
+    scene.lights.back().direction = {0, -1, 0};
+    Mesh mesh;
+    mesh.positions = {{-1, 2, 1}, {1, 2, 1}, {-1, 2, -1}};
+    mesh.triangles = {{0, 1, 2}};
+    mesh.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.alphas = {0.2f, 0.6f, 1.0f};
+    scene.meshes = {mesh};
+    TextureDescription color;
+    color.kind = TEXTURE_VERTEX_COLOR;
+    TextureDescription alpha = color;
+    alpha.channel = 3;
+    scene.textures = {color, alpha};
+    MaterialDescription faded, white;
+    white.ambient = dvec3(0), white.diffuse = dvec3(1);
+    faded.ambient = faded.diffuse = dvec3(0);
+    faded.emission = dvec3(1);
+    faded.textures.emission = 0;
+    faded.textures.opacity = 1;
+    scene.materials = {faded, white};
+    scenes::place(scene, MeshShape{0}, 0);
+    scenes::place(scene, PlaneShape{}, 1);
+    // Shares of the corners: 0.5, 0.2, 0.3.
+    const dvec3 at{-1 + 2 * 0.2, 0, 1 - 2 * 0.3};
+    const double there = 0.5 * 0.2 + 0.2 * 0.6 + 0.3 * 1, floor = 1 - there;
+    const dvec3 shadow = seen(info, scene, at + dvec3(0, 1, 0), at),
+                shown = seen(info, scene, at + dvec3(0, 5, 0), at);
+    CHECK(shadow.x == Approx(floor).epsilon(1e-4));
+    CHECK(shown.x == Approx(there * 0.5 + (1 - there) * floor).epsilon(1e-4));
+    CHECK(shown.y == Approx(there * 0.2 + (1 - there) * floor).epsilon(1e-4));
+    CHECK(shown.z == Approx(there * 0.3 + (1 - there) * floor).epsilon(1e-4));
+  });
+}
+
 TEST_CASE("an opacity cut off lets rays and light through where the texture says") {
   on_every_device([&](const DeviceInfo& info) {
     // The left half of a disk is there, the right half is not; above it stands the sun, below is a floor.

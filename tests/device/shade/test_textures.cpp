@@ -160,7 +160,8 @@ void check_samples(const DeviceInfo& device, const ImageDescription& image, cons
   CompiledScene flat = compile(textured_plane(image, texture));
   if (page) cut_into_pages(page, flat);
   Levels levels{{image.pixels}, image.srgb};
-  for (StoredImage& level : smaller_levels(image.pixels, image.srgb)) levels.all.push_back(std::move(level));
+  for (StoredImage& level : smaller_levels(image.pixels, image.srgb ? SampleUse::color : SampleUse::data))
+    levels.all.push_back(std::move(level));
   const std::vector<float4> points = sample_points(image.pixels);
   const std::vector<float4> found = sample_on(device, flat, points);
   const double size = std::sqrt(double(image.pixels.width) * image.pixels.height);

@@ -206,6 +206,28 @@ TEST_CASE("a file that says it has far more pixels than bytes is refused at once
   CHECK_THAT(error_of(folder.write("b.exr", exr)), ContainsSubstring("10000000x4 pixels"));
 }
 
+TEST_CASE("an EXR is its display window: 0 beyond its data, and data beyond it cut off") {
+  const TemporaryFolder folder;
+  const Image data = ramp(4, 4, 3);
+  write_image(data, folder / "a.exr", {}, ExrColor::full);
+  std::string exr = read_file(folder / "a.exr");
+  const std::int32_t shown[] = {-1, -2, 2, 5};  // x0 y0 x1 y1 behind the name, 0, "box2i", 0, size
+  const std::string window = "displayWindow";
+  std::memcpy(exr.data() + exr.find(window) + window.size() + 1 + 6 + 4, shown, sizeof shown);
+  const Image image = read_image(folder.write("b.exr", exr));
+  REQUIRE(image.width == 4);
+  REQUIRE(image.height == 8);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 4; ++x) {
+      const bool inside = x >= 1 && y >= 2 && y < 6;
+      for (int c = 0; c < 3; ++c) CHECK(image.pixel(x, y)[c] == (inside ? data.pixel(x - 1, y - 2)[c] : 0));
+      CHECK(image.pixel(x, y)[3] == 1);  // of a file without alpha
+    }
+  const std::int32_t huge[] = {0, 0, 16383, 16383};
+  std::memcpy(exr.data() + exr.find(window) + window.size() + 1 + 6 + 4, huge, sizeof huge);
+  CHECK_THAT(error_of(folder.write("c.exr", exr)), ContainsSubstring("display window of 16384x16384 pixels"));
+}
+
 TEST_CASE("an HDR file of the older form is read, and one that is no picture is refused") {
   const TemporaryFolder folder;
   const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";

@@ -118,7 +118,7 @@ TEST_CASE("images of one row, one column and one pixel have all their levels") {
     StoredImage image;
     image.width = width, image.height = height, image.channels = 1;
     for (int i = 0; i < width * height; ++i) image.data.push_back(static_cast<std::uint8_t>(37 * i));
-    const auto levels = smaller_levels(image, false);
+    const auto levels = smaller_levels(image, SampleUse::data);
     int w = width, h = height;
     for (const StoredImage& level : levels) {
       w = std::max(1, w / 2), h = std::max(1, h / 2);
@@ -137,7 +137,7 @@ TEST_CASE("smaller levels keep the mean of the light, whatever the edges") {
     for (int i = 0; i < edge * edge; ++i)
       image.data.push_back(static_cast<std::uint8_t>(97 * i * i + 11 * i));
     for (const bool srgb : {false, true}) {
-      const auto levels = smaller_levels(image, srgb);
+      const auto levels = smaller_levels(image, srgb ? SampleUse::color : SampleUse::data);
       CHECK(mean_of(levels.back(), srgb) == Approx(mean_of(image, srgb)).margin(0.005));
     }
   }
@@ -157,7 +157,7 @@ TEST_CASE("a texel of each level is the mean light of all pixels below it") {
       return double(linear_from_srgb(float(from.data[at]) / 255));
     };
     int edge = 1;
-    for (const StoredImage& level : smaller_levels(image, true)) {
+    for (const StoredImage& level : smaller_levels(image, SampleUse::color)) {
       edge *= 2;
       if (level.width * edge != width || level.height * edge != height) break;
       for (int y = 0; y < level.height; ++y)
@@ -179,8 +179,16 @@ TEST_CASE("what cannot be seen of an image does not colour its smaller levels") 
   StoredImage image;
   image.width = 2, image.height = 1;
   image.data = {200, 100, 50, 255, 0, 255, 0, 0};
-  const StoredImage half = half_size(image, true);
+  const StoredImage half = half_size(image, SampleUse::color_by_alpha);
   CHECK(half.data == std::vector<std::uint8_t>{200, 100, 50, 128});
+}
+
+TEST_CASE("colours whose alpha nothing uses count alike in smaller levels") {
+  StoredImage image;
+  image.width = 2, image.height = 1;
+  image.data = {255, 0, 0, 255, 0, 255, 0, 0};
+  const StoredImage half = half_size(image, SampleUse::color);
+  CHECK(half.data == std::vector<std::uint8_t>{188, 188, 0, 128});
 }
 
 TEST_CASE("an image's own gamma and sixteen bits of colour become what textures take") {

@@ -19,13 +19,38 @@ std::string two_pixels() {
   return encode_image(two, "two.png");
 }
 
+/// Red, and blue that cannot be seen.
+std::string clear_and_red() {
+  Image two(2, 1, 4);
+  two.data = {1, 0, 0, 1, 0, 0, 1, 0};
+  return encode_image(two, "two.png");
+}
+
 /// The quad with a texture 0 and this material.
-SceneDescription quad_with(const std::string& material) {
+SceneDescription quad_with(const std::string& material, const std::string& png = two_pixels()) {
   const TemporaryFolder folder;
-  const std::string image = R"("images":[{"uri":"data:image/png;base64,)" + base64(two_pixels()) + R"("}])";
+  const std::string image = R"("images":[{"uri":"data:image/png;base64,)" + base64(png) + R"("}])";
   return load_scene(folder.write(
       "a.gltf", quad(one_node + "," + image + R"(,"textures":[{"source":0}],"materials":[)" + material + "]",
                      R"(,"material":0)")));
+}
+
+/// A quad with COLOR_0, a texture 0 and this material.
+SceneDescription quad_with_colors(const std::vector<glm::vec4>& colors, const std::string& material) {
+  const TemporaryFolder folder;
+  std::string bytes;
+  put<float>(bytes, {0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0});
+  for (const glm::vec4& color : colors) put<float>(bytes, {color.x, color.y, color.z, color.w});
+  return load_scene(folder.write(
+      "a.gltf",
+      document(one_node + R"(,"buffers":[{"byteLength":112,"uri":"data:application/octet-stream;base64,)" +
+               base64(bytes) + R"("}],"bufferViews":[{"buffer":0,"byteLength":48},
+      {"buffer":0,"byteOffset":48,"byteLength":64}],
+      "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":4},
+      {"bufferView":1,"componentType":5126,"type":"VEC4","count":4}],
+      "meshes":[{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":1},"mode":6,"material":0}]}],
+      "images":[{"uri":"data:image/png;base64,)" +
+               base64(two_pixels()) + R"("}],"textures":[{"source":0}],"materials":[)" + material + "]")));
 }
 
 const TextureDescription& texture_of(const SceneDescription& scene, int index) {
@@ -201,6 +226,106 @@ TEST_CASE("a clear layer without a texture stays a number, except where textures
   const SceneDescription scene =
       quad_with(R"({"pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0}},)" + coat);
   CHECK(scene.materials.at(0).coat == Approx(0.04));
+}
+
+TEST_CASE("the colour of vertices is a factor on what an unlit glTF material shows") {
+  const SceneDescription scene = quad_with_colors(
+      {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {1, 1, 1, 1}},
+      R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"extensions":{"KHR_materials_unlit":{}}})");
+  const TextureDescription& shown = texture_of(scene, scene.materials.at(0).textures.emission);
+  REQUIRE(shown.kind == TEXTURE_PRODUCT);
+  CHECK(texture_of(scene, shown.of[0]).kind == TEXTURE_IMAGE);
+  CHECK(texture_of(scene, shown.of[1]).kind == TEXTURE_VERTEX_COLOR);
+  CHECK(scene.meshes.at(0).alphas.empty());
+}
+
+TEST_CASE("the alpha of vertices is a factor on the opacity of glTF's BLEND and MASK, and on no other") {
+  const std::vector<glm::vec4> faded(4, {1, 1, 1, 0.25f});
+  const auto scene_of = [&](const std::string& mode) {
+    return quad_with_colors(
+        faded, R"({"pbrMetallicRoughness":{"metallicFactor":0,"baseColorFactor":[1,0,0,0.5]},)" + mode + "}");
+  };
+  for (const std::string mode : {"BLEND", "MASK"}) {
+    const SceneDescription scene = scene_of(R"("alphaMode":")" + mode + "\"");
+    const MaterialDescription& m = scene.materials.at(0);
+    CHECK(m.opacity == 0.5);
+    CHECK(m.cutoff == (mode == "MASK" ? 0.5 : 0));
+    const TextureDescription& alpha = texture_of(scene, m.textures.opacity);
+    CHECK(alpha.kind == TEXTURE_VERTEX_COLOR);
+    CHECK(alpha.channel == 3);
+    REQUIRE(m.by_paths);
+    CHECK(m.by_paths->opacity == 0.5);
+    CHECK(m.by_paths->textures.opacity == m.textures.opacity);
+    const CompiledScene flat = compile(scene);
+    REQUIRE(flat.vertex_alphas.size() == flat.vertices.size());
+    CHECK(flat.vertex_alphas[0] == 0.25f);
+  }
+  CHECK(scene_of(R"("alphaMode":"OPAQUE")").materials.at(0).textures.opacity == -1);
+  CHECK(compile(scene_of(R"("alphaMode":"OPAQUE")")).vertex_alphas.empty());
+}
+
+TEST_CASE("the colour of vertices is a factor on what glTF's metals reflect and its panes let through") {
+  const std::vector<glm::vec4> red(4, {1, 0, 0, 1});
+  const MaterialTextures metal =
+      quad_with_colors(red, R"({"pbrMetallicRoughness":{"roughnessFactor":0}})").materials.at(0).textures;
+  CHECK(metal.reflection >= 0);
+  CHECK(metal.specular >= 0);
+  const SceneDescription panes = quad_with_colors(red, R"({"pbrMetallicRoughness":{"metallicFactor":0},
+      "extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})");
+  for (const MaterialDescription* m : {&panes.materials.at(0), panes.materials.at(0).by_paths.get()})
+    CHECK(texture_of(panes, m->textures.transmission).kind == TEXTURE_VERTEX_COLOR);
+  CHECK(panes.materials.at(0).textures.reflection == -1);
+}
+
+TEST_CASE("an image's colours count by its alpha in materials alone that take their opacity from it") {
+  const std::string material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"alphaMode":)";
+  const auto levels_of = [&](const std::string& materials) {
+    const CompiledScene flat = compile(quad_with(materials, clear_and_red()));
+    std::vector<u32> last;
+    for (const TextureNode& node : flat.texture_nodes)
+      if (!(node.flags & TEXTURE_ONE_CHANNEL))
+        last.push_back(flat.texels0[flat.texel_levels[node.first + 1].first * TEXEL_UNIT / sizeof(u32)]);
+    return last;
+  };
+  CHECK(levels_of(material + R"("OPAQUE"})") == std::vector<u32>{0x80BC00BC});
+  CHECK(levels_of(material + R"("BLEND"})") == std::vector<u32>{0x800000FF});
+}
+
+TEST_CASE("a PNG's gamma counts in a scene's own textures, not in a glTF's") {
+  Image grey(1, 1, 3);
+  grey.data = {linear_from_srgb(128.f / 255), linear_from_srgb(128.f / 255), linear_from_srgb(128.f / 255)};
+  std::string png = encode_image(grey, "grey.png");
+  png.insert(8 + 25, std::string("\0\0\0\4gAMA\0\1\x86\xa0\x31\xe8\x96\x5f", 16));  // linear; behind IHDR
+  const SceneDescription model =
+      quad_with(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})", png);
+  CHECK(model.images.at(0).pixels.data.at(0) == 128);
+  const TemporaryFolder folder;
+  folder.write("grey.png", png);
+  const SceneDescription own = load_scene(folder.write("a.json", R"({"textures":{"t":{"type":"image",
+      "file":"grey.png"}},"materials":{"m":{"color":"t"}},"objects":[{"type":"sphere","material":"m"}]})"));
+  CHECK(own.images.at(0).pixels.data.at(0) == 188);
+}
+
+TEST_CASE("an image of a model that cannot be decoded is a warning, and its material goes without") {
+  const std::string material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},
+      "normalTexture":{"index":0},"emissiveFactor":[1,1,1],"emissiveTexture":{"index":0}})";
+  for (const std::string& bytes : {std::string("DDS and so on"), two_pixels().substr(0, 40)}) {
+    const SceneDescription scene = quad_with(material, bytes);
+    REQUIRE(scene.warnings.size() == 1);
+    CHECK_THAT(scene.warnings[0],
+               ContainsSubstring("/images/0") && ContainsSubstring("materials go without it"));
+    CHECK(scene.materials.at(0).textures.normal == -1);
+    CHECK(scene.images.at(0).pixels.data == std::vector<std::uint8_t>(4, 255));
+    compile(scene);
+  }
+  const TemporaryFolder folder;
+  folder.write("x.tga", std::string(40, '\2'));
+  folder.write("m.mtl", "newmtl m\nmap_Kd x.tga\nbump x.tga\ndisp -bm 1 x.tga\n");
+  const SceneDescription obj =
+      load_scene(folder.write("a.obj", "mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  CHECK(obj.warnings.size() == 1);
+  CHECK(obj.materials.at(0).displaced_by == -1);
+  CHECK(obj.materials.at(0).textures.height == -1);
 }
 
 TEST_CASE("a model's own tangents take the place of made ones, where there are any") {

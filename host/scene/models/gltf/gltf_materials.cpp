@@ -80,10 +80,11 @@ void make_wall(OpenPbr& values, MaterialDescription& material, double mirrored) 
 
 }  // namespace
 
-GltfMaterials::GltfMaterials(const JsonAt& root, GltfTextures& textures) : textures_(textures) {
-  for (const JsonAt& at : root.list("materials")) materials_.push_back(read(at));
+GltfMaterials::GltfMaterials(const JsonAt& root, GltfTextures& textures)
+    : textures_(textures), document_(root.list("materials")) {
+  for (const JsonAt& at : document_) materials_.push_back(read(at, VertexColors::none));
   const nlohmann::json empty = nlohmann::json::object();
-  materials_.push_back(read(JsonAt(Source{}, empty, "")));
+  materials_.push_back(read(JsonAt(Source{}, empty, ""), VertexColors::none));
   materials_.back().material.name = "default";
   settle_sides();
 }
@@ -99,8 +100,9 @@ void GltfMaterials::settle_sides() {
   }
 }
 
-GltfMaterials::Entry GltfMaterials::read(const JsonAt& at) const {
+GltfMaterials::Entry GltfMaterials::read(const JsonAt& at, VertexColors colors) const {
   Entry entry;
+  entry.fades = colors == VertexColors::with_alpha;
   MaterialDescription& m = entry.material;
   m.name = at.text("name");
   dvec3 base{1};
@@ -292,16 +294,19 @@ void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const
 void GltfMaterials::blend(const JsonAt& at, Entry& entry, double alpha) {
   const std::string mode = at.text("alphaMode");
   const double cutoff = at.number("alphaCutoff", 0.5, not_negative);
-  if (mode != "BLEND" && mode != "MASK") return;
   MaterialDescription& m = entry.material;
-  if (m.type == MaterialType::dielectric) return;  // its own transmission says more
-  if (mode == "MASK" && cutoff == 0) return;
-  if (entry.base) {
+  // A dielectric's own transmission says more.
+  if ((mode != "BLEND" && mode != "MASK") || m.type == MaterialType::dielectric ||
+      (mode == "MASK" && cutoff == 0)) {
+    entry.fades = false;
+    return;
+  }
+  if (entry.base || entry.fades) {
     m.opacity = alpha;
     if (mode == "MASK") m.cutoff = cutoff;
     if (entry.by_paths) entry.by_paths->opacity = m.opacity, entry.by_paths->cutoff = m.cutoff;
     entry.opacity = entry.base;
-    entry.opacity->channel = 3;
+    if (entry.opacity) entry.opacity->channel = 3;
     return;
   }
   // The same everywhere: a thin pane.

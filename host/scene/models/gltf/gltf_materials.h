@@ -12,6 +12,9 @@
 
 namespace sundog::models {
 
+/// What a primitive's COLOR_0 says.
+enum class VertexColors { none, opaque, with_alpha };
+
 /// Checks all materials of a document, and adds to a model those that its triangles use.
 ///
 /// base, metallic, roughness: by shared/metal_rough.h, with a reflectance of 0.04 or from KHR_materials_ior
@@ -20,16 +23,17 @@ namespace sundog::models {
 /// share of base through: with a volume (thickness above 0) as a dielectric with a medium, absorbing
 /// -ln(attenuationColor) / attenuationDistance; without one as a thin pane, straight through, and for
 /// integrators that follow paths as a thin wall, frosted where it is rough. alphaMode BLEND and MASK become
-/// the opacity. The base colour's texture is a factor on all terms that have its colour. For integrators that
-/// follow paths most are OpenPBR's layers in place of these terms (gltf_layers.h).
+/// the opacity. The base colour's texture is a factor on all terms that have its colour, and so are the
+/// colours of vertices, whose alpha is one on the opacity. For integrators that follow paths most are
+/// OpenPBR's layers in place of these terms (gltf_layers.h).
 class GltfMaterials {
  public:
   GltfMaterials(const JsonAt& root, GltfTextures& textures);
 
   std::size_t count() const { return materials_.size(); }
-  /// The index in `model` of material `index` (or of the default one, for `count()`), with or without vertex
+  /// The index in `model` of material `index` (or of the default one, for `count()`) on primitives of such
   /// colours.
-  int use(std::size_t index, bool vertex_color, Model& model);
+  int use(std::size_t index, VertexColors colors, Model& model);
 
  private:
   struct Entry {
@@ -45,8 +49,10 @@ class GltfMaterials {
     double transmitted = 0;  // of what is no metal, the share that a transmission texture is a factor on
     bool two_sided = false, unlit = false,
          by_values = false;  // by_values: textures change metalness or roughness
+    bool fades = false;      // the alpha of vertices is a factor on the opacity
   };
-  Entry read(const JsonAt& at) const;
+  Entry read(const JsonAt& at, VertexColors colors) const;
+  Entry of_colors(std::size_t index, VertexColors colors) const;
   void read_textures(const JsonAt& at, Entry& entry) const;
   void settle_sides();
   static void read_unlit(const JsonAt& at, Entry& entry, glm::dvec3 base);
@@ -59,11 +65,13 @@ class GltfMaterials {
   void use_by_paths(const Entry& entry, MaterialDescription& material, Model& model);
   void use_specular(const Entry& entry, MaterialDescription& material, Model& model);
   void transmit(const JsonAt& at, Entry& entry, glm::dvec3 base, double ior) const;
+  static void use_vertex_colors(const Entry& entry, MaterialDescription& material, Model& model);
   static void blend(const JsonAt& at, Entry& entry, double alpha);
 
   GltfTextures& textures_;
+  std::vector<JsonAt> document_;
   std::vector<Entry> materials_;  // and the default one at the end
-  std::map<std::pair<std::size_t, bool>, int> used_;
+  std::map<std::pair<std::size_t, VertexColors>, int> used_;
 };
 
 }  // namespace sundog::models

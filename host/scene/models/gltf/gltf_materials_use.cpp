@@ -5,6 +5,18 @@
 #include "scene/models/gltf/gltf_materials.h"
 
 namespace sundog::models {
+namespace {
+
+/// Adds the colour of vertices to a model, or one channel of it.
+int add_vertex_color(int channel, Model& model) {
+  TextureDescription texture;
+  texture.kind = TEXTURE_VERTEX_COLOR;
+  texture.channel = channel;
+  model.textures.push_back(texture);
+  return static_cast<int>(model.textures.size()) - 1;
+}
+
+}  // namespace
 
 void GltfMaterials::use_textures(const Entry& entry, MaterialDescription& material, Model& model) {
   MaterialTextures& to = material.textures;
@@ -23,9 +35,23 @@ void GltfMaterials::use_textures(const Entry& entry, MaterialDescription& materi
   if (!entry.unlit) use_specular(entry, material, model);
   if (entry.coat) to.coat = textures_.use(*entry.coat, false, model);
   if (entry.opacity) to.opacity = textures_.use(*entry.opacity, true, model);
+  if (entry.fades) to.opacity = GltfTextures::product(to.opacity, add_vertex_color(3, model), model);
   if (entry.emission) to.emission = textures_.use(*entry.emission, true, model);
   if (entry.normal) to.normal = textures_.use(*entry.normal, false, model);
   if (entry.occlusion) to.occlusion = textures_.use(*entry.occlusion, false, model);
+}
+
+/// On the terms that MaterialDescription::vertex_color leaves alone.
+void GltfMaterials::use_vertex_colors(const Entry& entry, MaterialDescription& material, Model& model) {
+  const auto tint = [&](int& slot) {
+    slot = GltfTextures::product(slot, add_vertex_color(-1, model), model);
+  };
+  MaterialTextures& to = material.textures;
+  if (entry.unlit) tint(to.emission);
+  if (material.transmission != dvec3(0)) tint(to.transmission);
+  if (entry.values.metalness == 0 || entry.unlit || material.metal_rough || material.layers) return;
+  if (material.reflection != dvec3(0) && !entry.has_medium) tint(to.reflection);
+  if (entry.values.metalness == 1) tint(to.specular);
 }
 
 /// With a texture t of the share f that passes: the transmission times t, the diffuse term times 1 - f t.
@@ -67,6 +93,7 @@ void GltfMaterials::use_by_paths(const Entry& entry, MaterialDescription& materi
   use_specular(entry, *other, model);
   to.ambient = to.diffuse;
   if (other->transmission != dvec3(0)) to.transmission = to.diffuse;
+  if (other->vertex_color) use_vertex_colors(entry, *other, model);
   if (entry.metal_rough) {
     TextureDescription packed = *entry.metal_rough;
     packed.channel = 1;
@@ -84,14 +111,24 @@ void GltfMaterials::use_specular(const Entry& entry, MaterialDescription& materi
   if (both >= 0) material.textures.specular = both;
 }
 
-int GltfMaterials::use(std::size_t index, bool vertex_color, Model& model) {
-  const auto [found, added] =
-      used_.try_emplace({index, vertex_color}, static_cast<int>(model.materials.size()));
+/// The alpha of vertices takes the place of terms that blend() has made of one number.
+GltfMaterials::Entry GltfMaterials::of_colors(std::size_t index, VertexColors colors) const {
+  Entry entry = materials_.at(index);
+  if (colors != VertexColors::with_alpha || index >= document_.size()) return entry;
+  const bool one_sided = entry.material.one_sided;
+  entry = read(document_[index], colors);
+  entry.material.one_sided = one_sided;
+  return entry;
+}
+
+int GltfMaterials::use(std::size_t index, VertexColors colors, Model& model) {
+  const auto [found, added] = used_.try_emplace({index, colors}, static_cast<int>(model.materials.size()));
   if (added) {
-    const Entry& entry = materials_.at(index);
+    const Entry entry = of_colors(index, colors);
     model.materials.push_back(entry.material);
-    model.materials.back().vertex_color = vertex_color;
+    model.materials.back().vertex_color = colors != VertexColors::none;
     use_textures(entry, model.materials.back(), model);
+    if (colors != VertexColors::none) use_vertex_colors(entry, model.materials.back(), model);
     if (entry.has_medium) {
       model.materials.back().medium = static_cast<int>(model.media.size());
       model.media.push_back(entry.medium);

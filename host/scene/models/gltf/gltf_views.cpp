@@ -44,6 +44,8 @@ LightDescription read_gltf_light(const JsonAt& at) {
   } else if (type == "point" || type == "spot") {
     light.type = type == "point" ? LightType::point : LightType::spot;
     light.falloff = {0, 0, 1};
+    light.range = at.number("range", 0, positive);
+    light.square_edge = type == "spot";
   } else {
     at.member("type").fail("directional, point or spot wanted");
   }

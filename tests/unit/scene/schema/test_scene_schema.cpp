@@ -39,6 +39,7 @@ const std::string everything = R"({
   "textures": {"t": {"type": "image", "file": "t.pfm", "wrap": ["clamp", "mirror"], "scale": [2, 1]},
     "a": {"type": "checker", "colors": [[0, 0, 0], "t"]}, "b": {"type": "stripes"}, "c": {"type": "gradient"}, "d": {"type": "brick"},
     "e": {"type": "noise"}, "f": {"type": "cells"}, "g": {"type": "marble"}, "h": {"type": "wood"},
+    "v": {"type": "vertex_color", "channel": "alpha"},
     "i": {"type": "ramp", "of": "e", "stops": [{"at": 0.5, "color": [0, 1, 0]}]}, "j": {"type": "product", "of": ["a", "i"]}, "k": {"type": "formula", "formula": "s * p.x", "parameters": {"s": 2}}},
   "materials": {
     "textured": {"color": "t", "specular": {"color": "t", "exponent": "t"}, "emission": {"color": "t"}, "opacity": "t",
