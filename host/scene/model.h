@@ -40,7 +40,8 @@ using NamedMeshes = std::map<std::string, std::shared_ptr<const Mesh>>;
 
 struct ModelOptions {
   /// Angle in degrees up to which made-up normals are smoothed across an edge; nullopt: the format's own rule
-  /// (glTF and STL flat, OBJ and PLY 45). 0 is flat.
+  /// (glTF and STL flat, OBJ by its smoothing groups, else it and PLY 45). 0 is
+  /// flat.
   std::optional<double> crease_angle = std::nullopt;
   bool outside_files = false;  // files that the model names may lie outside its folder
 };

@@ -5,27 +5,31 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 
-#include "scene/inside.h"
+#include "scene/models/beside.h"
 #include "scene/models/mtl_maps.h"
 #include "scene/models/readers.h"
 #include "scene/models/text.h"
 
 namespace sundog::models {
 namespace fs = std::filesystem;
-namespace {
 
-// A material as MTL states it.
-struct Statements {
+struct MtlStatements {
   std::string name;
+  fs::path library;
   std::optional<dvec3> ambient, diffuse, specular, filter;
   std::optional<dvec3> emission;
   std::map<std::string, MtlMap, std::less<>> maps;  // by keyword
-  double exponent = 32, ior = 1, opacity = 1;
+  std::map<std::string, const char*> unread;        // by keyword: the feature
+  double exponent = 32, ior = 1;
+  std::optional<double> opacity, transparency;  // d, Tr
   int illumination = 2;
 };
+
+namespace {
 
 // "Kd r g b", or "Kd r" for grey. Spectral files and CIE XYZ are left at the default.
 std::optional<dvec3> read_color(TextReader& text) {
@@ -39,24 +43,23 @@ std::optional<dvec3> read_color(TextReader& text) {
 }
 
 /// Statements that would change the picture.
-constexpr std::string_view read_maps[] = {"map_Kd",   "map_Ka",   "map_Ks", "map_Ke", "map_d",
-                                          "map_Bump", "map_bump", "bump",   "norm",   "map_Kn",
-                                          "disp",     "map_disp", "map_Ns"};
-constexpr std::pair<std::string_view, const char*> unread_properties[] = {{"map_Tr", "alpha of textures"},
+constexpr std::string_view read_maps[] = {"map_kd", "map_ka", "map_ks", "map_ke",   "map_d", "map_bump",
+                                          "bump",   "norm",   "map_kn", "map_disp", "disp",  "map_ns"};
+constexpr std::pair<std::string_view, const char*> unread_properties[] = {{"map_tr", "alpha of textures"},
                                                                           {"decal", "decals"},
                                                                           {"refl", "reflection maps"},
                                                                           {"map_refl", "reflection maps"},
-                                                                          {"map_Pr", "roughness textures"},
-                                                                          {"map_Pm", "roughness textures"},
-                                                                          {"map_Ps", "sheen"},
-                                                                          {"Pr", "roughness"},
-                                                                          {"Pm", "metalness"},
-                                                                          {"Ps", "sheen"},
-                                                                          {"Pc", "clearcoat"},
+                                                                          {"map_pr", "roughness textures"},
+                                                                          {"map_pm", "roughness textures"},
+                                                                          {"map_ps", "sheen"},
+                                                                          {"pr", "roughness"},
+                                                                          {"pm", "metalness"},
+                                                                          {"ps", "sheen"},
+                                                                          {"pc", "clearcoat"},
                                                                           {"aniso", "anisotropy"}};
 
 /// Numbers of 0 say that the feature is not used.
-void note_unread(TextReader text, std::string_view key, Model& model) {
+void note_unread(TextReader text, std::string_view key, MtlStatements& m) {
   const auto all_zero = [&] {
     while (!text.at_line_end())
       if (const std::string_view word = text.word(); word.find_first_not_of("0.+-") != word.npos)
@@ -64,7 +67,7 @@ void note_unread(TextReader text, std::string_view key, Model& model) {
     return true;
   };
   for (const auto& [word, feature] : unread_properties)
-    if (key == word && !all_zero()) leave_unread(model, feature);
+    if (key == word && !all_zero()) m.unread.emplace(key, feature);
 }
 
 double read_opacity(TextReader& text) {
@@ -73,31 +76,36 @@ double read_opacity(TextReader& text) {
   return std::clamp(text.number("d"), 0.0, 1.0);
 }
 
-void read_statement(TextReader& text, std::string_view key, Statements& m) {
-  if (key == "Ka") m.ambient = read_color(text);
-  if (key == "Kd") m.diffuse = read_color(text);
-  if (key == "Ks") m.specular = read_color(text);
-  if (key == "Tf") m.filter = read_color(text);
-  if (key == "Ke") m.emission = read_color(text);
-  if (std::ranges::count(read_maps, key) > 0) m.maps.insert_or_assign(std::string(key), read_mtl_map(text));
-  if (key == "Ns") m.exponent = std::max(text.number("Ns"), 0.0);
-  if (key == "Ni") m.ior = text.number("Ni");
+/// `key` is in lower case: programs differ in how they write it.
+void read_statement(TextReader& text, std::string_view key, MtlStatements& m) {
+  if (key == "ka") m.ambient = read_color(text);
+  if (key == "kd") m.diffuse = read_color(text);
+  if (key == "ks") m.specular = read_color(text);
+  if (key == "tf") m.filter = read_color(text);
+  if (key == "ke") m.emission = read_color(text);
+  if (std::ranges::count(read_maps, key) > 0)
+    if (const auto map = read_mtl_map(text)) m.maps.insert_or_assign(std::string(key), *map);
+  if (key == "ns") m.exponent = std::max(text.number("Ns"), 0.0);
+  if (key == "ni") m.ior = text.number("Ni");
   if (key == "d") m.opacity = read_opacity(text);
-  if (key == "Tr") m.opacity = 1 - std::clamp(text.number("Tr"), 0.0, 1.0);
+  if (key == "tr") m.transparency = std::clamp(text.number("Tr"), 0.0, 1.0);
   if (key == "illum")
     m.illumination = static_cast<int>(std::clamp<std::int64_t>(text.integer("illum"), 0, 10));
 }
 
+/// Some programs write under Tr what belongs under d, which is the format's own.
+double opacity_of(const MtlStatements& m) { return m.opacity.value_or(1 - m.transparency.value_or(0)); }
+
 /// Displacement: with -bm true displacement by so many of the model's units, else heights for the shading, as
 /// of a bump map: files rarely say how high they are.
-void add_displacement(const Statements& m, const Source& obj, const fs::path& library, MtlTextures& textures,
+void add_displacement(const MtlStatements& m, const Source& obj, MtlTextures& textures,
                       MaterialDescription& out) {
   for (const char* key : {"map_disp", "disp"})
     if (const auto found = m.maps.find(key); found != m.maps.end()) {
       MtlMap map = found->second;
       if (map.channel < 0) map.channel = 0;
       if (!map.has_bump && out.textures.height >= 0) continue;
-      const int heights = textures.use(map, false, obj, library);
+      const int heights = textures.use(map, false, obj, m.library);
       if (heights < 0) continue;
       if (map.has_bump) {
         out.displaced_by = heights;
@@ -112,54 +120,54 @@ void add_displacement(const Statements& m, const Source& obj, const fs::path& li
 
 /// Heights and normals. The format gives heights no unit: here a height of 1 is a hundredth of a unit of u
 /// and v, times -bm.
-void add_relief_maps(const Statements& m, const Source& obj, const fs::path& library, MtlTextures& textures,
+void add_relief_maps(const MtlStatements& m, const Source& obj, MtlTextures& textures,
                      MaterialDescription& out) {
-  for (const char* key : {"norm", "map_Kn"})
+  for (const char* key : {"norm", "map_kn"})
     if (const auto found = m.maps.find(key); found != m.maps.end())
-      out.textures.normal = textures.use(found->second, false, obj, library);
-  for (const char* key : {"bump", "map_bump", "map_Bump"})
+      out.textures.normal = textures.use(found->second, false, obj, m.library);
+  for (const char* key : {"bump", "map_bump"})
     if (const auto found = m.maps.find(key); found != m.maps.end()) {
       MtlMap map = found->second;
       if (map.channel < 0) map.channel = 0;
-      out.textures.height = textures.use(map, false, obj, library);
+      out.textures.height = textures.use(map, false, obj, m.library);
       out.bump = 0;
       out.bump_uv = 0.01 * map.bump;
     }
 }
 
 /// The textures of a material; what has one and no colour of its own is white.
-void add_maps(const Statements& m, const Source& obj, const fs::path& library, MtlTextures& textures,
-              MaterialDescription& out) {
+void add_maps(const MtlStatements& m, const Source& obj, MtlTextures& textures, MaterialDescription& out) {
   const auto use = [&](const char* key) {
     const auto found = m.maps.find(key);
-    return found == m.maps.end() ? -1 : textures.use(found->second, true, obj, library);
+    return found == m.maps.end() ? -1 : textures.use(found->second, true, obj, m.library);
   };
   MaterialTextures& to = out.textures;
-  to.diffuse = use("map_Kd");
-  to.ambient = m.maps.contains("map_Ka") ? use("map_Ka") : to.diffuse;
-  to.specular = use("map_Ks");
-  to.emission = use("map_Ke");
+  to.diffuse = use("map_kd");
+  to.ambient = m.maps.contains("map_ka") ? use("map_ka") : to.diffuse;
+  to.specular = use("map_ks");
+  to.emission = use("map_ke");
   if (to.diffuse >= 0 && !m.diffuse) out.diffuse = dvec3(1);
   if (to.specular >= 0 && !m.specular) out.specular = dvec3(1);
   if (to.emission >= 0 && !m.emission) out.emission = dvec3(1);
-  if (const auto shine = m.maps.find("map_Ns"); shine != m.maps.end())
-    to.exponent = textures.use(shine->second, false, obj, library);
-  add_relief_maps(m, obj, library, textures, out);
-  add_displacement(m, obj, library, textures, out);
+  if (const auto shine = m.maps.find("map_ns"); shine != m.maps.end())
+    to.exponent = textures.use(shine->second, false, obj, m.library);
+  add_relief_maps(m, obj, textures, out);
+  add_displacement(m, obj, textures, out);
   const auto alpha = m.maps.find("map_d");
   if (alpha == m.maps.end() || out.medium >= 0) return;
   MtlMap map = alpha->second;
-  const auto color = m.maps.find("map_Kd");
+  const auto color = m.maps.find("map_kd");
   const bool of_color = color != m.maps.end() && color->second.file == map.file;
   if (map.channel < 0) map.channel = of_color ? 3 : 0;
-  to.opacity = textures.use(map, of_color, obj, library);
+  to.opacity = textures.use(map, of_color, obj, m.library);
 }
 
 // Illumination models: 3 to 8 trace reflections; 4, 6, 7 and 9 are glass; 5 and 7 have Fresnel's equations.
-MaterialDescription make_material(const Statements& m, Model& model) {
+MaterialDescription make_material(const MtlStatements& m, Model& model) {
   const int illum = m.illumination;
+  const double opacity = opacity_of(m);
   const bool traced = illum >= 4 && illum <= 7, fresnel = illum == 5 || illum == 7;
-  const bool glass = m.opacity < 1 || (m.filter && (traced || illum == 9) && *m.filter != dvec3(0));
+  const bool glass = opacity < 1 || (m.filter && (traced || illum == 9) && *m.filter != dvec3(0));
   MaterialDescription out;
   out.name = m.name;
   out.ambient = m.ambient.value_or(out.ambient);
@@ -170,9 +178,9 @@ MaterialDescription make_material(const Statements& m, Model& model) {
   if (illum >= 3 && illum <= 8) out.reflection = glm::min(out.specular, dvec3(1));
   if (glass) {
     const dvec3 filter = glm::min(m.filter.value_or(dvec3(1)), dvec3(1));
-    out.transmission = m.opacity < 1 && !(fresnel && m.filter) ? (1 - m.opacity) * filter : filter;
-    out.ambient *= m.opacity;
-    out.diffuse *= m.opacity;
+    out.transmission = opacity < 1 && !(fresnel && m.filter) ? (1 - opacity) * filter : filter;
+    out.ambient *= opacity;
+    out.diffuse *= opacity;
     if (traced && m.ior > 0 && m.ior != 1) {
       MediumDescription medium;
       medium.name = m.name;
@@ -200,72 +208,45 @@ std::vector<std::string> split_names(std::string_view names) {
   return parts;
 }
 
-fs::path beside(const fs::path& obj, std::string name) {
-  std::replace(name.begin(), name.end(), '\\', '/');
-  return obj.parent_path() / fs::path(name);
-}
-
-bool is_file(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
-
 }  // namespace
 
-bool MaterialLibrary::is_refused(const Source& obj, const TextReader& line, const fs::path& path) {
-  if (obj.outside_files || !leads_outside(obj.path, path)) return false;
-  model_.warnings.push_back(
-      fmt::format("{}: line {}: the material library {} leads out of the model's folder and is not read: {}",
-                  obj.path.string(), line.line(), path.string(), outside_hint));
-  return true;
-}
+MaterialLibrary::MaterialLibrary(Model& model) : model_(model), textures_(model) {}
+MaterialLibrary::~MaterialLibrary() = default;
 
 void MaterialLibrary::load(const Source& obj, const TextReader& line, std::string_view names) {
-  const fs::path whole = beside(obj.path, std::string(names));
-  if ((obj.outside_files || !leads_outside(obj.path, whole)) && is_file(whole)) return read(obj, whole);
-  for (const std::string& name : split_names(names)) {
-    const fs::path path = beside(obj.path, name);
-    if (is_refused(obj, line, path)) continue;
-    if (is_file(path)) {
-      read(obj, path);
-    } else {
-      model_.warnings.push_back(
-          fmt::format("{}: the material library {} is missing", obj.path.string(), path.string()));
-    }
-  }
+  const fs::path folder = obj.path.parent_path();
+  if (const auto whole = find_beside(obj, folder, names)) return read(*whole);
+  for (const std::string& name : split_names(before_comment(names)))
+    if (const auto path = find_beside(obj, folder, name))
+      read(*path);
+    else
+      model_.warnings.push_back(fmt::format("{}: line {}: the material library {}", obj.path.string(),
+                                            line.line(), why_not_beside(obj, folder, name)));
 }
 
-void MaterialLibrary::read(const Source& obj, const fs::path& path) {
+// The first material of a name counts.
+void MaterialLibrary::read(const fs::path& path) {
   const Source source = read_source(path);
   TextReader text(source, {});
-  Statements material;
-  bool begun = false;
-  const auto finish = [&] {
-    if (!begun) return;
-    const auto at = static_cast<int>(model_.materials.size());
-    if (!index_.try_emplace(material.name, at).second) return;
-    MaterialDescription out = make_material(material, model_);
-    add_maps(material, obj, path, textures_, out);
-    model_.materials.push_back(out);
-  };
+  MtlStatements again, *material = nullptr;
   while (text.next_line()) {
-    const std::string_view key = text.word();
+    const std::string key = text.keyword();
     if (key == "newmtl") {
-      finish();
-      material = {};
-      material.name = text.rest();
-      begun = true;
-      if (material.name.empty())
+      const std::string name(text.rest());
+      if (name.empty())
         model_.warnings.push_back(
             fmt::format("{}: line {}: newmtl without a name: only a usemtl without a name "
                         "takes it",
                         path.string(), text.line()));
-    } else if (begun) {
-      read_statement(text, key, material);
-      note_unread(text, key, model_);
+      const auto [stated, added] = stated_.try_emplace(name);
+      material = added ? &stated->second : &again;
+      material->name = name;
+      material->library = path;
+    } else if (material) {
+      read_statement(text, key, *material);
+      note_unread(text, key, *material);
     }
   }
-  finish();
 }
 
 // One warning for all of them: without its library a file has none of its materials.
@@ -281,11 +262,34 @@ void MaterialLibrary::warn_undefined(std::string_view name) {
                   undefined_ > shown ? fmt::format(" and {} more", undefined_ - shown) : "");
 }
 
-int MaterialLibrary::find(std::string_view name) {
+int MaterialLibrary::find(const Source& obj, std::string_view name) {
   if (const auto found = index_.find(name); found != index_.end()) return found->second;
-  index_.emplace(name, -1);
-  warn_undefined(name);
-  return -1;
+  auto stated = stated_.find(name);
+  if (stated == stated_.end()) stated = stated_.find(before_comment(name));
+  int index = -1;
+  if (stated == stated_.end()) {
+    warn_undefined(name);
+  } else if (const auto known = index_.find(stated->first); known != index_.end()) {
+    index = known->second;
+  } else {
+    index = add(obj, stated->second);
+    index_.emplace(stated->first, index);
+  }
+  index_.emplace(name, index);
+  return index;
+}
+
+int MaterialLibrary::add(const Source& obj, const MtlStatements& stated) {
+  for (const auto& [key, feature] : stated.unread) leave_unread(model_, feature);
+  if (stated.opacity && stated.transparency && std::abs(*stated.opacity + *stated.transparency - 1) > 1e-6)
+    model_.warnings.push_back(
+        fmt::format("{}: the material '{}' has d {:g} and Tr {:g}, which differ: d counts",
+                    stated.library.string(), stated.name, *stated.opacity, *stated.transparency));
+  MaterialDescription material = make_material(stated, model_);
+  add_maps(stated, obj, textures_, material);
+  const auto index = static_cast<int>(model_.materials.size());
+  model_.materials.push_back(material);
+  return index;
 }
 
 }  // namespace sundog::models

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "base/error.h"
-#include "scene/inside.h"
+#include "scene/models/beside.h"
 
 namespace sundog::models {
 namespace fs = std::filesystem;
@@ -60,7 +59,7 @@ void read_option(TextReader& text, std::string_view option, MtlMap& map) {
 
 }  // namespace
 
-MtlMap read_mtl_map(TextReader& text) {
+std::optional<MtlMap> read_mtl_map(TextReader& text) {
   MtlMap map;
   map.line = text.line();
   for (;;) {
@@ -71,31 +70,27 @@ MtlMap read_mtl_map(TextReader& text) {
     read_option(text, word, map);
   }
   map.file = text.rest();
-  if (map.file.empty()) text.fail("the name of an image file is missing");
+  if (map.file.empty()) return std::nullopt;
   return map;
 }
 
 int MtlTextures::use(const MtlMap& map, bool srgb, const Source& obj, const fs::path& library) {
-  std::string name = map.file;
-  std::replace(name.begin(), name.end(), '\\', '/');
-  const fs::path file = library.parent_path() / fs::path(name);
-  const auto warn = [&](std::string_view what) {
-    const std::string text =
-        fmt::format("{}: line {}: the image {} {}", library.string(), map.line, file.string(), what);
+  const fs::path folder = library.parent_path();
+  const std::optional<fs::path> file = find_beside(obj, folder, map.file);
+  if (!file) {
+    const std::string text = fmt::format("{}: line {}: the image {}", library.string(), map.line,
+                                         why_not_beside(obj, folder, map.file));
     if (std::ranges::count(model_.warnings, text) == 0) model_.warnings.push_back(text);
     return -1;
-  };
-  if (!obj.outside_files && leads_outside(obj.path, file))
-    return warn(fmt::format("leads out of the model's folder and is not read: {}", outside_hint));
-  std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored)) return warn("is missing");
+  }
   const auto [found, added] =
-      images_.try_emplace({file.string(), srgb}, static_cast<int>(model_.images.size()));
+      images_.try_emplace({file->string(), srgb}, static_cast<int>(model_.images.size()));
   if (added) {
     ImageDescription image;
-    image.name = file.filename().string();
-    image.file = file.string();
-    image.encoded = read_source(file).bytes;
+    image.name = file->filename().string();
+    image.file = file->string();
+    image.of_model = true;
+    image.encoded = read_source(*file).bytes;
     image.srgb = srgb;
     model_.images.push_back(std::move(image));
   }

@@ -21,8 +21,9 @@ struct MtlMap {
   std::size_t line = 0;
 };
 
-/// Reads options and the file's name, which may hold blanks. Throws SceneError with the line.
-MtlMap read_mtl_map(TextReader& text);
+/// Reads options and the file's name, which may hold blanks; nothing without one. Throws SceneError with the
+/// line.
+std::optional<MtlMap> read_mtl_map(TextReader& text);
 
 /// The textures of one model's libraries.
 class MtlTextures {

@@ -70,12 +70,17 @@ struct CornersByPoint {
 struct Surroundings {
   const Mesh& mesh;
   const std::vector<uint32_t>& points;  // of vertices; empty: each is a point
+  const std::vector<uint32_t>& groups;  // of faces; empty: the crease decides
   double cosine;                        // of the crease
   std::vector<glm::vec3> face_normals;
 
   uint32_t point(uint32_t vertex) const { return points.empty() ? vertex : points[vertex]; }
   uint32_t neighbour(uint32_t corner, uint32_t step) const {
     return corner_vertex(mesh, corner - corner % 3 + (corner % 3 + step) % 3);
+  }
+  bool is_smooth(uint32_t face, uint32_t other) const {
+    if (!groups.empty()) return groups[face] != 0 && groups[face] == groups[other];
+    return glm::dot(dvec3(face_normals[face]), dvec3(face_normals[other])) >= cosine - 1e-7;
   }
   bool has_area(uint32_t corner) const { return face_normals[corner / 3] != glm::vec3(0); }
   double angle(uint32_t corner) const {
@@ -116,8 +121,7 @@ class PointFans {
   }
 
   void join_if_smooth(uint32_t i, uint32_t j, std::span<const uint32_t> corners) {
-    const dvec3 a = shared_.face_normals[corners[i] / 3], b = shared_.face_normals[corners[j] / 3];
-    if (glm::dot(a, b) < shared_.cosine - 1e-7) return;
+    if (!shared_.is_smooth(corners[i] / 3, corners[j] / 3)) return;
     const uint32_t first = root(i), second = root(j);
     fan_[std::max(first, second)] = std::min(first, second);
   }
@@ -186,7 +190,7 @@ class PointFans {
 };
 
 CornersByPoint gather(const Mesh& mesh, const std::vector<bool>& has_normal,
-                      const std::vector<uint32_t>& points) {
+                      const std::vector<uint32_t>& points, const std::vector<uint32_t>& groups) {
   const std::size_t corner_count = mesh.triangles.size() * 3;
   const auto of_wanting = [&](std::size_t corner, const auto& use) {
     const uint32_t vertex = corner_vertex(mesh, static_cast<uint32_t>(corner));
@@ -247,6 +251,7 @@ void append_copies(Mesh& mesh, const std::vector<Block>& blocks) {
   for (auto& set : mesh.further_uvs) again(set);
   again(mesh.tangents);
   again(mesh.colors);
+  again(mesh.alphas);
 }
 
 /// Gives a block's vertices their places, normals and corners; copies stand from `next_copy` on.
@@ -270,7 +275,7 @@ void give_normals(Mesh& mesh, const CornersByPoint& around, double crease_degree
   std::vector<uint32_t> vertex_of(around.corners.size());  // for each of these its vertex of the block
   std::vector<Block> blocks = make_blocks(around.points());
   {
-    const Surroundings shared{mesh, points, std::cos(crease_degrees * std::numbers::pi / 180),
+    const Surroundings shared{mesh, points, groups, std::cos(crease_degrees * std::numbers::pi / 180),
                               face_normals(mesh)};
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
       Block& block = blocks[b];
@@ -294,7 +299,7 @@ void give_normals(Mesh& mesh, const CornersByPoint& around, double crease_degree
 }  // namespace
 
 void complete_normals(Mesh& mesh, std::vector<bool> has_normal, double crease_degrees,
-                      std::vector<std::uint32_t> point_of_vertex) {
+                      std::vector<std::uint32_t> point_of_vertex, std::vector<std::uint32_t> groups) {
   if (mesh.triangles.size() > most_triangles) throw std::length_error("more than 2^30 triangles");
   if (has_normal.empty()) has_normal.assign(mesh.positions.size(), !mesh.normals.empty());
   mesh.normals.resize(mesh.positions.size(), glm::vec3(0));
@@ -311,7 +316,7 @@ void complete_normals(Mesh& mesh, std::vector<bool> has_normal, double crease_de
   }
   for (std::size_t i = 0; i < has_normal.size(); ++i)
     if (!has_normal[i]) mesh.normals[i] = any_direction;  // a vertex of no triangle keeps it
-  give_normals(mesh, gather(mesh, has_normal, point_of_vertex), crease_degrees, point_of_vertex);
+  give_normals(mesh, gather(mesh, has_normal, point_of_vertex), crease_degrees, point_of_vertex, groups);
 }
 
 std::vector<std::uint32_t> weld_positions(const Mesh& mesh) {

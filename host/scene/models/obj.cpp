@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
 
 #include "scene/models/far_mesh.h"
 #include "scene/models/mtl.h"
@@ -30,6 +33,13 @@ constexpr std::pair<std::string_view, const char*> unread_statements[] = {{"l", 
                                                                           {"surf", "free-form surfaces"},
                                                                           {"usemap", "colour textures"}};
 
+constexpr std::string_view axis_names[] = {"x", "y", "z"};
+
+template <class Vector>
+bool is_finite(const Vector& v) {
+  return std::isfinite(glm::dot(v, Vector(0)));
+}
+
 class ObjReader {
  public:
   ObjReader(const Source& source, Model& model)
@@ -39,13 +49,13 @@ class ObjReader {
         library_(model) {}
 
   void read() {
-    while (text_.next_line()) read_statement(text_.word());
+    while (text_.next_line()) read_statement(text_.keyword());
     if (positions_.empty()) text_.fail("no vertices: not an OBJ file");
     settle_lost_normals();
   }
 
   // The mesh, its positions counted from origin().
-  Mesh take_mesh(double crease_degrees) {
+  Mesh take_mesh(std::optional<double> crease_degrees) {
     origin_ = near_origin(positions_);
     if (origin_ != dvec3(0))
       for (std::size_t i = 0; i < made_.size(); ++i)
@@ -55,7 +65,10 @@ class ObjReader {
     if (!any_uv_) mesh_.uvs.clear();
     if (!any_color_) mesh_.colors.clear();
     settle_materials();
-    complete_normals(mesh_, std::move(has_normal_), crease_degrees, std::move(points_));
+    const bool by_groups = any_group_ && !crease_degrees;
+    const bool flat = by_groups && std::ranges::count(groups_, 0u) == std::ssize(groups_);
+    complete_normals(mesh_, std::move(has_normal_), crease_degrees.value_or(flat ? 0 : 45),
+                     std::move(points_), by_groups ? std::move(groups_) : std::vector<std::uint32_t>());
     return std::move(mesh_);
   }
 
@@ -66,15 +79,18 @@ class ObjReader {
     if (key == "v") {
       read_position();
     } else if (key == "vn") {
-      const float x = text_.real("x"), y = text_.real("y"), z = text_.real("z");
+      const double x = text_.bounded_or_nan("x"), y = text_.bounded_or_nan("y"),
+                   z = text_.bounded_or_nan("z");
       normals_.emplace_back(x, y, z);
     } else if (key == "vt") {
-      const float u = text_.real("u");
-      uvs_.emplace_back(u, text_.at_line_end() ? 0.0f : text_.real("v"));
+      const double u = text_.bounded_or_nan("u");
+      uvs_.emplace_back(u, text_.at_line_end() ? 0 : text_.bounded_or_nan("v"));
     } else if (key == "f" || key == "fo") {
       read_face();
     } else if (key == "usemtl") {
-      material_ = library_.find(text_.rest());
+      material_ = library_.find(source_, text_.rest());
+    } else if (key == "s") {
+      read_group();
     } else if (key == "mtllib") {
       library_.load(source_, text_, text_.rest());
     } else {
@@ -83,10 +99,23 @@ class ObjReader {
     }
   }
 
-  // "v x y z", "v x y z w", or "v x y z r g b".
+  // Edges between faces of one smoothing group are smooth, those of group 0 ("off") and between groups sharp.
+  void read_group() {
+    any_group_ = true;
+    const std::string group = text_.keyword();
+    group_ = group == "off" ? 0 : 1;
+    std::from_chars(group.data(), group.data() + group.size(), group_);
+  }
+
+  // "v x y z", "v x y z w", or "v x y z r g b". What is no number is an error where a face uses it.
   void read_position() {
-    const double x = text_.bounded("x"), y = text_.bounded("y"), z = text_.bounded("z");
-    positions_.emplace_back(x, y, z);
+    dvec3 position;
+    for (int axis = 0; axis < 3; ++axis) position[axis] = text_.bounded_or_nan(axis_names[axis]);
+    if (!is_finite(position)) {
+      lines_of_no_number_.emplace(positions_.size(), text_.line());
+      position = positions_.empty() ? dvec3(0) : positions_.back();
+    }
+    positions_.push_back(position);
     glm::vec3 color{1};
     if (!text_.at_line_end()) {
       color.x = text_.real("w or red");
@@ -108,8 +137,16 @@ class ObjReader {
     std::string place, what;  // of the first
   };
 
+  void warn_of_no_numbers(const char* what, const char* mend, const Lost& lost) {
+    if (lost.count > 0)
+      model_.warnings.push_back(
+          fmt::format("{}: {} that are no numbers are {} ({} in all)", lost.place, what, mend, lost.count));
+  }
+
   // Some programs number normals that they do not write.
   void settle_lost_normals() {
+    warn_of_no_numbers("normals", "made up", normals_of_no_number_);
+    warn_of_no_numbers("texture coordinates", "taken as 0", uvs_of_no_number_);
     if (lost_normals_.count == 0) return;
     if (!normals_.empty()) fail(source_, lost_normals_.place, lost_normals_.what);
     model_.warnings.push_back(
@@ -138,6 +175,8 @@ class ObjReader {
     const std::size_t second = first == word.npos ? first : word.find('/', first + 1);
     Corner corner;
     corner.position = resolve(word.substr(0, first), positions_.size(), "vertex");
+    if (const auto bad = lines_of_no_number_.find(corner.position); bad != lines_of_no_number_.end())
+      text_.fail(fmt::format("vertex {}, of line {}, is no number", corner.position + 1, bad->second));
     if (first != word.npos) {
       const std::string_view uv = word.substr(first + 1, second == word.npos ? second : second - first - 1);
       if (!uv.empty()) corner.uv = resolve(uv, uvs_.size(), "texture coordinate");
@@ -174,6 +213,14 @@ class ObjReader {
     for (const glm::uvec3 t : pieces_)
       mesh_.triangles.emplace_back(vertices_[t.x], vertices_[t.y], vertices_[t.z]);
     mesh_.materials.resize(mesh_.triangles.size(), material_);
+    groups_.resize(mesh_.triangles.size(), group_);
+  }
+
+  template <class Vector>
+  Vector number_or_zero(const Vector& value, Lost& lost) {
+    if (is_finite(value)) return value;
+    if (lost.count++ == 0) lost.place = fmt::format("line {}", text_.line());
+    return Vector(0);
   }
 
   // The mesh's vertex for a corner: an earlier one of the same three indices, else a new one. The search is
@@ -191,8 +238,11 @@ class ObjReader {
     made_.push_back(corner);
     mesh_.positions.emplace_back(positions_[corner.position]);
     mesh_.colors.push_back(colors_[corner.position]);
-    mesh_.uvs.push_back(corner.uv == none ? glm::vec2(0) : uvs_[corner.uv]);
-    mesh_.normals.push_back(corner.normal == none ? glm::vec3(0) : normals_[corner.normal]);
+    mesh_.uvs.push_back(corner.uv == none ? glm::vec2(0)
+                                          : number_or_zero(uvs_[corner.uv], uvs_of_no_number_));
+    mesh_.normals.push_back(corner.normal == none
+                                ? glm::vec3(0)
+                                : number_or_zero(normals_[corner.normal], normals_of_no_number_));
     has_normal_.push_back(corner.normal != none);
     any_uv_ = any_uv_ || corner.uv != none;
     return created;
@@ -233,7 +283,11 @@ class ObjReader {
   std::vector<std::uint32_t> points_;          // per mesh vertex: the first one of the same file vertex
   std::vector<bool> has_normal_;
   bool any_uv_ = false, any_color_ = false;
-  Lost lost_normals_;
+  Lost lost_normals_, normals_of_no_number_, uvs_of_no_number_;
+  std::map<std::size_t, std::size_t> lines_of_no_number_;  // by position: where it is stated
+  std::vector<std::uint32_t> groups_;                      // per triangle
+  std::uint32_t group_ = 0;
+  bool any_group_ = false;
   std::vector<Corner> corners_;  // of the face at hand
   std::vector<dvec3> outline_;
   std::vector<glm::vec3> places_;
@@ -247,7 +301,7 @@ Model load_obj(const Source& source, const ModelOptions& options) {
   Model model;
   ObjReader reader(source, model);
   reader.read();
-  Mesh mesh = reader.take_mesh(options.crease_angle.value_or(45));
+  Mesh mesh = reader.take_mesh(options.crease_angle);
   add_mesh(model, std::move(mesh), reader.origin());
   return model;
 }

@@ -2,78 +2,27 @@
 // with colours of their own, or triangle strips.
 #include <fmt/format.h>
 
-#include <array>
+#include <cmath>
 #include <limits>
+#include <set>
 
 #include "scene/models/far_mesh.h"
 #include "scene/models/normals.h"
 #include "scene/models/ply_cursor.h"
+#include "scene/models/ply_layout.h"
 #include "scene/models/polygon.h"
 #include "scene/models/readers.h"
 
 namespace sundog::models {
+using namespace ply;
 namespace {
 
-enum Slot { px, py, pz, nx, ny, nz, tu, tv, red, green, blue, slot_count, no_slot = slot_count };
+bool is_face(const PlyElement& element) { return element.name == "face" || element.name == "tristrips"; }
 
-Slot slot_of(std::string_view name) {
-  struct Known {
-    std::string_view name;
-    Slot slot;
-  };
-  static constexpr std::array<Known, 21> known{{{"x", px},
-                                                {"y", py},
-                                                {"z", pz},
-                                                {"nx", nx},
-                                                {"ny", ny},
-                                                {"nz", nz},
-                                                {"u", tu},
-                                                {"v", tv},
-                                                {"s", tu},
-                                                {"t", tv},
-                                                {"texture_u", tu},
-                                                {"texture_v", tv},
-                                                {"red", red},
-                                                {"green", green},
-                                                {"blue", blue},
-                                                {"r", red},
-                                                {"g", green},
-                                                {"b", blue},
-                                                {"diffuse_red", red},
-                                                {"diffuse_green", green},
-                                                {"diffuse_blue", blue}}};
-  for (const Known& k : known)
-    if (k.name == name) return k.slot;
-  return no_slot;
-}
-
-// Where an element's properties go, and which slots it fills.
-struct Layout {
-  std::vector<Slot> slots;
-  std::array<bool, slot_count + 1> has{};
-
-  explicit Layout(const PlyElement& element) {
-    for (const PlyProperty& property : element.properties) {
-      const Slot slot = property.count_type ? no_slot : slot_of(property.name);
-      slots.push_back(slot);
-      has[slot] = true;
-    }
-  }
-  bool normals() const { return has[nx] && has[ny] && has[nz]; }
-  bool uvs() const { return has[tu] && has[tv]; }
-  bool colors() const { return has[red] && has[green] && has[blue]; }
-};
-
-using Values = std::array<double, slot_count + 1>;
-
-double slot_value(Slot slot, PlyType type, double value) {
-  if (slot < red || slot > blue || is_real(type)) return value;
-  const double most = type == PlyType::uint16 ? 65535.0 : 255.0;
-  return static_cast<double>(linear_from_srgb(std::clamp(value / most, 0.0, 1.0)));
-}
-
-glm::vec3 color_of(const Values& values) {
-  return glm::max(glm::vec3(dvec3(values[red], values[green], values[blue])), glm::vec3(0));
+bool faces_come_first(const PlyHeader& header) {
+  for (const PlyElement& element : header.elements)
+    if (is_face(element) || element.name == "vertex") return is_face(element);
+  return false;
 }
 
 // What the file's elements become, while they are read.
@@ -82,19 +31,36 @@ struct Content {
   dvec3 origin{0};                     // of its positions
   std::vector<glm::vec3> face_colors;  // per triangle, when faces have colours and vertices have none
   std::size_t dropped = 0;
+  std::size_t normals_of_no_number = 0, uvs_of_no_number = 0;
+  std::set<std::uint32_t> lost;  // positions of no number
+  std::vector<std::string> unread;
 };
 
 template <class Cursor>
 class DataReader {
  public:
-  DataReader(const Source& source, const PlyHeader& header) : header_(header), cursor_(source, header) {}
+  /// With the vertices in `known`, as read_vertices() gives them, faces may come before them.
+  DataReader(const Source& source, const PlyHeader& header, Content known = {})
+      : header_(header), cursor_(source, header), content_(std::move(known)) {}
 
-  Content read() {
+  Content read_vertices() {
     for (const PlyElement& element : header_.elements) {
       check_count(element);
-      if (element.name == "vertex") {
+      if (element.name == "vertex")
         read_vertices(element);
-      } else if (element.name == "face" || element.name == "tristrips") {
+      else
+        skip(element);
+    }
+    return std::move(content_);
+  }
+
+  Content read() {
+    const bool known = !content_.mesh.positions.empty();
+    for (const PlyElement& element : header_.elements) {
+      check_count(element);
+      if (element.name == "vertex" && !known) {
+        read_vertices(element);
+      } else if (is_face(element)) {
         read_faces(element);
       } else {
         skip(element);
@@ -155,6 +121,21 @@ class DataReader {
       read_element(element, layout, values, [](std::size_t, double) {});
   }
 
+  // One of no number is an error where a face uses it; until then it lies where the one before does.
+  dvec3 position_of(const Values& v, const std::vector<dvec3>& before) {
+    const dvec3 position(bounded(v[px]), bounded(v[py]), bounded(v[pz]));
+    if (std::isfinite(glm::dot(position, dvec3(0)))) return position;
+    content_.lost.insert(static_cast<std::uint32_t>(before.size()));
+    return before.empty() ? dvec3(0) : before.back();
+  }
+
+  template <class Vector>
+  static Vector number_or_zero(const Vector& value, std::size_t& count) {
+    if (std::isfinite(glm::dot(value, Vector(0)))) return value;
+    ++count;
+    return Vector(0);
+  }
+
   void read_vertices(const PlyElement& element) {
     const Layout layout(element);
     if (!layout.has[px] || !layout.has[py] || !layout.has[pz])
@@ -163,15 +144,22 @@ class DataReader {
     Mesh& mesh = content_.mesh;
     std::vector<dvec3> positions;
     positions.reserve(element.count);
+    bool fades = false;
     mesh.source_vertex_count = element.count;
     Values v{};
     for (std::uint64_t i = 0; i < element.count; ++i) {
       read_element(element, layout, v, [](std::size_t, double) {});
-      positions.emplace_back(bounded(v[px]), bounded(v[py]), bounded(v[pz]));
-      if (layout.normals()) mesh.normals.emplace_back(narrow(v[nx]), narrow(v[ny]), narrow(v[nz]));
-      if (layout.uvs()) mesh.uvs.emplace_back(narrow(v[tu]), narrow(v[tv]));
+      positions.push_back(position_of(v, positions));
+      if (layout.normals())
+        mesh.normals.push_back(number_or_zero(glm::vec3(narrow(v[nx]), narrow(v[ny]), narrow(v[nz])),
+                                              content_.normals_of_no_number));
+      if (layout.uvs())
+        mesh.uvs.push_back(
+            number_or_zero(glm::vec2(narrow(v[tu]), narrow(v[tv])), content_.uvs_of_no_number));
       if (layout.colors()) mesh.colors.push_back(color_of(v));
+      fades = fades || (layout.has[alpha] && v[alpha] < 1);
     }
+    if (fades) content_.unread.emplace_back("alpha of vertices");
     content_.origin = near_origin(positions);
     mesh.positions.reserve(positions.size());
     for (const dvec3& p : positions) mesh.positions.emplace_back(p - content_.origin);
@@ -186,6 +174,9 @@ class DataReader {
     for (std::size_t p = 0; p < element.properties.size(); ++p)
       if (element.properties[p].name == "vertex_indices" || element.properties[p].name == "vertex_index")
         list = p;
+    for (const PlyProperty& property : element.properties)
+      if (property.name == "texcoord" && property.count_type && content_.mesh.uvs.empty())
+        content_.unread.emplace_back("texture coordinates of faces");
     if (list == element.properties.size() || !element.properties[list].count_type)
       cursor_.fail(fmt::format("'{}' needs a list vertex_indices", element.name));
     content_.mesh.triangles.reserve(element.count);
@@ -199,6 +190,9 @@ class DataReader {
           cursor_.fail(
               fmt::format("{} {}: vertex {}, but there are {} vertices", element.name, i, value, count));
         corners_.push_back(restart ? strip_end : static_cast<std::uint32_t>(value));
+        if (content_.lost.contains(corners_.back()))
+          cursor_.fail(
+              fmt::format("{} {}: vertex {} has a coordinate that is no number", element.name, i, value));
       });
       strips ? add_strips() : add_polygon();
       if (layout.colors()) content_.face_colors.resize(content_.mesh.triangles.size(), color_of(values));
@@ -271,16 +265,30 @@ std::vector<std::uint32_t> paint_faces(Mesh& mesh, const std::vector<glm::vec3>&
   return original;
 }
 
+template <class Cursor>
+Content read_by(const Source& source, const PlyHeader& header) {
+  Content vertices;
+  if (faces_come_first(header)) vertices = DataReader<Cursor>(source, header).read_vertices();
+  return DataReader<Cursor>(source, header, std::move(vertices)).read();
+}
+
 Content read_content(const Source& source, const PlyHeader& header) {
   switch (header.format) {
     case PlyFormat::ascii:
-      return DataReader<AsciiPlyCursor>(source, header).read();
+      return read_by<AsciiPlyCursor>(source, header);
     case PlyFormat::little_endian:
-      return DataReader<BinaryPlyCursor<std::endian::little>>(source, header).read();
+      return read_by<BinaryPlyCursor<std::endian::little>>(source, header);
     case PlyFormat::big_endian:
-      return DataReader<BinaryPlyCursor<std::endian::big>>(source, header).read();
+      return read_by<BinaryPlyCursor<std::endian::big>>(source, header);
   }
   return {};
+}
+
+void warn_of_no_numbers(const Source& source, std::size_t count, const char* what, const char* mend,
+                        Model& model) {
+  if (count > 0)
+    model.warnings.push_back(
+        fmt::format("{}: {} {} that are no numbers are {}", source.path.string(), count, what, mend));
 }
 
 }  // namespace
@@ -296,6 +304,9 @@ Model load_ply(const Source& source, const ModelOptions& options) {
   complete_normals(mesh, {}, options.crease_angle.value_or(45), std::move(points));
   Model model;
   model.dropped_polygons = content.dropped;
+  warn_of_no_numbers(source, content.normals_of_no_number, "normals", "made up", model);
+  warn_of_no_numbers(source, content.uvs_of_no_number, "texture coordinates", "taken as 0", model);
+  for (const std::string& feature : content.unread) leave_unread(model, feature);
   if (!mesh.colors.empty() && !mesh.triangles.empty()) {
     MaterialDescription material;
     material.name = "vertex colors";

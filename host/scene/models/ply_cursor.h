@@ -1,9 +1,11 @@
-// PLY's data, value by value: one cursor for text and one for both byte orders, with the same members.
+// PLY's data, value by value: one cursor for text and one for both byte orders, with the same members. Values
+// that are infinite or no number are NaN.
 #pragma once
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -27,7 +29,7 @@ class AsciiPlyCursor {
     }
   }
   double value(const PlyProperty& property, PlyType type) {
-    const double number = text_.number(property.name);
+    const double number = text_.number_or_nan(property.name);
     if (!is_real(type) && number != std::trunc(number))
       fail(fmt::format("{}: a whole number wanted", property.name));
     return number;
@@ -48,7 +50,7 @@ class BinaryPlyCursor {
   BinaryPlyCursor(const Source& source, const PlyHeader& header) : source_(source), at_(header.data_byte) {}
 
   void begin_element(std::string_view) {}
-  double value(const PlyProperty& property, PlyType type) {
+  double value(const PlyProperty&, PlyType type) {
     switch (type) {
       case PlyType::int8:
         return take<std::int8_t>();
@@ -63,9 +65,9 @@ class BinaryPlyCursor {
       case PlyType::uint32:
         return take<std::uint32_t>();
       case PlyType::float32:
-        return finite(take<float>(), property);
+        return number_or_nan(take<float>());
       case PlyType::float64:
-        return finite(take<double>(), property);
+        return number_or_nan(take<double>());
     }
     return 0;
   }
@@ -84,9 +86,8 @@ class BinaryPlyCursor {
     at_ += sizeof(Value);
     return std::bit_cast<Value>(bytes);
   }
-  double finite(double value, const PlyProperty& property) const {
-    if (!std::isfinite(value)) fail(fmt::format("{} is not finite", property.name));
-    return value;
+  static double number_or_nan(double value) {
+    return std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
   }
 
   const Source& source_;

@@ -32,14 +32,14 @@ constexpr std::array<TypeName, 16> type_names{{{"char", PlyType::int8},
                                                {"float64", PlyType::float64}}};
 
 PlyType read_type(TextReader& text) {
-  const std::string_view word = text.word();
+  const std::string word = text.keyword();
   for (const TypeName& known : type_names)
     if (word == known.name) return known.type;
   text.fail("a property's type wanted (char uchar short ushort int uint float double)");
 }
 
 PlyFormat read_format(TextReader& text) {
-  const std::string_view word = text.word();
+  const std::string word = text.keyword();
   if (word == "ascii") return PlyFormat::ascii;
   if (word == "binary_little_endian") return PlyFormat::little_endian;
   if (word == "binary_big_endian") return PlyFormat::big_endian;
@@ -49,13 +49,13 @@ PlyFormat read_format(TextReader& text) {
 PlyProperty read_property(TextReader& text) {
   PlyProperty property;
   TextReader peek = text;
-  if (peek.word() == "list") {
+  if (peek.keyword() == "list") {
     text.word();
     property.count_type = read_type(text);
     if (is_real(*property.count_type)) text.fail("a list's length must be of a whole-number type");
   }
   property.type = read_type(text);
-  property.name = text.word();
+  property.name = text.keyword();
   if (property.name.empty()) text.fail("the property has no name");
   return property;
 }
@@ -69,12 +69,12 @@ std::size_t size_of(PlyType type) {
 
 PlyHeader read_ply_header(const Source& source) {
   TextReader text(source, {.hash_comments = false, .continuations = false});
-  if (!text.next_line() || text.word() != "ply" || text.line() != 1)
+  if (!text.next_line() || text.keyword() != "ply" || text.line() != 1)
     fail(source, "line 1", "not a PLY file: it must begin with 'ply'");
   PlyHeader header;
   bool has_format = false;
   while (text.next_line()) {
-    const std::string_view word = text.word();
+    const std::string word = text.keyword();
     if (word == "end_header") {
       if (!has_format) text.fail("the header names no format");
       header.data_byte = source.bytes.size() - text.bytes_left();
@@ -86,7 +86,7 @@ PlyHeader read_ply_header(const Source& source) {
       has_format = true;
     } else if (word == "element") {
       PlyElement element;
-      element.name = text.word();
+      element.name = text.keyword();
       element.count = text.count("the element's count");
       header.elements.push_back(std::move(element));
     } else if (word == "property") {

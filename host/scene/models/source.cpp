@@ -84,6 +84,10 @@ std::string model_extension(const fs::path& path) {
 Source read_source(const fs::path& path) {
   Source source{path, read_input(path, most_bytes)};
   if (lower_extension(path) == ".gz") source.bytes = Inflater().unpack(source.bytes, path);
+  // A binary STL may begin with any bytes; glTF forbids the mark.
+  const std::string extension = model_extension(path);
+  if (source.bytes.starts_with(byte_order_mark) && extension != ".stl" && extension != ".gltf")
+    source.bytes.erase(0, byte_order_mark.size());
   return source;
 }
 

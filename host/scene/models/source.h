@@ -3,8 +3,11 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace sundog::models {
+
+inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8
 
 struct Source {
   std::filesystem::path path;
@@ -12,7 +15,8 @@ struct Source {
   bool outside_files = false;  // files that it names may lie outside its folder
 };
 
-/// The file's bytes; a name that ends in .gz is unpacked (zlib), within a bound. Throws SceneError.
+/// The file's bytes, of all but STL and glTF without a byte order mark; a name that ends in .gz is unpacked (zlib),
+/// within a bound. Throws SceneError.
 Source read_source(const std::filesystem::path& path);
 
 /// The extension in lower case, without a final .gz: ".obj" for "Box.OBJ.gz".

@@ -27,12 +27,18 @@ std::size_t binary_facets(const Source& source) {
   return source.bytes.size() < header_bytes ? 0 : little_word(source.bytes, 80);
 }
 
+TextReader text_of(const Source& source) {
+  return {source,
+          {.hash_comments = false, .continuations = false},
+          source.bytes.starts_with(byte_order_mark) ? byte_order_mark.size() : 0};
+}
+
 // Binary files may begin with "solid" too; a size that fits the facet count decides.
 bool is_binary(const Source& source) {
   const std::size_t size = source.bytes.size();
   if (size >= header_bytes && size == header_bytes + facet_bytes * binary_facets(source)) return true;
-  const std::size_t word = source.bytes.find_first_not_of(" \t\r\n");
-  return word == std::string::npos || source.bytes.compare(word, 5, "solid") != 0;
+  TextReader text = text_of(source);
+  return !text.next_line() || !text.keyword().starts_with("solid");
 }
 
 void add_triangle(Mesh& mesh) {
@@ -72,12 +78,12 @@ dvec3 read_corner(TextReader& text) {
 
 /// Returns where the mesh's positions count from.
 dvec3 read_ascii(const Source& source, Mesh& mesh) {
-  TextReader text(source, {.hash_comments = false, .continuations = false});
+  TextReader text = text_of(source);
   std::vector<dvec3> positions;
   std::size_t corners = 0;
   bool in_loop = false, ended = false;
   while (text.next_line()) {
-    const std::string_view word = text.word();
+    const std::string word = text.keyword();
     ended = word == "endsolid" || (ended && word != "solid");
     if (word == "outer") {
       in_loop = true;

@@ -42,7 +42,6 @@ void TextReader::take_line() {
   const bool two = bytes.substr(end, 2) == "\r\n";
   next_ = std::min(end + (two ? 2 : 1), bytes.size());
   ++following_;
-  if (syntax_.hash_comments) text_ = text_.substr(0, text_.find('#'));
 }
 
 bool TextReader::next_line() {
@@ -67,19 +66,29 @@ bool TextReader::next_line() {
 
 bool TextReader::at_line_end() {
   text_.remove_prefix(std::min(text_.find_first_not_of(blanks), text_.size()));
-  return text_.empty();
+  return text_.empty() || (syntax_.hash_comments && text_.front() == '#');
 }
 
 std::string_view TextReader::word() {
   if (at_line_end()) return {};
-  const std::size_t end = std::min(text_.find_first_of(blanks), text_.size());
+  std::size_t end = std::min(text_.find_first_of(blanks), text_.size());
+  if (const std::size_t comment = text_.find('#'); syntax_.hash_comments && comment < end)
+    if (text_[comment - 1] != '.') end = comment;  // not that of 1.#QNAN
   const std::string_view word = text_.substr(0, end);
   text_.remove_prefix(end);
   return word;
 }
 
+std::string TextReader::keyword() {
+  std::string key(word());
+  for (char& c : key)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 'a' - 'A');
+  return key;
+}
+
 std::string_view TextReader::rest() {
-  if (at_line_end()) return {};
+  text_.remove_prefix(std::min(text_.find_first_not_of(blanks), text_.size()));
+  if (text_.empty()) return {};
   return text_.substr(0, text_.find_last_not_of(blanks) + 1);
 }
 
@@ -96,8 +105,18 @@ double TextReader::number(std::string_view what) {
   return value;
 }
 
-double TextReader::bounded(std::string_view what) {
-  const double value = number(what);
+double TextReader::number_or_nan(std::string_view what) {
+  TextReader ahead = *this;
+  const std::string_view found = ahead.word();
+  double value = 0;
+  const auto [end, code] = convert(found, value);
+  const bool out = code == std::errc() ? !std::isfinite(value) : found.find(".#") != found.npos;
+  if (!out) return number(what);
+  word();
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+double TextReader::within_float(double value, std::string_view what) const {
   if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
     fail(fmt::format("{}: {} is beyond single precision's range", what, value));
   return value;
@@ -119,6 +138,15 @@ std::uint64_t TextReader::count(std::string_view what) {
 
 void TextReader::expect_line_end(std::string_view what) {
   if (!at_line_end()) fail(fmt::format("{} ends before '{}'", what, shown(word())));
+}
+
+std::string_view before_comment(std::string_view name) {
+  for (std::size_t at = name.find('#'); at != name.npos; at = name.find('#', at + 1))
+    if (at > 0 && blanks.find(name[at - 1]) != blanks.npos) {
+      const std::string_view part = name.substr(0, at);
+      return part.substr(0, part.find_last_not_of(blanks) + 1);
+    }
+  return name;
 }
 
 void TextReader::fail(const std::string& what) const {

@@ -12,7 +12,7 @@ namespace sundog::models {
 class TextReader {
  public:
   struct Syntax {
-    bool hash_comments = true;   // '#' ends the line
+    bool hash_comments = true;   // '#' ends the line, but not a name: rest()
     bool continuations = false;  // a '\' at a line's end joins the next line to it
   };
 
@@ -24,15 +24,21 @@ class TextReader {
 
   /// The line's next word, empty at its end.
   std::string_view word();
-  /// The rest of the line, without blanks around it.
+  /// The same, of ASCII letters in lower case.
+  std::string keyword();
+  /// The rest of the line, without blanks around it: a name, which may hold '#'.
   std::string_view rest();
   bool at_line_end();
 
   /// The next word as a finite number; `what` names it in the error.
   double number(std::string_view what);
   /// As number(), within float's range.
-  double bounded(std::string_view what);
+  double bounded(std::string_view what) { return within_float(number(what), what); }
   float real(std::string_view what) { return static_cast<float>(bounded(what)); }
+  /// As number() and bounded(), but NaN for words that stand for infinities and for what is no number, in the
+  /// spellings of C and of Microsoft's (1.#QNAN).
+  double number_or_nan(std::string_view what);
+  double bounded_or_nan(std::string_view what) { return within_float(number_or_nan(what), what); }
   std::int64_t integer(std::string_view what);
   std::uint64_t count(std::string_view what);
   /// Fails when words are left on the line.
@@ -44,6 +50,7 @@ class TextReader {
 
  private:
   void take_line();
+  double within_float(double value, std::string_view what) const;
 
   const Source& source_;
   Syntax syntax_;
@@ -53,5 +60,8 @@ class TextReader {
   std::string_view text_;  // the rest of the current line
   std::string joined_;     // holds a line put together from several
 };
+
+/// A name without a comment behind it, for where no name is as the line has it.
+std::string_view before_comment(std::string_view name);
 
 }  // namespace sundog::models

@@ -40,6 +40,89 @@ TEST_CASE("a missing buffer file is an error that names it, a missing texture is
             .empty());
 }
 
+TEST_CASE("a glTF's names may hold percent signs, encoded or not", "[models]") {
+  const std::string rest =
+      quad_views + R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":1},"indices":0}]}],)" + one_node;
+  for (const auto& [file, uri] : {std::pair("my data 10%.bin", "my data 10%.bin"),
+                                  {"a%20b.bin", "a%20b.bin"},
+                                  {"100%25.bin", "100%25.bin"},
+                                  {"50%.bin", "50%25.bin"}}) {
+    const TemporaryFolder folder;
+    folder.write(file, quad_bytes());
+    const std::string text =
+        document(R"("buffers":[{"byteLength":72,"uri":")" + std::string(uri) + R"("}],)" + rest);
+    CHECK(load_error(folder.write("a.gltf", text)).empty());
+  }
+}
+
+TEST_CASE("an image of a glTF that cannot be had is a warning, and its material goes without", "[models]") {
+  for (const std::string image :
+       {R"({"uri":"http://example.com/a.png"})", R"({"uri":"../a.png"})", R"({"uri":"gone.png"})",
+        R"({"bufferView":9})", R"({})", R"({"uri":"data:image/png;base64,?"})"}) {
+    CAPTURE(image);
+    const Model model =
+        load_text("a.gltf", quad(one_node + R"(,"images":[)" + image + R"(],"textures":[{"source":0}],
+    "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])",
+                                 R"(,"material":0)"));
+    CHECK(model.materials.at(0).textures.diffuse == -1);
+    REQUIRE(model.warnings.size() == 1);
+    CHECK_THAT(model.warnings[0], ContainsSubstring("/images/0"));
+  }
+  const Model basis = load_text("a.gltf", quad(one_node + R"(,"images":[{"uri":"a.ktx2"}],
+    "textures":[{"extensions":{"KHR_texture_basisu":{"source":0}}}],
+    "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])",
+                                               R"(,"material":0)"));
+  CHECK(basis.unread == std::vector<std::string>{"images of other formats than PNG, JPEG and WebP"});
+}
+
+TEST_CASE("attributes of a glTF's vertices that are no numbers count as missing, with a warning",
+          "[models]") {
+  std::string bytes;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  put<float>(bytes, {0, 0, 0, 2, 0, 0, 0, 2, 0, nan, nan, nan});
+  put<float>(bytes, {nan, nan, nan, 0, 0, 1, 0, 0, 1, nan, nan, nan});
+  const Model model = load_text(
+      "a.gltf", document(R"("buffers":[{"byteLength":96,"uri":"data:application/octet-stream;base64,)" +
+                         base64(bytes) + R"("}],"bufferViews":[{"buffer":0,"byteLength":48},
+    {"buffer":0,"byteOffset":48,"byteLength":48}],"accessors":[
+    {"bufferView":0,"componentType":5126,"type":"VEC3","count":4},
+    {"bufferView":1,"componentType":5126,"type":"VEC3","count":4}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1}}]}],)" +
+                         one_node));
+  for (const glm::vec3& n : model.meshes.at(0).normals) CHECK(n == glm::vec3(0, 0, 1));
+  REQUIRE(model.warnings.size() == 1);
+  CHECK_THAT(model.warnings[0], ContainsSubstring("/meshes/0: 1 attributes of vertices are no numbers"));
+}
+
+TEST_CASE("a skin places its mesh by its joints, whatever its node's transform", "[models]") {
+  // A triangle whose second corner hangs at a joint that has moved by (0, 0, 3) since it was bound.
+  std::string bytes;
+  put<float>(bytes, {0, 0, 0, 1, 0, 0, 0, 1, 0});
+  put<float>(bytes, {1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0});
+  put<float>(bytes, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+  put<float>(bytes, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -2, 1});
+  put<std::uint8_t>(bytes, {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0});
+  const std::string rest = R"("bufferViews":[{"buffer":0,"byteLength":36},
+    {"buffer":0,"byteOffset":36,"byteLength":48},{"buffer":0,"byteOffset":84,"byteLength":128},
+    {"buffer":0,"byteOffset":212,"byteLength":12}],
+    "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3},
+    {"bufferView":1,"componentType":5126,"type":"VEC4","count":3},
+    {"bufferView":2,"componentType":5126,"type":"MAT4","count":2},
+    {"bufferView":3,"componentType":5121,"type":"VEC4","count":3}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"WEIGHTS_0":1,"JOINTS_0":3}}]}],
+    "skins":[{"joints":[1,2],"inverseBindMatrices":2}],
+    "scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0,"skin":0,"translation":[100,0,0],"scale":[5,5,5]},
+    {"translation":[10,0,0],"children":[2]},{"translation":[0,0,5]}])";
+  const Model model = load_text(
+      "a.gltf", document(R"("buffers":[{"byteLength":224,"uri":"data:application/octet-stream;base64,)" +
+                         base64(bytes) + R"("}],)" + rest));
+  CHECK(model.objects.at(0).world_from_object == dmat4(1));
+  const Mesh& mesh = model.meshes.at(0);
+  CHECK(mesh.positions.at(0) == glm::vec3(10, 0, 0));
+  CHECK(mesh.positions.at(1) == glm::vec3(11, 0, 3));
+  CHECK(mesh.positions.at(2) == glm::vec3(10, 1, 1.5f));
+}
+
 TEST_CASE("a buffer that is not fetched is an error only for who reads it", "[models]") {
   const std::string buffers =
       R"("buffers":[{"byteLength":72,"uri":"http://example.com/q.bin"}],)" + quad_views;
@@ -207,7 +290,7 @@ TEST_CASE("indices beyond the vertices, and data that is not a number, are refus
   bytes = quad_bytes();
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(bytes.data() + 12, &nan, 4);
-  CHECK_THAT(error(), ContainsSubstring("/accessors/1: a value is not finite"));
+  CHECK_THAT(error(), ContainsSubstring("/accessors/1: vertex 0 is not finite"));
 }
 
 TEST_CASE("a node scaled to nothing is left out with a warning", "[models]") {

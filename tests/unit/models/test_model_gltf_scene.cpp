@@ -237,7 +237,7 @@ TEST_CASE("alpha lets light straight through when blended or masked, and is left
 
 TEST_CASE("glTF's lights come with their node's place and direction, in sundog's units", "[models]") {
   const Model model = load_text("a.gltf", document(R"("extensions":{"KHR_lights_punctual":{"lights":[
-    {"type":"directional","intensity":3,"color":[1,0.5,0]},{"type":"point","intensity":40},
+    {"type":"directional","intensity":3,"color":[1,0.5,0]},{"type":"point","intensity":40,"range":7},
     {"type":"spot","spot":{"innerConeAngle":0.1,"outerConeAngle":0.2}}]}},"nodes":[
     {"rotation":[-0.70710678,0,0,0.70710678],"extensions":{"KHR_lights_punctual":{"light":0}}},
     {"translation":[1,2,3],"extensions":{"KHR_lights_punctual":{"light":1}}},
@@ -251,6 +251,9 @@ TEST_CASE("glTF's lights come with their node's place and direction, in sundog's
   CHECK(model.lights[1].type == LightType::point);
   CHECK(model.lights[1].position == dvec3(1, 2, 3));
   CHECK(model.lights[1].falloff == dvec3(0, 0, 1));
+  CHECK(model.lights[1].range == 7);
+  CHECK(model.lights[2].range == 0);
+  CHECK(model.lights[2].square_edge);
   CHECK(model.lights[2].type == LightType::spot);
   CHECK(near(model.lights[2].direction, {0, 0, -1}));
   CHECK(model.lights[2].inner_angle == Approx(glm::degrees(0.1)));

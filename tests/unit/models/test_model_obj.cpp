@@ -99,7 +99,7 @@ TEST_CASE("a bad OBJ is refused with its line", "[models]") {
   CHECK_THAT(error("f"), ContainsSubstring("line 4: a face without corners"));
   CHECK_THAT(error("\n\nv 1 2"), ContainsSubstring("line 6: z: a finite number wanted, found ''"));
   CHECK_THAT(error("v 1 abc 2"), ContainsSubstring("found 'abc'"));
-  CHECK_THAT(error("v 1 nan 2"), ContainsSubstring("line 4"));
+  CHECK_THAT(error("v 1 nan 2\nf 1 2 4"), ContainsSubstring("line 5: vertex 4, of line 4, is no number"));
   CHECK_THAT(error("v 1 1e39 2"), ContainsSubstring("single precision"));
   CHECK_THAT(error("v 1 1e999 2"), ContainsSubstring("line 4"));
   CHECK_THAT(error("vn 1 2"), ContainsSubstring("line 4"));
@@ -128,8 +128,93 @@ TEST_CASE("material library names may hold blanks, lie in folders, and come seve
   const Model model = load_model(folder.write(
       "a.obj", "mtllib a b.mtl\nmtllib sub\\c.mtl d.mtl\nusemtl three of them # note\n" + triangle));
   CHECK(model.warnings.empty());
-  CHECK(model.materials.size() == 3);
-  CHECK(model.meshes.at(0).materials == std::vector<int>{2});
+  REQUIRE(model.materials.size() == 1);
+  CHECK(model.materials[0].name == "three of them");
+}
+
+TEST_CASE("names of OBJ and MTL may hold '#' and quotes, and their keywords be of any case", "[models]") {
+  const TemporaryFolder folder;
+  folder.write("a#b c.mtl",
+               "NewMtl Material #25\nKD 1 0 0\nmap_KD Map #1.png\nnewmtl Material #26\nkd 0 1 0\n");
+  folder.write("Map #1.png", "x");
+  for (const std::string name : {"a#b c.mtl", "\"a#b c.mtl\"", "a#b c.mtl # of the house"}) {
+    CAPTURE(name);
+    const Model model = load_model(
+        folder.write("a.obj", "MTLLIB " + name + "\nusemtl Material #25\nV 0 0 0\nv 1 0 0 # x\nv 0 1 0#y\n" +
+                                  "f 1 2 3 # a\nUseMtl Material #26\nF 1 2 3\n"));
+    CHECK(model.warnings.empty());
+    REQUIRE(model.materials.size() == 2);
+    CHECK(model.materials[0].name == "Material #25");
+    CHECK(model.materials[0].diffuse == dvec3(1, 0, 0));
+    CHECK(model.materials[0].textures.diffuse >= 0);
+    CHECK(model.materials[1].diffuse == dvec3(0, 1, 0));
+  }
+}
+
+TEST_CASE("an MTL's images are looked for by their name in the folder, whatever stands before it",
+          "[models]") {
+  const TemporaryFolder folder;
+  folder.write("sub/Tex.png", "x");
+  folder.write("my tex.png", "x");
+  for (const std::string name : {"C:\\Users\\me\\my tex.png", "/home/me/my tex.png", "\"my tex.png\"",
+                                 "'D:/my tex.png'", "sub\\Tex.png", "..\\my tex.png", "my tex.png # note"}) {
+    CAPTURE(name);
+    folder.write("m.mtl", "newmtl m\nmap_Kd " + name + "\n");
+    const Model model = load_model(folder.write("m.obj", "mtllib m.mtl\nusemtl m\n" + triangle));
+    CHECK(model.warnings.empty());
+    CHECK(model.images.size() == 1);
+  }
+}
+
+TEST_CASE("a byte order mark before an OBJ and its MTL is skipped", "[models]") {
+  const std::string mark = "\xEF\xBB\xBF";
+  const TemporaryFolder folder;
+  folder.write("m.mtl", mark + "newmtl m\nKd 1 0 0\n");
+  const Model model = load_model(folder.write("m.obj", mark + "mtllib m.mtl\nusemtl m\n" + triangle));
+  CHECK(model.materials.at(0).diffuse == dvec3(1, 0, 0));
+  CHECK(load_text("a.obj", mark + triangle).meshes.at(0).positions.size() == 3);
+}
+
+TEST_CASE("what an OBJ does not use may be no number, and its normals that are none are made anew",
+          "[models]") {
+  for (const std::string none : {"nan", "-nan(ind)", "inf", "1.#QNAN", "-1.#IND0"}) {
+    CAPTURE(none);
+    const std::string three = none + " " + none + " " + none;
+    const Model unused =
+        load_text("a.obj", "vn " + three + "\nvt " + none + " 0\n" + triangle + "v " + three);
+    CHECK(unused.warnings.empty());
+    const Model used = load_text("a.obj", "vn " + three + "\nvn 0 0 1\nvt " + none +
+                                              " 1\nv 0 0 0\nv 1 0 0\n" + "v 0 1 0\nf 1/1/1 2//2 3//1\n");
+    const Mesh& mesh = used.meshes.at(0);
+    for (const glm::vec3& n : mesh.normals) CHECK(n == glm::vec3(0, 0, 1));
+    CHECK(mesh.uvs.at(0) == glm::vec2(0));
+    REQUIRE(used.warnings.size() == 2);
+    CHECK_THAT(used.warnings[0],
+               ContainsSubstring("line 7: normals that are no numbers are made up (2 in all)"));
+  }
+}
+
+TEST_CASE("an OBJ's smoothing groups say which edges are smooth, unless an angle is given", "[models]") {
+  // Two quads that meet at 90 degrees.
+  const auto shared_normals = [](const std::string& first, const std::string& second,
+                                 std::optional<double> angle = {}) {
+    const Mesh mesh = load_text("a.obj",
+                                "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 -1\nv 1 1 -1\n" + first +
+                                    "f 1 2 3 4\n" + second + "f 2 5 6 3\n",
+                                {.crease_angle = angle})
+                          .meshes.at(0);
+    if (mesh.normals.empty()) return false;
+    return mesh.normals[mesh.triangles[0].y] == mesh.normals[mesh.triangles[2].x];
+  };
+  CHECK(shared_normals("s 1\n", ""));
+  CHECK(shared_normals("s 3\n", "s 3\n"));
+  CHECK_FALSE(shared_normals("s 1\n", "s 2\n"));
+  CHECK_FALSE(shared_normals("s off\n", ""));
+  CHECK_FALSE(shared_normals("s 0\n", "s 0\n"));
+  CHECK_FALSE(shared_normals("", ""));  // of 45 degrees
+  CHECK_FALSE(shared_normals("s 1\n", "", 30));
+  CHECK(shared_normals("s off\n", "", 100));
+  CHECK(load_text("a.obj", "s off\n" + triangle).meshes.at(0).normals.empty());
 }
 
 TEST_CASE("MTL's opaque materials become phong", "[models]") {
@@ -156,6 +241,25 @@ TEST_CASE("MTL's dissolve lets light straight through", "[models]") {
     CHECK(m.medium == -1);
     CHECK(m.type == MaterialType::phong);
   }
+}
+
+TEST_CASE("MTL's d counts where Tr says something else, with a warning", "[models]") {
+  Model model;
+  CHECK(material_of("d 1\nTr 1", &model).transmission == dvec3(0));
+  REQUIRE(model.warnings.size() == 1);
+  CHECK_THAT(model.warnings[0], ContainsSubstring("material 'm' has d 1 and Tr 1, which differ: d counts"));
+  CHECK(material_of("Tr 0.75\nd 0.25", &model).transmission == dvec3(0.75));
+  CHECK(model.warnings.empty());
+}
+
+TEST_CASE("a map without a name is left out, and images of materials that no face has are not read",
+          "[models]") {
+  Model model;
+  CHECK(material_of("map_Kd\nmap_Bump -bm 2\n", &model).textures.diffuse == -1);
+  CHECK(model.warnings.empty());
+  const TemporaryFolder folder;
+  folder.write("m.mtl", "newmtl m\nnewmtl other\nmap_Kd gone.png\nPm 1\n");
+  CHECK(load_model(folder.write("m.obj", "mtllib m.mtl\nusemtl m\n" + triangle)).warnings.empty());
 }
 
 TEST_CASE("MTL's glass with Fresnel is a dielectric with a medium, without Fresnel it is phong", "[models]") {

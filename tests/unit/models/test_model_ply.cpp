@@ -1,4 +1,5 @@
 // PLY, from small files written here.
+#include <cctype>
 #include <cstring>
 
 #include "catch.h"
@@ -122,6 +123,49 @@ TEST_CASE("a PLY whose header promises more than the file holds is refused befor
   CHECK_THAT(load_error("a.ply", bytes), ContainsSubstring("the file ends within its data"));
 }
 
+TEST_CASE("PLY faces may come before their vertices", "[models]") {
+  for (const std::string format : {"ascii", "binary_big_endian"}) {
+    std::string bytes =
+        "ply\nformat " + format +
+        " 1.0\nelement face 2\nproperty list uchar ushort vertex_indices\nelement vertex 4\n" + xyz +
+        "end_header\n";
+    if (format == "ascii") {
+      bytes += "4 0 1 2 3\n3 0 1 2\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n";
+    } else {
+      for (const std::vector<std::uint16_t>& face : {std::vector<std::uint16_t>{0, 1, 2, 3}, {0, 1, 2}}) {
+        bytes += static_cast<char>(face.size());
+        for (const std::uint16_t corner : face) put(bytes, corner, true);
+      }
+      for (const float value : {0.f, 0.f, 0.f, 2.f, 0.f, 0.f, 2.f, 2.f, 0.f, 0.f, 2.f, 0.f})
+        put(bytes, value, true);
+    }
+    const Mesh mesh = load_text("a.ply", bytes).meshes.at(0);
+    CHECK(mesh.triangles.size() == 3);
+    CHECK(area_of(mesh) == Approx(6));
+  }
+}
+
+TEST_CASE("a PLY's normals and coordinates that are no numbers are made anew, with a warning", "[models]") {
+  const std::string more =
+      "property float nx\nproperty float ny\nproperty float nz\nproperty float u\n"
+      "property float v\n";
+  const Model model = load_text("a.ply", header("ascii", xyz + more, 4, 1) +
+                                             "0 0 0 nan nan nan 0 0\n1 0 0 0 0 1 nan 1\n0 1 0 0 0 1 1 1\n"
+                                             "nan nan nan 0 0 1 0 0\n3 0 1 2\n");
+  CHECK(model.meshes.at(0).normals.at(0) == glm::vec3(0, 0, 1));
+  CHECK(model.meshes[0].uvs.at(1) == glm::vec2(0));
+  REQUIRE(model.warnings.size() == 2);
+  CHECK_THAT(model.warnings[0], ContainsSubstring("1 normals that are no numbers are made up"));
+}
+
+TEST_CASE("a PLY's header may be in capitals, behind a byte order mark", "[models]") {
+  std::string text = header("ascii", xyz, 3, 1);
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  const std::string points = "0 0 0\n2 0 0\n0 1 0\n3 0 1 2\n";
+  CHECK(area_of(load_text("a.ply", text + points).meshes.at(0)) == 1);
+  CHECK(area_of(load_text("a.ply", "\xEF\xBB\xBF" + header("ascii", xyz, 3, 1) + points).meshes.at(0)) == 1);
+}
+
 TEST_CASE("a bad PLY is refused with its line or byte", "[models]") {
   const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
   const auto error = [&](const std::string& data) {
@@ -137,7 +181,8 @@ TEST_CASE("a bad PLY is refused with its line or byte", "[models]") {
   CHECK_THAT(error(points + "-3 0 1 2\n"), ContainsSubstring("line 14"));
   CHECK_THAT(error(points + "3 0 1 2 9\n"), ContainsSubstring("line 14: face ends before '9'"));
   CHECK_THAT(error("0 0 0\n1 0\n0 1 0\n3 0 1 2\n"), ContainsSubstring("line 12"));
-  CHECK_THAT(error("0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n"), ContainsSubstring("line 12"));
+  CHECK_THAT(error("0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n"),
+             ContainsSubstring("line 14: face 0: vertex 1 has a coordinate that is no number"));
   CHECK_THAT(error(points + "\n\n"), ContainsSubstring("the file ends before its last face"));
   CHECK_THAT(load_error("a.ply", "plx\n"), ContainsSubstring("line 1"));
   CHECK_THAT(load_error("a.ply", "ply\nformat ascii 1.0\n"), ContainsSubstring("end_header"));

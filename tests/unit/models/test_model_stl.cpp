@@ -1,4 +1,5 @@
 // STL, from small files written here.
+#include <cctype>
 #include <cstring>
 
 #include "catch.h"
@@ -43,6 +44,15 @@ TEST_CASE("ASCII and binary STL files load flat, with the vertices that they sto
     CHECK(model.meshes[0].normals.empty());
     CHECK(area_of(model.meshes[0]) == Approx(1).epsilon(0.01));
   }
+}
+
+TEST_CASE("an ASCII STL may be in capitals, behind a byte order mark", "[models]") {
+  std::string text = "solid a\n" + ascii_facet("0 0 0", "2 0 0", "0 1 0") + "endsolid a\n";
+  CHECK(area_of(load_text("a.stl", "\xEF\xBB\xBF" + text).meshes.at(0)) == 1);
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  CHECK(area_of(load_text("a.stl", text).meshes.at(0)) == 1);
+  // A binary one may begin with any bytes.
+  CHECK(load_text("a.stl", binary(2, two_triangles, "\xEF\xBB\xBFsolid")).meshes.at(0).triangles.size() == 2);
 }
 
 TEST_CASE("an STL smooths when a crease angle is given", "[models]") {

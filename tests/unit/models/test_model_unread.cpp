@@ -17,8 +17,7 @@ TEST_CASE("a glTF's unread features are one warning, each named once", "[models]
       load_text("a.gltf", quad(R"("materials":[)" + material + "," + material +
                                R"(],"textures":[{}],"skins":[{"joints":[0]}],"animations":[{}],
                      "nodes":[{"mesh":0,"skin":0},{"mesh":0,"skin":0}])"));
-  CHECK(model.unread ==
-        Features{"other textures", "sheen with whitted", "VENDOR_glow", "skins", "animations"});
+  CHECK(model.unread == Features{"other textures", "sheen with whitted", "VENDOR_glow", "animations"});
   REQUIRE(model.warnings.size() == 1);
   CHECK(model.warnings[0].starts_with("read without its "));
 }
@@ -41,12 +40,31 @@ TEST_CASE("what an OBJ and its materials have and is not read is one warning", "
   folder.write("m.mtl",
                "newmtl a\nKd 1 1 1\nmap_Kd a.png\nmap_Bump -bm 1 b.png\nKe 0 0 0\nPs 0\n"
                "newmtl b\nmap_Kd c.png\nKe 1 0 0\nPm 1.0\n");
-  const Model model = load_model(
-      folder.write("a.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nl 1 2\np 1\n"));
+  const Model model = load_model(folder.write(
+      "a.obj",
+      "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nl 1 2\np 1\n"));
   CHECK(model.unread == Features{"metalness", "lines", "points"});
   REQUIRE(model.warnings.size() == 4);
   CHECK_THAT(model.warnings[0], ContainsSubstring("a.png is missing"));
   CHECK(model.warnings[3] == "read without its metalness, lines and points");
+}
+
+TEST_CASE("attributes of vertices that are not used are named once", "[models]") {
+  CHECK(load_text("a.gltf",
+                  document(quad_buffer() + "," + quad_views +
+                           R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":1,"COLOR_1":2,"JOINTS_1":2,
+                  "TEXCOORD_4":2,"_OWN":2},"indices":0}]}],)" +
+                           one_node))
+            .unread == Features{"joints of vertices beyond four", "second colours of vertices",
+                                "texture coordinates beyond four sets"});
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty uchar alpha\nelement face 1\n"
+      "property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n";
+  CHECK(load_text("a.ply", head + "0 0 0 255\n1 0 0 128\n0 1 0 255\n3 0 1 2 6 0 0 1 0 0 1\n").unread ==
+        Features{"alpha of vertices", "texture coordinates of faces"});
+  CHECK(load_text("a.ply", head + "0 0 0 255\n1 0 0 255\n0 1 0 255\n3 0 1 2 0\n").unread ==
+        Features{"texture coordinates of faces"});
 }
 
 TEST_CASE("materials that are not defined are one warning", "[models]") {

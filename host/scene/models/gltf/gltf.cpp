@@ -23,7 +23,7 @@ struct Node {
   std::string name, pointer;
   dmat4 local{1};
   std::vector<std::size_t> children;
-  std::optional<std::size_t> mesh, camera, light, parent;
+  std::optional<std::size_t> mesh, camera, light, parent, skin;
   std::vector<dmat4> instances;  // EXT_mesh_gpu_instancing
   bool instanced = false;
 };
@@ -84,6 +84,7 @@ class GltfReader {
  private:
   void read_nodes() {
     const std::vector<JsonAt> all = root_.list("nodes");
+    skins_ = root_.list("skins");
     nodes_.resize(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) read_node(all[i], nodes_[i]);
     for (std::size_t i = 0; i < all.size(); ++i)
@@ -100,6 +101,7 @@ class GltfReader {
     node.pointer = at.pointer();
     node.local = read_transform(at);
     if (const auto mesh = at.find("mesh")) node.mesh = mesh->index(meshes_.count(), "mesh");
+    if (const auto skin = at.find("skin")) node.skin = skin->index(skins_.size(), "skin");
     if (const auto camera = at.find("camera")) node.camera = camera->index(cameras_.size(), "camera");
     if (const auto light = at.extension("KHR_lights_punctual"))
       node.light = light->member("light").index(lights_.size(), "light");
@@ -117,7 +119,7 @@ class GltfReader {
       at->fail(fmt::format("{} components of floats or normalised integers wanted", components));
     if (count && *count != accessor.dense.count) at->fail("instance attributes of different counts");
     count = accessor.dense.count;
-    return &accessors_.floats(index);
+    return &accessors_.numbers(index);
   }
 
   void read_instances(const JsonAt& extension, Node& node) {
@@ -189,10 +191,52 @@ class GltfReader {
     if (node.camera) add_camera(node, world);
     if (node.light) add_light(node, world);
     if (!node.mesh) return;
+    if (node.skin && !node.instanced && meshes_.has_joints(*node.mesh)) return add_skinned(node);
     const int mesh = meshes_.use(*node.mesh, model_);
     if (mesh < 0) return;
     if (!node.instanced) return add_object(node, mesh, world);
     for (const dmat4& instance : node.instances) add_object(node, mesh, world * instance);
+  }
+
+  // Joints place a mesh with a skin; its node's own transform is ignored.
+  void add_skinned(const Node& node) {
+    const int mesh = meshes_.use_skinned(*node.mesh, *node.skin, joints_of(*node.skin), model_);
+    if (mesh >= 0) add_object(node, mesh, dmat4(1));
+  }
+
+  // From the bind pose to the world, where the file's nodes stand.
+  std::vector<dmat4> joints_of(std::size_t skin) {
+    if (worlds_.empty()) place_all_nodes();
+    const JsonAt& at = skins_[skin];
+    std::vector<dmat4> joints;
+    for (const JsonAt& joint : at.list("joints"))
+      joints.push_back(worlds_[joint.index(nodes_.size(), "node")]);
+    const auto inverse = at.find("inverseBindMatrices");
+    if (!inverse) return joints;
+    const std::size_t index = inverse->index(accessors_.all().size(), "accessor");
+    const std::vector<float>& values = accessors_.numbers(index);
+    if (accessors_.all()[index].type != "MAT4" || values.size() < 16 * joints.size())
+      inverse->fail(fmt::format("{} matrices of type MAT4 wanted, one a joint", joints.size()));
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      dmat4 bind;
+      for (int k = 0; k < 16; ++k)
+        bind[k / 4][k % 4] = static_cast<double>(values[16 * i + static_cast<std::size_t>(k)]);
+      joints[i] *= bind;
+    }
+    return joints;
+  }
+
+  void place_all_nodes() {
+    worlds_.assign(nodes_.size(), dmat4(1));
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      if (!nodes_[i].parent) open.push_back(i);
+    while (!open.empty()) {
+      const std::size_t i = open.back();
+      open.pop_back();
+      worlds_[i] = nodes_[i].parent ? worlds_[*nodes_[i].parent] * nodes_[i].local : nodes_[i].local;
+      open.insert(open.end(), nodes_[i].children.begin(), nodes_[i].children.end());
+    }
   }
 
   // A scale of 0 is how some files hide a node.
@@ -241,39 +285,10 @@ class GltfReader {
   std::vector<GltfCamera> cameras_;
   std::vector<LightDescription> lights_;
   std::vector<Node> nodes_;
+  std::vector<JsonAt> skins_;
+  std::vector<dmat4> worlds_;  // by node, where a skin asks for them
   Model model_;
 };
-
-constexpr std::string_view read_extensions[] = {
-    "KHR_lights_punctual",        "EXT_mesh_gpu_instancing",
-    "KHR_mesh_quantization",      "KHR_texture_transform",
-    "EXT_texture_webp",           "KHR_materials_ior",
-    "KHR_materials_transmission", "KHR_materials_volume",
-    "KHR_materials_unlit",        "KHR_materials_emissive_strength",
-    "KHR_materials_specular",     "KHR_materials_clearcoat",
-    "KHR_materials_dispersion",   "KHR_materials_sheen",
-    "KHR_materials_iridescence",  "KHR_materials_anisotropy"};
-
-// A required extension that is not read is an error, but for those that change colours alone; images of
-// KHR_texture_basisu are errors where they are used.
-void check_extensions(const JsonAt& root) {
-  for (const JsonAt& at : root.list("extensionsRequired")) {
-    const std::string name = at.text();
-    const bool color = name.starts_with("KHR_materials_") || name == "KHR_texture_basisu";
-    if (std::ranges::count(read_extensions, name) == 0 && !color)
-      at.fail(fmt::format("the file requires the extension {}, which is not read", name));
-  }
-}
-
-// Extensions of materials are found where materials use them (gltf_unread.h).
-void name_unread_extensions(const JsonAt& root, Model& model) {
-  for (const JsonAt& at : root.list("extensionsUsed")) {
-    const std::string name = at.text();
-    if (std::ranges::count(read_extensions, name) == 0 && !name.starts_with("KHR_materials_") &&
-        name != "KHR_texture_basisu")
-      leave_unread(model, name);
-  }
-}
 
 nlohmann::json parse(const Source& source, std::string_view text) {
   check_json_memory(text, source.path);

@@ -108,7 +108,7 @@ void GltfAccessors::read_buffer(const Source& source, const GltfContainer& conta
   buffer.length = at.member("byteLength").integer(1, most);
   const bool glb = source.bytes.starts_with("glTF");
   if (const auto uri = at.find("uri")) {
-    if (auto bytes = read_uri(source, *uri)) {
+    if (auto bytes = read_buffer_uri(source, *uri)) {
       storage_.push_back(std::move(*bytes));
       buffer.bytes = storage_.back();
       buffer.present = true;
@@ -284,10 +284,17 @@ const std::vector<float>& GltfAccessors::floats(std::size_t index) {
   const Accessor& accessor = accessors_.at(index);
   const double scale = accessor.normalized ? normalization(accessor.dense.component) : 1;
   auto values = decode<float>(accessor, [&](double value) {
-    if (!std::isfinite(value)) fail_at(accessor, "a value is not finite");
+    if (!std::isfinite(value)) return std::numeric_limits<float>::quiet_NaN();
     return static_cast<float>(accessor.normalized ? std::max(value * scale, -1.0) : value);
   });
   return floats_.emplace(index, std::move(values)).first->second;
+}
+
+const std::vector<float>& GltfAccessors::numbers(std::size_t index) {
+  const std::vector<float>& values = floats(index);
+  if (!std::ranges::all_of(values, [](float value) { return std::isfinite(value); }))
+    fail_at(accessors_[index], "a value is not finite");
+  return values;
 }
 
 const std::vector<std::uint32_t>& GltfAccessors::indices(std::size_t index) {

@@ -51,8 +51,11 @@ class GltfAccessors {
   const BufferView* view_of(const Accessor& accessor) const {
     return accessor.has_view ? &views_[accessor.dense.view] : nullptr;
   }
-  /// `components` floats an element, integers scaled where normalised; decoded once. All are finite.
+  /// `components` floats an element, integers scaled where normalised; decoded once. What is infinite is NaN.
   const std::vector<float>& floats(std::size_t index);
+  /// The same of values that must be numbers. Throws SceneError.
+  const std::vector<float>& numbers(std::size_t index);
+  [[noreturn]] void fail_at(const Accessor& accessor, const std::string& what) const;
   /// The bytes of a buffer view, which `at` names.
   std::string view_bytes(const JsonAt& at) const;
   /// A SCALAR accessor of an unsigned type.
@@ -73,7 +76,6 @@ class GltfAccessors {
   const char* bytes_of(const Accessor& accessor, const Elements& elements, std::size_t& stride) const;
   template <class Value, class Convert>
   std::vector<Value> decode(const Accessor& accessor, Convert convert);
-  [[noreturn]] void fail_at(const Accessor& accessor, const std::string& what) const;
 
   const Source& source_;
   struct Buffer {

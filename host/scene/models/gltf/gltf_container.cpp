@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "scene/inside.h"
+#include "scene/models/beside.h"
 
 namespace sundog::models {
 namespace fs = std::filesystem;
@@ -78,37 +79,33 @@ std::string decode_base64(std::string_view text, const JsonAt& uri) {
   return bytes;
 }
 
-std::string decode_percent(std::string_view text, const JsonAt& uri) {
-  const auto hex = [&](char c) {
-    if (!std::isxdigit(static_cast<unsigned char>(c))) uri.fail("a '%' without two hexadecimal digits");
-    return c <= '9' ? c - '0' : (c | 32) - 'a' + 10;
-  };
+// A '%' without two hexadecimal digits behind it is itself: programs write names down as they are.
+std::string decode_percent(std::string_view text) {
+  const auto is_hex = [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; };
+  const auto hex = [](char c) { return c <= '9' ? c - '0' : (c | 32) - 'a' + 10; };
   std::string bytes;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '%') {
+    if (text[i] != '%' || i + 2 >= text.size() || !is_hex(text[i + 1]) || !is_hex(text[i + 2])) {
       bytes += text[i];
       continue;
     }
-    if (i + 2 >= text.size()) uri.fail("a '%' without two hexadecimal digits");
     bytes += static_cast<char>(hex(text[i + 1]) * 16 + hex(text[i + 2]));
     i += 2;
   }
   return bytes;
 }
 
-std::string read_data_uri(std::string_view text, const JsonAt& uri, UriContent content) {
+std::string read_data_uri(std::string_view text, const JsonAt& uri, bool buffer) {
   const std::size_t comma = text.find(',');
   if (comma == text.npos) uri.fail("a data URI without a comma");
   std::string head(text.substr(5, comma - 5));
   std::transform(head.begin(), head.end(), head.begin(), [](unsigned char c) { return std::tolower(c); });
   const bool base64 = head.ends_with(";base64");
   if (base64) head.resize(head.size() - 7);
-  if (content == UriContent::image && !head.starts_with("image/"))
-    uri.fail("a data URI of type image/png, image/jpeg or image/webp wanted");
-  if (content == UriContent::buffer && head != "application/octet-stream" &&
-      head != "application/gltf-buffer")
+  // What an image is, its bytes say.
+  if (buffer && head != "application/octet-stream" && head != "application/gltf-buffer")
     uri.fail("a data URI of type application/octet-stream or application/gltf-buffer wanted");
-  return base64 ? decode_base64(text.substr(comma + 1), uri) : decode_percent(text.substr(comma + 1), uri);
+  return base64 ? decode_base64(text.substr(comma + 1), uri) : decode_percent(text.substr(comma + 1));
 }
 
 // The length of a URI's scheme, 0 without one; fails for a colon that follows no scheme.
@@ -133,34 +130,41 @@ GltfContainer open_container(const Source& source) {
   } else {
     container.json = source.bytes;
   }
-  if (container.json.starts_with("\xEF\xBB\xBF"))
+  if (container.json.starts_with(byte_order_mark))
     fail(source, "", "glTF's JSON must not begin with a byte order mark");
   return container;
 }
 
-std::optional<fs::path> missing_file(const Source& source, const JsonAt& uri) {
+std::optional<std::string> read_buffer_uri(const Source& source, const JsonAt& uri) {
   const std::string text = uri.text();
+  if (text.starts_with("data:")) return read_data_uri(text, uri, true);
   if (scheme_length(text, uri) > 0) return std::nullopt;
-  const fs::path path = source.path.parent_path() / fs::path(decode_percent(text, uri));
+  const fs::path folder = source.path.parent_path();
+  const auto may_be_read = [&](const fs::path& path) {
+    return source.outside_files || !leads_outside(source.path, path);
+  };
+  fs::path path = folder / fs::path(decode_percent(text));
+  // Some programs do not encode names that hold a '%'.
   std::error_code ignored;
-  if (!source.outside_files && leads_outside(source.path, path)) return std::nullopt;
-  return fs::exists(path, ignored) ? std::nullopt : std::optional(path);
-}
-
-std::optional<std::string> read_uri(const Source& source, const JsonAt& uri, UriContent content) {
-  const std::string text = uri.text();
-  const std::size_t scheme = scheme_length(text, uri);
-  if (scheme > 0)
-    return text.starts_with("data:") ? std::optional(read_data_uri(text, uri, content)) : std::nullopt;
-  const fs::path path = source.path.parent_path() / fs::path(decode_percent(text, uri));
-  if (!source.outside_files && leads_outside(source.path, path))
+  if (const fs::path plain = folder / fs::path(text);
+      !fs::exists(path, ignored) && may_be_read(plain) && fs::exists(plain, ignored))
+    path = plain;
+  if (!may_be_read(path))
     uri.fail(fmt::format("'{}' leads out of the model's folder: {}", text, outside_hint));
   try {
     return read_source(path).bytes;
   } catch (const SceneError& error) {
-    uri.fail(fmt::format("the {}'s file {} {}", content == UriContent::image ? "image" : "buffer",
-                         path.string(), error.reason));
+    uri.fail(fmt::format("the buffer's file {} {}", path.string(), error.reason));
   }
+}
+
+std::string read_image_uri(const Source& source, const JsonAt& uri) {
+  const std::string text = uri.text();
+  if (text.starts_with("data:")) return read_data_uri(text, uri, false);
+  const fs::path folder = source.path.parent_path();
+  for (const std::string& name : {decode_percent(text), text})
+    if (const auto path = find_beside(source, folder, name)) return read_source(*path).bytes;
+  uri.fail("the image " + why_not_beside(source, folder, decode_percent(text)));
 }
 
 }  // namespace sundog::models

@@ -16,14 +16,11 @@ struct GltfContainer {
 /// A .glb's chunks, or the whole of a .gltf as JSON. Views into `source`.
 GltfContainer open_container(const Source& source);
 
-/// The file that a URI names, if it is not there.
-std::optional<std::filesystem::path> missing_file(const Source& source, const JsonAt& uri);
+/// The bytes of a buffer's URI: a data URI, or a file beside `source`. nullopt for a URI with a scheme, which
+/// is not fetched. Throws SceneError at `uri`.
+std::optional<std::string> read_buffer_uri(const Source& source, const JsonAt& uri);
 
-enum class UriContent { buffer, image };
-
-/// The bytes behind a URI: a data URI, or a file beside `source`. nullopt for a URI with a scheme, which is
-/// not fetched. Throws SceneError at `uri`.
-std::optional<std::string> read_uri(const Source& source, const JsonAt& uri,
-                                    UriContent content = UriContent::buffer);
+/// The bytes of an image's. Throws SceneError at `uri` where there is no such file.
+std::string read_image_uri(const Source& source, const JsonAt& uri);
 
 }  // namespace sundog::models

@@ -5,11 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <span>
 #include <string_view>
+#include <utility>
 
+#include "scene/models/gltf/gltf_skins.h"
 #include "scene/models/normals.h"
 
 namespace sundog::models {
@@ -62,6 +65,11 @@ std::vector<glm::uvec3> triangles_of(std::uint64_t mode, std::span<const std::ui
 }
 
 template <class Vector>
+bool is_finite(const Vector& v) {
+  return std::isfinite(glm::dot(v, Vector(0)));
+}
+
+template <class Vector>
 Vector element(const std::vector<float>& values, std::size_t stride, std::size_t index) {
   Vector out;
   for (int c = 0; c < Vector::length(); ++c) out[c] = values[index * stride + static_cast<std::size_t>(c)];
@@ -101,6 +109,16 @@ std::optional<std::size_t> GltfMeshes::read_attribute(const JsonAt& attributes, 
   return index;
 }
 
+/// Four numbers for each of `count` vertices; what is anything else moves nothing.
+std::optional<std::size_t> GltfMeshes::read_four(const JsonAt& attributes, const char* name,
+                                                 std::size_t count) const {
+  const auto found = attributes.find(name);
+  if (!found) return std::nullopt;
+  const std::size_t index = found->index(accessors_.all().size(), "accessor");
+  const Accessor& accessor = accessors_.all()[index];
+  return accessor.type == "VEC4" && accessor.dense.count == count ? std::optional(index) : std::nullopt;
+}
+
 void GltfMeshes::check_indices(const JsonAt& at, const Accessor& accessor) const {
   const std::uint64_t component = accessor.dense.component;
   if (accessor.type != "SCALAR" || accessor.normalized ||
@@ -129,6 +147,8 @@ GltfMeshes::Primitive GltfMeshes::read_primitive(const JsonAt& at) const {
     if (p.position && other && vertices(*other) != vertices(*p.position))
       attributes.fail(fmt::format("an attribute of {} elements beside {} positions", vertices(*other),
                                   vertices(*p.position)));
+  if (p.position) p.joints = read_four(attributes, "JOINTS_0", vertices(*p.position));
+  if (p.position) p.weights = read_four(attributes, "WEIGHTS_0", vertices(*p.position));
   if (const auto indices = at.find("indices")) {
     p.indices = indices->index(accessors_.all().size(), "accessor");
     check_indices(*indices, accessors_.all()[*p.indices]);
@@ -139,17 +159,38 @@ GltfMeshes::Primitive GltfMeshes::read_primitive(const JsonAt& at) const {
   return p;
 }
 
+int GltfMeshes::add(std::size_t index, const std::vector<dmat4>& joints, Model& model) {
+  of_no_number_ = 0;
+  Mesh mesh = build(meshes_.at(index), joints, model);
+  if (of_no_number_ > 0)
+    model.warnings.push_back(
+        fmt::format("/meshes/{}: {} attributes of vertices are no numbers: normals are made up, other "
+                    "attributes taken as if they were not there",
+                    index, of_no_number_));
+  if (mesh.triangles.empty()) return -1;
+  model.meshes.push_back(std::move(mesh));
+  return static_cast<int>(model.meshes.size()) - 1;
+}
+
 int GltfMeshes::use(std::size_t index, Model& model) {
   Entry& entry = meshes_.at(index);
-  if (!entry.used) {
-    Mesh mesh = build(entry, model);
-    entry.used = mesh.triangles.empty() ? -1 : static_cast<int>(model.meshes.size());
-    if (!mesh.triangles.empty()) model.meshes.push_back(std::move(mesh));
-  }
+  if (!entry.used) entry.used = add(index, {}, model);
   return *entry.used;
 }
 
-Mesh GltfMeshes::build(const Entry& entry, Model& model) {
+bool GltfMeshes::has_joints(std::size_t index) const {
+  return std::ranges::any_of(meshes_.at(index).primitives,
+                             [](const Primitive& p) { return p.joints && p.weights; });
+}
+
+int GltfMeshes::use_skinned(std::size_t index, std::size_t skin, const std::vector<dmat4>& joints,
+                            Model& model) {
+  const auto [found, added] = skinned_.try_emplace({index, skin}, -1);
+  if (added) found->second = add(index, joints, model);
+  return found->second;
+}
+
+Mesh GltfMeshes::build(const Entry& entry, const std::vector<dmat4>& joints, Model& model) {
   Mesh mesh;
   mesh.name = entry.name;
   bool any_color = false, any_tangent = false;
@@ -158,7 +199,7 @@ Mesh GltfMeshes::build(const Entry& entry, Model& model) {
   std::vector<bool> has_normal;
   for (const Primitive& primitive : entry.primitives) {
     if (!primitive.position || primitive.mode < 4) continue;
-    append(primitive, model, mesh, has_normal);
+    append(primitive, joints, model, mesh, has_normal);
     for (std::size_t set = 0; set < most_uv_sets; ++set) any_uv[set] = any_uv[set] || primitive.uvs[set];
     any_color = any_color || primitive.color;
     any_tangent = any_tangent || (primitive.normal && primitive.tangent);
@@ -168,6 +209,8 @@ Mesh GltfMeshes::build(const Entry& entry, Model& model) {
     if (!any_uv[set]) mesh.further_uvs[set - 1].clear();
   while (!mesh.further_uvs.empty() && mesh.further_uvs.back().empty()) mesh.further_uvs.pop_back();
   if (!any_color) mesh.colors.clear();
+  if (std::ranges::all_of(std::as_const(mesh.alphas), [](float alpha) { return alpha == 1; }))
+    mesh.alphas.clear();
   if (!any_tangent) mesh.tangents.clear();
   const bool smooth =
       crease_degrees_ > 0 && std::find(has_normal.begin(), has_normal.end(), false) != has_normal.end();
@@ -194,6 +237,15 @@ std::vector<std::uint32_t> GltfMeshes::vertex_numbers(const Primitive& primitive
   return numbers;
 }
 
+template <class Vector>
+Vector GltfMeshes::number_or(const std::vector<float>& values, std::size_t stride, std::size_t index,
+                             const Vector& otherwise) {
+  const auto value = element<Vector>(values, stride, index);
+  if (is_finite(value)) return value;
+  ++of_no_number_;
+  return otherwise;
+}
+
 // Tangents without normals are to be made anew (glTF 2.0, section 3.7.2.1), as where there are none.
 void GltfMeshes::append_tangents(const Primitive& primitive, const std::vector<std::uint32_t>& used,
                                  Mesh& mesh) {
@@ -202,7 +254,7 @@ void GltfMeshes::append_tangents(const Primitive& primitive, const std::vector<s
     return;
   }
   const std::vector<float>& tangents = accessors_.floats(*primitive.tangent);
-  for (const std::uint32_t v : used) mesh.tangents.push_back(element<glm::vec4>(tangents, 4, v));
+  for (const std::uint32_t v : used) mesh.tangents.push_back(number_or(tangents, 4, v, glm::vec4(0)));
 }
 
 // The file's v goes down.
@@ -215,14 +267,15 @@ void GltfMeshes::append_uvs(const Primitive& primitive, const std::vector<std::u
     }
     const std::vector<float>& uvs = accessors_.floats(*primitive.uvs[set]);
     for (const std::uint32_t v : used) {
-      const auto uv = element<glm::vec2>(uvs, 2, v);
+      const auto uv = number_or(uvs, 2, v, glm::vec2(0));
       to.emplace_back(uv.x, 1 - uv.y);
     }
   }
 }
 
 // Of the attributes' elements only those that the triangles use are copied: primitives often share them.
-void GltfMeshes::append(const Primitive& primitive, Model& model, Mesh& mesh, std::vector<bool>& has_normal) {
+void GltfMeshes::append(const Primitive& primitive, const std::vector<dmat4>& joints, Model& model,
+                        Mesh& mesh, std::vector<bool>& has_normal) {
   const std::vector<float>& positions = accessors_.floats(*primitive.position);
   std::vector<glm::uvec3> triangles = triangles_of(primitive.mode, vertex_numbers(primitive));
   if (triangles.empty()) return;
@@ -236,21 +289,31 @@ void GltfMeshes::append(const Primitive& primitive, Model& model, Mesh& mesh, st
   const std::vector<float>& colors = primitive.color ? accessors_.floats(*primitive.color) : none;
   const std::size_t channels = primitive.color ? accessors_.all()[*primitive.color].dense.components : 3;
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  bool fades = false;
   for (const std::uint32_t v : used) {
     mesh.positions.push_back(element<glm::vec3>(positions, 3, v));
-    mesh.normals.push_back(primitive.normal ? element<glm::vec3>(normals, 3, v) : glm::vec3(0));
-    mesh.colors.push_back(primitive.color ? element<glm::vec3>(colors, channels, v) : glm::vec3(1));
+    if (!is_finite(mesh.positions.back()))
+      accessors_.fail_at(accessors_.all()[*primitive.position], fmt::format("vertex {} is not finite", v));
+    mesh.normals.push_back(primitive.normal ? number_or(normals, 3, v, glm::vec3(0)) : glm::vec3(0));
+    mesh.colors.push_back(primitive.color ? number_or(colors, channels, v, glm::vec3(1)) : glm::vec3(1));
+    mesh.alphas.push_back(channels == 4 && std::isfinite(colors[4 * v + 3]) ? colors[4 * v + 3] : 1.0f);
+    fades = fades || mesh.alphas.back() < 1;
     has_normal.push_back(primitive.normal.has_value());
   }
   append_tangents(primitive, used, mesh);
   append_uvs(primitive, used, mesh);
+  if (!joints.empty() && primitive.joints && primitive.weights)
+    move_by_joints(joints, {accessors_.floats(*primitive.joints), accessors_.floats(*primitive.weights)},
+                   used, first, mesh);
   const auto place = [&](std::uint32_t v) {
     return first + static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), v) - used.begin());
   };
   for (const glm::uvec3 t : triangles) mesh.triangles.emplace_back(place(t.x), place(t.y), place(t.z));
   mesh.source_vertex_count += accessors_.all()[*primitive.position].dense.count;
-  mesh.materials.resize(mesh.triangles.size(),
-                        materials_.use(primitive.material, primitive.color.has_value(), model));
+  const VertexColors kind = fades             ? VertexColors::with_alpha
+                            : primitive.color ? VertexColors::opaque
+                                              : VertexColors::none;
+  mesh.materials.resize(mesh.triangles.size(), materials_.use(primitive.material, kind, model));
 }
 
 }  // namespace sundog::models

@@ -1,7 +1,9 @@
 // glTF's meshes as sundog's: all primitives of one together.
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/model.h"
@@ -19,11 +21,15 @@ class GltfMeshes {
   const std::string& name(std::size_t mesh) const { return meshes_[mesh].name; }
   /// The index in `model` of a mesh, added at its first use; -1 for one without triangles (points, lines).
   int use(std::size_t index, Model& model);
+  /// Whether its vertices have joints, which move it in place of its node.
+  bool has_joints(std::size_t index) const;
+  /// The same of a mesh that a skin, of this number, moves: in the world, where its joints' matrices have it.
+  int use_skinned(std::size_t index, std::size_t skin, const std::vector<dmat4>& joints, Model& model);
 
  private:
   struct Primitive {
     std::string pointer;
-    std::optional<std::size_t> position, normal, tangent, color, indices;
+    std::optional<std::size_t> position, normal, tangent, color, indices, joints, weights;
     std::vector<std::optional<std::size_t>> uvs;  // by set
     std::size_t material = 0;
     std::uint64_t mode = 4;
@@ -35,18 +41,27 @@ class GltfMeshes {
   };
   Primitive read_primitive(const JsonAt& at) const;
   std::optional<std::size_t> read_attribute(const JsonAt& attributes, const char* name) const;
+  std::optional<std::size_t> read_four(const JsonAt& attributes, const char* name, std::size_t count) const;
   void check_indices(const JsonAt& at, const Accessor& accessor) const;
-  Mesh build(const Entry& entry, Model& model);
+  int add(std::size_t index, const std::vector<dmat4>& joints, Model& model);
+  Mesh build(const Entry& entry, const std::vector<dmat4>& joints, Model& model);
   std::vector<std::uint32_t> vertex_numbers(const Primitive& primitive);
+  /// An element of an accessor; `otherwise`, and counted, where it is no number.
+  template <class Vector>
+  Vector number_or(const std::vector<float>& values, std::size_t stride, std::size_t index,
+                   const Vector& otherwise);
   void append_tangents(const Primitive& primitive, const std::vector<std::uint32_t>& used, Mesh& mesh);
   void append_uvs(const Primitive& primitive, const std::vector<std::uint32_t>& used, Mesh& mesh);
-  void append(const Primitive& primitive, Model& model, Mesh& mesh, std::vector<bool>& has_normal);
+  void append(const Primitive& primitive, const std::vector<dmat4>& joints, Model& model, Mesh& mesh,
+              std::vector<bool>& has_normal);
 
   GltfAccessors& accessors_;
   GltfMaterials& materials_;
   double crease_degrees_;
   bool quantized_;  // KHR_mesh_quantization
   std::vector<Entry> meshes_;
+  std::map<std::pair<std::size_t, std::size_t>, int> skinned_;  // by mesh and skin
+  std::size_t of_no_number_ = 0;                                // attributes of the mesh at hand
 };
 
 }  // namespace sundog::models

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "scene/models/readers.h"
 
 namespace sundog::models {
@@ -67,8 +68,6 @@ GltfTextures::Entry GltfTextures::read_texture(const JsonAt& at) const {
   if (source) {
     entry.image = source->index(images_.size(), "image");
     entry.usable = true;
-  } else {
-    entry.basis = at.extension("KHR_texture_basisu").has_value();
   }
   return entry;
 }
@@ -76,10 +75,6 @@ GltfTextures::Entry GltfTextures::read_texture(const JsonAt& at) const {
 TextureDescription GltfTextures::read(const JsonAt& info) const {
   const JsonAt at = info.member("index");
   const Entry& entry = textures_[at.index(textures_.size(), "texture")];
-  if (entry.basis)
-    at.fail(
-        "the texture has an image of the extension KHR_texture_basisu alone, which is not read: export it as "
-        "PNG, JPEG or WebP");
   TextureDescription texture = entry.sampled;
   texture.kind = TEXTURE_IMAGE;
   texture.image = entry.usable ? static_cast<int>(entry.image) : -1;
@@ -94,25 +89,20 @@ TextureDescription GltfTextures::read(const JsonAt& info) const {
   return texture;
 }
 
-std::optional<ImageDescription> GltfTextures::load(std::size_t index, Model& model) const {
+ImageDescription GltfTextures::load(std::size_t index) const {
   const JsonAt& at = images_[index];
   const Source& source = accessors_.source();
   ImageDescription image;
   image.file = source.path.string();
   image.place = at.pointer();
   image.name = at.text("name");
+  image.plain = image.of_model = true;  // glTF 2.0, section 3.8.3: colour space information is ignored
   const auto uri = at.find("uri"), view = at.find("bufferView");
   if (uri && view) at.fail("an image has either a uri or a bufferView");
   if (view) {
     image.encoded = accessors_.view_bytes(*view);
   } else if (uri) {
-    if (const auto missing = missing_file(source, *uri)) {
-      model.warnings.push_back(fmt::format("{}: the image {} is missing", uri->pointer(), missing->string()));
-      return std::nullopt;
-    }
-    auto bytes = read_uri(source, *uri, UriContent::image);
-    if (!bytes) uri->fail("the image is not fetched over a network: keep it beside the model");
-    image.encoded = std::move(*bytes);
+    image.encoded = read_image_uri(source, *uri);
     const std::string text = uri->text();
     if (image.name.empty() && !text.starts_with("data:")) image.name = text;
   } else {
@@ -122,24 +112,31 @@ std::optional<ImageDescription> GltfTextures::load(std::size_t index, Model& mod
   return image;
 }
 
+/// An image that cannot be had is a warning.
+int GltfTextures::use_image(std::size_t index, bool srgb, Model& model) {
+  const auto [found, added] = used_.try_emplace({index, srgb}, -1);
+  if (!added) return found->second;
+  try {
+    ImageDescription image = load(index);
+    image.srgb = srgb;
+    found->second = static_cast<int>(model.images.size());
+    model.images.push_back(std::move(image));
+  } catch (const SceneError& error) {
+    const std::string text = fmt::format("{}: {}", error.place, error.reason);
+    if (std::ranges::count(model.warnings, text) == 0) model.warnings.push_back(text);
+  }
+  return found->second;
+}
+
 int GltfTextures::use(const TextureDescription& texture, bool srgb, Model& model) {
   if (texture.image < 0) {
-    leave_unread(model, "textures without an image");
+    leave_unread(model, "images of other formats than PNG, JPEG and WebP");
     return -1;
   }
-  const auto index = static_cast<std::size_t>(texture.image);
-  auto found = used_.find({index, srgb});
-  if (found == used_.end()) {
-    std::optional<ImageDescription> image = load(index, model);
-    found = used_.emplace(std::pair(index, srgb), image ? static_cast<int>(model.images.size()) : -1).first;
-    if (image) {
-      image->srgb = srgb;
-      model.images.push_back(std::move(*image));
-    }
-  }
-  if (found->second < 0) return -1;
+  const int image = use_image(static_cast<std::size_t>(texture.image), srgb, model);
+  if (image < 0) return -1;
   model.textures.push_back(texture);
-  model.textures.back().image = found->second;
+  model.textures.back().image = image;
   return static_cast<int>(model.textures.size()) - 1;
 }
 

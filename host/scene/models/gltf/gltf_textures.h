@@ -24,7 +24,7 @@ class GltfTextures {
   TextureDescription read(const JsonAt& info) const;
 
   /// Adds a texture that read() gave to a model, its image as colours or as data. Returns its index;
-  /// -1, and a warning, where the image's file is missing.
+  /// -1, and a warning, where the image cannot be had.
   int use(const TextureDescription& texture, bool srgb, Model& model);
 
   /// Adds the product of two of a model's textures; where one is -1 the other is it.
@@ -35,10 +35,10 @@ class GltfTextures {
     std::size_t image = 0;
     TextureDescription sampled;  // wraps and filter
     bool usable = false;         // it has an image of a format that may be read
-    bool basis = false;          // it has one of KHR_texture_basisu alone
   };
   Entry read_texture(const JsonAt& at) const;
-  std::optional<ImageDescription> load(std::size_t index, Model& model) const;
+  ImageDescription load(std::size_t index) const;
+  int use_image(std::size_t index, bool srgb, Model& model);
 
   const GltfAccessors& accessors_;
   std::vector<JsonAt> images_;

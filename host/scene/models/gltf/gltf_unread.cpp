@@ -1,6 +1,9 @@
 // See gltf_unread.h. Whatever is not of the expected kind is passed by.
 #include "scene/models/gltf/gltf_unread.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -107,19 +110,50 @@ void find_in_mesh(const json& mesh, Model& model) {
     const json& mode = member(primitive, "mode");
     if (mode == 0) leave_unread(model, "points");
     if (mode == 1 || mode == 2 || mode == 3) leave_unread(model, "lines");
+    const json& attributes = member(primitive, "attributes");
+    if (attributes.contains("JOINTS_1")) leave_unread(model, "joints of vertices beyond four");
+    if (attributes.contains("COLOR_1")) leave_unread(model, "second colours of vertices");
+    if (attributes.contains("TEXCOORD_4")) leave_unread(model, "texture coordinates beyond four sets");
     if (!items(primitive, "targets").empty()) leave_unread(model, "morph targets");
     if (member(member(primitive, "extensions"), "KHR_materials_variants").is_object())
       leave_unread(model, "material variants");
   }
 }
 
+constexpr std::string_view read_extensions[] = {
+    "KHR_lights_punctual",        "EXT_mesh_gpu_instancing",
+    "KHR_mesh_quantization",      "KHR_texture_transform",
+    "EXT_texture_webp",           "KHR_materials_ior",
+    "KHR_materials_transmission", "KHR_materials_volume",
+    "KHR_materials_unlit",        "KHR_materials_emissive_strength",
+    "KHR_materials_specular",     "KHR_materials_clearcoat",
+    "KHR_materials_dispersion",   "KHR_materials_sheen",
+    "KHR_materials_iridescence",  "KHR_materials_anisotropy"};
+
 }  // namespace
+
+void check_extensions(const JsonAt& root) {
+  for (const JsonAt& at : root.list("extensionsRequired")) {
+    const std::string name = at.text();
+    const bool color = name.starts_with("KHR_materials_") || name == "KHR_texture_basisu";
+    if (std::ranges::count(read_extensions, name) == 0 && !color)
+      at.fail(fmt::format("the file requires the extension {}, which is not read", name));
+  }
+}
+
+// Extensions of materials are found where materials use them.
+void name_unread_extensions(const JsonAt& root, Model& model) {
+  for (const JsonAt& at : root.list("extensionsUsed")) {
+    const std::string name = at.text();
+    if (std::ranges::count(read_extensions, name) == 0 && !name.starts_with("KHR_materials_") &&
+        name != "KHR_texture_basisu")
+      leave_unread(model, name);
+  }
+}
 
 void find_unread(const json& document, Model& model) {
   for (const json& material : items(document, "materials")) find_in_material(material, model);
   for (const json& mesh : items(document, "meshes")) find_in_mesh(mesh, model);
-  for (const json& node : items(document, "nodes"))
-    if (node.contains("skin")) leave_unread(model, "skins");
   if (!items(document, "animations").empty()) leave_unread(model, "animations");
 }
 
