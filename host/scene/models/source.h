@@ -15,8 +15,8 @@ struct Source {
   bool outside_files = false;  // files that it names may lie outside its folder
 };
 
-/// The file's bytes, of all but STL and glTF without a byte order mark; a name that ends in .gz is unpacked (zlib),
-/// within a bound. Throws SceneError.
+/// The file's bytes, of all but STL and glTF without a byte order mark; a name that ends in .gz is unpacked
+/// (zlib), within a bound. Throws SceneError.
 Source read_source(const std::filesystem::path& path);
 
 /// The extension in lower case, without a final .gz: ".obj" for "Box.OBJ.gz".
