@@ -190,7 +190,7 @@ class PointFans {
 };
 
 CornersByPoint gather(const Mesh& mesh, const std::vector<bool>& has_normal,
-                      const std::vector<uint32_t>& points, const std::vector<uint32_t>& groups) {
+                      const std::vector<uint32_t>& points) {
   const std::size_t corner_count = mesh.triangles.size() * 3;
   const auto of_wanting = [&](std::size_t corner, const auto& use) {
     const uint32_t vertex = corner_vertex(mesh, static_cast<uint32_t>(corner));
@@ -271,7 +271,7 @@ void place_block(std::span<glm::vec3> normals, std::span<glm::uvec3> triangles, 
 }
 
 void give_normals(Mesh& mesh, const CornersByPoint& around, double crease_degrees,
-                  const std::vector<uint32_t>& points) {
+                  const std::vector<uint32_t>& points, const std::vector<uint32_t>& groups) {
   std::vector<uint32_t> vertex_of(around.corners.size());  // for each of these its vertex of the block
   std::vector<Block> blocks = make_blocks(around.points());
   {
