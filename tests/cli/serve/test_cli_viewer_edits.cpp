@@ -59,12 +59,11 @@ std::string light_intensities(Viewer& v, const std::string& document) {
 
 TEST_CASE("page and server have the same document after every edit of a random walk") {
   Viewer& v = viewer();
-  for (const int seed : {1, 2, 3}) {
-    const json differences = v.run(random_walk, {seed, 60, false});
+  for (int seed = 1; seed <= 12; ++seed) {
     INFO("seed " << seed);
-    CHECK(differences == json::array());
-    v.open_again();
+    CHECK(v.run(random_walk, {seed, 5, false}) == json::array());
   }
+  v.open_again();
 }
 
 TEST_CASE("two pages that edit at the same time end with one document, the server's") {
@@ -72,9 +71,9 @@ TEST_CASE("two pages that edit at the same time end with one document, the serve
   v.browser.open_tab(v.served.url);
   v.settle();
   const std::string idle = "return store.edits.idle && store.state.connected === 'yes'";
-  v.run("window.walked = (async (args) => {" + std::string(random_walk) + "})([4, 40, true]); return 1");
+  v.run("window.walked = (async (args) => {" + std::string(random_walk) + "})([6, 8, true]); return 1");
   v.browser.use_tab(0);
-  v.run(random_walk, {5, 40, true});
+  v.run(random_walk, {7, 8, true});
   v.wait(idle);
   v.browser.use_tab(v.browser.tabs() - 1);
   v.wait(idle);

@@ -81,6 +81,6 @@ export function unproject(camera, height, dx, dy, depth) {
 /** The changes of the document that make `camera` its camera. */
 export function cameraChanges(camera, before) {
   const changes = [{at: '/camera/position', value: camera.position}, {at: '/camera/target', value: camera.target}];
-  if (camera.up !== before.up) changes.push({at: '/camera/up', value: camera.up});
+  if (camera.up.some((v, i) => v !== before.up[i])) changes.push({at: '/camera/up', value: camera.up});
   return changes;
 }

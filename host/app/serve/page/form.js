@@ -2,7 +2,7 @@
 import {html, Group, Button, useStore} from './ui.js';
 import {store} from './store.js';
 import {join} from './pointer.js';
-import {resolve, variants, fits, sample, words, unitOf, nameOf} from './schema.js';
+import {changesFor, fits, isTextureName, missing, nameOf, resolve, sample, unitOf, variants, words} from './schema.js';
 import {BooleanField, ChoiceField, CodeField, ColorField, NumberField, Row, TextField, VectorField} from './fields.js';
 
 const isColor = (s) => ['color', 'share_color', 'light_color'].includes(s.kind);
@@ -16,13 +16,14 @@ const tableOf = (description = '') => /^The name of (?:the|a) (medium|mesh|field
 const tables = {medium: 'media', mesh: 'meshes', field: 'fields', material: 'materials'};
 
 /** One value at `at`. `schema` may be a reference; `required` values have no reset. */
-export function Field({schema, at, value, label, required}) {
+export function Field({schema, at, value, label, required, onSet}) {
   const s = resolve(schema);
   const common = {
     label, at, value, help: s.description, fallback: s.default,
-    onSet: (next, gesture) => store.set(at, next, gesture),
+    onSet: onSet || ((next, gesture) => store.set(at, next, gesture)),
     onReset: required ? undefined : () => store.set(at, undefined),
   };
+  if (isTextureName(s)) return html`<${ChoiceField} ...${common} choices=${Object.keys(store.state.document.textures ?? {})} />`;
   const table = tables[tableOf(s.description)];
   if (names[s.kind]) return html`<${ChoiceField} ...${common} choices=${names[s.kind]()} />`;
   if (table) return html`<${ChoiceField} ...${common} choices=${['', ...Object.keys(store.state.document[table] ?? {})]} onSet=${(v) => store.set(at, v || undefined)} />`;
@@ -55,7 +56,8 @@ function Alternatives({schema, at, value, label, help, fallback, required, onRes
   const kinds = options.map(altName);
   const pick = (event) => {
     const index = Number(event.target.value);
-    store.set(at, index < 0 ? undefined : sample(options[index]));
+    if (index < 0) store.set(at, undefined);
+    else store.edit(changesFor(options[index], at));
   };
   return html`<div class="alternatives">
     <${Row} label=${label} help=${help} at=${at} isSet=${value !== undefined} onReset=${required ? undefined : onReset}>
@@ -79,7 +81,7 @@ function List({schema, at, value, label, help}) {
 function Part({schema, at, value, label, help, required, onReset}) {
   const s = resolve(schema);
   if (value === undefined)
-    return html`<${Row} label=${label} help=${help} at=${at}><${Button} kind="small" label="Add" title=${help} onClick=${() => store.set(at, sample(schema))} /></${Row}>`;
+    return html`<${Row} label=${label} help=${help} at=${at}><${Button} kind="small" label="Add" title=${help} onClick=${() => store.edit(changesFor(schema, at))} /></${Row}>`;
   if (s.properties || variants(schema)) {
     const remove = !required && html`<${Button} kind="small" label="Remove" title=${'Remove ' + label} onClick=${onReset} />`;
     return html`<${Group} title=${label} id=${at} actions=${remove}><${Fields} schema=${schema} at=${at} value=${value} /></${Group}>`;
@@ -104,15 +106,22 @@ export function Fields({schema, at, value, only, without = [], defaults = {}}) {
   const types = variants(schema);
   const s = types ? types[value?.type] ?? {} : resolve(schema);
   const required = s.required ?? [];
+  const needs = (key) => s.if?.properties[key] && ((next) => {  // what another value of that key asks for as well
+    const chosen = {...value, [key]: next}, more = s.if.properties[key].const === next ? missing({...s, required: []}, chosen) : {};
+    const gone = next === 'dielectric' && value.color !== undefined && !('ambient' in value || 'diffuse' in value) ? [{at: at + '/color'}] : [];  // it has none
+    store.edit([...gone, ...Object.entries({...more, [key]: next}).map(([name, v]) => ({at: join(at, name), value: v}))]);
+  });
   const keys = Object.keys(s.properties ?? {}).filter((key) => (!only || only.includes(key)) && !without.includes(key) && key !== '$schema');
   const setType = (type) => {
     const kept = Object.fromEntries(Object.entries(value).filter(([key]) => key in (types[type].properties ?? {})));
-    store.set(at, {...sample(types[type]), ...kept, type});
+    delete kept.type;
+    const changes = changesFor(types[type], at, kept), last = changes[changes.length - 1];
+    store.edit([...changes.slice(0, -1), {at, value: {...last.value, type}}]);
   };
   return html`<div class="fields">
     ${types && !without.includes('type') && html`<${ChoiceField} label="Type" at=${at + '/type'} value=${value?.type} choices=${Object.keys(types)} onSet=${setType} />`}
     ${keys.filter((key) => !(types && key === 'type')).map((key) => html`<${Field} key=${at + key} schema=${key in defaults ? {...s.properties[key], default: defaults[key]} : s.properties[key]} at=${join(at, key)} value=${value?.[key]}
-      label=${words(key)} required=${required.includes(key)} />`)}
+      label=${words(key)} required=${required.includes(key)} onSet=${needs(key)} />`)}
   </div>`;
 }
 
@@ -122,7 +131,7 @@ export function Table({name, schema, title, open}) {
   const add = () => {
     let next = title.toLowerCase();
     for (let i = 2; next in table; ++i) next = `${title.toLowerCase()} ${i}`;
-    store.set(join('/' + name, next), sample(schema));
+    store.edit(changesFor(schema, join('/' + name, next)));
   };
   return html`${Object.entries(table).map(([key, value]) => html`<${Group} key=${key} title=${key} id=${name + '/' + key} open=${open === key}
       actions=${html`<${Button} kind="small" label="Remove" title=${`Remove ${key}`} onClick=${() => store.set(join('/' + name, key), undefined)} />`}>

@@ -38,30 +38,58 @@ export function fits(schema, value) {
   return !s.type || typeof value === s.type;
 }
 
-/** A small value that the schema takes: its default, or the least of each part. */
-export function sample(schema, depth = 0) {
+/** Whether a text names a texture. */
+export const isTextureName = (s) => s.kind === 'texture_name' || (s.type === 'string' && /^The name of a texture\b/.test(s.description));
+
+const firstTypes = {texture: 'checker', environment: 'sky'};  // that need no file
+const byKey = {direction: [-1, -1, -0.5], axis: [0, 1, 0], position: [3, 4, 3], ior: 1.5};
+const newTexture = 'checks';
+
+/** The keys that an object needs beside those of `kept`; of several ways the first that names nothing else. */
+function needed(s, kept) {
+  const holds = Object.entries(s.if?.properties ?? {}).every(([key, {const: wanted}]) => kept[key] === wanted);
+  const ways = [s.oneOf, s.anyOf, holds && s.then?.anyOf].filter((list) => list?.[0]?.required);
+  const chosen = ways.flatMap((list) => (list.find((one) => one.required.every((key) => key in kept)) ??
+    list.find((one) => !one.required.includes('file') && !one.required.includes('medium')) ?? list[0]).required);
+  return [...(s.required ?? []), ...chosen].filter((key) => !(key in kept));
+}
+
+/** The keys of an object that it must have, and has not. */
+export function missing(schema, kept, depth = 0) {
+  const s = resolve(schema);
+  const keys = depth < 6 ? needed(s, kept).filter((key) => s.properties?.[key]) : [];
+  return Object.fromEntries(keys.map((key) => [key, byKey[key] ?? sample(s.properties[key], depth + 1)]));
+}
+
+/** The changes that set a small value at `at`, and what it needs: a texture, where the scene has none. */
+export function changesFor(schema, at, kept = {}) {
+  const value = sample(schema, 0, kept), textures = Object.keys(store.state.document.textures ?? {});
+  const makes = textures.length === 0 && JSON.stringify(value).includes(`"${newTexture}"`);
+  return [...(makes ? [{at: '/textures/' + newTexture, value: {type: 'checker'}}] : []), {at, value}];
+}
+
+/** A small value that the schema takes: its default, or the least of each part. An object has what is `kept`. */
+export function sample(schema, depth = 0, kept = {}) {
   const s = resolve(schema);
   if ('default' in s) return s.default;
   if ('const' in s) return s.const;
   if (s.enum) return s.enum[0];
   const named = {color: [0.8, 0.8, 0.8], share_color: [0.8, 0.8, 0.8], vec3: [0, 0, 0], length: 1,
     interval: {min: [-1.5, -1.5, -1.5], max: [1.5, 1.5, 1.5]}, material_name: Object.keys(store.state.document?.materials ?? {})[0] ?? '',
-    formula_name: 'mandelbulb', texture_name: {texture: Object.keys(store.state.document?.textures ?? {})[0] ?? ''}}[s.kind];
+    formula_name: 'mandelbulb'}[s.kind];
   if (named !== undefined) return named;
+  if (isTextureName(s)) return Object.keys(store.state.document?.textures ?? {})[0] ?? newTexture;
   const types = variants(schema);
   if (types) {
-    const type = Object.keys(types)[0];
+    const type = firstTypes[s.kind] ?? Object.keys(types)[0];
     return {type, ...sample(types[type], depth + 1)};
   }
-  if (s.anyOf) return sample(s.anyOf[0], depth + 1);
+  if (s.anyOf && !s.properties) return sample(s.anyOf[0], depth + 1);
   if (s.type === 'number' || s.type === 'integer') return Math.max(s.minimum ?? s.exclusiveMinimum ?? 0, -1e9) > 0 ? s.minimum ?? 2 * s.exclusiveMinimum : Math.min(1, s.maximum ?? 1);
   if (s.type === 'boolean') return false;
   if (s.type === 'string') return 'name';
   if (s.type === 'array') return depth > 6 ? [] : Array.from({length: s.minItems ?? 0}, () => sample(s.items, depth + 1));
-  if (s.oneOf?.[0]?.required) return Object.fromEntries(s.oneOf[0].required.map((key) => [key, sample(s.properties[key], depth + 1)]));
-  const out = {};
-  if (depth < 6) for (const key of s.required ?? []) if (s.properties?.[key]) out[key] = sample(s.properties[key], depth + 1);
-  return out;
+  return {...missing(s, kept, depth), ...kept};
 }
 
 /** "light_samples" as a person writes it. */

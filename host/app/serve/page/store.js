@@ -181,17 +181,17 @@ class Store {
     this.drafts.settle(before, this.edits.confirmed);
     this.flush();
   }
+  /** Rates are by the server's clock: messages may come late, and then several at once. */
   takeStatus(status) {
     const total = status.rays.primary + status.rays.reflection + status.rays.refraction + status.rays.shadow;
-    const before = this.state.status;
-    const now = performance.now();
-    if (before && before.shown === status.shown && total > before.total) {
-      this.rates.push({at: now, rate: (total - before.total) / Math.max(1e-3, (now - before.at) / 1000)});
-    } else if (before?.shown !== status.shown && total > 0) {
-      this.rates.push({at: now, rate: total / Math.max(1e-3, status.seconds)});
+    const before = this.counted?.shown === status.shown ? this.counted : {total: 0, seconds: 0};
+    const seconds = status.seconds - before.seconds;
+    if (total > before.total && seconds > 0.05) {
+      this.counted = {shown: status.shown, total, seconds: status.seconds};
+      this.rates.push({rate: (total - before.total) / seconds});
     }
     if (this.rates.length > 120) this.rates.shift();
-    this.update({status: {...status, total, at: now}});
+    this.update({status: {...status, total, at: performance.now()}});
   }
 }
 

@@ -7,9 +7,7 @@ import {join} from '../pointer.js';
 import {Presets, lights as presets, setLights} from '../presets.js';
 
 const starts = {
-  directional: {direction: [-1, -1, -0.5]},
-  point: {position: [3, 4, 3]},
-  spot: {position: [3, 4, 3], target: [0, 0, 0]},
+  spot: {target: [0, 0, 0]},
   rectangle: {position: [0, 3, 0], direction: [0, -1, 0]},
   disk: {position: [0, 3, 0], direction: [0, -1, 0]},
   sphere: {position: [0, 3, 0]},
@@ -21,7 +19,7 @@ export function LightPanel() {
   const world = useStore(store, (s) => s.document?.world);
   const [type, setType] = useState('point');
   const types = variants({$ref: '#/$defs/light'});
-  const add = () => store.set('/lights/-', {type, ...sample(types[type]), ...starts[type]});
+  const add = () => store.set('/lights/-', {type, ...sample(types[type], 0, starts[type])});
   return html`
     ${lights.map((light, i) => html`<${Group} key=${i} title=${`${i + 1}. ${words(light.type)}`} id=${'light' + i}
         actions=${html`<${Button} kind="small" label="Remove" title=${`Remove light ${i + 1}`} onClick=${() => store.set(join('/lights', i), undefined)} />`}>

@@ -1,0 +1,77 @@
+// The viewer's panels offer what the server takes: each button that adds, each entry of each list.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "catch.h"
+#include "viewing.h"
+
+using nlohmann::json;
+
+namespace {
+
+/// Tries one button or list of a panel, each entry undone afterwards; what is refused, with the reason. Null:
+/// there are no more.
+constexpr const char* try_choices = R"(
+  const refused = [];
+  const wait = (ms) => new Promise((r) => setTimeout(r, ms));
+  const idle = async () => { for (let i = 0; i < 400 && !store.edits.idle; ++i) await wait(5); await wait(20); };
+  const unfold = async () => {
+    while (document.querySelector('#panel details:not([open])')) {
+      document.querySelectorAll('#panel details').forEach((d) => (d.open = true));
+      await wait(30);
+    }
+  };
+  const nameOf = (e) => e.getAttribute('aria-label') ?? e.closest('.row')?.querySelector('label')?.textContent ?? e.textContent;
+  const tried = async (name, act) => {
+    store.update({error: null});
+    const version = store.state.version;
+    act();
+    await idle();
+    if (store.state.error) refused.push(`${name}: ${store.state.error.reason}`);
+    if (store.state.version === version) return;
+    store.undo();
+    await idle();
+    await unfold();
+  };
+  await unfold();
+  const adders = () => [...document.querySelectorAll('#panel button')].filter((b) => /^Add/.test(b.textContent));
+  const lists = () => [...document.querySelectorAll('#panel select')];
+  const at = args[0], list = lists()[at - adders().length];
+  if (at < adders().length) await tried(nameOf(adders()[at]), () => adders()[at].click());
+  else if (!list) return null;
+  else for (const value of [...list.options].map((o) => o.value)) {
+    const now = lists()[at - adders().length];
+    if (now && now.value !== value) await tried(`${nameOf(now)} ${value}`, () => {
+      now.value = value;
+      now.dispatchEvent(new Event('change', {bubbles: true}));
+    });
+  }
+  store.update({error: null});
+  return refused;)";
+
+/// Refusals in words that say what to do first.
+bool says_what_is_wanted(const std::string& refusal) {
+  return refusal.find("needs an image") != std::string::npos ||
+         refusal.find("wanted at least 8 \"samples\"") != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("what a panel offers to add or to choose, the server takes") {
+  Viewer& v = viewer();
+  // A material is enough: another has the same lists.
+  v.run("store.edit([{at: '/materials/floor'}, {at: '/objects/1/material', value: 'red'}])");
+  v.settle();
+  for (const char* tab : {"build", "camera", "light", "image"}) {
+    v.tab(tab);
+    int count = 0;
+    for (json refused; !(refused = v.run(try_choices, {count})).is_null(); ++count)
+      for (const json& refusal : refused) {
+        INFO(tab << ": " << refusal);
+        CHECK(says_what_is_wanted(refusal));
+      }
+    CHECK(count >= 3);
+  }
+  v.open_again();
+}
