@@ -4,12 +4,46 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <utility>
+
 namespace {
 
 template <std::size_t count, class Array>
 auto groups(const Array& array) {
   using Number = std::remove_cv_t<std::remove_pointer_t<decltype(array.data())>>;
   return std::span(reinterpret_cast<const std::array<Number, count>*>(array.data()), array.shape(0));
+}
+
+struct HeldArrays {
+  Floats3 positions;
+  Indices triangles;
+  std::optional<Floats3> normals;
+  std::optional<Floats2> uvs;
+  std::optional<Floats3> colors;
+  const HeldArrays* next;
+};
+
+/// Those that nobody reads any more.
+std::atomic<const HeldArrays*> let_go_of{nullptr};
+
+/// For a thread that has the interpreter's lock.
+int free_let_go(void*) {
+  for (const HeldArrays* held = let_go_of.exchange(nullptr); held;) delete std::exchange(held, held->next);
+  return 0;
+}
+
+/// The last that holds the arrays may be a thread of the library's, which never waits for the interpreter's
+/// lock: a thread that has it may wait for this one. The interpreter frees them soon.
+void let_go(const HeldArrays* held) {
+  if (!Py_IsInitialized()) return;
+  auto* mine = const_cast<HeldArrays*>(held);
+  mine->next = let_go_of;
+  while (!let_go_of.compare_exchange_weak(mine->next, mine)) {
+  }
+  if (PyGILState_Check())
+    free_let_go(nullptr);
+  else
+    Py_AddPendingCall(free_let_go, nullptr);  // full: a later one frees these too
 }
 
 }  // namespace
@@ -37,21 +71,11 @@ void add_mesh(sundog::Scene& scene, const std::string& name, const Floats3& posi
   if (normals) mesh.normals = groups<3>(*normals);
   if (uvs) mesh.uvs = groups<2>(*uvs);
   if (colors) mesh.colors = groups<3>(*colors);
-  // The scene reads the arrays where they are. The last that holds them may be a thread of its own.
-  struct Held {
-    Floats3 positions;
-    Indices triangles;
-    std::optional<Floats3> normals;
-    std::optional<Floats2> uvs;
-    std::optional<Floats3> colors;
-  };
-  mesh.owner =
-      std::shared_ptr<const Held>(new Held{positions, triangles, normals, uvs, colors}, [](const Held* held) {
-        if (!Py_IsInitialized()) return;
-        const nb::gil_scoped_acquire lock;
-        delete held;
-      });
+  // The scene reads the arrays where they are.
+  mesh.owner = std::shared_ptr<const HeldArrays>(
+      new HeldArrays{positions, triangles, normals, uvs, colors, nullptr}, let_go);
   scene.add_mesh(name, mesh);
+  free_let_go(nullptr);
 }
 
 std::string json_of(nb::handle value) {

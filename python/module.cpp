@@ -111,6 +111,18 @@ Film render_scene(nb::handle scene, nb::handle devices, const std::vector<std::s
   return interruptible([&] { return render(copy, options); }, [&] { stop.request_stop(); });
 }
 
+/// A session that ends without the interpreter's lock: it waits for its threads. The lock is let go of before
+/// the last base goes, and taken again behind it.
+struct WithoutLock {
+  std::optional<nb::gil_scoped_release> released;
+};
+struct OpenSession : private WithoutLock, public Session {
+  using Session::Session;
+  OpenSession(const OpenSession&) = delete;
+  OpenSession& operator=(const OpenSession&) = delete;
+  ~OpenSession() { released.emplace(); }
+};
+
 void add_images(nb::module_& m) {
   nb::class_<Device>(m, "Device", "One OpenCL device, as devices() and choose_devices() give it.")
       .def_ro("label", &Device::label)
@@ -238,26 +250,34 @@ void add_session(nb::module_& m) {
       .def_ro("position", &Pick::position)
       .def_ro("normal", &Pick::normal)
       .def_ro("depth", &Pick::depth);
-  nb::class_<Session>(m, "Session", "Devices that stay open and draw one scene after the other.")
+  nb::class_<OpenSession>(m, "Session", "Devices that stay open and draw one scene after the other.")
       .def(
-          "__init__", [](Session* self, nb::handle devices) { new (self) Session(devices_of(devices)); },
+          "__init__",
+          [](OpenSession* self, nb::handle devices) { new (self) OpenSession(devices_of(devices)); },
           nb::arg("devices").none() = nb::none())
       .def(
           "start",
-          [](Session& session, nb::handle scene, bool coarse, double patience) {
+          [](OpenSession& session, nb::handle scene, bool coarse, double patience) {
             const Scene copy = scene_of(scene);
             const nb::gil_scoped_release release;
             return session.start(copy, {.coarse = coarse, .patience = patience});
           },
           nb::arg("scene"), nb::arg("coarse") = true, nb::arg("patience") = 0.15,
           "Draws this scene from now on.")
-      .def("cancel", &Session::cancel, Unlocked())
+      .def(
+          "cancel", [](OpenSession& session) { session.cancel(); }, Unlocked())
       .def("use_devices",
-           [](Session& session, nb::handle devices) { session.use_devices(devices_of(devices)); })
-      .def("snapshot", &Session::snapshot, nb::arg("picture") = true, Unlocked())
+           [](OpenSession& session, nb::handle devices) {
+             const std::vector<Device> chosen = devices_of(devices);
+             const nb::gil_scoped_release release;
+             session.use_devices(chosen);
+           })
+      .def(
+          "snapshot", [](const OpenSession& session, bool picture) { return session.snapshot(picture); },
+          nb::arg("picture") = true, Unlocked())
       .def(
           "wait",
-          [](const Session& session, double seconds) {
+          [](const OpenSession& session, double seconds) {
             std::atomic<bool> leave = false;
             const auto begun = std::chrono::steady_clock::now();
             return interruptible(
@@ -271,10 +291,15 @@ void add_session(nb::module_& m) {
                 [&] { leave = true; });
           },
           nb::arg("seconds") = 1e9, "Waits until the picture is settled; whether it is.")
-      .def("wait_for_change", &Session::wait_for_change, nb::arg("revision"), nb::arg("seconds"), Unlocked())
+      .def(
+          "wait_for_change",
+          [](const OpenSession& session, std::uint64_t revision, double seconds) {
+            return session.wait_for_change(revision, seconds);
+          },
+          nb::arg("revision"), nb::arg("seconds"), Unlocked())
       .def(
           "finish",
-          [](const Session& session) {
+          [](const OpenSession& session) {
             std::atomic<bool> leave = false;
             interruptible(
                 [&] {
@@ -283,10 +308,13 @@ void add_session(nb::module_& m) {
                   return true;
                 },
                 [&] { leave = true; });
+            const nb::gil_scoped_release release;
             return session.finish();
           },
           "wait(), then the picture.")
-      .def("pick", &Session::pick, nb::arg("x"), nb::arg("y"), Unlocked());
+      .def(
+          "pick", [](OpenSession& session, int x, int y) { return session.pick(x, y); }, nb::arg("x"),
+          nb::arg("y"), Unlocked());
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // Devices as programs see them.
 #include "api/impl.h"
 
+#include <unistd.h>
+
 #include <set>
 
 namespace sundog {
@@ -33,8 +35,28 @@ const core::EnvironmentPtr& environment() {
   return read;
 }
 
+/// An owner of threads that drivers have not let go of. In a child of fork() there is none to be waited for.
+std::shared_ptr<core::DriverThreads> make_owner() {
+  return {new core::DriverThreads, [](const core::DriverThreads* threads) {
+            if (!is_forked()) delete threads;
+          }};
+}
+
+/// Of renders and sessions on a device that was not named. Made after the drivers are loaded: so it waits for
+/// the threads inside of them before they are taken away at the end of the process.
+const std::shared_ptr<core::DriverThreads>& threads_of_process() {
+  static const auto threads = make_owner();
+  return threads;
+}
+
+/// The process that called first.
+int process_of_threads() noexcept {
+  static const int process = ::getpid();
+  return process;
+}
+
 std::vector<Device> devices_of_host(const std::vector<core::DeviceInfo>& all) {
-  const auto threads = std::make_shared<core::DriverThreads>();
+  const auto threads = make_owner();
   std::vector<Device> result;
   result.reserve(all.size());
   for (const core::DeviceInfo& info : all) result.push_back(device_of(info, threads));
@@ -43,13 +65,26 @@ std::vector<Device> devices_of_host(const std::vector<core::DeviceInfo>& all) {
 
 }  // namespace
 
+bool is_forked() noexcept { return process_of_threads() != ::getpid(); }
+
+void enter_threads() {
+  if (is_forked())
+    throw core::UsageError(
+        "this process was forked from one that had used sundog, and has none of its threads: begin processes "
+        "by spawn, as Python's multiprocessing.get_context(\"spawn\") does, or before sundog is first used");
+}
+
 std::vector<Device> devices() {
-  return translated([] { return devices_of_host(core::enumerate_devices(environment())); });
+  return translated([] {
+    enter_threads();
+    return devices_of_host(core::enumerate_devices(environment()));
+  });
 }
 
 std::vector<Device> choose_devices(const std::vector<std::string>& specs,
                                    std::vector<std::string>* warnings) {
   return translated([&] {
+    enter_threads();
     const std::vector<core::DeviceInfo> all = core::enumerate_devices(environment());
     return devices_of_host(core::select_devices(all, specs, warnings));
   });
@@ -64,13 +99,12 @@ unsigned threads_left_behind(const std::vector<Device>& devices) {
   return count;
 }
 
-HostDevices devices_of(const std::vector<Device>& devices,
-                       const std::shared_ptr<core::DriverThreads>& threads) {
+HostDevices devices_of(const std::vector<Device>& devices) {
+  enter_threads();
   HostDevices result;
   if (devices.empty()) {
     result.infos = core::select_devices(core::enumerate_devices(environment()), {});
-    for (core::DeviceInfo& info : result.infos) info.threads = threads;
-    result.threads = {threads};
+    for (core::DeviceInfo& info : result.infos) info.threads = threads_of_process();
   }
   for (const Device& device : devices) {
     if (!device.handle) throw core::UsageError("a device wants to come from devices() or choose_devices()");

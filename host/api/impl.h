@@ -45,6 +45,12 @@ struct SUNDOG_LOCAL HostDevices {
   std::vector<core::DeviceInfo> infos;
 };
 
+/// Called before threads are used, the library's or a driver's. Throws UsageError in a process that was
+/// forked from one that had some: it has none of them, and would wait for ever for what they hold.
+void enter_threads();
+/// Whether this process is such a one. Not to be asked before any threads are used.
+bool is_forked() noexcept;
+
 struct SUNDOG_LOCAL Film::Impl {
   core::RenderResult result;  // without the image and the AOVs below
   core::ToneMap tone_map;
@@ -61,8 +67,6 @@ struct SUNDOG_LOCAL Scene::Impl {
   std::filesystem::path file;
   core::LoadOptions options;
   core::NamedMeshes meshes;
-  /// Of renders on a device that was not named; copies share them.
-  const std::shared_ptr<core::DriverThreads> threads;
 
   Impl();
   Impl(const Impl& other);
@@ -82,9 +86,8 @@ struct SUNDOG_LOCAL Scene::Impl {
 Image share(core::Image image);
 Image share(std::shared_ptr<const core::Image> image);
 
-/// Of the handles, or the default device, whose threads `threads` takes. Throws DeviceError, UsageError.
-HostDevices devices_of(const std::vector<Device>& devices,
-                       const std::shared_ptr<core::DriverThreads>& threads);
+/// Of the handles, or the default device, whose threads the process owns. Throws DeviceError, UsageError.
+HostDevices devices_of(const std::vector<Device>& devices);
 
 core::WorkGroup group_of(const WorkGroup& group);
 

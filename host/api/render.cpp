@@ -112,7 +112,7 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   sundog::check_frame_memory(
       static_cast<int>(flat->info.width), static_cast<int>(flat->info.height),
       {.file = {}, .aovs = options.aovs, .tile = options.tile, .passes = sundog::in_passes(flat->sampling)});
-  const HostDevices devices = devices_of(options.devices, scene.impl().threads);
+  const HostDevices devices = devices_of(options.devices);
   film->warnings = description->warnings;
   for (std::string& warning : sundog::view_warnings(*description, *flat, devices.infos))
     film->warnings.push_back(std::move(warning));

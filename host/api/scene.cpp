@@ -53,17 +53,10 @@ core::LoadOptions options_of(const LoadOptions& options) {
 
 }  // namespace
 
-Scene::Impl::Impl()
-    : document({{"objects", json::array()}}),
-      file(no_file),
-      threads(std::make_shared<core::DriverThreads>()) {}
+Scene::Impl::Impl() : document({{"objects", json::array()}}), file(no_file) {}
 
 Scene::Impl::Impl(const Impl& other)
-    : document(other.document),
-      file(other.file),
-      options(other.options),
-      meshes(other.meshes),
-      threads(other.threads) {
+    : document(other.document), file(other.file), options(other.options), meshes(other.meshes) {
   const std::lock_guard lock(other.mutex_);
   described_document_ = other.described_document_;
   described_ = other.described_;
@@ -76,6 +69,7 @@ void Scene::Impl::forget_description() {
 }
 
 std::shared_ptr<const core::SceneDescription> Scene::Impl::describe() const {
+  enter_threads();
   std::shared_ptr<const core::SceneDescription> old, next;
   const std::lock_guard lock(mutex_);
   if (described_ && described_document_ == document) return described_;

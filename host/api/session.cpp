@@ -10,10 +10,20 @@ struct SUNDOG_LOCAL Session::Impl {
   mutable std::mutex mutex;
   std::vector<std::shared_ptr<core::DriverThreads>>
       threads;  // guarded by the mutex; they outlive the session
-  core::RenderSession session;
+  std::unique_ptr<core::RenderSession> session;
   std::shared_ptr<const core::SceneDescription> newest;  // guarded by the mutex
 
-  explicit Impl(HostDevices devices) : threads(std::move(devices.threads)), session(devices.infos) {}
+  explicit Impl(HostDevices devices)
+      : threads(std::move(devices.threads)), session(std::make_unique<core::RenderSession>(devices.infos)) {}
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (is_forked()) static_cast<void>(session.release());  // its threads are not here to be waited for
+  }
+  core::RenderSession& entered() const {
+    enter_threads();
+    return *session;
+  }
 };
 
 namespace {
@@ -27,9 +37,7 @@ Vec3 values_of(const glm::dvec3& vector) { return {vector.x, vector.y, vector.z}
 }  // namespace
 
 Session::Session(const std::vector<Device>& devices)
-    : impl_(translated([&] {
-        return std::make_unique<Impl>(devices_of(devices, std::make_shared<core::DriverThreads>()));
-      })) {}
+    : impl_(translated([&] { return std::make_unique<Impl>(devices_of(devices)); })) {}
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
@@ -44,28 +52,31 @@ std::uint64_t Session::start(const Scene& scene, const SessionOptions& options) 
     settings.patience = seconds_of("patience", options.patience);
     settings.work_group = group_of(options.work_group);
     settings.tile = tile_of(options.tile);
+    std::shared_ptr<const core::SceneDescription> before;  // goes without the lock: its meshes have owners
     const std::lock_guard lock(impl_->mutex);
-    impl_->newest = description;
-    return impl_->session.start(std::move(description), settings);
+    before = std::exchange(impl_->newest, description);
+    return impl_->entered().start(std::move(description), settings);
   });
 }
 
-void Session::cancel() { impl_->session.cancel(); }
+void Session::cancel() {
+  translated([&] { impl_->entered().cancel(); });
+}
 
 void Session::use_devices(const std::vector<Device>& devices) {
   translated([&] {
-    HostDevices chosen = devices_of(devices, std::make_shared<core::DriverThreads>());
+    HostDevices chosen = devices_of(devices);
     {
       const std::lock_guard lock(impl_->mutex);
       impl_->threads.insert(impl_->threads.end(), chosen.threads.begin(), chosen.threads.end());
     }
-    impl_->session.use_devices(chosen.infos);
+    impl_->entered().use_devices(chosen.infos);
   });
 }
 
 Snapshot Session::snapshot(bool with_picture) const {
   return translated([&] {
-    core::Snapshot now = impl_->session.snapshot(with_picture);
+    core::Snapshot now = impl_->entered().snapshot(with_picture);
     Snapshot result;
     result.generation = now.generation;
     result.shown = now.shown;
@@ -81,10 +92,14 @@ Snapshot Session::snapshot(bool with_picture) const {
   });
 }
 
-void Session::wait() const { impl_->session.wait(); }
-bool Session::wait_for(double seconds) const { return impl_->session.wait_for(seconds); }
+void Session::wait() const {
+  translated([&] { impl_->entered().wait(); });
+}
+bool Session::wait_for(double seconds) const {
+  return translated([&] { return impl_->entered().wait_for(seconds); });
+}
 bool Session::wait_for_change(std::uint64_t revision, double seconds) const {
-  return impl_->session.wait_for_change(revision, seconds);
+  return translated([&] { return impl_->entered().wait_for_change(revision, seconds); });
 }
 
 Image Session::finish() const {
@@ -101,7 +116,7 @@ std::optional<Pick> Session::pick(int x, int y) {
       const std::lock_guard lock(impl_->mutex);
       scene = impl_->newest;
     }
-    const auto picked = impl_->session.pick(x, y);
+    const auto picked = impl_->entered().pick(x, y);
     if (!picked) return std::nullopt;
     return Pick{name_of(scene->objects, picked->object), name_of(scene->materials, picked->material),
                 values_of(picked->position), values_of(picked->normal), picked->depth};

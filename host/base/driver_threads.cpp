@@ -7,6 +7,15 @@ bool has_ended(const DriverThread& thread) {
   return thread.ended.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
+/// Until it is joined, a thread keeps the addresses of its stack.
+void join_ended(std::vector<DriverThread>& threads) {
+  std::erase_if(threads, [](DriverThread& left) {
+    if (!has_ended(left)) return false;
+    left.thread.join();
+    return true;
+  });
+}
+
 }  // namespace
 
 DriverThreads::~DriverThreads() {
@@ -22,16 +31,13 @@ DriverThreads::~DriverThreads() {
 
 void DriverThreads::take(DriverThread thread) {
   const std::lock_guard lock(mutex_);
+  join_ended(threads_);
   threads_.push_back(std::move(thread));
 }
 
 unsigned DriverThreads::count() {
   const std::lock_guard lock(mutex_);
-  std::erase_if(threads_, [](DriverThread& left) {
-    if (!has_ended(left)) return false;
-    left.thread.join();
-    return true;
-  });
+  join_ended(threads_);
   return static_cast<unsigned>(threads_.size());
 }
 

@@ -136,14 +136,15 @@ std::string make_folder(const HostEnvironment& environment) {
 
 bool is_pocl(const DeviceInfo& device) { return device.platform_name == "Portable Computing Language"; }
 
-DriverFolder::DriverFolder(const HostEnvironment& environment) noexcept {
+DriverFolder::DriverFolder(const HostEnvironment& environment) noexcept : process_(::getpid()) {
   try {
     if (!environment.driver("POCL_CACHE_DIR").empty()) return;
-    ::unsetenv("POCL_CACHE_DIR");  // an empty one ends PoCL's process
+    // An empty one ends PoCL's process. Another copy of the library may have set it meanwhile: that stays.
+    if (environment.drivers.contains("POCL_CACHE_DIR")) ::unsetenv("POCL_CACHE_DIR");
     const std::string folder = make_folder(environment);
     if (folder.empty()) return;
     own_ = folder;
-    ::setenv("POCL_CACHE_DIR", folder.c_str(), 1);
+    ::setenv("POCL_CACHE_DIR", folder.c_str(), 0);
     const bool temporary = fs::path(folder).filename().string().starts_with(temporary_name);
     if (temporary) ::setenv("MESA_SHADER_CACHE_DIR", folder.c_str(), 0);  // the user's stays
   } catch (const std::exception&) {
@@ -153,7 +154,7 @@ DriverFolder::DriverFolder(const HostEnvironment& environment) noexcept {
 
 void DriverFolder::remove() const noexcept {
   std::error_code ignored;
-  if (!own_.empty()) fs::remove_all(own_, ignored);
+  if (!own_.empty() && process_ == ::getpid()) fs::remove_all(own_, ignored);
 }
 
 std::string DriverFolder::problem(const HostEnvironment& environment) const {

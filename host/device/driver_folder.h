@@ -32,7 +32,8 @@ class DriverFolder {
   std::string problem(const HostEnvironment& environment) const;
 
  private:
-  std::string own_;  // empty: drivers have the user's, or their own
+  std::string own_;    // empty: drivers have the user's, or their own
+  const int process_;  // whose folder it is: a child that fork() has made leaves it alone
 };
 
 /// The process's own, which the first call makes: drivers take their settings once a process.

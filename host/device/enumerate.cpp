@@ -18,6 +18,7 @@
 #include "device/driver_folder.h"
 #include "device/estimate.h"
 #include "device/machine_topology.h"
+#include "device/process_lock.h"
 #include "device/thread_limits.h"
 
 namespace sundog {
@@ -211,6 +212,8 @@ bool prepare_drivers(const HostEnvironment& environment) {
 }  // namespace
 
 std::vector<DeviceInfo> enumerate_devices(const EnvironmentPtr& environment) {
+  // Drivers load at the first call, and PoCL lets a second thread in before it is ready.
+  const ProcessLock lock;
   [[maybe_unused]] static const bool prepared = prepare_drivers(value_of(environment));
   cl_uint count = 0;
   // No platform at all is an error status too (CL_PLATFORM_NOT_FOUND_KHR): an empty list says the same.

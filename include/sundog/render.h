@@ -112,7 +112,7 @@ class SUNDOG_API Film {
 /// Renders and waits. Several threads may render at once. Throws Error: scene; usage for an AOV or device
 /// that is none; device when every device failed; build when the kernels build on none; internal for a frame
 /// that takes more memory than there is; and what callbacks throw. A stopped render does not wait for a
-/// driver that compiles: that thread is owned by the devices, or by the scene when none were given.
+/// driver that compiles: that thread is owned by the devices, or by the process when none were given.
 SUNDOG_API Film render(const Scene& scene, const RenderOptions& options = {});
 
 }  // namespace v0

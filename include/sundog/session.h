@@ -59,7 +59,7 @@ class SUNDOG_API Session {
   /// Without devices: the one estimated fastest. Throws Error (device).
   explicit Session(const std::vector<Device>& devices = {});
   /// Ends what is in hand: waits for launches (about 50 ms). A driver that hangs or compiles keeps its
-  /// thread, which belongs to the devices; to the session where it chose them, which then waits.
+  /// thread, which belongs to the devices; to the process where the session chose them.
   ~Session();
   Session(Session&&) noexcept;             ///< `other` can only be destroyed or assigned to afterwards
   Session& operator=(Session&&) noexcept;  ///< ends what was in hand here

@@ -1,7 +1,9 @@
 """The Python package, as installed by pip: check_python.py SCENE [DEVICE]. Ends with an exception where something is wrong."""
 
 import copy
+import faulthandler
 import os
+import random
 import signal
 import sys
 import threading
@@ -11,6 +13,7 @@ import numpy as np
 import sundog
 
 device = sys.argv[2] if len(sys.argv) > 2 else None
+faulthandler.dump_traceback_later(300, exit=True)  # something waits for the interpreter's lock
 
 
 def error_of(call):
@@ -136,4 +139,52 @@ assert session.wait(60) and session.snapshot().state == "settled"
 assert np.array_equal(session.finish().pixels, pixels)
 assert session.pick(16, 12).object == "the triangle"
 assert error_of(lambda: session.start({"objects": 3})).kind == "scene"
+
+
+# The arrays of an animation are let go of by the session's threads, also while the session ends.
+def animate(session):
+    scene, points, triangle = small(), corners, faces
+    scene.add({"type": "mesh", "mesh": "held", "material": "red"})
+    for frame in range(5):
+        scene.add_mesh("held", points + np.float32(0.1 * frame), triangle)
+        session.start(scene)
+        session.finish()
+
+
+session = sundog.Session(device)
+animate(session)
+session = sundog.Session(device)
+animate(session)
+session.use_devices(device)
+del session
+for _ in range(100):  # the interpreter frees them when it comes to it
+    time.sleep(0.01)
+assert (sys.getrefcount(corners), sys.getrefcount(faces)) == before
+
+
+# Ctrl-C and a time limit do not wait for a compiler, whatever is rendered.
+def new_formula():
+    size = 1 + random.random()
+    return {
+        "image": {"width": 32, "height": 24}, "lights": [{"type": "ambient"}], "materials": {"m": {}},
+        "objects": [{"type": "formula", "distance": f"length(p) - {size:.9f}", "material": "m"}],
+    }
+
+
+threading.Timer(0.1, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+begun = time.monotonic()
+try:
+    sundog.render(new_formula())
+except KeyboardInterrupt:
+    assert time.monotonic() - begun < 1, time.monotonic() - begun
+begun = time.monotonic()
+if not sundog.render(new_formula(), time_limit=0.1).complete:
+    assert time.monotonic() - begun < 1, time.monotonic() - begun
+
+# A process made by fork() is told to be spawned.
+child = os.fork()
+if child == 0:
+    message = str(error_of(lambda: sundog.render(small())))
+    os._exit(0 if "spawn" in message else 1)
+assert os.waitpid(child, 0)[1] == 0
 print("the package works")

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <fstream>
 #include <limits>
+#include <random>
 #include <stdexcept>
 #include <thread>
 
@@ -25,6 +26,27 @@ std::vector<std::string> command_line(const std::string& scene, const std::strin
 sundog::Scene long_scene() {
   sundog::Scene scene = sundog::Scene::load(shipped_scene("spheres"));
   return scene.set_size(1024, 768).set_samples(4096);
+}
+
+sundog::Scene tiny_formula(double size) {
+  sundog::Scene scene;
+  scene.set_size(16, 12).add_light({.type = "ambient"});
+  return scene.add_formula({.distance = "length(p) - size", .parameters = {{"size", size}}}, {});
+}
+
+/// A scene whose kernel nobody has compiled yet: a constant of its formula is new.
+sundog::Scene new_scene() {
+  std::random_device random;
+  const double size = 1 + 1e-9 * (random() % 1'000'000);
+  return tiny_formula(size);
+}
+
+/// Of the process, in bytes.
+double addresses() {
+  std::ifstream file("/proc/self/statm");
+  double pages = 0;
+  file >> pages;
+  return pages * 4096;
 }
 
 }  // namespace
@@ -141,6 +163,39 @@ TEST_CASE("what a callback throws ends the render and comes out of it") {
   sundog::RenderOptions options{.devices = test_device()};
   options.on_progress = [](const sundog::Progress&) { throw std::out_of_range("the program's own"); };
   CHECK_THROWS_AS(sundog::render(long_scene(), options), std::out_of_range);
+}
+
+TEST_CASE("renders that are stopped keep no addresses") {
+  std::stop_source source;
+  source.request_stop();
+  const sundog::Scene scene = small_scene();
+  const auto stop_some = [&] {
+    for (int i = 0; i < 40; ++i) (void)sundog::render(scene, {.stop = source.get_token()});
+  };
+  stop_some();
+  const double before = addresses();
+  stop_some();
+  CHECK(addresses() - before < 1e9);  // a thread's stack alone has 256 MiB
+}
+
+TEST_CASE("a stop and a time limit do not wait for a compiler, though nobody keeps scene and devices") {
+  std::stop_source source;
+  source.request_stop();
+  const auto seconds_of = [](const sundog::RenderOptions& options) {
+    const auto begun = std::chrono::steady_clock::now();
+    const bool complete = sundog::render(new_scene(), options).complete();
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begun;
+    return std::pair(complete, time.count());
+  };
+  const auto [whole, compiled] = seconds_of({});
+  CHECK(whole);
+  for (const sundog::RenderOptions& options :
+       {sundog::RenderOptions{.time_limit = 0.01}, sundog::RenderOptions{.stop = source.get_token()}}) {
+    const auto [complete, seconds] = seconds_of(options);
+    CAPTURE(compiled, seconds);
+    CHECK_FALSE(complete);
+    CHECK(seconds < std::max(0.5, 0.5 * compiled));
+  }
 }
 
 TEST_CASE("a time limit ends a render") {

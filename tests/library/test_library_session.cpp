@@ -1,6 +1,9 @@
 // Sessions of the public interface.
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <future>
+#include <mutex>
 #include <thread>
 
 #include "file_bytes.h"
@@ -136,6 +139,45 @@ TEST_CASE(
   last.set("/camera/fov", 33);
   session.start(last);
   CHECK(same_pixels(session.finish(), sundog::render(last, {.devices = test_device()}).image()));
+}
+
+TEST_CASE(
+    "the owner of a mesh that a session lets go of may ask the session, or take a lock of the program's") {
+  const std::vector<std::array<float, 3>> corners{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}};
+  std::atomic<int> gone = 0, stuck = 0;
+  {
+    sundog::Session session(test_device());
+    std::vector<std::future<void>> asked;
+    std::mutex asking;
+    const auto ask = [&](void*) {
+      const std::lock_guard lock(asking);
+      asked.push_back(std::async(std::launch::async, [&session] { (void)session.snapshot(); }));
+      if (asked.back().wait_for(std::chrono::seconds(10)) != std::future_status::ready) ++stuck;
+      ++gone;
+    };
+    sundog::Scene scene = small_scene();
+    scene.add_instance("triangle", {.material = "red"});
+    for (int frame = 0; frame < 6 && stuck == 0; ++frame) {
+      scene.add_mesh(
+          "triangle",
+          {.positions = corners, .triangles = triangles, .owner = std::shared_ptr<void>(&session, ask)});
+      session.start(scene, {.patience = frame < 3 ? 0.15 : 0});
+      if (frame < 3) session.wait();
+    }
+    session.wait();
+    const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    while (gone < 3 && std::chrono::steady_clock::now() < limit)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    CHECK(gone >= 3);
+    CHECK(stuck == 0);
+    scene = small_scene();
+    session.start(scene);
+    session.wait();
+    while (gone < 6 && std::chrono::steady_clock::now() < limit)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  CHECK(gone == 6);
 }
 
 TEST_CASE("a session names what a pixel shows") {

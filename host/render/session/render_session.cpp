@@ -59,7 +59,8 @@ Generation RenderSession::start(std::shared_ptr<const SceneDescription> scene,
                                 const SessionSettings& settings) {
   State& s = *state_;
   const std::lock_guard lock(s.mutex);
-  s.pending = State::Order{++s.newest, std::move(scene), settings, Stopwatch()};
+  ++s.newest;
+  s.set_pending(State::Order{s.newest, std::move(scene), settings, Stopwatch()});
   if (is_at_rest(s.state) || !s.is_awaited()) s.drop_frame();
   s.drop_picks();
   s.error.clear();
@@ -70,7 +71,7 @@ Generation RenderSession::start(std::shared_ptr<const SceneDescription> scene,
 void RenderSession::cancel() {
   State& s = *state_;
   const std::lock_guard lock(s.mutex);
-  s.pending.reset();
+  s.set_pending(std::nullopt);
   if (s.state == SessionState::idle || is_at_rest(s.state)) return;
   s.drop_frame();
   s.drop_picks();

@@ -45,10 +45,10 @@ void RenderSession::State::run(const std::shared_ptr<SessionFrame>& mine, bool w
     const std::lock_guard lock(mutex);
     drop_frame();
     drop_picks();
-    pending.reset();
+    set_pending(std::nullopt);
     error.clear();
     mine->generation = ++newest;
-    current = mine;
+    retire(std::exchange(current, mine));
     set_state(SessionState::drawing);
   }
   watch_frame(*mine->frame, wait);

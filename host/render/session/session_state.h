@@ -61,6 +61,7 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
   std::vector<std::shared_ptr<Worker>> workers;
   std::vector<std::shared_ptr<Worker>> leaving;
   std::deque<Pick> picks;
+  std::vector<std::shared_ptr<const void>> retired;
   double pixel_seconds = 0;
   Generation rested = 0;  // the last for which a server has prepared for what comes
   bool closing = false;
@@ -84,12 +85,29 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
     note();
   }
 
+  /// Lets go of a frame or a scene. The owners of its meshes may do anything when they go, and take any lock:
+  /// the control thread frees it later, without the mutex, which the caller holds.
+  void retire(std::shared_ptr<const void> old) {
+    if (!old) return;
+    retired.push_back(std::move(old));
+    changed.notify_all();
+  }
+  /// Replaces the order that waits. The caller holds the mutex.
+  void set_pending(std::optional<Order> next) {
+    if (pending) {
+      retire(std::move(pending->scene));
+      retire(std::move(pending->draft));
+    }
+    pending = std::move(next);
+  }
+
   void add_worker(std::shared_ptr<TileServer> server);
   void begin(const TileServers& servers);
   void end();
   /// Renders a frame of the workers' servers to its end, in place of what is drawn.
   void run(const std::shared_ptr<SessionFrame>& mine, bool wait);
   void run_control();
+  void free_retired(std::unique_lock<std::mutex>& lock);
   void take_order(std::unique_lock<std::mutex>& lock);
   std::shared_ptr<SessionFrame> prepare(const Order& order, Servers servers,
                                         const std::shared_ptr<const CompiledScene>& before, double speed);

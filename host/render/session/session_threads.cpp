@@ -83,27 +83,39 @@ std::optional<std::size_t> RenderSession::State::index_of(const Worker& worker) 
 void RenderSession::State::run_control() {
   std::unique_lock lock(mutex);
   while (!closing) {
-    const auto wanted = [&] { return closing || (pending && !is_awaited() && !is_held()); };
+    const auto has_order = [&] { return pending && !is_awaited() && !is_held(); };
+    const auto wanted = [&] { return closing || !retired.empty() || has_order(); };
     if (current && !is_held() && (pending || !is_at_rest(state)))
       changed.wait_for(lock, look_again, wanted);
     else
       changed.wait(lock, wanted);
+    free_retired(lock);
     if (closing) return;
-    if (wanted())
+    if (has_order())
       take_order(lock);
     else if (!pending && current && !is_held())  // a frame that was rendered to its end meanwhile is gone
       look_at(lock);
   }
 }
 
+void RenderSession::State::free_retired(std::unique_lock<std::mutex>& lock) {
+  while (!retired.empty()) {
+    std::vector<std::shared_ptr<const void>> old = std::exchange(retired, {});
+    lock.unlock();
+    old.clear();
+    lock.lock();
+  }
+}
+
 void RenderSession::State::take_order(std::unique_lock<std::mutex>& lock) {
-  const Order order = std::move(*pending);
+  Order order = std::move(*pending);
   pending.reset();
   drop_frame();
   Servers servers;
   for (const auto& worker : workers) servers.push_back(worker->of_scenes);
   const double speed = pixel_seconds;
-  const std::shared_ptr<const CompiledScene> before = current ? current->flat : nullptr;
+  const bool draft = order.draft != nullptr;
+  std::shared_ptr<const CompiledScene> before = current ? current->flat : nullptr;
   lock.unlock();
   std::shared_ptr<SessionFrame> made;
   std::string failure;
@@ -113,15 +125,19 @@ void RenderSession::State::take_order(std::unique_lock<std::mutex>& lock) {
     failure = thrown.what();
   }
   lock.lock();
-  if (order.generation != newest || is_at_rest(state) || is_held()) return;  // replaced, or cancelled
+  retire(std::move(order.scene));
+  retire(std::move(order.draft));
+  retire(std::move(before));
+  if (order.generation != newest || is_at_rest(state) || is_held())  // replaced, or cancelled
+    return retire(std::move(made));
   if (!made) {
     error = failure;
     drop_picks();
     set_state(SessionState::failed);
     return;
   }
-  current = std::move(made);
-  if (order.draft) return note();
+  retire(std::exchange(current, std::move(made)));
+  if (draft) return note();
   current->times.compiled = order.clock.seconds();
   set_state(SessionState::preparing);
 }
@@ -231,11 +247,12 @@ void RenderSession::State::run_worker(Worker& worker) {
 
 void RenderSession::State::serve(std::unique_lock<std::mutex>& lock, Worker& worker, std::size_t index) {
   const std::shared_ptr<SessionFrame> mine = current;
-  const std::shared_ptr<SessionFrame> before = std::exchange(worker.seen, mine);
+  std::shared_ptr<SessionFrame> before = std::exchange(worker.seen, mine);
   worker.opening = true;
   lock.unlock();
   Frame& frame = *mine->frame;
   if (mine->flat && worker.of_scenes) worker.of_scenes->show(mine->flat, frame.options);
+  before.reset();  // without the lock
   serve_frame(frame, index);
   if (mine->final) leave_frame(frame, index, mine->closes);
   double speed = 0;
@@ -306,7 +323,7 @@ void RenderSession::State::note_progress(const std::shared_ptr<SessionFrame>& mi
   reached(progress.full, times.full);
   const bool settled = progress.settled && !is_draft(mine);
   reached(settled, times.settled);
-  if (progress.whole) shown = mine;
+  if (progress.whole && shown != mine) retire(std::exchange(shown, mine));
   if (mine->generation != newest) return note();
   set_state(settled ? SessionState::settled : SessionState::drawing);
 }

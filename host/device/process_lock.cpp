@@ -1,0 +1,37 @@
+#include "device/process_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <memory>
+#include <mutex>
+
+namespace sundog {
+namespace {
+
+std::mutex& own_lock() {
+  static const auto mutex = std::make_unique<std::mutex>();
+  return *mutex;
+}
+
+}  // namespace
+
+ProcessLock::ProcessLock() noexcept : file_(-1) {
+  own_lock().lock();
+  file_ = ::open("/proc/self/status", O_RDONLY | O_CLOEXEC);
+  // Each open file has a lock of its own, also two of the same process.
+  while (file_ >= 0 && ::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
+  }
+}
+
+ProcessLock::~ProcessLock() {
+  if (file_ >= 0) {
+    ::flock(file_, LOCK_UN);  // also where a fork() has copied the descriptor meanwhile
+    ::close(file_);
+  }
+  own_lock().unlock();
+}
+
+}  // namespace sundog
