@@ -110,16 +110,15 @@ void set_figures(CompiledScene& out) {
   figures.bytes = sizeof(SceneInfo) + table_bytes(out);
 }
 
-/// The same for all scenes; path tracing has gains too, rough glass a table more.
-const SharedTable<float>& lobe_energies(LobeTables wanted) {
+/// The same for all scenes; rough glass has a table more.
+const SharedTable<float>& lobe_energies(bool glass) {
   const auto first = [](u32 count) {
     const auto rows = built_lobe_energy().first(count);
     return SharedTable<float>(std::vector<float>(rows.begin(), rows.end()));
   };
-  static const SharedTable<float> energies = first(LOBE_GAINS), with_gains = first(LOBE_GLASS),
-                                  with_all = first(static_cast<u32>(built_lobe_energy().size()));
-  if (wanted.glass) return with_all;
-  return wanted.gains ? with_gains : energies;
+  static const SharedTable<float> usual = first(LOBE_GLASS),
+                                  with_glass = first(static_cast<u32>(built_lobe_energy().size()));
+  return glass ? with_glass : usual;
 }
 
 /// The lights as surfaces choose them, once it is known what shines.
@@ -242,8 +241,7 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
                                                 p.instances.made.instances.rows(), p.instances.boxes);
   finish_lights(scene, out);
   if (out.features.rough || out.features.layers)
-    out.lobe_energy = lobe_energies({.gains = traces_paths(out.integrator) || out.features.layers != 0,
-                                     .glass = out.features.rough_glass != 0});
+    out.lobe_energy = lobe_energies(out.features.rough_glass != 0);
   add_photon_targets(scene, p.instances.boxes, out);
   set_counts(out);
   set_figures(out);

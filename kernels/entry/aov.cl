@@ -1,6 +1,6 @@
 // One stage: what the camera sees first, for the extra images: depth, normal, position, albedo, object and
-// material; with ALL_AOVS also the geometric normal, steps of marching, coordinates, and which objects and
-// materials cover the pixel, each with its share.
+// material; with FEATURE_AOVS also what a denoiser takes; with ALL_AOVS also the geometric normal, steps of
+// marching, coordinates, and which objects and materials cover the pixel, each with its share.
 #include "lib/core/counters.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
@@ -11,9 +11,32 @@
 #ifndef ALL_AOVS
 #define ALL_AOVS 0
 #endif
+#ifndef FEATURE_AOVS
+#define FEATURE_AOVS 0
+#endif
+
+#define AOV_VECTORS (ALL_AOVS ? 11u : FEATURE_AOVS ? 5u : 3u)
+
+#if FEATURE_AOVS
+#include "lib/pathtracer/features.cl"
+
+// The two vectors behind the first three, of the pixels whose middles are (x, y).
+NEVER_INLINE void write_features(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes,
+                                 u32* counts, __global float4* aovs) {
+  const Features f = mean_features(scene, stack, TO_MASK(x), TO_MASK(y), lanes, counts);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    __global float4* out = aovs + AOV_VECTORS * i;
+    out[3] = (float4)(get3(&f.albedo, i), 0.0f);
+    out[4] = (float4)(get3(&f.normal, i), 0.0f);
+  }
+}
+#else
+static inline void write_features(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes,
+                                  u32* counts, __global float4* aovs) {}
+#endif
 
 #if ALL_AOVS
-#define AOV_VECTORS 9u
 #define LOOKS_EDGE 4u  // rays a pixel, each way, that find what covers it
 #define LOOKS (LOOKS_EDGE * LOOKS_EDGE)
 #define RANKS 4u  // things a pixel that are kept, those that cover most of it first
@@ -66,7 +89,7 @@ static inline REAL steps_alone(const Scene* scene, const SceneRays* camera, MASK
 }
 #endif
 
-// The vectors behind the first three, of the pixels about (x, y) whose first surfaces are `s`, where `hit`.
+// The vectors behind the first five, of the pixels about (x, y) whose first surfaces are `s`, where `hit`.
 NEVER_INLINE void write_more(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes, MASK hit,
                              const SurfaceInteractions* s, u32* counts, __global float4* aovs) {
   int objects[LOOKS * BATCH], materials[LOOKS * BATCH];
@@ -93,14 +116,13 @@ NEVER_INLINE void write_more(const Scene* scene, MediaStack stack, REAL x, REAL 
     __global float4* out = aovs + AOV_VECTORS * i;
     const bool seen = MASK_LANE(hit, i) != 0;
     const float3 ng = seen ? get3(&s->ng, i) : (float3)(0.0f);
-    out[3] = (float4)(ng, REAL_LANE(steps, i));
-    out[4] = (float4)(seen ? REAL_LANE(s->at.u, i) : 0.0f, seen ? REAL_LANE(s->at.v, i) : 0.0f, 0.0f, 0.0f);
-    write_ranks(objects, i, (__global float*)(out + 5));
-    write_ranks(materials, i, (__global float*)(out + 7));
+    out[5] = (float4)(ng, REAL_LANE(steps, i));
+    out[6] = (float4)(seen ? REAL_LANE(s->at.u, i) : 0.0f, seen ? REAL_LANE(s->at.v, i) : 0.0f, 0.0f, 0.0f);
+    write_ranks(objects, i, (__global float*)(out + 7));
+    write_ranks(materials, i, (__global float*)(out + 9));
   }
 }
 #else
-#define AOV_VECTORS 3u
 static inline void write_more(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes, MASK hit,
                               const SurfaceInteractions* s, u32* counts, __global float4* aovs) {}
 #endif
@@ -157,6 +179,7 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
     out[1] = (float4)(get3(&world, i), (float)scene->instances[MASK_LANE(met.hit.instance, i)].object);
     out[2] = (float4)(get3(&albedo, i), (float)MASK_LANE(met.face.material, i));
   }
+  write_features(scene, stack, x, y, lanes, counts, aovs + AOV_VECTORS * first);
   write_more(scene, stack, x, y, lanes, hit, &s, counts, aovs + AOV_VECTORS * first);
   add_finished(counters, lane_count(lanes), pixel_count);
 }

@@ -63,7 +63,7 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
   if (!any_lane(begun.lanes)) return NO_LANES;
   work->at.sample -= begun.lanes;
   work->left += begun.lanes;
-  const SceneRays first = begun_rays(scene, &begun, around, work->sign);
+  const SceneRays first = begun_rays(scene, &begun, scene->info->samples, around, work->sign);
   const Walks fresh = start_walks(scene, &begun.at, begun.lanes);
   join_rays(rays, &first, begun.lanes);
   join_walks(walks, &fresh, begun.lanes);

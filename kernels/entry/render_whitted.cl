@@ -16,7 +16,7 @@ static inline MASK start_rays(const Scene* scene, const Launch* launch, __global
   begun.lanes = item_pixels(launch, pixels, item, &begun.at.x, &begun.at.y);
   begun.at.sample = (MASK)((int)sample) & begun.lanes;
   set_tile_pixels(tile, &begun.at);
-  *rays = begun_rays(scene, &begun, around, signs);
+  *rays = begun_rays(scene, &begun, scene->info->samples, around, signs);
   return begun.lanes;
 }
 

@@ -49,7 +49,7 @@ std::string format_name(const PictureOptions& picture) {
 std::vector<std::string> made_aovs(const RenderCommand& command) {
   std::vector<std::string> aovs = command.aovs;
   if (command.denoise)
-    for (const char* wanted : {"albedo", "normal"})
+    for (const char* wanted : {feature_albedo, feature_normal})
       if (std::ranges::count(aovs, wanted) == 0) aovs.emplace_back(wanted);
   return aovs;
 }

@@ -210,10 +210,11 @@ bool may_end_draft(const FrameKernels& kernels) {
 }
 
 void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& times) {
-  if (kernels.first_surfaces.kernel() && kernels.has_all_aovs == kernels.wants_all_aovs) return;
+  if (kernels.first_surfaces.kernel() && kernels.there_aovs == kernels.wanted_aovs) return;
   KernelConfig config = kernels.config;
-  if (kernels.wants_all_aovs) config.defines["ALL_AOVS"] = config.defines["HAS_UV"] = "1";
-  kernels.has_all_aovs = kernels.wants_all_aovs;
+  if (kernels.wanted_aovs.all) config.defines["ALL_AOVS"] = config.defines["HAS_UV"] = "1";
+  if (kernels.wanted_aovs.features) config.defines["FEATURE_AOVS"] = "1";
+  kernels.there_aovs = kernels.wanted_aovs;
   kernels.first_surfaces =
       scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>(
           build(device, "entry/aov.cl", config, kernels, times), "first_surfaces");

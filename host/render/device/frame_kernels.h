@@ -27,10 +27,13 @@ struct FrameKernels {
   SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>
       integrator;
   SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>
-      first_surfaces;                                 // only with AOVs
-  PhotonKernel trace_photons;                         // only with caustics
-  bool wants_all_aovs = false, has_all_aovs = false;  // of first_surfaces: all vectors of AOVs
-  bool counts_rays = false;                           // of the integrator: those of each pixel
+      first_surfaces;          // only with AOVs
+  PhotonKernel trace_photons;  // only with caustics
+  struct MoreAovs {
+    bool all = false, features = false;  // vectors
+    friend bool operator==(const MoreAovs&, const MoreAovs&) = default;
+  } wanted_aovs, there_aovs;                // of first_surfaces
+  bool counts_rays = false;                 // of the integrator: those of each pixel
   bool only_general = false;                // general_config() even where the scene's could be built
   SceneKernel<Buffer<u32>> find_media;      // only where the camera has been inside a solid
   std::string entry;                        // of the integrator

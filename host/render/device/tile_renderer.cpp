@@ -59,7 +59,7 @@ bool makes_aovs(const CompiledScene& scene, const RenderOptions& options) {
 FrameKernels wanted_by(const RenderOptions& options, KernelBuilder* builder, FrameKernels kernels) {
   kernels.builder = options.kernels == KernelChoice::own_when_built ? builder : nullptr;
   kernels.only_general = options.kernels == KernelChoice::general;
-  kernels.wants_all_aovs = aov_vectors(options.aovs) == all_aov_vectors;
+  kernels.wanted_aovs = {aov_vectors(options.aovs) == all_aov_vectors, shows_features(options.aovs)};
   kernels.counts_rays = counts_rays(options.aovs);
   kernels.notes.clear();
   return kernels;

@@ -84,9 +84,11 @@ struct AovPlace {
 };
 
 constexpr AovPlace places[] = {
-    {"depth", 3, 1},  {"normal", 0, 3},         {"position", 4, 3},          {"albedo", 8, 3},
-    {"object", 7, 1}, {"material", 11, 1},      {"geometric_normal", 12, 3}, {"march_steps", 15, 1},
-    {"uv", 16, 2},    {"crypto_object", 20, 8}, {"crypto_material", 28, 8}};
+    {"depth", 3, 1},           {"normal", 0, 3},        {"position", 4, 3},
+    {"albedo", 8, 3},          {"object", 7, 1},        {"material", 11, 1},
+    {feature_albedo, 12, 3},   {feature_normal, 16, 3}, {"geometric_normal", 20, 3},
+    {"march_steps", 23, 1},    {"uv", 24, 2},           {"crypto_object", 28, 8},
+    {"crypto_material", 36, 8}};
 
 const AovPlace* find_place(const std::string& name) {
   const auto* place =
@@ -113,9 +115,14 @@ bool show_surfaces(const std::vector<std::string>& names) {
 std::size_t aov_vectors(const std::vector<std::string>& names) {
   std::size_t vectors = few_aov_vectors;
   for (const std::string& name : names)
-    if (const AovPlace* place = find_place(name); place && place->first >= 4 * few_aov_vectors)
-      vectors = all_aov_vectors;
+    if (const AovPlace* place = find_place(name))
+      for (const std::size_t more : {feature_aov_vectors, all_aov_vectors})
+        if (place->first >= 4 * vectors) vectors = more;
   return vectors;
+}
+
+bool shows_features(const std::vector<std::string>& names) {
+  return std::ranges::count(names, feature_albedo) + std::ranges::count(names, feature_normal) > 0;
 }
 
 bool counts_rays(const std::vector<std::string>& names) { return std::ranges::count(names, "rays") > 0; }

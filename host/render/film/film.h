@@ -20,8 +20,9 @@ struct Tile {
   friend bool operator==(const Tile&, const Tile&) = default;
 };
 
-/// float4 a pixel that hold AOVs: what passes ask for, and all that there are (kernels/entry/aov.cl).
-constexpr std::size_t few_aov_vectors = 3, all_aov_vectors = 9;
+/// float4 a pixel that hold AOVs: what passes ask for, these with a denoiser's features, and all that there
+/// are (kernels/entry/aov.cl).
+constexpr std::size_t few_aov_vectors = 3, feature_aov_vectors = 5, all_aov_vectors = 11;
 
 struct Color {
   float r = 0, g = 0, b = 0;
@@ -86,6 +87,12 @@ bool show_surfaces(const std::vector<std::string>& names);
 
 /// The vectors a pixel that these AOVs want, where they show surfaces.
 std::size_t aov_vectors(const std::vector<std::string>& names);
+
+/// Those that a denoiser takes: albedo and normal as the pixels' samples see them.
+constexpr const char *feature_albedo = "denoise_albedo", *feature_normal = "denoise_normal";
+
+/// Whether they are among these AOVs.
+bool shows_features(const std::vector<std::string>& names);
 
 /// Whether they want the rays of each pixel to be counted.
 bool counts_rays(const std::vector<std::string>& names);

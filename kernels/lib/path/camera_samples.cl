@@ -11,10 +11,9 @@ typedef struct BegunSamples {
   MASK lanes;  // those that have a sample
 } BegunSamples;
 
-// The rays of the samples; signs[lane] becomes what the lane's sample counts.
-static inline SceneRays begun_rays(const Scene* scene, const BegunSamples* begun, MediaStack around,
-                                   float* signs) {
-  const u32 samples = scene->info->samples;
+// The rays of the samples, of which a pixel has `samples`; signs[lane] becomes what the lane's sample counts.
+static inline SceneRays begun_rays(const Scene* scene, const BegunSamples* begun, u32 samples,
+                                   MediaStack around, float* signs) {
   REAL u_x, u_y;
   places_in_pixels(&begun->at, begun->lanes, samples, &u_x, &u_y);
   for (u32 bits = lane_bits(begun->lanes); bits; bits &= bits - 1u) {

@@ -25,20 +25,10 @@ constexpr const char* scene_text = R"({
   ]
 })";
 
-const char* const every_name[] = {"rays",
-                                  "depth",
-                                  "normal",
-                                  "position",
-                                  "albedo",
-                                  "object",
-                                  "material",
-                                  "geometric_normal",
-                                  "uv",
-                                  "march_steps",
-                                  "samples",
-                                  "variance",
-                                  "crypto_object",
-                                  "crypto_material"};
+const char* const every_name[] = {
+    "rays",     "depth",          "normal",         "position",         "albedo", "object",
+    "material", "denoise_albedo", "denoise_normal", "geometric_normal", "uv",     "march_steps",
+    "samples",  "variance",       "crypto_object",  "crypto_material"};
 
 std::string text_with(const ImageTexts& texts, const std::string& end, const std::string& part) {
   for (const auto& [key, text] : texts)
@@ -58,7 +48,7 @@ TEST_CASE("every AOV is in the EXR, object and material ids as Cryptomatte") {
   CAPTURE(result.err);
   REQUIRE(result.status == 0);
   const AovImages aovs = read_aovs(folder / "a.exr");
-  CHECK(aovs.size() == 16);
+  CHECK(aovs.size() == 18);
   const auto id = [](const char* name) { return std::bit_cast<float>(id_bits(name)); };
   // Left of the edge at x = 0.05, in the pixel that it goes through, and on the ball.
   const Image &objects = aovs.at("crypto_object00"), &materials = aovs.at("crypto_material00");

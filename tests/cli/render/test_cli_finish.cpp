@@ -30,7 +30,9 @@ std::string text_of(const ImageTexts& texts, const std::string& name) {
 
 TEST_CASE("--denoise hands colours, albedo and normals to the library and takes its picture") {
   const CliFolder folder;
-  REQUIRE(render(folder, "plain.exr", {"--float", "--aov", "albedo", "--aov", "normal"}).status == 0);
+  REQUIRE(
+      render(folder, "plain.exr", {"--float", "--aov", "denoise_albedo", "--aov", "denoise_normal"}).status ==
+      0);
   REQUIRE(render(folder, "clean.exr", {"--float", "--denoise"}).status == 0);
   REQUIRE(render(folder, "worker.exr", {"--float", "--denoise", "--isolate"}).status == 0);
   const Image plain = read_image(folder / "plain.exr"), clean = read_image(folder / "clean.exr");
@@ -39,8 +41,8 @@ TEST_CASE("--denoise hands colours, albedo and normals to the library and takes 
   CHECK(read_image(folder / "worker.exr").data == clean.data);
   for (std::size_t i = 0; i < clean.data.size() / 4; ++i) {
     for (std::size_t c = 0; c < 3; ++c)
-      REQUIRE(clean.data[4 * i + c] ==
-              plain.data[4 * i + c] + aovs.at("albedo").data[3 * i + c] + aovs.at("normal").data[3 * i + c]);
+      REQUIRE(clean.data[4 * i + c] == plain.data[4 * i + c] + aovs.at("denoise_albedo").data[3 * i + c] +
+                                           aovs.at("denoise_normal").data[3 * i + c]);
     REQUIRE(clean.data[4 * i + 3] == plain.data[4 * i + 3]);
   }
 }
