@@ -92,6 +92,7 @@ void add_picture(Arguments* app, PictureOptions& picture) {
   value(app, "--exposure", "STOPS", picture.exposure, "brighten .png and .jpg by so many stops");
   value(app, "--white-balance", "KELVIN", picture.white_balance,
         "the temperature of the light that is white in .png and .jpg");
+  app->add_flag("--no-dither", picture.no_dither, "round colours of .png and .jpg to the nearest of 8 bits");
 }
 
 void check_format(PictureOptions& picture) {

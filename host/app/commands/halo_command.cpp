@@ -161,7 +161,8 @@ int make_picture(const HaloOptions& options) {
   const TracedHalo traced = trace_halo_map(e, devices, options.quiet || options.json);
   const Image image = picture_of(options, e, traced.map, rows);
   const auto color = options.picture.full_floats ? ExrColor::full : ExrColor::half;
-  write_image(shown_in(options.picture.out, image, tone_map), options.picture.out, {}, color);
+  write_image(shown_in(options.picture.out, image, tone_map, !options.picture.no_dither), options.picture.out,
+              {}, color);
   report(options, e, traced, image);
   return exit_done;
 }

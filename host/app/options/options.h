@@ -17,6 +17,7 @@ struct PictureOptions {
   std::string format;                               // of image_formats(), for the standard output
   bool full_floats = false;                         // an EXR's colours as 32-bit floats
   std::string tone_curve, exposure, white_balance;  // as typed; empty: the scene's
+  bool no_dither = false;
 };
 
 struct RenderCommand : PictureOptions {

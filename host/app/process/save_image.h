@@ -21,14 +21,17 @@ struct Picture {
   bool full_floats = false;
   std::string format = "png";  // of image_formats(), where the path is "-"
   ToneMap tone_map = {};       // for formats of 8 bits
+  bool dither = true;          // for these, too
   ImageTexts texts = {};       // for formats that keep them
 };
 
 /// The channels that a file of this name keeps: 3, or 4 with coverage.
 inline int image_channels(const std::filesystem::path& path) { return drops_alpha(path) ? 3 : 4; }
 
-/// The image as a file of this name shows it.
-Image shown_in(const std::filesystem::path& path, Image image, const ToneMap& map);
+/// The image as a file of this name shows it. With `dither` 8 bits are rounded up or down by chance, in
+/// proportion to where a colour lies between two levels, so that means stay and gradients show no steps.
+/// Chance is a function of the pixel's place and the channel; what 8 bits hold already, stays.
+Image shown_in(const std::filesystem::path& path, Image image, const ToneMap& map, bool dither = true);
 
 /// Writes `path`; "-" is the standard output. When that fails the frame is kept as a checkpoint, or as an
 /// image in the folder for temporary files: IoError says what happened and where it is.

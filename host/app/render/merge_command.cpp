@@ -25,7 +25,15 @@ int merge_command(const MergeCommand& command) {
   const Image image = whole.film.develop(image_channels(format_name(command)));
   AovImages aovs;
   for (const std::string& name : whole.aovs) aovs[name] = whole.film.develop_aov(name);
-  save_image({image, aovs, whole.film, whole.key, {}, command.full_floats, command.format, tone_map},
+  save_image({image,
+              aovs,
+              whole.film,
+              whole.key,
+              {},
+              command.full_floats,
+              command.format,
+              tone_map,
+              !command.no_dither},
              command.out);
   fmt::print("{}: {}x{} from {} parts\n", command.out, image.width, image.height, command.parts.size());
   return exit_done;

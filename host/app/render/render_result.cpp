@@ -106,7 +106,7 @@ void summarise(const RenderCommand& command, const SceneDescription& scene, cons
 Image shown_image(const RenderCommand& command, const RenderResult& result) {
   Image image = result.image;
   if (command.denoise && (result.complete || result.time_limited))
-    Denoiser().denoise(image, result.aovs.at("albedo"), result.aovs.at("normal"));
+    Denoiser().denoise(image, result.aovs.at(feature_albedo), result.aovs.at(feature_normal));
   return image;
 }
 
@@ -148,10 +148,15 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
   ImageTexts texts = name_cryptomattes(aovs, names_of(scene.objects), names_of(scene.materials));
   if (command.metadata)
     for (auto& text : metadata(command, scene, result)) texts.push_back(std::move(text));
-  Picture picture{image,          aovs,
-                  result.film,    result.key,
-                  checkpoint,     command.full_floats,
-                  command.format, scene.image.tone_map,
+  Picture picture{image,
+                  aovs,
+                  result.film,
+                  result.key,
+                  checkpoint,
+                  command.full_floats,
+                  command.format,
+                  scene.image.tone_map,
+                  !command.no_dither,
                   texts};
   if (picture.key == 0) picture.key = hash_scene(flat);
   if (!command.part && !is_empty(result))
@@ -166,7 +171,8 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
 
 void write_so_far(const RenderCommand& command, const ToneMap& tone_map, const Film& film) {
   try {
-    write_image(shown_in(command.out, film.develop(image_channels(command.out)), tone_map), command.out, {},
+    const Image image = film.develop(image_channels(command.out));
+    write_image(shown_in(command.out, image, tone_map, !command.no_dither), command.out, {},
                 command.full_floats ? ExrColor::full : ExrColor::half);
   } catch (const IoError&) {
     // The disk may have room again when the whole picture is there.
