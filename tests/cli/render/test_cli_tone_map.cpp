@@ -39,10 +39,12 @@ TEST_CASE("8 bits of .png are dithered: means stay, exact colours too, the same 
     // Nothing but the background, a colour that lies at `level` of the 255 steps from black to white.
     const std::string scene =
         folder
-            .write("flat.json", R"({"camera": {"position": [0, 0, 0], "target": [0, 0, -1]},
+            .write(
+                "flat.json",
+                R"({"camera": {"position": [0, 0, 0], "target": [0, 0, -1]},
               "image": {"width": 32, "height": 32, "background": )" +
-                                    fmt::format("[{0}, {0}, {0}]", linear_from_srgb(float(level / 255))) +
-                                    R"(}, "objects": [{"type": "sphere", "center": [0, 0, 9]}]})")
+                    fmt::format("[{0}, {0}, {0}]", linear_from_srgb(float(level / 255))) +
+                    R"(}, "materials": {"m": {}}, "objects": [{"type": "sphere", "center": [0, 0, 9], "material": "m"}]})")
             .string();
     more.insert(more.begin(), {"render", scene, "-o", folder.file(out), "--device", "0:0"});
     const CommandResult result = run_sundog(more);

@@ -14,8 +14,9 @@ namespace {
 
 /// The warnings of a scene with these sections.
 std::string warnings_of(const std::string& sections) {
-  const nlohmann::json document =
-      parse_json(R"({"objects": [{"type": "sphere"}], )" + sections + "}", "test.json");
+  const nlohmann::json document = parse_json(
+      R"({"materials": {"m": {}}, "objects": [{"type": "sphere", "material": "m"}], )" + sections + "}",
+      "test.json");
   const JsonContext context{"test.json"};
   std::string all;
   for (const std::string& warning : read_scene(JsonValue(document, context)).warnings) all += warning + "\n";
