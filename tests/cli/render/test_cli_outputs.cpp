@@ -66,8 +66,11 @@ TEST_CASE("no output of render takes the place of a file that the scene names, o
   CHECK_FALSE(fs::exists(out));
 }
 
-TEST_CASE("a texture that nothing uses is kept as well") {
+TEST_CASE("textures that nothing uses are kept as well, those of a glTF too") {
   const ReadingFolder folder;
+  std::string model = read_file(folder / "shape.gltf");
+  folder.write("shape.gltf", model.insert(1, R"("images": [{"uri": "mapped.png"}], )"));
+  check_refused(folder, {"render", folder.file("shape.gltf"), "-o", folder.file("mapped.png")}, "mapped.png");
   std::string text = read_file(folder.scene);
   write_file(folder.scene, text.replace(text.find(R"("color": "t")"), 12, R"("ior": 1)"));
   check_refused(folder, {"render", folder.scene, "-o", folder.file("texture.png")}, "texture.png");

@@ -125,7 +125,8 @@ TEST_CASE("an EXR header that asks for more memory than the file can use is refu
   CHECK_THAT(exr_refusal(attribute("tiles", "tiledesc", number(1 << 20) + number(1 << 20) + "x")),
              ContainsSubstring("tiles of 1099511627776 pixels"));
   std::string channels;
-  for (int i = 0; i < 2000; ++i) channels += "c" + std::to_string(i) + '\0' + number(2) + number(0, 12);
+  for (int i = 0; i < 2000; ++i)
+    channels += "c" + std::to_string(i) + '\0' + number(2) + std::string(12, '\0');
   channels += '\0';
   std::string wide = std::string("\x76\x2f\x31\x01\x02\0\0\0", 8);
   wide += attribute("channels", "chlist", channels) + attribute("compression", "compression", "\x09");

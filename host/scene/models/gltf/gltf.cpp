@@ -310,6 +310,7 @@ Model load_gltf(const Source& source, const ModelOptions& options) {
   const GltfContainer container = open_container(source);
   const nlohmann::json json = parse(source, container.json);
   const JsonAt root(source, json, "");
+  note_files(source, root);
   const std::string version = root.member("asset").member("version").text();
   if (!version.starts_with("2."))
     fail(source, "/asset/version", fmt::format("glTF {}; 2.x is read", version));

@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "base/error.h"
+#include "base/input.h"
 #include "scene/inside.h"
 #include "scene/models/beside.h"
 
@@ -133,6 +134,33 @@ GltfContainer open_container(const Source& source) {
   if (container.json.starts_with(byte_order_mark))
     fail(source, "", "glTF's JSON must not begin with a byte order mark");
   return container;
+}
+
+namespace {
+
+/// Calls step(); whoever uses what is wrong says so.
+template <class Step>
+void leniently(const Step& step) {
+  try {
+    step();
+  } catch (const SceneError&) {
+  }
+}
+
+void note_uri(const Source& source, const JsonAt& named) {
+  const auto uri = named.find("uri");
+  if (!uri) return;
+  const std::string text = uri->text();
+  if (scheme_length(text, *uri) == 0) note_file(source.path.parent_path() / fs::path(decode_percent(text)));
+}
+
+}  // namespace
+
+void note_files(const Source& source, const JsonAt& root) {
+  for (const char* key : {"images", "buffers"})
+    leniently([&] {
+      for (const JsonAt& at : root.list(key)) leniently([&] { note_uri(source, at); });
+    });
 }
 
 std::optional<std::string> read_buffer_uri(const Source& source, const JsonAt& uri) {

@@ -16,6 +16,9 @@ struct GltfContainer {
 /// A .glb's chunks, or the whole of a .gltf as JSON. Views into `source`.
 GltfContainer open_container(const Source& source);
 
+/// Notes the files that images and buffers name, used or not (note_file()).
+void note_files(const Source& source, const JsonAt& root);
+
 /// The bytes of a buffer's URI: a data URI, or a file beside `source`. nullopt for a URI with a scheme, which
 /// is not fetched. Throws SceneError at `uri`.
 std::optional<std::string> read_buffer_uri(const Source& source, const JsonAt& uri);
