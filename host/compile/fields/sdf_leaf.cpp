@@ -125,21 +125,21 @@ void LeafEmitter::iterated() {
                      {distance, gradient[0], gradient[1], gradient[2], point, plane_, axis_, count}));
 }
 
-LeafCode leaf_code(const FormulaField& described) {
-  check(described);
-  FormulaField field = described;
-  field.bailout = held_bailout(described);
+LeafCode leaf_code(const FormulaField& field) {
+  check(field);
+  FormulaField held = field;
+  held.bailout = held_bailout(field);
   LeafCode code;
   using Variant = LeafEmitter::Variant;
   for (const Variant variant : {Variant::distance, Variant::two_sided, Variant::sample})
     code.functions[static_cast<std::size_t>(variant)] =
-        std::make_shared<const FieldCode>(LeafEmitter(field, variant).function());
-  const double inside = std::min(field.bailout, field.steps.back().definition.inside_radius);
+        std::make_shared<const FieldCode>(LeafEmitter(held, variant).function());
+  const double inside = std::min(held.bailout, field.steps.back().definition.inside_radius);
   const FormulaDefinition& last = field.steps.back().definition;
   const double level = last.estimate == EscapeEstimate::logarithmic
-                           ? 2 * std::log(std::max(field.bailout, 1e-3))
-                           : field.bailout;
-  for (const double value : {double(field.iterations), field.bailout * field.bailout, inside, field.safety,
+                           ? 2 * std::log(std::max(held.bailout, 1e-3))
+                           : held.bailout;
+  for (const double value : {double(field.iterations), held.bailout * held.bailout, inside, field.safety,
                              last.inside_safety, level})
     code.parameters.push_back(value);
   for (const FormulaStep& step : field.steps)
