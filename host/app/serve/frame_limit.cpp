@@ -11,7 +11,7 @@ constexpr int most_shown_edge = 65500;  // of a JPEG
 
 /// Of a session's frame: sums and samples of its pixels, the picture, the one on its way to the pages.
 /// Measured from 2048x2048 to 4096x4096.
-constexpr std::uint64_t bytes_a_pixel = 130;
+constexpr std::uint64_t bytes_a_shown_pixel = 130;
 
 double gigabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e9; }
 
@@ -27,7 +27,7 @@ void check_frame(const SceneDescription& scene, std::int64_t shown, std::optiona
     refuse(width > most_shown_edge, fmt::format("the viewer shows at most {} pixels an edge, found {}",
                                                 most_shown_edge, std::max(width, height)));
   const std::int64_t pixels = std::int64_t{width} * height;
-  const std::uint64_t bytes = bytes_a_pixel * static_cast<std::uint64_t>(pixels);
+  const std::uint64_t bytes = bytes_a_shown_pixel * static_cast<std::uint64_t>(pixels);
   if (pixels > shown && available && bytes > *available / 4)
     refuse(
         width >= height,
