@@ -46,7 +46,7 @@ All commands: {}.
 /// The options of `render` as typed, before they are checked.
 struct TypedRender {
   RenderCommand command;
-  std::string size, samples, max_depth, integrator, filter, filter_radius, adaptive, time_limit, noise,
+  std::string size, samples, seed, max_depth, integrator, filter, filter_radius, adaptive, time_limit, noise,
       write_every, work_group = "auto", split = "dynamic", part, tile, frames;
   bool subsample = false, caustics = false;
 };
@@ -57,8 +57,11 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
   if (!typed.size.empty()) all = parse_image_size(typed.size);
   if (!typed.samples.empty())
     all.push_back(fmt::format("/render/samples={}", parse_number("--samples", typed.samples, 1, 65536)));
+  if (!typed.seed.empty())
+    all.push_back(fmt::format("/render/seed={}", parse_number("--seed", typed.seed, 0, 2147483647)));
   if (!typed.max_depth.empty())
-    all.push_back(fmt::format("/render/max_depth={}", parse_number("--max-depth", typed.max_depth, 1, 64)));
+    all.push_back(
+        fmt::format("/render/max_depth={}", parse_number("--max-depth", typed.max_depth, 1, 65536)));
   if (typed.caustics && !typed.integrator.empty() && !traces_paths(typed.integrator))
     throw UsageError(fmt::format("--caustics: photons are for --integrator path, not {}", typed.integrator));
   if (typed.caustics) all.insert(all.end(), {"/render/integrator=\"path\"", "/render/caustics=true"});
@@ -143,7 +146,9 @@ void add_render(Arguments& root, Command& chosen) {
   value(app, "--size", "WxH", typed->size, "width and height in pixels");
   value(app, "--samples", "N", typed->samples, "samples a pixel");
   value(app, "--max-depth", "N", typed->max_depth,
-        "greatest depth of the ray tree; 1: the camera's rays alone");
+        "greatest depth of the ray tree; 1: the camera's rays alone. Without it paths end by chance");
+  value(app, "--seed", "N", typed->seed,
+        "other random numbers: pictures of several seeds have a mean with less noise");
   value(app, "--integrator", "NAME", typed->integrator,
         fmt::format("how light is followed: {}", fmt::join(integrator_names, ", ")));
   app->add_flag("--caustics", typed->caustics,

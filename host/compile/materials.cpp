@@ -173,6 +173,7 @@ u32 add_materials(const SceneDescription& scene, CompiledScene& out) {
       packed.flags |= MATERIAL_SHADOW_OPAQUE;
     else if (traces_paths(scene.render.integrator) && passes_layers(material))
       out.features.layer_filters = true;
+    out.features.checker |= material.checker;
     out.materials.push_back(packed);
   }
   if (!lacks_materials(scene)) return NO_MATERIAL;

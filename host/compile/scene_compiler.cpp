@@ -67,7 +67,7 @@ void set_view(const SceneDescription& scene, CompiledScene& out) {
   out.features.sampler = sampler_of(scene.render);
   out.filter = filter_table(scene.render);
   out.features.filter = !out.filter.empty();
-  out.info.roulette_depth = static_cast<u32>(scene.render.roulette);
+  out.info.roulette_depth = static_cast<u32>(scene.render.roulette == 65 ? 65537 : scene.render.roulette);
   out.info.light_strategy = scene.render.light_strategy;
   if (traces_paths(scene.render.integrator))
     for (const Guide& guide : scene.render.caustics ? std::vector<Guide>{} : scene.render.guides)

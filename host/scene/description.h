@@ -82,7 +82,7 @@ struct Guide {
 enum class Filter { box, tent, gaussian, blackman_harris, mitchell };
 
 struct RenderSettings {
-  int max_depth = 8;  // 1..64; 1 = the camera's rays alone
+  int max_depth = 8;  // 1..64, with paths 1..65536; 1 = the camera's rays alone
   int samples = 1;    // per pixel, 1..65536; 1 = the pixel's centre
   int light_samples =
       0;                 // rays to lights with an extent that each surface chooses, 0..1024; 0: to each light
@@ -95,6 +95,7 @@ struct RenderSettings {
   int photons = 65536;                // sent out for each map of them, 64..4194304
   double photon_radius = 0;           // of the first map; 0: chosen by the scene
   u32 sampler = SAMPLER_AUTO;         // a SAMPLER_* constant
+  int seed = 0;                       // of the samples; another one has other noise
   Filter filter = Filter::box;
   double filter_radius = 0;  // in pixels; 0: the filter's own
   Sampling sampling;

@@ -12,12 +12,16 @@ struct Integrator {
   const char*
       kernel;  // of that file; it takes the scene, the camera's media, film, weights, counters and a Launch
   bool needs_camera_media;  // the media that the camera is in
-  unsigned most_run;  // items that a work-item of many pixels can take, so that no lane waits for others
+  unsigned most_run;      // items that a work-item of many pixels can take, so that no lane waits for others
+  int depth, most_depth;  // without max_depth; the greatest
 };
 
+/// Paths end by chance alone where a scene has no max_depth, but for this last cap.
+inline constexpr int depth_cap = 1024;
+
 inline constexpr std::array integrators{
-    Integrator{"whitted", "entry/render_whitted.cl", "render_whitted", true, 1},
-    Integrator{"path", "entry/render_path.cl", "render_path", true, 16}};
+    Integrator{"whitted", "entry/render_whitted.cl", "render_whitted", true, 1, 8, 64},
+    Integrator{"path", "entry/render_path.cl", "render_path", true, 16, depth_cap, 65536}};
 
 /// The names, in the table's order.
 inline constexpr auto integrator_names = [] {

@@ -156,7 +156,7 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
   see_surfaces(scene, &rays, lanes, true, &met, counts);
   const MASK hit = lanes & hit_anything(&met.hit);
   interact(scene, rays.o, rays.d, &met.hit, &met.face, hit, &s);
-  set_footprints(&rays, met.hit.t, &s);
+  set_footprints(scene, &rays, met.hit.t, &s);
   note_depth(&met, &s);
   add_parallax(scene, rays.d, hit, &s);
   add_relief(scene, rays.d, hit, &s);

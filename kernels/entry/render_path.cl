@@ -23,11 +23,12 @@ typedef struct LaneWork {
   float sign[BATCH];  // what the sample counts that the lane is at
 } LaneWork;
 
-static inline LaneWork begin_work(const Launch* launch, u32 first, u32 end) {
+static inline LaneWork begin_work(const Scene* scene, u32 first, u32 end) {
   LaneWork work;
   work.untaken = first * BATCH;
   work.end = end * BATCH;
   work.at.x = work.at.y = work.at.sample = work.left = NO_LANES;
+  work.at.seed = scene->info->seed;
   work.place = (MASK)(NO_PLACE);
   return work;
 }
@@ -78,10 +79,9 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
   u32 counts[ALL_COUNTS];
   for (u32 i = 0; i < ALL_COUNTS; ++i) counts[i] = 0;
   for (u32 item = first; item < end; ++item) begin_film(launch, item, film, weights, ray_counts);
-  LaneWork work = begin_work(launch, first, end);
-  const LaneSamples nowhere = {NO_LANES, NO_LANES, NO_LANES};
+  LaneWork work = begin_work(scene, first, end);
   const Rays none = camera_rays(scene->info, (REAL)(0.0f), (REAL)(0.0f));
-  Walks walks = start_walks(scene, &nowhere, NO_LANES);
+  Walks walks = start_walks(scene, &work.at, NO_LANES);
   SceneRays rays = scene_rays(&none, around);
   MASK lanes = NO_LANES;
   for (;;) {

@@ -15,6 +15,7 @@ static inline MASK start_rays(const Scene* scene, const Launch* launch, __global
   tile->sample = sample;
   begun.lanes = item_pixels(launch, pixels, item, &begun.at.x, &begun.at.y);
   begun.at.sample = (MASK)((int)sample) & begun.lanes;
+  begun.at.seed = scene->info->seed;
   set_tile_pixels(tile, &begun.at);
   *rays = begun_rays(scene, &begun, scene->info->samples, around, signs);
   return begun.lanes;

@@ -9,6 +9,7 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
   u32 counts[COUNTERS];
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
   LaneSamples at;
+  at.seed = scene->info->seed;
   MASK lanes = NO_LANES;
   for (u32 i = 0; i < BATCH; ++i) {
     const u32 number = first + i;

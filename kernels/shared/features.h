@@ -23,6 +23,7 @@
   FEATURE(bool, HAS_OCCLUSION, occlusion)           /* some field darkens ambient light in its crevices */ \
   FEATURE(bool, HAS_SOFT_SHADOWS, soft_shadows)     /* some field's shadow has a penumbra */            \
   FEATURE(bool, SDF_TWO_SIDED, two_sided_fields)    /* some field transmits: rays may be inside it */   \
+  FEATURE(bool, HAS_CHECKER, checker)               /* some material has two colours in a checkerboard */ \
   FEATURE(bool, HAS_UV, surface_coordinates)        /* some material asks for surface coordinates */    \
   FEATURE(bool, HAS_FILTER, filter)                 /* samples lie elsewhere than evenly in their pixels */ \
   FEATURE(u32, SAMPLER, sampler)                    /* a SAMPLER_* constant */                          \
@@ -38,6 +39,7 @@
   FEATURE(bool, HAS_LAYER_MAPS, layer_maps)         /* some has metalness or roughness from a texture */ \
   FEATURE(bool, HAS_COAT_MAPS, coat_maps)           /* some has the weight of its coat from a texture */ \
   FEATURE(bool, HAS_SPECULAR_MAPS, specular_maps)   /* some has what it reflects from a texture */      \
+  FEATURE(bool, HAS_FUZZ_MAPS, fuzz_maps)           /* some has the color of its fuzz from one */       \
   FEATURE(bool, HAS_LAYER_FILTERS, layer_filters)   /* paths: shadow rays go through fuzz or coats */   \
   FEATURE(bool, HAS_LENS, lens)                     /* the camera has a lens */                         \
   FEATURE(bool, HAS_CAMERA_MOTION, camera_motion)   /* the camera moves while the shutter is open */    \

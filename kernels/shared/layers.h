@@ -75,7 +75,7 @@ typedef struct Layers {
   // For a texture of the coat's weight, without which coat_grid is NO_LAYER_GRID:
   u32 coat_grid;  // numbers from one step's grid by roughness to the next's; 0: one grid, by the weight
   float index, index_scale;  // the base's index, and the root of the factor on what that reflects straight on
-  u32 pad;
+  float coat_bends;          // how much the coat's index is above 1, where it bends light for the base
 } Layers;
 SUNDOG_SHARED_SIZE(Layers, 176)
 

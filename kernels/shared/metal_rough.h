@@ -3,8 +3,10 @@
 // on:
 //   mirror share  k = m (1 - r)^2: only a smooth metal is a mirror
 //   reflection    b k
-//   diffuse       b (1 - k), and a tenth of it ambient
-//   highlight     f (1 - m) + b m, by Blinn with the exponent 2 / r^4 - 2 (Karis 2013: alpha = r^2)
+//   highlight     s = f (1 - m) + b m, by Blinn with the exponent 2 / r^4 - 2 (Karis 2013: alpha = r^2). It
+//                 returns s h of the light that comes from everywhere, with an h of at most (1 - k) / 2: a
+//                 rough one is weaker
+//   diffuse       b (1 - k - h (m + f (1 - m))), which the highlight leaves, and a tenth of it ambient
 // The device has metalness and roughness from textures, the host has them as numbers.
 #ifndef SUNDOG_SHARED_METAL_ROUGH_H
 #define SUNDOG_SHARED_METAL_ROUGH_H
@@ -13,11 +15,14 @@
 #if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
 #define SUNDOG_METAL_REAL REAL
 #define SUNDOG_METAL_CLAMP(x, low, high) real_clamp(x, (REAL)(low), (REAL)(high))
+#define SUNDOG_METAL_EXP(x) real_exp(x)
 #define SUNDOG_METAL_INLINE static inline
 #else
 #include <algorithm>
+#include <cmath>
 #define SUNDOG_METAL_REAL double
 #define SUNDOG_METAL_CLAMP(x, low, high) std::clamp<double>(x, double(low), double(high))
+#define SUNDOG_METAL_EXP(x) std::exp(x)
 #define SUNDOG_METAL_INLINE inline
 namespace sundog {
 #endif
@@ -30,6 +35,16 @@ SUNDOG_METAL_INLINE SUNDOG_METAL_REAL metal_mirror(SUNDOG_METAL_REAL metalness, 
 SUNDOG_METAL_INLINE SUNDOG_METAL_REAL rough_exponent(SUNDOG_METAL_REAL roughness) {
   const SUNDOG_METAL_REAL square = roughness * roughness;
   return SUNDOG_METAL_CLAMP(2.0f / SUNDOG_METAL_CLAMP(square * square, 1e-9f, 1.0f) - 2.0f, 1.0f, 1e5f);
+}
+
+/// The light of a white surrounding that max(n.h, 0)^e returns, seen along n: from elsewhere it is less.
+SUNDOG_METAL_INLINE SUNDOG_METAL_REAL highlight_energy(SUNDOG_METAL_REAL e) {
+  return 8.0f * (1.0f - SUNDOG_METAL_EXP(-0.34657359f * (e + 2.0f))) / (e + 2.0f);
+}
+
+/// h of the above. A mirror keeps the small highlight that it has.
+SUNDOG_METAL_INLINE SUNDOG_METAL_REAL metal_highlight(SUNDOG_METAL_REAL energy, SUNDOG_METAL_REAL mirror) {
+  return SUNDOG_METAL_CLAMP(0.5f * (1.002f - mirror), 0.0f, energy);
 }
 
 #if !defined(__OPENCL_VERSION__) && !defined(__OPENCL_C_VERSION__)

@@ -83,7 +83,7 @@ SUNDOG_SHARED_SIZE(Medium, 48)
 // The part of a light that is worth a ray to it, of SceneInfo.cutoff.
 #define LEAST_OF_LIGHT 0x1p-12f
 
-// 384 bytes: the scene's constants. Positions in all tables count from a point of the world, `origin` plus
+// 400 bytes: the scene's constants. Positions in all tables count from a point of the world, `origin` plus
 // `origin_rest`, near what the camera looks at (host/compile/local_origin.h). The pixel (x, y), y down,
 // sample offset (a, b) in [0, 1)^2, looks along camera_corner + (x + a) camera_dx + (y + b) camera_dy, which
 // has length 1 along camera_forward.
@@ -126,8 +126,10 @@ typedef struct SceneInfo {
   // Whitted's integrator:
   u32 shafts;  // 1: surfaces ask by shafts what stands before lights with an extent
                // (lib/light/direct_light.cl)
+  u32 seed;    // added to the dimensions of samples, a multiple of four; 0: the default
+  u32 pad0, pad1, pad2;
 } SceneInfo;
-SUNDOG_SHARED_SIZE(SceneInfo, 384)
+SUNDOG_SHARED_SIZE(SceneInfo, 400)
 
 // Ray counts of a launch, added with integer atomics (any order gives the same sum).
 #define COUNT_PRIMARY 0
@@ -148,7 +150,8 @@ SUNDOG_SHARED_SIZE(SceneInfo, 384)
 #define COUNT_MARCH_BUDGET 15  // marches not made because the sample's budget was used up
 #define COUNT_MARCH_LEFT 16    // no count: what the marches of a sample may still cost (lib/path/fields.cl)
 #define COUNT_FINISHED 17      // twice the camera rays of work-items that ended (lib/core/counters.cl)
-#define COUNTERS 18
+#define COUNT_CAMERA_DEPTH_LIMIT 18  // of those by max_depth the rays that go straight on from the camera
+#define COUNTERS 19
 // A launch counts in several blocks, whose sums are its counts: those of COUNTER_ITEMS work-items in a row go
 // to one, so that processors seldom write to the same cache line.
 #define COUNTER_BLOCKS 16

@@ -117,7 +117,8 @@ SUNDOG_SHARED_SIZE(TexelLevel, 16)
   SLOT(COAT, coat)               /* red: of the mirror or coat above all */      \
   SLOT(METALNESS, metalness)     /* of a layered material's base */              \
   SLOT(ROUGHNESS, roughness)                                                     \
-  SLOT(GLASS, glass) /* the share of its dielectric that transmits */
+  SLOT(GLASS, glass) /* the share of its dielectric that transmits */            \
+  SLOT(FUZZ, fuzz)   /* of the color of its fuzz */
 
 #define MAP_CONSTANT(constant, name) MAP_##constant,
 typedef enum MapSlot SUNDOG_ENUM_OF_U32 { MAP_SLOTS(MAP_CONSTANT) MAP_COUNT } MapSlot;
@@ -128,7 +129,7 @@ typedef enum MapSlot SUNDOG_ENUM_OF_U32 { MAP_SLOTS(MAP_CONSTANT) MAP_COUNT } Ma
 
 // 144 bytes: what a material has beside Material, which counts these from 1. Entry 0 is not used.
 typedef struct MaterialMaps {
-  u32 slot[16];  // by MAP_*: the first node of a texture, or NO_TEXTURE
+  u32 slot[20];  // by MAP_*: the first node of a texture, or NO_TEXTURE
   float4 base;   // of a material by metalness and roughness: its colour; w = metalness
   float opacity;
   float roughness;

@@ -10,6 +10,7 @@
 #include "app/render/stray_exits.h"
 #include "render/device/tuning.h"
 #include "render/film/sampling_report.h"
+#include "scene/integrators.h"
 
 namespace sundog {
 namespace {
@@ -87,6 +88,7 @@ json counters_json(const RayCounts& counts) {
   return {{"primary_hit", counts[COUNT_PRIMARY_HIT]},
           {"cut_off", counts[COUNT_CUT_OFF]},
           {"depth_limit", counts[COUNT_DEPTH_LIMIT]},
+          {"camera_depth_limit", counts[COUNT_CAMERA_DEPTH_LIMIT]},
           {"ray_stack_overflow", counts[COUNT_RAY_STACK_OVERFLOW]},
           {"media_stack_overflow", counts[COUNT_MEDIA_STACK_OVERFLOW]},
           {"non_finite", counts[COUNT_NON_FINITE]},
@@ -160,8 +162,14 @@ std::vector<std::string> losses(const RayCounts& counts, const SceneDescription&
       {COUNT_MARCH_BUDGET,
        "marches through a field were not made because the pixels had cost too much: lower its iterations, "
        "step_limit or max_depth"},
+      {COUNT_CAMERA_DEPTH_LIMIT,
+       "camera rays went straight through more surfaces than max_depth allows and are dark behind them: "
+       "raise "
+       "max_depth"},
       {COUNT_NON_FINITE, "samples were dropped because they were not finite"}};
   std::vector<std::string> sentences;
+  if (const std::uint64_t deep = counts[COUNT_DEPTH_LIMIT]; deep > 0 && scene.render.max_depth >= depth_cap)
+    sentences.push_back(fmt::format("{} paths were ended at max_depth, {}", deep, scene.render.max_depth));
   for (const Loss& kind : kinds)
     if (const std::uint64_t count = counts[static_cast<std::size_t>(kind.counter)])
       sentences.push_back(fmt::format("{} {}", count, kind.what));

@@ -19,9 +19,30 @@ vec3 color_of(const Vertex& v) { return {v.r, v.g, v.b}; }
 
 float greatest_size(const vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-bool odd_cell(const vec3& p, float frequency) {
-  const vec3 cell = glm::floor(p * frequency + 0x1p-17f);
-  return std::fmod(cell.x + cell.y + cell.z, 2.0f) != 0;
+/// The mean over [x - w / 2, x + w / 2] of +1 where floor(x) is even and -1 where it is odd.
+float square_wave(float x, float w) {
+  const auto fraction = [](float y) { return y - std::floor(y); };
+  if (!(w > 1e-3f)) return fraction(0.5f * x) >= 0.5f ? -1.0f : 1.0f;
+  const float from = 1 - std::abs(1 - 2 * fraction(0.5f * (x - 0.5f * w))),
+              to = 1 - std::abs(1 - 2 * fraction(0.5f * (x + 0.5f * w)));
+  return (to - from) / w;
+}
+
+/// How much a checker shows of its odd cells where a ray has met it after the way t.
+float odd_part(const CompiledScene& scene, const Ray& ray, float t, const Instance& instance,
+               const Surface& s) {
+  const SceneInfo& info = scene.info;
+  const float spread =
+      glm::length(rgb(info.camera_dx)) * std::max(1 / std::sqrt(static_cast<float>(info.samples)), 0.125f);
+  const float cosine = std::max(std::abs(glm::dot(s.ng, ray.d)), 0.01f);
+  const float frequency = s.material->checker_diffuse.w;
+  const vec3 scale = rgb(instance.pattern_scale), q = object_point(instance, s.p) * scale * frequency;
+  const vec3 n = glm::normalize(object_vector(instance, s.ng) * scale);
+  const vec3 w = glm::sqrt(glm::max(1.0f - n * n, vec3(0))) *
+                 (t * spread / cosine * frequency * instance.pattern_scale.w);
+  constexpr float off = 0x1p-17f;
+  return 0.5f -
+         0.5f * square_wave(q.x + off, w.x) * square_wave(q.y + off, w.y) * square_wave(q.z + off, w.z);
 }
 
 /// A mesh's smooth normal, bent no further than the silhouette.
@@ -86,11 +107,9 @@ Surface make_surface(const CompiledScene& scene, const Ray& ray, const Hit& hit)
   vec3 color(1);
   if (instance.shape == SHAPE_MESH) shade_mesh(scene, ray, hit, entering, s, color);
   const u32 flags = s.material->flags;
-  const bool odd =
-      (flags & MATERIAL_CHECKER) &&
-      odd_cell(object_point(instance, s.p) * rgb(instance.pattern_scale), s.material->checker_diffuse.w);
-  s.ambient = rgb(odd ? s.material->checker_ambient : s.material->ambient);
-  s.diffuse = rgb(odd ? s.material->checker_diffuse : s.material->diffuse);
+  const float odd = flags & MATERIAL_CHECKER ? odd_part(scene, ray, hit.t, instance, s) : 0.0f;
+  s.ambient = glm::mix(rgb(s.material->ambient), rgb(s.material->checker_ambient), odd);
+  s.diffuse = glm::mix(rgb(s.material->diffuse), rgb(s.material->checker_diffuse), odd);
   if (flags & MATERIAL_VERTEX_COLOR) s.ambient *= color, s.diffuse *= color;
   return s;
 }

@@ -25,7 +25,9 @@ double weighted_index(double index, double weight) {
 }
 
 /// The index above the base, below a coat of this weight.
-double index_above(const OpenPbr& v, double coat_weight) { return 1 + coat_weight * (v.coat_ior - 1); }
+double index_above(const OpenPbr& v, double coat_weight) {
+  return v.coat_bends ? 1 + coat_weight * (v.coat_ior - 1) : 1;
+}
 
 /// The base's index over that, or 1 over it where it is less.
 double base_eta(const OpenPbr& v, double coat_weight) {
@@ -35,6 +37,7 @@ double base_eta(const OpenPbr& v, double coat_weight) {
 
 /// A coat's facets bend the view of the base's: it is as rough as both together.
 double roughened(const OpenPbr& v, double coat_weight) {
+  if (!v.coat_bends) return v.specular_roughness;
   const double both =
       std::pow(std::min(1.0, std::pow(v.specular_roughness, 4) + 2 * std::pow(v.coat_roughness, 4)), 0.25);
   return std::lerp(v.specular_roughness, both, coat_weight);
@@ -149,7 +152,8 @@ void set_numbers(const OpenPbr& v, Layers& to) {
   to.inner_smooth = float(inner_reflectance(v.coat_ior, 0));
   to.inner_matte = float(inner_reflectance(v.coat_ior, 1));
   to.roughness = float(v.specular_roughness);
-  to.haze = float(2 * std::pow(v.coat_roughness, 4));
+  to.haze = v.coat_bends ? float(2 * std::pow(v.coat_roughness, 4)) : 0;
+  to.coat_bends = v.coat_bends ? float(v.coat_ior - 1) : 0;
   to.stretch = float(2 * stretched.x);
   to.narrowed = float(1 - v.specular_roughness_anisotropy);
   to.index = float(v.specular_ior);
@@ -233,6 +237,7 @@ void add_layers(const SceneDescription& scene, CompiledScene& out) {
     const bool coat = maps_coat(*material.layers, textures);
     out.features.coat_maps |= coat;
     out.features.specular_maps |= textures.specular >= 0;
+    out.features.fuzz_maps |= textures.fuzz >= 0;
     out.features.layer_maps |=
         coat || std::max({textures.metalness, textures.roughness, textures.glass}) >= 0;
     if (std::max(material.layers->specular_roughness_anisotropy, material.layers->coat_roughness_anisotropy) >

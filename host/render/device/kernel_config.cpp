@@ -77,9 +77,10 @@ bool has_no_use(const std::string& definition, const KernelDefines& defines) {
 #undef SUNDOG_SOLID_DEFINITION
   };
   static const std::set<std::string> others{
-      "HAS_CAMERA_MOTION", "HAS_COAT_MAPS",     "HAS_LAYERS",      "HAS_LAYER_FILTERS", "HAS_LAYER_MAPS",
-      "HAS_MAPS",          "HAS_MESH",          "HAS_PARALLAX",    "HAS_RELIEF",        "HAS_ROUGH_GLASS",
-      "HAS_SDF",           "HAS_SPECULAR_MAPS", "HAS_TEXEL_PAGES", "HAS_THIN_WALLS",    "HAS_UV"};
+      "HAS_CAMERA_MOTION", "HAS_CHECKER",     "HAS_COAT_MAPS", "HAS_FUZZ_MAPS",     "HAS_LAYERS",
+      "HAS_LAYER_FILTERS", "HAS_LAYER_MAPS",  "HAS_MAPS",      "HAS_MESH",          "HAS_PARALLAX",
+      "HAS_RELIEF",        "HAS_ROUGH_GLASS", "HAS_SDF",       "HAS_SPECULAR_MAPS", "HAS_TEXEL_PAGES",
+      "HAS_THIN_WALLS",    "HAS_UV"};
   return solids.contains(definition) || others.contains(definition) || harmless(definition, defines);
 }
 

@@ -29,6 +29,7 @@ struct OpenPbr {
   double coat_roughness = 0;
   double coat_roughness_anisotropy = 0;
   double coat_ior = 1.6;
+  bool coat_bends = true;  // light below it: the base's index and roughness are those seen through the coat
   double coat_darkening = 1;  // how much of what inner reflections of the coat take from the base
   double fuzz_weight = 0;
   glm::dvec3 fuzz_color{1};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/limits.h"
@@ -205,11 +206,12 @@ RenderSettings read_render(const JsonValue& value) {
                                          NamedValue<Tracer>{"compact", Tracer::compact}};
   return value.object("render", [](JsonObject& object) {
     RenderSettings render;
-    render.max_depth = object.integer("max_depth", render.max_depth, 1, 64);
     render.samples = object.integer("samples", render.samples, 1, 65536);
     render.light_samples = object.integer("light_samples", render.light_samples, 0, 1024);
     render.cutoff = object.number("cutoff", render.cutoff, zero_to_one);
     render.integrator = object.choice("integrator", render.integrator, integrator_names);
+    const Integrator& integrator = *find_integrator(render.integrator);
+    render.max_depth = object.integer("max_depth", integrator.depth, 1, integrator.most_depth);
     if (const auto path = object.find("path"))
       path->object("path", [&](JsonObject& inner) {
         read_path(inner, render);
@@ -217,6 +219,7 @@ RenderSettings read_render(const JsonValue& value) {
       });
     render.caustics = object.boolean("caustics", render.caustics);
     render.sampler = object.choose("sampler", render.sampler, samplers);
+    render.seed = object.integer("seed", render.seed, 0, std::numeric_limits<int>::max());
     read_filter(object, render);
     read_sampling(object, render);
     render.tracer = object.choose("tracer", render.tracer, tracers);

@@ -28,9 +28,9 @@ static inline float2 grid_cell(u32 sample, u32 samples, float2 in_cell) {
 }
 
 // Where the samplers with a grid put a camera sample in its pixel, in [0, 1) each way.
-static inline float2 place_in_grid(uint2 pixel, u32 sample, u32 samples) {
+static inline float2 place_in_grid(uint2 pixel, u32 sample, u32 samples, u32 frame_seed) {
   if (SAMPLER == SAMPLER_REGULAR) return grid_cell(sample, samples, (float2)(0.5f));
-  const u32 seed = hash_pixel(pixel.x, pixel.y, DIMENSION_PIXEL);
+  const u32 seed = hash_pixel(pixel.x, pixel.y, DIMENSION_PIXEL + frame_seed);
   return grid_cell(
       sample, samples,
       (float2)(unit_float(hash_u32(seed + 2u * sample)), unit_float(hash_u32(seed + 2u * sample + 1u))));

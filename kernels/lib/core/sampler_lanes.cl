@@ -72,9 +72,10 @@ static inline REAL blue_noise_lanes(LANE_U32 place, LANE_U32 dimension) {
   return unit_lanes(reversed_lanes(owen_lanes(reversed_lanes(place), hash_lanes(dimension + 0x9e3779b9u))));
 }
 
-// The pixel and the sample of each lane.
+// The pixel and the sample of each lane, and the frame's SceneInfo.seed.
 typedef struct LaneSamples {
   MASK x, y, sample;
+  u32 seed;
 } LaneSamples;
 
 // Two numbers in [0, 1) for each lane, of the dimensions from `own` on, an even number, by the samplers whose
@@ -99,7 +100,7 @@ typedef struct FourNumbers {
 
 // Those of the four that `first` and `later` ask for: the first two and the two behind them; else one half.
 static inline FourNumbers chosen_lanes(const LaneSamples* at, MASK dimension, bool first, bool later) {
-  const LANE_U32 own = AS_LANE_U32(dimension);
+  const LANE_U32 own = AS_LANE_U32(dimension) + at->seed;
   const REAL half_way = (REAL)(0.5f);
   FourNumbers u = {half_way, half_way, half_way, half_way};
   if ((SAMPLER == SAMPLER_BLUE_NOISE) | (SAMPLER == SAMPLER_INDEPENDENT)) {
@@ -133,8 +134,8 @@ static inline void pair_lanes(const LaneSamples* at, MASK dimension, bool later,
 // Hammersley's set of `samples` points, shifted per pixel (Cranley and Patterson 1976).
 static inline void hammersley_lanes(const LaneSamples* at, u32 samples, REAL* u, REAL* v) {
   const LANE_U32 x = AS_LANE_U32(at->x), y = AS_LANE_U32(at->y);
-  const LANE_U32 shift_u = hash_lanes(x + hash_lanes(y + hash_u32(0u))),
-                 shift_v = hash_lanes(x + hash_lanes(y + hash_u32(1u)));
+  const LANE_U32 shift_u = hash_lanes(x + hash_lanes(y + hash_u32(at->seed))),
+                 shift_v = hash_lanes(x + hash_lanes(y + hash_u32(at->seed + 1u)));
   const REAL a = (TO_REAL(at->sample) + 0.5f) / (float)samples + unit_lanes(shift_u);
   *u = real_min(a - floor(a), (REAL)(0x1.fffffep-1f));
   *v = unit_lanes(reversed_lanes(AS_LANE_U32(at->sample)) + shift_v);
@@ -151,7 +152,7 @@ static inline void places_in_pixels(const LaneSamples* at, MASK lanes, u32 sampl
     for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
       const u32 i = lowest_bit(bits);
       const uint2 pixel = (uint2)((u32)MASK_LANE(at->x, i), (u32)MASK_LANE(at->y, i));
-      const float2 place = place_in_grid(pixel, (u32)MASK_LANE(at->sample, i), samples);
+      const float2 place = place_in_grid(pixel, (u32)MASK_LANE(at->sample, i), samples, at->seed);
       REAL_LANE(*u, i) = place.x;
       REAL_LANE(*v, i) = place.y;
     }

@@ -54,6 +54,14 @@ static inline LightSamples sample_light(const Scene* scene, u32 index, REAL3 p, 
   return way_to_lamp(light, p);
 }
 
+// Whether rays may meet the light `index`: it is seen, and has an extent.
+static inline bool rays_meet(const Scene* scene, u32 index) {
+  __global const Light* light = scene->lights + index;
+  if (light->kind == LIGHT_ENVIRONMENT) return scene->info->sees_environment != 0u;
+  if (light->kind == LIGHT_SUN) return light->direction.w > 0.0f;
+  return light->kind >= LIGHT_RECTANGLE && light->position.w == 0.0f;
+}
+
 // What the rays have gathered from fields that glow.
 #if HAS_GLOW
 static inline REAL3 emitted(const SceneRays* rays) { return rays->glow; }

@@ -42,7 +42,7 @@ NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, con
   s.instance = hits->instance;
   s.material = faces->material;
   locate(scene, hits, lanes, &s);
-  set_footprints(rays, hits->t, &s);
+  set_footprints(scene, rays, hits->t, &s);
   TexturePoints at;
   texture_points(scene, &s, lanes, &at);
   u32 index;
@@ -87,7 +87,7 @@ NEVER_INLINE REAL3 layered_filters(const Scene* scene, const SceneRays* rays, co
                                    const Faces* faces, MASK lanes, REAL3 through) {
   SurfaceInteractions s;
   interact(scene, rays->o, rays->d, hits, faces, lanes, &s);
-  set_footprints(rays, hits->t, &s);
+  set_footprints(scene, rays, hits->t, &s);
   const Bsdfs bsdf = make_bsdfs(scene, &s, NO_LANES, NO_LANES, lanes);
   const REAL c = real_clamp(-dot3(bsdf.ns, rays->d), (REAL)(0.0f), (REAL)(1.0f));
   REAL3 passed = through;

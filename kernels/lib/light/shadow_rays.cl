@@ -19,22 +19,42 @@ typedef struct Shading {
   Bsdfs bsdf;
 } Shading;
 
+// A shading normal may mirror the viewer's direction below the face, where lobes about that are lost and the
+// surface is black. Then it is the one that mirrors it barely above. Perfect mirrors need none of it:
+// reflected_direction().
+#if SHADOWS_AS_PATHS && (HAS_LAYERS || HAS_ROUGH)
+#define GLOSSY (HAS_ROUGH ? MATERIAL_LAYERED | MATERIAL_REFLECTS : MATERIAL_LAYERED)
+static inline void bend_normals(REAL3 d, MASK lanes, SurfaceInteractions* s) {
+  const REAL3 mirrored = reflect_direction(d, s->ns);
+  const REAL height = dot3(s->ng, mirrored), least = real_min(-0.9f * dot3(s->ng, d), (REAL)(0.01f));
+  const MASK low = lanes & MASK_OF((s->flags & (int)GLOSSY) != 0) & MASK_OF(height < least);
+  if (!any_lane(low)) return;
+  const REAL3 flat = safe_unit3(along3(mirrored, -height, s->ng));
+  const REAL3 lifted = along3(scale3(flat, real_sqrt(1.0f - least * least)), least, s->ng);
+  s->ns = select3(s->ns, safe_unit3(subtract3(lifted, d)), low);
+}
+#else
+static inline void bend_normals(REAL3 d, MASK lanes, SurfaceInteractions* s) {}
+#endif
+
 // The surfaces of `lanes` and what they do to light.
 static inline void shade_hits(const Scene* scene, const SceneRays* rays, const Encounters* met, MASK lanes,
                               Shading* at) {
   interact(scene, rays->o, rays->d, &met->hit, &met->face, lanes, &at->s);
   at->s.offset = offset_beyond(met, at->s.offset);
   note_depth(met, &at->s);
-  set_footprints(rays, met->hit.t, &at->s);
+  set_footprints(scene, rays, met->hit.t, &at->s);
   add_parallax(scene, rays->d, lanes, &at->s);
   add_relief(scene, rays->d, lanes, &at->s);
+  bend_normals(rays->d, lanes, &at->s);
   at->bsdf = make_bsdfs(scene, &at->s, met->before, met->after, lanes);
 }
 
 #if HAS_LIGHT_TREE
-// A way to one of the lights of the tree for each point, for which it stands with all its light.
+// A way to one of the lights of the tree for each point, for which it stands with all its light. Other rays
+// may meet those of `met`.
 NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, const TileSamples* tile,
-                                       const PathStates* paths, REAL3 p, MASK lanes) {
+                                       const PathStates* paths, REAL3 p, MASK lanes, MASK* met) {
   REAL u_x, u_y, choice, unused, chance;
   const u32 turn = scene->info->table_lights;  // of the lights whose numbers these are: none's
   bounce_numbers(tile, paths, turn, BOUNCE_LIGHT_POINT, way->ray, way->rays, lanes, &u_x, &u_y);
@@ -54,25 +74,30 @@ NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, 
     light.distance = select(light.distance, one.distance, mine);
     light.radiance = select3(light.radiance, one.radiance, mine);
     light.density = select(light.density, one.density * chance, mine);
+    if (rays_meet(scene, index)) *met |= mine;
   }
   light.radiance = scale3(light.radiance, light_weight(&light) / (float)way->rays);
   return light;
 }
 #else
 static inline LightSamples choose_among(const Scene* scene, const LightRay* way, const TileSamples* tile,
-                                        const PathStates* paths, REAL3 p, MASK lanes) {
+                                        const PathStates* paths, REAL3 p, MASK lanes, MASK* met) {
   return sample_light(scene, way->light, p, (REAL)(0.5f), (REAL)(0.5f), lanes);
 }
 #endif
 
 // The way of the shadow ray `index` from the surfaces of `lanes`, which have 1 a light, or those of the table
-// light_rays. The radiance of rays that share a light is divided among them.
+// light_rays. The radiance of rays that share a light is divided among them. Other rays may meet the lights
+// of `met`.
 static inline LightSamples choose_way(const Scene* scene, u32 index, const TileSamples* tile,
-                                      const PathStates* paths, REAL3 p, MASK lanes) {
+                                      const PathStates* paths, REAL3 p, MASK lanes, MASK* met) {
   const REAL middle = (REAL)(0.5f);
+  *met = NO_LANES;
   if (!HAS_AREA_LIGHTS) return sample_light(scene, index, p, middle, middle, lanes);
   const LightRay way = scene->light_rays[index];
-  if (HAS_LIGHT_TREE && way.light == LIGHT_CHOSEN) return choose_among(scene, &way, tile, paths, p, lanes);
+  if (HAS_LIGHT_TREE && way.light == LIGHT_CHOSEN)
+    return choose_among(scene, &way, tile, paths, p, lanes, met);
+  if (rays_meet(scene, way.light)) *met = lanes;
   REAL u_x = middle, u_y = middle;
   if (scene->lights[way.light].kind >= LIGHT_RECTANGLE)
     bounce_numbers(tile, paths, way.light, BOUNCE_LIGHT_POINT, way.ray, way.rays, lanes, &u_x, &u_y);
@@ -87,12 +112,13 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
                                 const PathStates* paths, MASK lanes, const Hits* hits, const Shading* at,
                                 ShadowStack* stack, u32* counts) {
   const SurfaceInteractions* s = &at->s;
-  const LightSamples light = choose_way(scene, index, tile, paths, s->p, lanes);
+  MASK met;
+  const LightSamples light = choose_way(scene, index, tile, paths, s->p, lanes, &met);
   const MASK facing = lanes & MASK_OF(dot3(s->ns, light.wi) > 0.0f);
   if (!any_lane(facing)) return;
   const REAL3 wo = negate3(rays->d);
   REAL3 possible = bsdf_eval(scene, &at->bsdf, wo, light.wi, facing);
-  possible = multiply3(light.radiance, layered_light(scene, &at->bsdf, wo, light.wi, facing, possible));
+  possible = multiply3(light.radiance, layered_light(scene, &at->bsdf, wo, light.wi, met, facing, possible));
   if (HAS_RELIEF) possible = scale3(possible, terminator(s, light.wi));
   if (HAS_PARALLAX) {
     possible = scale3(possible, relief_visibility(scene, s, light.wi, facing));

@@ -28,11 +28,16 @@ static inline float pixel_spread(__global const SceneInfo* restrict info) {
   return sqrt(dot(dx, dx));
 }
 
-// The cones of camera rays. The samples of a pixel share it, but each sees more than its part, or little
-// would be filtered.
+// The same of a sample's. The samples of a pixel share it, but each sees more than its part, or little would
+// be filtered.
+static inline float sample_spread(__global const SceneInfo* restrict info) {
+  return pixel_spread(info) * fmax(rsqrt((float)info->samples), 0.125f);
+}
+
+// The cones of camera rays.
 #if HAS_CONES
 static inline void start_cones(__global const SceneInfo* restrict info, Rays* rays) {
-  rays->spread = (REAL)(pixel_spread(info) * fmax(rsqrt((float)info->samples), 0.125f));
+  rays->spread = (REAL)(sample_spread(info));
 }
 #else
 static inline void start_cones(__global const SceneInfo* restrict info, Rays* rays) {}

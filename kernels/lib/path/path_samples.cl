@@ -8,6 +8,7 @@
 typedef struct TileSamples {
 #if HAS_RANDOM
   MASK x, y;
+  u32 seed;
 #endif
   u32 sample;
 } TileSamples;
@@ -16,6 +17,7 @@ typedef struct TileSamples {
 static inline void set_tile_pixels(TileSamples* tile, const LaneSamples* at) {
   tile->x = at->x;
   tile->y = at->y;
+  tile->seed = at->seed;
 }
 
 static inline void start_branches(PathStates* paths) { paths->branch = NO_LANES; }
@@ -41,12 +43,13 @@ typedef struct BounceNumbers {
 static inline void begin_numbers(const TileSamples* tile, const PathStates* paths, u32 light, u32 offset,
                                  MASK lanes, BounceNumbers* numbers) {
   numbers->at.x = numbers->at.y = NO_LANES;
+  numbers->at.seed = tile->seed;
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits), pixel = (u32)MASK_LANE(paths->pixel, i);
     MASK_LANE(numbers->at.x, i) = MASK_LANE(tile->x, pixel);
     MASK_LANE(numbers->at.y, i) = MASK_LANE(tile->y, pixel);
   }
-  numbers->first = paths->depth * (int)DIMENSIONS_A_BOUNCE + paths->branch +
+  numbers->first = depth_of(paths) * (int)DIMENSIONS_A_BOUNCE + paths->branch +
                    (int)(dimension_of_bounce(0u, light) + (offset & ~3u));
   numbers->later = offset & 2u;
 }

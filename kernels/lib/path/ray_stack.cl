@@ -8,11 +8,15 @@
 typedef struct PathStates {
   REAL3 throughput;  // of a shadow ray: the light that it would bring
   MASK pixel;        // in the work-item's tile
-  MASK depth;        // the camera's ray has 1, a shadow ray 0
+  MASK depth;        // the camera's ray has 1, a shadow ray 0; with TURNED
 #if HAS_RANDOM
   MASK branch;  // the ray's place in the ray tree, for random numbers; 0: the camera's ray
 #endif
 } PathStates;
+
+// In the depth of rays that do not go straight on from the camera.
+#define TURNED 0x80
+static inline MASK depth_of(const PathStates* paths) { return paths->depth & (TURNED - 1); }
 
 // What is kept of each waiting ray, in this order: from this list come the count, the writing and the
 // reading.

@@ -50,6 +50,11 @@ static inline void join_medium(SceneRays* rays, const SceneRays* others, MASK la
 #if RAYS_CROSS
 static inline void forget_crossings(SceneRays* rays) { rays->crossings = NO_LANES; }
 static inline void count_crossings(SceneRays* rays, MASK lanes) { rays->crossings -= lanes; }
+static inline MASK may_cross(const SceneRays* rays) { return MASK_OF(rays->crossings < MAX_CROSSINGS); }
+// The rays of `lanes` continue `before`, which have crossed one interface more.
+static inline void cross_further(const SceneRays* before, MASK lanes, SceneRays* rays) {
+  rays->crossings = select(rays->crossings, before->crossings + 1, lanes);
+}
 static inline void join_crossings(SceneRays* rays, const SceneRays* others, MASK lanes) {
   rays->crossings = select(rays->crossings, others->crossings, lanes);
 }
@@ -57,6 +62,8 @@ static inline void join_crossings(SceneRays* rays, const SceneRays* others, MASK
 static inline void join_crossings(SceneRays* rays, const SceneRays* others, MASK lanes) {}
 static inline void forget_crossings(SceneRays* rays) {}
 static inline void count_crossings(SceneRays* rays, MASK lanes) {}
+static inline MASK may_cross(const SceneRays* rays) { return NO_LANES; }
+static inline void cross_further(const SceneRays* before, MASK lanes, SceneRays* rays) {}
 #endif
 
 #if HAS_SDF

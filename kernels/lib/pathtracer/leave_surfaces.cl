@@ -15,6 +15,7 @@ static inline Walks start_walks(const Scene* scene, const LaneSamples* at, MASK 
   walks.spread = (REAL)(1.0f);
   walks.depth = (MASK)(1);
   walks.met = NO_LANES;
+  walks.straight = ALL_LANES;
   walks.at = *at;
   walks.wavelengths = choose_wavelengths(scene, at, lanes);
   forget_stretches(&walks);
@@ -31,6 +32,7 @@ static inline void join_walks(Walks* walks, const Walks* other, MASK lanes) {
   walks->spread = select(walks->spread, other->spread, lanes);
   walks->depth = select(walks->depth, other->depth, lanes);
   walks->met = select(walks->met, other->met, lanes);
+  walks->straight |= other->straight & lanes;
   walks->at.x = select(walks->at.x, other->at.x, lanes);
   walks->at.y = select(walks->at.y, other->at.y, lanes);
   walks->at.sample = select(walks->at.sample, other->at.sample, lanes);
@@ -39,9 +41,10 @@ static inline void join_walks(Walks* walks, const Walks* other, MASK lanes) {
   join_gathered(walks, other, lanes);
 }
 
-// The rays of `lanes` in the directions that their surfaces sampled.
+// The rays of `lanes` in the directions that their surfaces sampled. Those of `free` are not there.
 static inline void leave_surfaces(const Scene* scene, const Encounters* met, const Shading* at,
-                                  const BsdfSamples* sample, MASK below, MASK lanes, SceneRays* rays) {
+                                  const BsdfSamples* sample, MASK below, MASK free, MASK lanes,
+                                  SceneRays* rays) {
   const SurfaceInteractions* s = &at->s;
   SceneRays child = *rays;
   start_on_surfaces(scene->info, &child, &met->hit, ~s->entering, lanes);
@@ -55,6 +58,7 @@ static inline void leave_surfaces(const Scene* scene, const Encounters* met, con
     start_on_hits(scene->info, &child, &met->hit, s->entering, below);
     enter_behind(met, rays, below, &child);
   }
+  cross_further(rays, free, &child);
   join_rays(rays, &child, lanes);
 }
 

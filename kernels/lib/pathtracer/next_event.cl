@@ -60,13 +60,8 @@ static inline LightSamples sample_chosen(const Scene* scene, REAL3 p, REAL u_x, 
     light.radiance = select3(light.radiance, one.radiance, mine);
     light.density = select(light.density, one.density, mine);
     light.delta = select(light.delta, one.delta, mine);
-    __global const Light* lamp = scene->lights + index;
-    const bool met = lamp->kind == LIGHT_ENVIRONMENT ? scene->info->sees_environment != 0u
-                     : lamp->kind == LIGHT_SUN       ? lamp->direction.w > 0.0f
-                                                     : lamp->position.w == 0.0f;
-    if (met) *seen |= mine;
+    if (rays_meet(scene, index)) *seen |= mine;
   }
-  *seen &= ~light.delta;
   return light;
 }
 

@@ -66,9 +66,10 @@ static inline MASK send_on(const Scene* scene, const Encounters* met, const Shad
   walks->throughput = carry_select(walks->throughput, carry_multiply(walks->throughput, weight), lanes);
   part_wavelengths(scene, at, &lobes->split, walks, lanes, lanes & ~below);
   photons->bent |= turns;
-  walks->depth -= lanes;
-  const MASK going = lanes & MASK_OF(walks->depth <= (int)scene->info->max_depth);
-  leave_surfaces(scene, met, at, sample, below, going, rays);
+  const MASK free = cut_away(&at->bsdf, &lobes->split, lanes) & may_cross(rays);
+  walks->depth -= lanes & ~free;
+  const MASK going = lanes & (free | MASK_OF(walks->depth <= (int)scene->info->max_depth));
+  leave_surfaces(scene, met, at, sample, below, free, going, rays);
   return going;
 }
 

@@ -171,6 +171,7 @@ static inline MASK turn_on_stretch(const Scene* scene, Walks* walks, const Begun
   forget_gathered(walks, lanes);
   walks->density = select(walks->density, density * phase_density(s->g, cosine), lanes);
   walks->from = select3(walks->from, along3(s->o, at, s->d), lanes);
+  walks->straight &= ~lanes;
   MASK going = lanes & MASK_OF(carry_greatest(walks->throughput) > 0.0f);
   const MASK allowed = going & MASK_OF(walks->depth <= (int)scene->info->max_depth);
   counts[COUNT_DEPTH_LIMIT] += lane_count(going & ~allowed);

@@ -10,9 +10,10 @@
 #include "lib/pathtracer/next_event.cl"
 #include "lib/pathtracer/scatter_media.cl"
 
-// Surfaces of `lanes` scatter: the paths' next rays. Returns the paths that continue.
+// Surfaces of `lanes` scatter: the paths' next rays. Returns the paths that continue. Those of `free` are not
+// there, and no surfaces for max_depth.
 NEVER_INLINE MASK scatter(const Scene* scene, const Encounters* met, const Shading* at, const Lobes* lobes,
-                          Walks* walks, SceneRays* rays, MASK lanes, u32* counts) {
+                          Walks* walks, SceneRays* rays, MASK free, MASK lanes, u32* counts) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
   const MASK dimension = dimension_here(walks, BOUNCE_DIRECTION);
   // Matte surfaces have one lobe.
@@ -42,14 +43,13 @@ NEVER_INLINE MASK scatter(const Scene* scene, const Encounters* met, const Shadi
   walks->from = select3(walks->from, at->s.p, turns);
   leave_stretch(walks, turns);
   note_gathered(walks, sample.specular, narrow_part(scene, &at->bsdf, lobes, wo, &sample, lanes), turns);
-  MASK going = some & MASK_OF(walks->depth <= (int)scene->info->max_depth);
-  counts[COUNT_DEPTH_LIMIT] += lane_count(some & ~going);
-  going = play_roulette(scene, walks, dimension, going);
-  walks->depth -= lanes;
+  walks->straight &= ~lanes | (below & sample.specular & MASK_OF(lobes->split.eta == 1.0f));
+  const MASK going = free | play_roulette(scene, walks, dimension, some & ~free);
+  walks->depth -= lanes & ~free;
   counts[COUNT_REFRACTION] += lane_count(going & below);
   counts[COUNT_REFLECTION] += lane_count(going & ~below);
   note_own_rays(going, counts);
-  leave_surfaces(scene, met, at, &sample, below, going, rays);
+  leave_surfaces(scene, met, at, &sample, below, free, going, rays);
   return going;
 }
 
@@ -82,16 +82,20 @@ NEVER_INLINE MASK step_walks(const Scene* scene, Walks* walks, SceneRays* rays, 
   going |= unseen;
   if (any_lane(hit)) {
     Shading at;
-    const MASK first = hit & MASK_OF(walks->depth == 1);
-    counts[COUNT_PRIMARY_HIT] += lane_count(first);
-    walks->met |= first;
     shade_hits(scene, rays, &met, hit, &at);
     follow_hero(&walks->wavelengths, &at.bsdf);
     const REAL3 shining = met_surface(scene, walks, rays, &met.hit, &at, hit);
     light = carry_select(light, carry_add(light, carried_color(walks, shining)), hit);
-    const MASK scattering = hit & MASK_OF(walks->depth <= (int)scene->info->max_depth);
-    const Lobes lobes = make_lobes(scene, &at.bsdf, negate3(rays->d), scattering);
-    const MASK open = scattering & scatters(&lobes);
+    const MASK deep = hit & MASK_OF(walks->depth > (int)scene->info->max_depth), scattering = hit & ~deep;
+    const MASK passing = HAS_SHADOW_FILTERS ? of_kind(&at.bsdf, MATERIAL_TRANSMITS, hit) : NO_LANES;
+    const Lobes lobes = make_lobes(scene, &at.bsdf, negate3(rays->d), scattering | passing);
+    const MASK nothing = cut_away(&at.bsdf, &lobes.split, passing), free = nothing & may_cross(rays);
+    const MASK first = hit & ~nothing & MASK_OF(walks->depth == 1), open = scattering & scatters(&lobes);
+    const MASK ending = deep & ~free & MASK_OF((at.bsdf.flags & (int)MATERIAL_EMITS) == 0);
+    counts[COUNT_PRIMARY_HIT] += lane_count(first);
+    counts[COUNT_DEPTH_LIMIT] += lane_count(ending);
+    counts[COUNT_CAMERA_DEPTH_LIMIT] += lane_count(ending & walks->straight);
+    walks->met |= first;
     if (scene->info->light_count && any_lane(open)) {
       const bool chooses = HAS_LIGHT_TREE || scene->info->light_count > 1u;
       const FourNumbers u =
@@ -105,7 +109,8 @@ NEVER_INLINE MASK step_walks(const Scene* scene, Walks* walks, SceneRays* rays, 
       keep_hero(scene, &at, &lobes.split, walks, &brought, open);
       light = carry_add(light, brought);
     }
-    if (any_lane(scattering)) going |= scatter(scene, &met, &at, &lobes, walks, rays, scattering, counts);
+    const MASK leaving = scattering | free;
+    if (any_lane(leaving)) going |= scatter(scene, &met, &at, &lobes, walks, rays, free, leaving, counts);
   }
   walks->light = carry_select(walks->light, carry_add(walks->light, light), ended);
   return going;

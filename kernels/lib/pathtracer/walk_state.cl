@@ -16,8 +16,9 @@ typedef struct Walks {
   // The factor of the throughput that says nothing of the path's worth: radiance spread by refraction since
   // the camera (squared index by squared index), and paths drawn to guides.
   REAL spread;
-  MASK depth;  // of the ray: the camera's has 1
-  MASK met;    // the camera's ray has hit something
+  MASK depth;     // of the ray: the camera's has 1
+  MASK met;       // the camera's ray has hit something
+  MASK straight;  // the ray goes straight on from the camera
   LaneSamples at;
   Wavelengths wavelengths;
 #if HAS_CAUSTICS

@@ -245,6 +245,25 @@ static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf
   return split;
 }
 
+// The surfaces of `lanes` that are not there, since their materials are cut away or seen from a side that
+// they do not have: all light goes straight on. Rays pass as many of them as they may cross unseen
+// interfaces.
+#if HAS_MAPS
+static inline MASK has_highlights(const Bsdfs* bsdf) { return MASK_OF(greatest3(bsdf->specular) > 0.0f); }
+#else
+static inline MASK has_highlights(const Bsdfs* bsdf) {
+  return MASK_OF((bsdf->flags & (int)MATERIAL_SHINES) != 0);
+}
+#endif
+static inline MASK cut_away(const Bsdfs* bsdf, const SpecularSplits* split, MASK lanes) {
+  if (!HAS_SHADOW_FILTERS) return NO_LANES;
+  const MASK thin = split->transmits & MASK_OF((bsdf->flags & (int)MATERIAL_THIN) != 0);
+  const MASK open =
+      MASK_OF(split->kt.x == 1.0f) & MASK_OF(split->kt.y == 1.0f) & MASK_OF(split->kt.z == 1.0f);
+  const REAL3 rest = add3(split->kr, bsdf->diffuse);
+  return lanes & thin & open & MASK_OF(rest.x + rest.y + rest.z == 0.0f) & ~has_highlights(bsdf);
+}
+
 // Where perfect reflection sends light; a shading normal must not send it inside.
 static inline REAL3 reflected_direction(const Bsdfs* bsdf, REAL3 wo) {
   const REAL3 d = negate3(wo), by_shading = reflect_direction(d, bsdf->ns);

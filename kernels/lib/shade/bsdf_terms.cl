@@ -34,6 +34,9 @@ typedef struct Bsdfs {
 #if HAS_COAT_MAPS
   REAL coat;  // a factor on the weight of a layered material's
 #endif
+#if HAS_FUZZ_MAPS
+  REAL3 fuzz;  // a factor on the color of theirs
+#endif
 #if HAS_SPECULAR_MAPS
   REAL3 tint;  // a factor on what a layered material's dielectric reflects
 #endif
@@ -62,28 +65,30 @@ static inline REAL index_behind(const Scene* scene, const Bsdfs* bsdf, MASK lane
 }
 #endif
 
-// Whether points, in units of the pattern, lie in odd cells of the checker.
-static inline MASK odd_cell(REAL3 p, float frequency) {
-  // Half a cell in 2^16 off the lattice, so that a face on a cell's border is one colour.
-  const REAL3 cell = real3(floor(p.x * frequency + 0x1p-17f), floor(p.y * frequency + 0x1p-17f),
-                           floor(p.z * frequency + 0x1p-17f));
-  const REAL parity = cell.x + cell.y + cell.z;
-  return MASK_OF(parity - 2.0f * floor(parity * 0.5f) != 0.0f);
-}
-
-// The checker of the lanes of `lanes`, all of one material. It is fixed to each instance's own space.
+// The checker of the lanes of `lanes`, all of one material. It is fixed to each instance's own space, and
+// filtered as textures are.
+#if HAS_CHECKER
 static inline void add_checker(const Scene* scene, __global const Material* material,
                                const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
+  const float frequency = material->checker_diffuse.w;
   u32 index;
   for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(s->instance, &left, &index);
-    __global const Instance* instance = scene->instances + index;
-    const REAL3 q = multiply3(points_of(scene, index, s, s->p), all3(instance->pattern_scale.xyz));
-    const MASK odd = mine & odd_cell(q, material->checker_diffuse.w);
-    bsdf->ambient = select3(bsdf->ambient, all3(material->checker_ambient.xyz), odd);
-    bsdf->diffuse = select3(bsdf->diffuse, all3(material->checker_diffuse.xyz), odd);
+    const float4 scale = scene->instances[index].pattern_scale;
+    const REAL3 q = scale3(multiply3(points_of(scene, index, s, s->p), all3(scale.xyz)), (REAL)(frequency));
+    const REAL3 n = safe_unit3(multiply3(vectors_of(scene, index, s, s->ng), all3(scale.xyz)));
+    const REAL width = s->footprint * (frequency * scale.w) / moved_size(scene, index, time_of(s));
+    const REAL odd = checker_pattern(q, scale3(sines_to_axes(n), width)), even = 1.0f - odd;
+    bsdf->ambient = select3(
+        bsdf->ambient, along3(scale3(bsdf->ambient, even), odd, all3(material->checker_ambient.xyz)), mine);
+    bsdf->diffuse = select3(
+        bsdf->diffuse, along3(scale3(bsdf->diffuse, even), odd, all3(material->checker_diffuse.xyz)), mine);
   }
 }
+#else
+static inline void add_checker(const Scene* scene, __global const Material* material,
+                               const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {}
+#endif
 
 // The terms that textures change, for the lanes of `lanes`.
 #if HAS_MAPS
@@ -119,6 +124,11 @@ static inline void keep_tint(const Terms* terms, Bsdfs* bsdf) { bsdf->tint = ter
 #else
 static inline void keep_tint(const Terms* terms, Bsdfs* bsdf) {}
 #endif
+#if HAS_FUZZ_MAPS
+static inline void keep_fuzz(const Terms* terms, Bsdfs* bsdf) { bsdf->fuzz = terms->fuzz; }
+#else
+static inline void keep_fuzz(const Terms* terms, Bsdfs* bsdf) {}
+#endif
 static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
   Terms terms = start_terms(bsdf->ambient, bsdf->diffuse);
   MASK mapped = NO_LANES;
@@ -146,6 +156,7 @@ static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MA
   keep_base(&terms, bsdf);
   keep_coat(&terms, bsdf);
   keep_tint(&terms, bsdf);
+  keep_fuzz(&terms, bsdf);
 }
 #else
 static inline void add_maps(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {}

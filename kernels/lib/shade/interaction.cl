@@ -26,6 +26,8 @@ typedef struct SurfaceInteractions {
 #if HAS_MAPS
   MASK prim;  // the hit's prim, u and v
   REAL b, c;
+#endif
+#if HAS_FOOTPRINTS
   REAL footprint;  // width of what the ray sees of the surface, in the world
 #endif
 #if HAS_RELIEF
@@ -155,9 +157,13 @@ static inline void keep_place(const Hits* hits, SurfaceInteractions* s) {
   s->b = hits->u;
   s->c = hits->v;
 }
-static inline void set_footprint(REAL width, SurfaceInteractions* s) { s->footprint = width; }
 #else
 static inline void keep_place(const Hits* hits, SurfaceInteractions* s) {}
+#endif
+
+#if HAS_FOOTPRINTS
+static inline void set_footprint(REAL width, SurfaceInteractions* s) { s->footprint = width; }
+#else
 static inline void set_footprint(REAL width, SurfaceInteractions* s) {}
 #endif
 
@@ -225,16 +231,25 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
   locate(scene, hits, lanes, s);
 }
 
-// Sets the footprints of surfaces that rays with these cones have met: the longer axis of the ellipse in
-// which the cone meets the surface (Akenine-Moeller and others 2019, "Texture Level of Detail Strategies for
-// Real-Time Ray Tracing").
+// Sets the footprints of surfaces that rays have met: the longer axis of the ellipse in which the cone that
+// the pixel sees meets the surface (Akenine-Moeller and others 2019, "Texture Level of Detail Strategies for
+// Real-Time Ray Tracing"). Where rays have no cones it is that of a camera's ray of this length.
 #if HAS_CONES
-static inline void set_footprints(const SceneRays* rays, REAL t, SurfaceInteractions* s) {
+static inline REAL cone_widths(const Scene* scene, const SceneRays* rays, REAL t) {
+  return fabs(fma(t, rays->cone_spread, rays->cone_width));
+}
+#elif HAS_CHECKER
+static inline REAL cone_widths(const Scene* scene, const SceneRays* rays, REAL t) {
+  return t * sample_spread(scene->info);
+}
+#endif
+#if HAS_CONES || HAS_CHECKER
+static inline void set_footprints(const Scene* scene, const SceneRays* rays, REAL t, SurfaceInteractions* s) {
   const REAL cosine = real_max(fabs(dot3(s->ng, rays->d)), (REAL)(0.01f));
-  set_footprint(fabs(fma(t, rays->cone_spread, rays->cone_width)) / cosine, s);
+  set_footprint(cone_widths(scene, rays, t) / cosine, s);
 }
 #else
-static inline void set_footprints(const SceneRays* rays, REAL t, SurfaceInteractions* s) {
+static inline void set_footprints(const Scene* scene, const SceneRays* rays, REAL t, SurfaceInteractions* s) {
   set_footprint((REAL)(0.0f), s);
 }
 #endif

@@ -20,6 +20,9 @@ typedef struct LayerBase {
   REAL coat_part;
   REAL eta, eta_next;  // of the base at both
 #endif
+#if HAS_FUZZ_MAPS
+  REAL3 fuzz;  // a factor on the fuzz's color
+#endif
 #if HAS_SPECULAR_MAPS
   REAL3 tint;   // a factor on what the dielectric's interface reflects,
   REAL tinted;  // and its greatest, on what that takes from what lies below
@@ -73,6 +76,32 @@ static inline REAL3 interface_tint(__global const Layers* m, const LayerBase* ba
   return all3(m->specular.xyz);
 }
 static inline void tint_base(const Bsdfs* bsdf, LayerBase* base) {}
+#endif
+
+// What fuzz leaves where its row has `row`, and its color.
+#if HAS_FUZZ_MAPS
+static inline REAL past_fibres(const LayerBase* base, REAL row) {
+  return fma(greatest3(base->fuzz), row - 1.0f, (REAL)(1.0f));
+}
+static inline REAL3 fuzz_color(__global const Layers* m, const LayerBase* base) {
+  return multiply3(all3(m->fuzz.xyz), base->fuzz);
+}
+#else
+static inline REAL past_fibres(const LayerBase* base, REAL row) { return row; }
+static inline REAL3 fuzz_color(__global const Layers* m, const LayerBase* base) { return all3(m->fuzz.xyz); }
+#endif
+
+// The light that fuzz leaves for the ground, of which matte_scale has the mean, goes evenly with its weight;
+// below a coat a little less of it returns.
+#if HAS_FUZZ_MAPS
+static inline void set_fuzz(__global const Layers* m, const Bsdfs* bsdf, LayerBase* base) {
+  base->fuzz = bsdf->fuzz;
+  if (m->fuzz.w == 0.0f) return;
+  const REAL bare = 1.0f / base->matte_scale_bare, full = 1.0f / base->matte_scale;
+  base->matte_scale = 1.0f / fma(greatest3(bsdf->fuzz), full - bare, bare);
+}
+#else
+static inline void set_fuzz(__global const Layers* m, const Bsdfs* bsdf, LayerBase* base) {}
 #endif
 
 // A row of a material's table at the cosine c, for `lanes`.
@@ -215,7 +244,7 @@ static inline REAL grid_gain(const Scene* scene, __global const Layers* m, const
 // coat has weight; 1 over it where it is less (OpenPBR 1.1, "Coat", "Index of refraction").
 #if HAS_COAT_MAPS
 static inline REAL base_eta(__global const Layers* m, REAL weight) {
-  const REAL above = fma(weight, (REAL)(m->coat_eta - 1.0f), (REAL)(1.0f));
+  const REAL above = fma(weight, (REAL)(m->coat_bends), (REAL)(1.0f));
   const REAL root = m->index_scale * fabs(m->index - above) / (m->index + above);
   const REAL bounded = real_min(root, (REAL)(0.99949987f));
   return (1.0f + bounded) / (1.0f - bounded);
@@ -297,6 +326,7 @@ static inline LayerBase base_of(const Scene* scene, __global const Layers* m, co
   map_base(scene, m, bsdf->metalness, bsdf->roughness, lanes, &base);
 #endif
   tint_base(bsdf, &base);
+  set_fuzz(m, bsdf, &base);
   return base;
 }
 

@@ -115,8 +115,12 @@ static inline REAL3 matte_lobe(REAL3 wo, REAL3 wi, REAL3 color, float roughness)
 
 // The part of a lobe of these widths that a mirror stands for, where reflected rays are sent.
 static inline REAL mirror_share(REAL alpha_x, REAL alpha_y) {
-  const REAL smooth = 1.0f - real_sqrt(real_sqrt(alpha_x * alpha_y));
-  return select(smooth * smooth, (REAL)(1.0f), MASK_OF(smooth > 0.94f));
+  const REAL smooth = 1.25f * (1.0f - real_sqrt(real_sqrt(alpha_x * alpha_y)));
+  return real_min(smooth * smooth, (REAL)(1.0f));
+}
+// What it leaves of the lobe where `mirrored`, else all.
+static inline REAL share_left(REAL alpha_x, REAL alpha_y, MASK mirrored) {
+  return 1.0f - select((REAL)(0.0f), mirror_share(alpha_x, alpha_y), mirrored);
 }
 #endif
 

@@ -50,7 +50,7 @@ static inline LayerShares make_shares(const Scene* scene, const Bsdfs* bsdf, REA
     __global const Layers* m = scene->layers + index;
     const MASK coated = mine & bsdf->coated;
     const LayerBase base = base_of(scene, m, bsdf, mine);
-    const REAL by_fuzz = select(one, past_fuzz(scene, m, c, mine), coated);
+    const REAL by_fuzz = select(one, past_fuzz(scene, m, &base, c, mine), coated);
     const REAL by_both = select(one, past_layers(scene, m, &base, c, mine), coated);
     const REAL by_shine = past_shine(scene, m, &base, c, mine);
     const REAL opaque = (1.0f - base.metal) * (1.0f - base.glass);
@@ -94,7 +94,7 @@ static inline void layer_scatter(const Scene* scene, const Bsdfs* bsdf, const La
     if (!any_lane(lit)) continue;
     REAL density;
     const LayerBase base = base_of(scene, m, bsdf, lit);
-    const REAL3 own = layered_value(scene, m, bsdf, &base, shares, o, i, (REAL)(1.0f), lit, &density);
+    const REAL3 own = layered_value(scene, m, bsdf, &base, shares, o, i, NO_LANES, lit, &density);
     *value = select3(*value, along3(*value, bsdf->there, own), lit);
     *chosen = select(*chosen, *chosen + density, lit);
   }

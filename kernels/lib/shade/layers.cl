@@ -37,13 +37,14 @@ static inline REAL3 out_of_frame(const Bsdfs* bsdf, REAL3 w) {
 }
 
 // What fuzz, and fuzz with the coat, leave for a direction at the cosine c; 1 without them.
-static inline REAL past_fuzz(const Scene* scene, __global const Layers* m, REAL c, MASK lanes) {
+static inline REAL past_fuzz(const Scene* scene, __global const Layers* m, const LayerBase* base, REAL c,
+                             MASK lanes) {
   if (m->fuzz.w == 0.0f) return (REAL)(1.0f);
-  return layer_row(scene, m, LAYER_FUZZ, c, lanes);
+  return past_fibres(base, layer_row(scene, m, LAYER_FUZZ, c, lanes));
 }
 static inline REAL past_layers(const Scene* scene, __global const Layers* m, const LayerBase* base, REAL c,
                                MASK lanes) {
-  const REAL left = past_fuzz(scene, m, c, lanes);
+  const REAL left = past_fuzz(scene, m, base, c, lanes);
   return m->coat.w == 0.0f ? left : left * past_coat(base, layer_row(scene, m, LAYER_COAT, c, lanes));
 }
 
@@ -85,9 +86,10 @@ static inline REAL3 coat_darkening(__global const Layers* m, const LayerBase* ba
   return along3(scale3(one, 1.0f - darker), darker, left);
 }
 
-// What the base's interface reflects at the cosine c: of the dielectric's opaque share and of the metal.
+// What the base's interface reflects at the cosine c: of the dielectric's opaque share, `most` of each colour
+// at most, and of the metal.
 static inline REAL3 shine_color(const Scene* scene, __global const Layers* m, const LayerBase* base,
-                                REAL3 color, REAL c, MASK lanes) {
+                                REAL3 color, REAL c, REAL most, MASK lanes) {
   const REAL opaque = (1.0f - base->metal) * (1.0f - base->glass);
   const REAL f = base_reflectance(m, base, c);
   REAL3 of_glass = real3(f, f, f), of_metal = metal_shares(c, color, m->specular);
@@ -98,15 +100,16 @@ static inline REAL3 shine_color(const Scene* scene, __global const Layers* m, co
     of_metal = along3(scale3(of_metal, left), (REAL)(m->film),
                       film_rows(scene, m, base, LAYER_FILM_METAL, c, lanes));
   }
+  of_glass = real3(real_min(of_glass.x, most), real_min(of_glass.y, most), real_min(of_glass.z, most));
   of_glass = multiply3(of_glass, interface_tint(m, base));
   return along3(scale3(of_glass, opaque), base->metal * m->metal, of_metal);
 }
 
-// pi times the BSDF times the cosine of the layers of `lanes`, between directions of the frame, and what it
-// leaves of `below`, the light of the terms under them. `sharp`: the factor on the base's shine.
+// pi times the BSDF times the cosine of the layers of `lanes`, between directions of the frame. In `mirrored`
+// coat and shine are without the share that mirror_layers() sends as a reflected ray.
 static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, const Bsdfs* bsdf,
                                   const LayerBase* base, const LayerShares* shares, REAL3 wo, REAL3 wi,
-                                  REAL sharp, MASK lanes, REAL* density) {
+                                  MASK mirrored, MASK lanes, REAL* density) {
   const REAL one = (REAL)(1.0f);
   const MASK coated = lanes & bsdf->coated;
   const REAL3 h = safe_unit3(add3(wo, wi));
@@ -115,16 +118,17 @@ static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, 
   REAL chance = shares->matte * wi.z * (1.0f / M_PI_F), kept = one;
   if (m->fuzz.w > 0.0f && any_lane(coated)) {
     const REAL fuzz = select((REAL)(0.0f), m->fuzz.w * fuzz_lobe(wo, wi, h, m->fuzz_alpha), coated);
-    value = along3(value, fuzz, all3(m->fuzz.xyz));
-    kept = real_min(past_fuzz(scene, m, wo.z, coated), past_fuzz(scene, m, wi.z, coated));
+    value = along3(value, fuzz, fuzz_color(m, base));
+    kept = real_min(past_fuzz(scene, m, base, wo.z, coated), past_fuzz(scene, m, base, wi.z, coated));
     chance += shares->fuzz * (0.5f / M_PI_F);
   }
   if (m->coat.w > 0.0f && any_lane(coated)) {
     const REAL gains = coat_gain(scene, m, wo, coated) * coat_gain(scene, m, wi, coated);
     const FacetLobe lobe = facet_lobe(wo, wi, h, (REAL)(m->coat_alpha), (REAL)(m->coat_alpha_y), gains);
     const REAL part = mend_share(interface_reflectance(wo_h, (REAL)(m->coat_eta)), lobe.more);
-    const REAL wide = if_wide(shares, (REAL)(m->coat_alpha), (REAL)(m->coat_alpha_y));
-    const REAL coat = select((REAL)(0.0f), coat_weight(m, base) * part * lobe.value * kept * wide, coated);
+    const REAL left = if_wide(shares, (REAL)(m->coat_alpha), (REAL)(m->coat_alpha_y)) *
+                      share_left((REAL)(m->coat_alpha), (REAL)(m->coat_alpha_y), mirrored);
+    const REAL coat = select((REAL)(0.0f), coat_weight(m, base) * part * lobe.value * kept * left, coated);
     value = add3(value, real3(coat, coat, coat));
     kept = real_min(past_layers(scene, m, base, wo.z, coated), past_layers(scene, m, base, wi.z, coated));
     tint = multiply3(coat_tints(m, base, wo.z), coat_tints(m, base, wi.z));
@@ -134,9 +138,10 @@ static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, 
   const REAL gains = shine_gain(scene, m, base, wo, lanes) * shine_gain(scene, m, base, wi, lanes);
   const FacetLobe shine = facet_lobe(wo, wi, h, base->alpha_x, base->alpha_y, gains);
   chance += shares->shine * shine.density;
-  const REAL3 color = mend_shares(shine_color(scene, m, base, bsdf->base, wo_h, lanes), shine.more);
-  const REAL wide = if_wide(shares, base->alpha_x, base->alpha_y);
-  REAL3 own = scale3(color, shine.value * (sharp * base->shine_scale) * select(one, kept, coated) * wide);
+  const REAL3 color = mend_shares(shine_color(scene, m, base, bsdf->base, wo_h, one, lanes), shine.more);
+  const REAL left =
+      if_wide(shares, base->alpha_x, base->alpha_y) * share_left(base->alpha_x, base->alpha_y, mirrored);
+  REAL3 own = scale3(color, shine.value * (left * base->shine_scale) * select(one, kept, coated));
   const REAL ground = (1.0f - base->metal) * (1.0f - base->glass);
   if (any_lane(lanes & MASK_OF(ground > 0.0f))) {
     const REAL3 matte = matte_lobe(wo, wi, bsdf->base, m->matte_roughness);
@@ -158,10 +163,10 @@ static inline MASK layered_lanes(const Bsdfs* bsdf, MASK lanes) {
   return lanes & MASK_OF((bsdf->flags & (int)MATERIAL_LAYERED) != 0);
 }
 
-// pi times the BSDF times the cosine of the layers of `lanes`, for lights that reflected rays do not meet.
-// The share that mirror_layers() sends as a reflected ray is left out.
-static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes,
-                                  REAL3 light) {
+// pi times the BSDF times the cosine of the layers of `lanes`, beside the reflected ray of mirror_layers(),
+// which meets the lights of `met` by itself.
+static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK met,
+                                  MASK lanes, REAL3 light) {
   MASK layered = layered_lanes(bsdf, lanes & MASK_OF(dot3(bsdf->ng, wi) > 0.0f));
   LayerShares none;
   none.fuzz = none.coat = none.shine = none.matte = (REAL)(0.0f);
@@ -174,15 +179,15 @@ static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 w
     __global const Layers* m = scene->layers + index;
     REAL density;
     const LayerBase base = base_of(scene, m, bsdf, mine);
-    const REAL sharp = 1.0f - mirror_share(base.alpha_x, base.alpha_y);
-    const REAL3 own = layered_value(scene, m, bsdf, &base, &none, o, i, sharp, mine, &density);
+    const REAL3 own = layered_value(scene, m, bsdf, &base, &none, o, i, met, mine, &density);
     sum = select3(sum, along3(sum, bsdf->there, own), mine);
   }
   return sum;
 }
 
 // The reflection of `lanes` for integrators that send a separate reflected ray: the smoother the surface, the
-// more.
+// more. An interface mirrors no more than its layer takes from those below, which rough ones take less of at
+// grazing angles than Fresnel's equations say.
 static inline void mirror_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes,
                                  SpecularSplits* split) {
   const REAL c = dot3(bsdf->ns, wo), one = (REAL)(1.0f);
@@ -192,12 +197,15 @@ static inline void mirror_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo
     __global const Layers* m = scene->layers + index;
     const MASK coated = mine & bsdf->coated;
     const LayerBase base = base_of(scene, m, bsdf, mine);
-    const REAL past = select(one, past_layers(scene, m, &base, c, mine), coated);
+    const REAL by_fuzz = past_fuzz(scene, m, &base, c, mine), by_both = past_layers(scene, m, &base, c, mine);
+    const REAL past = select(one, by_both, coated);
     const REAL3 tint = select3(all3((float3)(1.0f)), coat_tints(m, &base, c), coated);
-    const REAL3 color = shine_color(scene, m, &base, bsdf->base, c, mine);
+    const REAL taken = 1.0f - past_shine(scene, m, &base, c, mine);
+    const REAL3 color = shine_color(scene, m, &base, bsdf->base, c, taken, mine);
     const REAL3 below = multiply3(multiply3(tint, tint), color);
-    REAL coat = past_fuzz(scene, m, c, mine) * interface_reflectance(c, (REAL)(m->coat_eta));
-    coat *= coat_weight(m, &base) * mirror_share((REAL)(m->coat_alpha), (REAL)(m->coat_alpha_y));
+    REAL coat = by_fuzz * coat_weight(m, &base) * interface_reflectance(c, (REAL)(m->coat_eta));
+    coat = real_min(coat, by_fuzz - by_both);
+    coat *= mirror_share((REAL)(m->coat_alpha), (REAL)(m->coat_alpha_y));
     coat = select((REAL)(0.0f), coat, coated);
     const REAL share = past * mirror_share(base.alpha_x, base.alpha_y);
     const REAL3 own = along3(real3(coat, coat, coat), share, below);
@@ -205,8 +213,8 @@ static inline void mirror_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo
   }
 }
 #else
-static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes,
-                                  REAL3 light) {
+static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK met,
+                                  MASK lanes, REAL3 light) {
   return light;
 }
 static inline void mirror_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes,

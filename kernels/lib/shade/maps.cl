@@ -25,6 +25,9 @@ typedef struct Terms {
 #if HAS_SPECULAR_MAPS
   REAL3 tint;  // a factor on what a layered material's dielectric reflects
 #endif
+#if HAS_FUZZ_MAPS
+  REAL3 fuzz;  // a factor on the color of a layered material's
+#endif
 } Terms;
 
 #if HAS_LAYERS
@@ -55,6 +58,12 @@ static inline void start_tint(Terms* terms) { terms->tint = all3((float3)(1.0f))
 static inline void start_tint(Terms* terms) {}
 #endif
 
+#if HAS_FUZZ_MAPS
+static inline void start_fuzz(Terms* terms) { terms->fuzz = all3((float3)(1.0f)); }
+#else
+static inline void start_fuzz(Terms* terms) {}
+#endif
+
 // The terms of surfaces before their materials' own are added.
 static inline Terms start_terms(REAL3 ambient, REAL3 diffuse) {
   const REAL3 none = all3((float3)(0.0f));
@@ -68,6 +77,7 @@ static inline Terms start_terms(REAL3 ambient, REAL3 diffuse) {
   start_smooth(&terms);
   start_coat(&terms);
   start_tint(&terms);
+  start_fuzz(&terms);
   return terms;
 }
 
@@ -172,16 +182,19 @@ static inline void metal_rough_terms(__global const MaterialMaps* maps, const Sl
   const REAL roughness = real_clamp(metal_rough.y * maps->roughness, zero, one);
   const REAL mirror = metal_mirror(metalness, roughness);
   const REAL3 base = multiply3(multiply3(real3(color.x, color.y, color.z), all3(maps->base.xyz)), tint);
-  const REAL3 diffuse = scale3(base, 1.0f - mirror);
+  const REAL exponent = rough_exponent(roughness), energy = highlight_energy(exponent),
+             lobe = metal_highlight(energy, mirror), left = 1.0f - mirror - lobe * metalness;
   // A texture of the highlight is that of what is no metal.
   const REAL4 shine = has_slot(maps, MAP_SPECULAR) ? values->of[MAP_SPECULAR] : white;
-  const REAL plain = maps->reflectance * (1.0f - metalness);
+  const REAL3 plain = scale3(real3(shine.x, shine.y, shine.z), maps->reflectance * (1.0f - metalness));
+  const REAL3 diffuse = multiply3(
+      base, real3(real_max(fma(-lobe, plain.x, left), zero), real_max(fma(-lobe, plain.y, left), zero),
+                  real_max(fma(-lobe, plain.z, left), zero)));
   terms->diffuse = select3(terms->diffuse, diffuse, lanes);
   terms->ambient = select3(terms->ambient, scale3(diffuse, (REAL)(0.1f)), lanes);
-  terms->specular = select3(terms->specular,
-                            along3(scale3(real3(shine.x, shine.y, shine.z), plain), metalness, base), lanes);
+  terms->specular = select3(terms->specular, scale3(along3(plain, metalness, base), lobe / energy), lanes);
   terms->reflection = select3(terms->reflection, scale3(base, mirror), lanes);
-  terms->exponent = select(terms->exponent, rough_exponent(roughness), lanes);
+  terms->exponent = select(terms->exponent, exponent, lanes);
 }
 
 // The ambient and diffuse terms, which often share a texture, and those that metalness and roughness make.
@@ -256,19 +269,36 @@ static inline void map_coat_weight(__global const MaterialMaps* maps, const Slot
                                    Terms* terms) {}
 #endif
 
-// What a layered material's dielectric reflects.
+#if HAS_SPECULAR_MAPS || HAS_FUZZ_MAPS
+static inline void map_shares(__global const MaterialMaps* maps, const SlotValues* values, u32 slot,
+                              MASK lanes, REAL3* shares) {
+  if (!has_slot(maps, slot)) return;
+  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
+  const REAL4 value = values->of[slot];
+  const REAL3 mapped =
+      real3(real_clamp(value.x, zero, one), real_clamp(value.y, zero, one), real_clamp(value.z, zero, one));
+  *shares = select3(*shares, mapped, lanes);
+}
+#endif
+
+// What a layered material's dielectric reflects, and its fuzz.
 #if HAS_SPECULAR_MAPS
 static inline void map_tint(__global const MaterialMaps* maps, const SlotValues* values, MASK lanes,
                             Terms* terms) {
-  if (!has_slot(maps, MAP_SPECULAR)) return;
-  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
-  const REAL4 value = values->of[MAP_SPECULAR];
-  const REAL3 tint =
-      real3(real_clamp(value.x, zero, one), real_clamp(value.y, zero, one), real_clamp(value.z, zero, one));
-  terms->tint = select3(terms->tint, tint, lanes);
+  map_shares(maps, values, MAP_SPECULAR, lanes, &terms->tint);
 }
 #else
 static inline void map_tint(__global const MaterialMaps* maps, const SlotValues* values, MASK lanes,
+                            Terms* terms) {}
+#endif
+
+#if HAS_FUZZ_MAPS
+static inline void map_fuzz(__global const MaterialMaps* maps, const SlotValues* values, MASK lanes,
+                            Terms* terms) {
+  map_shares(maps, values, MAP_FUZZ, lanes, &terms->fuzz);
+}
+#else
+static inline void map_fuzz(__global const MaterialMaps* maps, const SlotValues* values, MASK lanes,
                             Terms* terms) {}
 #endif
 
@@ -317,6 +347,7 @@ static inline void map_material(const Scene* scene, u32 index, const TexturePoin
   map_base_terms(scene, index, maps, &values, lanes, terms);
   map_coat_weight(maps, &values, lanes, terms);
   map_tint(maps, &values, lanes, terms);
+  map_fuzz(maps, &values, lanes, terms);
   if (has_slot(maps, MAP_EXPONENT))
     terms->exponent = select(terms->exponent, terms->exponent * values.of[MAP_EXPONENT].x, lanes);
   if (has_slot(maps, MAP_OCCLUSION)) {

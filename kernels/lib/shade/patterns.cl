@@ -47,6 +47,14 @@ static inline REAL pulse(REAL x, float share, REAL w) {
   return select(sharp, fma(turns_between, (REAL)(share), to - from) / select((REAL)(1.0f), w, wide), wide);
 }
 
+// How much of the width of what is seen of a plane with the unit normal n lies along each axis.
+static inline REAL3 sines_to_axes(REAL3 n) {
+  const REAL3 rest = subtract3(all3((float3)(1.0f)), multiply3(n, n));
+  const REAL zero = (REAL)(0.0f);
+  return real3(real_sqrt(real_max(rest.x, zero)), real_sqrt(real_max(rest.y, zero)),
+               real_sqrt(real_max(rest.z, zero)));
+}
+
 static inline REAL checker_pattern(REAL3 q, REAL3 w) {
   const float off = 0x1p-17f;  // off the lattice, so that a face on a cell's border is one colour
   return 0.5f -

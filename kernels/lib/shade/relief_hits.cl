@@ -92,7 +92,7 @@ NEVER_INLINE void enter_reliefs(const Scene* scene, const SceneRays* rays, MASK 
   lanes = see_interfaces(scene, rays, &met->hit, &faces, lanes);
   if (!any_lane(lanes)) return;
   interact(scene, rays->o, rays->d, &met->hit, &faces, lanes, &s);
-  set_footprints(rays, met->hit.t, &s);
+  set_footprints(scene, rays, met->hit.t, &s);
   const REAL rise = fabs(dot3(s.ng, rays->d));
   const REAL length = ways_through(&s, rays->d, relief_depths(scene, &s, lanes));
   Hits others = met->hit;

@@ -119,10 +119,7 @@ static inline MappedPoints map_points(const Scene* scene, __global const Texture
   // A pattern's placement turns and scales alike along all axes, so that normals go with it as vectors do.
   const float4 x = node->rows[0], y = node->rows[1], z = node->rows[2];
   const REAL3 n = unit3(real3(dot3(all3(x.xyz), at->n), dot3(all3(y.xyz), at->n), dot3(all3(z.xyz), at->n)));
-  const REAL3 one = all3((float3)(1.0f)), rest = subtract3(one, multiply3(n, n));
-  const MappedPoints mapped = {q, node->scale * at->scale,
-                               real3(real_sqrt(real_max(rest.x, zero)), real_sqrt(real_max(rest.y, zero)),
-                                     real_sqrt(real_max(rest.z, zero)))};
+  const MappedPoints mapped = {q, node->scale * at->scale, sines_to_axes(n)};
   return mapped;
 }
 

@@ -18,10 +18,11 @@ NEVER_INLINE void spawn(__global const SceneInfo* restrict info, RayStack* stack
                         const PathStates* paths, MASK lanes, u32 kind, u32* counts) {
   const REAL weight = greatest3(paths->throughput);
   const MASK some = lanes & MASK_OF(weight > 0.0f);
-  const MASK deep = some & MASK_OF(paths->depth > (int)info->max_depth);
+  const MASK deep = some & MASK_OF(depth_of(paths) > (int)info->max_depth);
   const MASK weak = some & ~deep & MASK_OF(weight < info->cutoff);
   u32 bits = lane_bits(some & ~deep & ~weak);
   counts[COUNT_DEPTH_LIMIT] += lane_count(deep);
+  counts[COUNT_CAMERA_DEPTH_LIMIT] += lane_count(deep & MASK_OF((paths->depth & TURNED) == 0));
   counts[COUNT_CUT_OFF] += lane_count(weak);
   while (stack->count + popcount(bits) > RAY_STACK) {
     counts[COUNT_RAY_STACK_OVERFLOW] += 1u;
@@ -76,20 +77,21 @@ static inline void weigh_by_facets(const Facets* facets, const Bsdfs* surface, R
                                    REAL3 color, REAL share, MASK mends, REAL3* throughput) {}
 #endif
 
-// The children of the surfaces of `lanes`: kr I(reflected) + kt I(transmitted).
-static inline void spawn_children(const Scene* scene, const TileSamples* tile, const SurfaceInteractions* s,
+// The children of the surfaces of `lanes`: kr I(reflected) + kt I(transmitted). Returns the surfaces that are
+// not there.
+static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, const SurfaceInteractions* s,
                                   const Bsdfs* surface, const Encounters* met, const SceneRays* rays,
                                   const PathStates* paths, MASK lanes, RayStack* stack, u32* counts) {
   const REAL3 wo = negate3(rays->d);
   const Facets facets = met_facets(scene, tile, paths, surface, wo, lanes);
   SpecularSplits split = bsdf_specular(scene, &facets.bsdf, wo, lanes);
   mirror_layers(scene, surface, wo, split.branches, &split);
-  if (!any_lane(split.branches)) return;
+  if (!any_lane(split.branches)) return NO_LANES;
   SceneRays child = *rays;
   child.t_min = (REAL)(0.0f);
   child.t_max = (REAL)(INFINITY);
   PathStates state = *paths;
-  state.depth = paths->depth + 1;
+  state.depth = (paths->depth + 1) | TURNED;
   start_on_surfaces(scene->info, &child, &met->hit, ~s->entering, split.branches);
   const REAL curvature = curvatures(scene, s, split.branches);
   spread_reflected(curvature, &child);
@@ -102,7 +104,7 @@ static inline void spawn_children(const Scene* scene, const TileSamples* tile, c
   start_branch(paths, 0u, &state);
   spawn(scene->info, stack, &child, &state, split.branches, COUNT_REFLECTION, counts);
 
-  if (!any_lane(split.transmits)) return;
+  if (!any_lane(split.transmits)) return NO_LANES;
   spread_transmitted(curvature, &split, rays, &child);
   child.d = transmitted_by(&facets, &split, wo);
   child.o = points_behind(scene, s, rays->d, split.transmits);
@@ -111,12 +113,19 @@ static inline void spawn_children(const Scene* scene, const TileSamples* tile, c
   start_branch(paths, 1u, &state);
   start_on_hits(scene->info, &child, &met->hit, s->entering, split.transmits);
   enter_behind(met, rays, split.transmits, &child);
+  const MASK nothing = cut_away(&facets.bsdf, &split, lanes), free = nothing & may_cross(rays);
+  const MASK bends = MASK_OF(split.eta != 1.0f);
+  cross_further(rays, free, &child);
+  state.depth = select(paths->depth + 1, (paths->depth + 1) | TURNED, bends) + free;
   spawn(scene->info, stack, &child, &state, split.transmits, COUNT_REFRACTION, counts);
+  return nothing;
 }
 #else
-static inline void spawn_children(const Scene* scene, const TileSamples* tile, const SurfaceInteractions* s,
+static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, const SurfaceInteractions* s,
                                   const Bsdfs* surface, const Encounters* met, const SceneRays* rays,
-                                  const PathStates* paths, MASK lanes, RayStack* stack, u32* counts) {}
+                                  const PathStates* paths, MASK lanes, RayStack* stack, u32* counts) {
+  return NO_LANES;
+}
 #endif
 
 #endif

@@ -49,7 +49,7 @@ static inline REAL3 see_emission(const Scene* scene, const PathStates* paths, co
   return mapped_emission(bsdf, multiply3(paths->throughput, light));
 }
 
-// Marks the pixels whose camera rays have hit something.
+// Marks the pixels whose camera rays have hit something that is there.
 static inline void note_first_hits(const PathStates* paths, MASK lanes, float4* radiance, u32* counts) {
   const MASK first = lanes & MASK_OF(paths->depth == 1);
   counts[COUNT_PRIMARY_HIT] += lane_count(first);
@@ -73,8 +73,9 @@ static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, co
     shade_hits(scene, rays, met, hit, at);
     seen = select3(seen, add3(seen, see_ambient(scene, rays, paths, &met->hit, &at->bsdf, hit)), hit);
     if (HAS_EMISSION) seen = add3(seen, see_emission(scene, paths, &at->s, &at->bsdf, hit));
-    spawn_children(scene, tile, &at->s, &at->bsdf, met, rays, paths, hit & fresh, stack, counts);
-    note_first_hits(paths, hit & fresh, radiance, counts);
+    const MASK nothing =
+        spawn_children(scene, tile, &at->s, &at->bsdf, met, rays, paths, hit & fresh, stack, counts);
+    note_first_hits(paths, hit & fresh & ~nothing, radiance, counts);
   }
   *light = seen;
   return hit;

@@ -49,6 +49,7 @@ __kernel void run(__global const Pixel* in, __global float4* out, u32 count) {
   const u32 first = get_global_id(0) / LANES * LANES, mine = get_global_id(0) - first;
   if (first + LANES > count) return;
   LaneSamples at;
+  at.seed = 0u;
   for (u32 lane = 0; lane < LANES; ++lane) {
     MASK_LANE(at.x, lane) = (int)in[first + lane].x;
     MASK_LANE(at.y, lane) = (int)in[first + lane].y;

@@ -102,6 +102,7 @@ class Tester {
                             {"HAS_LAYERS", layered ? "1" : "0"},
                             {"HAS_LAYER_MAPS", mapped ? "1" : "0"},
                             {"HAS_COAT_MAPS", mapped ? "1" : "0"},
+                            {"HAS_FUZZ_MAPS", "0"},
                             {"HAS_SPECULAR_MAPS", mapped ? "1" : "0"}})
                     .kernel<Buffer<Material>, Buffer<Medium>, Buffer<float>, Buffer<Layers>, Buffer<float>,
                             Buffer<float4>, Buffer<float>, float4, float4, float4, u32>("run")),

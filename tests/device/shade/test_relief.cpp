@@ -190,9 +190,14 @@ TEST_CASE("metalness and roughness from a texture give the terms that they stand
     const auto check = [](const float4& value, const dvec3& wanted) {
       for (int c = 0; c < 3; ++c) CHECK(xyz(value)[c] == Approx(wanted[c]).epsilon(2e-4));
     };
-    check(found.diffuse, base * (1 - mirror));
-    check(found.ambient, 0.1 * base * (1 - mirror));
-    check(found.specular, glm::mix(dvec3(f), base, metal));
+    // The light of a white surrounding that (n.h)^e returns along the normal, over pi; at most half of what
+    // is no mirror.
+    const double e = 2 / std::pow(rough, 4) - 2, energy = 8 / (e + 2) * (1 - std::pow(2, -(e + 2) / 2));
+    const double lobe = std::min(energy, 0.5 * (1.002 - mirror));
+    const dvec3 below = base * (1 - mirror - lobe * (metal + f * (1 - metal)));
+    check(found.diffuse, below);
+    check(found.ambient, 0.1 * below);
+    check(found.specular, lobe / energy * glm::mix(dvec3(f), base, metal));
     check(found.reflection, base * mirror);
     CHECK(double(found.diffuse.w) == Approx(2 / std::pow(rough, 4) - 2).epsilon(2e-4));
   });

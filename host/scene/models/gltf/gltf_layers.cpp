@@ -66,7 +66,8 @@ void add_gltf_layers(const JsonAt& material, OpenPbr& values) {
   values.coat_weight = coat->number("clearcoatFactor", 0, unit_range);
   values.coat_roughness = coat->number("clearcoatRoughnessFactor", 0, unit_range);
   values.coat_ior = 1.5;
-  values.coat_darkening = 0;  // the extension mixes colours
+  values.coat_darkening = 0;  // the extension mixes colours of a base that is as it would be without the coat
+  values.coat_bends = false;
 }
 
 }  // namespace

@@ -59,6 +59,13 @@ Dispersion read_dispersion(const JsonAt& at, double ior) {
   return dispersion > 0 ? cauchy_of_abbe(ior, std::max(20 / dispersion, 1.0)) : Dispersion{};
 }
 
+/// What a rough highlight returns does not pass. Glass that is clear stays so.
+void take_highlight_from_transmission(MaterialDescription& material) {
+  const dvec3 returned = material.specular * highlight_energy(material.exponent);
+  if (!material.layers && std::max({returned.x, returned.y, returned.z}) > 1e-3)
+    material.transmission *= 1.0 - returned;
+}
+
 bool is_partly_there(const JsonAt& at) {
   const std::string mode = at.text("alphaMode");
   return mode == "BLEND" || mode == "MASK";
@@ -118,10 +125,11 @@ GltfMaterials::Entry GltfMaterials::read(const JsonAt& at, VertexColors colors) 
   }
   const double ior = read_ior(at), mirror = metal_mirror(metallic, roughness);
   const dvec3 plain = read_specular(at, reflectance(ior));
-  m.diffuse = base * (1 - mirror);
-  m.ambient = 0.1 * m.diffuse;
-  m.specular = glm::mix(plain, base, metallic);
   m.exponent = rough_exponent(roughness);
+  const double energy = highlight_energy(m.exponent), lobe = metal_highlight(energy, mirror);
+  m.diffuse = base * glm::max(1 - mirror - lobe * glm::mix(plain, dvec3(1), metallic), dvec3(0));
+  m.ambient = 0.1 * m.diffuse;
+  m.specular = glm::mix(plain, base, metallic) * (lobe / energy);
   m.blinn = true;
   m.reflection = base * mirror;
   entry.values = {base, metallic, roughness, plain.x};
@@ -133,7 +141,9 @@ GltfMaterials::Entry GltfMaterials::read(const JsonAt& at, VertexColors colors) 
   read_textures(at, entry);
   add_specular_textures(at, entry);
   add_clearcoat(at, entry);
+  add_sheen_texture(at, entry);
   add_layers(at, entry, ior);
+  take_highlight_from_transmission(m);
   read_unlit(at, entry, base);
   blend(at, entry, alpha);
   return entry;
@@ -158,7 +168,7 @@ void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double 
   }
   if (volume.thickness > 0 && ior >= 1) {
     m.type = MaterialType::dielectric;
-    m.reflection = dvec3(1);
+    m.reflection = dvec3(factor);
     m.transmission = passed;
     entry.has_medium = true;
     entry.medium.name = m.name;
@@ -169,6 +179,8 @@ void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double 
       entry.medium.absorption = -glm::log(glm::max(volume.color, dvec3(1e-6))) / volume.distance;
   } else {
     const double mirrored = reflectance(ior);
+    m.diffuse *= 1 - mirrored;
+    m.ambient *= 1 - mirrored;
     m.reflection = glm::min(m.reflection + mirrored, dvec3(1));
     m.transmission = passed * (1 - mirrored);
   }
@@ -231,6 +243,13 @@ std::optional<TextureDescription> GltfMaterials::read_coat_texture(const JsonAt&
   TextureDescription read = textures_.read(*texture);
   read.channel = 0;
   return read;
+}
+
+/// KHR_materials_sheen's texture of its color.
+void GltfMaterials::add_sheen_texture(const JsonAt& at, Entry& entry) const {
+  const auto extension = at.extension("KHR_materials_sheen");
+  if (const auto texture = extension ? extension->find("sheenColorTexture") : std::nullopt)
+    entry.sheen = textures_.read(*texture);
 }
 
 /// KHR_materials_clearcoat as a mirror of 4 % above the rest, as far as it is smooth.

@@ -42,7 +42,7 @@ class GltfMaterials {
     MediumDescription medium;
     bool has_medium = false;
     std::optional<TextureDescription> base, opacity, emission, metal_rough, normal, occlusion;
-    std::optional<TextureDescription> transmission, specular, specular_color, coat;
+    std::optional<TextureDescription> transmission, specular, specular_color, coat, sheen;
     std::optional<TextureDescription> coat_weight, glass;  // of by_paths, which may have a medium by itself
     bool paths_have_medium = false;
     MetalRough values;
@@ -57,6 +57,7 @@ class GltfMaterials {
   void settle_sides();
   static void read_unlit(const JsonAt& at, Entry& entry, glm::dvec3 base);
   std::optional<TextureDescription> read_coat_texture(const JsonAt& at) const;
+  void add_sheen_texture(const JsonAt& at, Entry& entry) const;
   void add_clearcoat(const JsonAt& at, Entry& entry) const;
   void add_layers(const JsonAt& at, Entry& entry, double ior) const;
   void add_specular_textures(const JsonAt& at, Entry& entry) const;

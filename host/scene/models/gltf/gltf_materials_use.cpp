@@ -34,6 +34,7 @@ void GltfMaterials::use_textures(const Entry& entry, MaterialDescription& materi
   }
   if (!entry.unlit) use_specular(entry, material, model);
   if (entry.coat) to.coat = textures_.use(*entry.coat, false, model);
+  if (entry.sheen && material.layers) to.fuzz = textures_.use(*entry.sheen, true, model);
   if (entry.opacity) to.opacity = textures_.use(*entry.opacity, true, model);
   if (entry.fades) to.opacity = GltfTextures::product(to.opacity, add_vertex_color(3, model), model);
   if (entry.emission) to.emission = textures_.use(*entry.emission, true, model);
@@ -89,6 +90,7 @@ void GltfMaterials::use_by_paths(const Entry& entry, MaterialDescription& materi
   if (!shared && entry.base) to.diffuse = textures_.use(*entry.base, true, model);
   if (const auto& glass = shared ? entry.glass : entry.transmission)
     to.glass = textures_.use(*glass, false, model);
+  if (entry.sheen) to.fuzz = textures_.use(*entry.sheen, true, model);
   if (entry.coat_weight) to.coat = textures_.use(*entry.coat_weight, false, model);
   use_specular(entry, *other, model);
   to.ambient = to.diffuse;

@@ -45,6 +45,7 @@ constexpr std::array textures{Named{"baseColorTexture", nullptr},  // read
                               Named{"clearcoatTexture", nullptr},
                               Named{"clearcoatRoughnessTexture", "clearcoat textures"},
                               Named{"clearcoatNormalTexture", "clearcoat textures"},
+                              Named{"sheenColorTexture", nullptr},
                               Named{"specularTexture", nullptr},
                               Named{"specularColorTexture", nullptr}};
 

@@ -59,7 +59,8 @@ std::string settings(const SceneDescription& scene) {
                      text(i.background_top)) +
          fmt::format("render {} ", r.light_samples) +
          fmt::format("{} {} {} {} {} {}\n", r.max_depth, r.samples, r.cutoff, r.integrator,
-                     static_cast<int>(r.tracer), r.sampler);
+                     static_cast<int>(r.tracer), r.sampler) +
+         fmt::format("seed {}\n", r.seed);
 }
 
 std::string line(const LightDescription& l) {

@@ -1,0 +1,59 @@
+// What max_depth ends is told where it shows, and seeds may be given.
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "catch.h"
+#include "cli_scene.h"
+
+using namespace sundog;
+
+namespace {
+
+/// The board of least_scene behind `panes` clear disks.
+std::string behind_panes(const CliFolder& folder, int panes) {
+  nlohmann::json scene = nlohmann::json::parse(least_scene);
+  scene["materials"]["pane"] = {{"ambient", 0}, {"diffuse", 0}, {"transmission", 0.9}};
+  for (int i = 0; i < panes; ++i)
+    scene["objects"].push_back({{"type", "disk"},
+                                {"radius", 9},
+                                {"center", {0, 0.5, 4 - 0.1 * i}},
+                                {"normal", {0, 0.2, 1}},
+                                {"material", "pane"}});
+  return folder.write("panes.json", scene.dump()).string();
+}
+
+CommandResult rendered(const CliFolder& folder, int panes, const std::vector<std::string>& more) {
+  std::vector<std::string> words = {"render", behind_panes(folder, panes), "-o", folder.file("a.pfm")};
+  words.insert(words.end(), more.begin(), more.end());
+  return run_sundog(words);
+}
+
+}  // namespace
+
+TEST_CASE("camera rays that max_depth ends behind panes are told of, and with a greater one they are not") {
+  const CliFolder folder;
+  for (const char* integrator : {"whitted", "path"}) {
+    INFO(integrator);
+    const std::vector<std::string> words = {"--integrator", integrator, "--max-depth"};
+    const auto with = [&](const char* depth) {
+      std::vector<std::string> all = words;
+      all.emplace_back(depth);
+      return rendered(folder, 12, all);
+    };
+    CHECK(with("8").err.find("raise max_depth") != std::string::npos);
+    CHECK(with("20").err.empty());
+  }
+}
+
+TEST_CASE("--seed gives a picture noise of its own, --max-depth any depth to paths alone") {
+  const CliFolder folder;
+  const auto bytes = [&](const char* seed) {
+    REQUIRE(rendered(folder, 1, {"--samples", "2", "--seed", seed}).status == 0);
+    return read_file(folder / "a.pfm");
+  };
+  CHECK(bytes("0") == bytes("0"));
+  CHECK(bytes("0") != bytes("5"));
+  CHECK(rendered(folder, 1, {"--integrator", "path", "--max-depth", "500"}).status == 0);
+  CHECK(rendered(folder, 1, {"--max-depth", "65"}).status == 3);
+  CHECK(rendered(folder, 1, {"--seed", "-1"}).status == 2);
+}
