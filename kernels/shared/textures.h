@@ -127,7 +127,7 @@ typedef enum MapSlot SUNDOG_ENUM_OF_U32 { MAP_SLOTS(MAP_CONSTANT) MAP_COUNT } Ma
 #define NO_TEXTURE 0xFFFFFFFFu
 #define NO_MAPS 0u
 
-// 144 bytes: what a material has beside Material, which counts these from 1. Entry 0 is not used.
+// 160 bytes: what a material has beside Material, which counts these from 1. Entry 0 is not used.
 typedef struct MaterialMaps {
   u32 slot[20];  // by MAP_*: the first node of a texture, or NO_TEXTURE
   float4 base;   // of a material by metalness and roughness: its colour; w = metalness
@@ -145,7 +145,7 @@ typedef struct MaterialMaps {
   u32 pad;
   float4 normal_turn;  // of a normal map's picture: the ways in u and v, of length 1, that its x and y go
 } MaterialMaps;
-SUNDOG_SHARED_SIZE(MaterialMaps, 144)
+SUNDOG_SHARED_SIZE(MaterialMaps, 160)
 
 #define SRGB_VALUES 256u  // linear values of bytes, at the start of texture_values
 
