@@ -212,7 +212,7 @@ std::vector<float> make_layer_tables() {
     tables.insert(tables.end(), values.begin(), values.end());
   }
   for (std::size_t row = 0; row < round_widths; ++row) {
-    const AlbedoRow fuzz = fuzz_albedo(std::max(round_width(row), least_fuzz_alpha));
+    const AlbedoRow fuzz = fuzz_albedo(round_width(row));
     tables.insert(tables.end(), fuzz.begin(), fuzz.end());
   }
   return tables;

@@ -9,7 +9,7 @@
 
 namespace sundog {
 
-inline constexpr std::size_t round_widths = 48, round_groups = 16;
+inline constexpr std::size_t round_widths = 48, round_groups = 40;
 
 /// A group of facets that a viewer sees: the cosine to their normals, the part of all light that they send on
 /// where they are white, and the same times the gains of where it comes from.

@@ -60,7 +60,7 @@ std::uint64_t json_bytes(const JsonCounts& counts) {
 }
 
 void check_json_memory(std::string_view text, const std::filesystem::path& file) {
-  constexpr std::uint64_t always = std::uint64_t{64} << 20, most_ratio = 20;
+  constexpr std::uint64_t always = std::uint64_t{160} << 20, most_ratio = 20;
   const JsonCounts counts = count_json(text);
   const std::uint64_t wanted = json_bytes(counts);
   if (wanted <= always) return;

@@ -89,7 +89,8 @@ TEST_CASE("real meshes have the counts, bounds, area and volume that were measur
     CHECK(found.volume == Approx(row.volume).epsilon(1e-4));
     CHECK(found.without_area == row.without_area);
     for (const Mesh& mesh : model.meshes) {
-      CHECK(mesh.normals.size() == mesh.positions.size());
+      const bool flat = std::string_view(row.file).ends_with("skull.obj");  // "s off"
+      CHECK(mesh.normals.size() == (flat ? 0 : mesh.positions.size()));
       CHECK(longest_normal_error(mesh) < 1e-5);
     }
   }
