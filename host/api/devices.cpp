@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cstdlib>
 #include <set>
 
 namespace sundog {
@@ -44,8 +45,8 @@ std::shared_ptr<core::DriverThreads> make_owner() {
 
 /// Of renders and sessions on a device that was not named. Made after the drivers are loaded: so it waits for
 /// the threads inside of them before they are taken away at the end of the process.
-const std::shared_ptr<core::DriverThreads>& threads_of_process() {
-  static const auto threads = make_owner();
+std::shared_ptr<core::DriverThreads>& threads_of_process() {
+  static auto threads = make_owner();
   return threads;
 }
 
@@ -66,6 +67,11 @@ std::vector<Device> devices_of_host(const std::vector<core::DeviceInfo>& all) {
 }  // namespace
 
 bool is_forked() noexcept { return process_of_threads() != ::getpid(); }
+
+void wait_for_threads_at_exit() noexcept {
+  const auto& threads = threads_of_process();
+  if (!is_forked() && threads && threads->count() > 0) std::atexit([] { threads_of_process().reset(); });
+}
 
 void enter_threads() {
   if (is_forked())

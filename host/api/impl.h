@@ -48,6 +48,9 @@ struct SUNDOG_LOCAL HostDevices {
 /// Called before threads are used, the library's or a driver's. Throws UsageError in a process that was
 /// forked from one that had some: it has none of them, and would wait for ever for what they hold.
 void enter_threads();
+/// A driver's compiler makes objects of its own while it works, which the end of the process takes away
+/// before threads_of_process(): where a thread is left in a driver, it is waited for before them.
+void wait_for_threads_at_exit() noexcept;
 /// Whether this process is such a one. Not to be asked before any threads are used.
 bool is_forked() noexcept;
 

@@ -125,6 +125,7 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   wanted.tuning = [flat](const core::DeviceInfo& device) { return sundog::saved_tuning(device, *flat); };
   callbacks.install(wanted);
   film->result = core::render(flat, devices.infos, wanted);
+  wait_for_threads_at_exit();
   film->tone_map = description->image.tone_map;
   film->figures = figures_of(film->result, compile_seconds);
   film->image = share(std::move(film->result.image));

@@ -19,6 +19,8 @@ struct SUNDOG_LOCAL Session::Impl {
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
     if (is_forked()) static_cast<void>(session.release());  // its threads are not here to be waited for
+    session.reset();
+    wait_for_threads_at_exit();
   }
   core::RenderSession& entered() const {
     enter_threads();

@@ -7,6 +7,10 @@
 #include "shared/shapes.h"
 
 #pragma OPENCL FP_CONTRACT OFF
+#ifdef __clang__
+// Vectors wider than the processor's are no fault: all functions are inlined, or called within one program.
+#pragma clang diagnostic ignored "-Wpsabi"
+#endif
 
 // Without the instruction fma() is a program of its own, inlined at every use (rusticl took 12 times as long
 // to compile); two roundings are as good here. PoCL does not define FP_FAST_FMAF, but names the host's

@@ -28,8 +28,9 @@ SceneDescription scene_named(const std::string& name) {
 
 /// Compared elsewhere: of images and textures, by small kernels on every driver (test_textures, test_relief,
 /// test_parallax); and those that some drivers compile for half a minute each, of the first device
-/// (test_touching, test_fields_in_scene, test_caustics, test_layer_maps).
+/// (test_touching, test_fields_in_scene, test_caustics, test_layer_maps, test_gltf_layers).
 const std::set<std::string> tried_elsewhere = {"maps",
+                                               "fuzz_maps",
                                                "surface_coordinates",
                                                "relief",
                                                "parallax",
