@@ -63,8 +63,9 @@ NEVER_INLINE MASK step_features(const Scene* scene, FeatureWalks* f, SceneRays* 
   end_features(albedo_of(&at.bsdf), at.s.ns, hit & ~follows, f);
   f->first = select3(f->first, at.s.ns, follows & first);
   f->tint = select3(f->tint, at_most_one3(multiply3(f->tint, sample.weight)), follows);
-  walks->depth -= follows;
-  leave_surfaces(scene, &met, &at, &sample, MASK_OF(dot3(at.s.ng, sample.wi) < 0.0f) & follows, follows,
+  const MASK free = cut_away(&at.bsdf, &lobes.split, follows) & may_cross(rays);
+  walks->depth -= follows & ~free;
+  leave_surfaces(scene, &met, &at, &sample, MASK_OF(dot3(at.s.ng, sample.wi) < 0.0f) & follows, free, follows,
                  rays);
   return follows;
 }

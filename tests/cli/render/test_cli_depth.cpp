@@ -54,6 +54,6 @@ TEST_CASE("--seed gives a picture noise of its own, --max-depth any depth to pat
   CHECK(bytes("0") == bytes("0"));
   CHECK(bytes("0") != bytes("5"));
   CHECK(rendered(folder, 1, {"--integrator", "path", "--max-depth", "500"}).status == 0);
-  CHECK(rendered(folder, 1, {"--max-depth", "65"}).status == 3);
+  CHECK(rendered(folder, 1, {"--max-depth", "65"}).status == 2);
   CHECK(rendered(folder, 1, {"--seed", "-1"}).status == 2);
 }
