@@ -70,6 +70,12 @@ void check_output_files(const std::vector<std::string>& outputs, const std::vect
     if (const auto found = identity(input); found && !is_standard_stream(input))
       read.push_back({input, *found});
   check_not_read(outputs, read);
+  for (const std::string& output : outputs)  // of files that are not there yet, too
+    for (const std::string& input : inputs)
+      if (!output.empty() && !is_standard_stream(input) && !holds_nothing(output) &&
+          place(output) == place(input))
+        throw UsageError(
+            fmt::format("{}: is read, and would be written over: give the output another name", output));
   for (std::size_t i = 0; i < outputs.size(); ++i)
     for (std::size_t k = 0; k < i; ++k)
       if (!outputs[i].empty() && !outputs[k].empty() && !holds_nothing(outputs[i]) &&

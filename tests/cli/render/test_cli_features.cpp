@@ -91,6 +91,6 @@ TEST_CASE("the albedo of layered materials is their base's, and narrow lobes are
   CHECK(value(aovs, "albedo", 4, 2) == Approx(0.4f));
   CHECK(value(aovs, "denoise_albedo", 4, 1) == Approx(0.6f).margin(0.05));
   CHECK(value(aovs, "albedo", 19, 1) == Approx(0.9f));
-  CHECK(value(aovs, "denoise_albedo", 19, 0) < 0.25f);
+  CHECK(value(aovs, "denoise_albedo", 19, 0) < 0.45f);  // 0.9 where no ray follows
   CHECK(value(aovs, "denoise_albedo", 19, 2) > 0.6f);
 }
