@@ -89,7 +89,7 @@ TEST_CASE("a picture that a closed pipe does not take is kept elsewhere") {
       run_line("{ \"$0\" render \"$1\" -o - --quiet; echo $? >&2; } | true", {folder.scene}, options);
   CAPTURE(result.err);
   CHECK(result.err.find("the standard output cannot be written") != std::string::npos);
-  CHECK(result.err.find("picture.png") != std::string::npos);
+  CHECK(result.err.find("/image.png") != std::string::npos);
   CHECK(result.err.ends_with("1\n"));
 }
 
