@@ -181,7 +181,7 @@ begun = time.monotonic()
 if not sundog.render(new_formula(), time_limit=0.1).complete:
     assert time.monotonic() - begun < 1, time.monotonic() - begun
 
-# A process made by fork() is told to be spawned.
+# After fork() the error says to spawn.
 child = os.fork()
 if child == 0:
     message = str(error_of(lambda: sundog.render(small())))

@@ -124,7 +124,7 @@ TEST_CASE("public headers compile without a warning, the one for C as C99") {
   }
 }
 
-TEST_CASE("a program that is compiled as C++17 is told first that C++20 is wanted") {
+TEST_CASE("the first error of a program compiled as C++17 says that C++20 is needed") {
   for (const char* header : {"sundog.hpp", "scene.h", "image.h", "devices.h", "session.h", "error.h"}) {
     const CommandResult compiled =
         run_command({"c++", "-std=c++17", "-xc++", "-fsyntax-only", "-I" SUNDOG_SOURCE_DIR "/include",

@@ -259,7 +259,7 @@ RenderCommand frame_command(const RenderCommand& command, int frame) {
   return one;
 }
 
-/// The files of all frames: that the last takes a texture's place is told before the first is made.
+/// Checks the files of all frames before the first is rendered.
 std::vector<std::string> output_files_of_all(const RenderCommand& command) {
   std::vector<std::string> files;
   for (int frame = command.frames->first; frame <= command.frames->last; ++frame)

@@ -75,7 +75,7 @@ bool PictureStream::send_picture() {
   return true;
 }
 
-/// What a picture is refused by, its encoder or memory, is told in its place.
+/// Sends the reason in place of a picture that its encoder or the memory refuses.
 bool PictureStream::try_picture(Snapshot now) {
   try {
     return send_picture();

@@ -1,4 +1,4 @@
-// What max_depth ends is told where it shows, and seeds may be given.
+// Reports of camera rays that max_depth ends, and seeds.
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
@@ -30,7 +30,7 @@ CommandResult rendered(const CliFolder& folder, int panes, const std::vector<std
 
 }  // namespace
 
-TEST_CASE("camera rays that max_depth ends behind panes are told of, and with a greater one they are not") {
+TEST_CASE("camera rays that max_depth ends behind panes are reported, and none with a greater one") {
   const CliFolder folder;
   for (const char* integrator : {"whitted", "path"}) {
     INFO(integrator);

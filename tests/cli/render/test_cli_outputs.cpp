@@ -90,7 +90,7 @@ TEST_CASE("links to a file that is read count as that file") {
                 "again.json");
 }
 
-TEST_CASE("an animation's last frame takes no texture's place, which is told before the first is made") {
+TEST_CASE("an animation whose last frame would overwrite a texture is refused before the first is rendered") {
   const ReadingFolder folder;
   fs::rename(folder / "texture.png", folder / "t_0003.png");
   write_file(folder.scene, [&] {

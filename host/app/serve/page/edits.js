@@ -84,7 +84,7 @@ export class Edits {
   rebase(before) {
     this.waiting = this.waiting.filter(({change}) => !change || leadsToSame(before, this.confirmed, change.at));
   }
-  /** Nothing of it will be answered, or all is told anew. */
+  /** Drops edits that the server will not answer, or will send again. */
   forget() {
     this.sent = null;
     this.waiting = [];
