@@ -1,6 +1,7 @@
 // Every struct of the public headers, used as its comment says.
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <regex>
 #include <sstream>
 
@@ -160,9 +161,25 @@ TEST_CASE("each option of a render, a session, a file and a tone map counts by i
   const TemporaryFolder folder;
   const auto file = folder.write("scene.json", tiny_scene().to_json());
   for (const sundog::LoadOptions& option :
-       {sundog::LoadOptions{}, sundog::LoadOptions{.frame = 3}, sundog::LoadOptions{.native_code = true},
+       {sundog::LoadOptions{}, sundog::LoadOptions{.native_code = true},
         sundog::LoadOptions{.outside_files = true}, sundog::LoadOptions{.size = {16, 12}}})
     CHECK(sundog::Scene::load(file, option).check().empty());
+  const fs::path moving = fs::path(SUNDOG_SOURCE_DIR) / "scenes/julia.json";
+  CHECK(sundog::Scene::load(moving, sundog::LoadOptions{.frame = 3}).check().empty());
+}
+
+TEST_CASE("an error has the facts that it is made of, and a pick what the pixel shows") {
+  const sundog::Error error(
+      sundog::ErrorKind::scene, "a.json: /x: wanted a number",
+      sundog::ErrorFacts{
+          .file = "a.json", .place = "/x", .reason = "wanted a number", .log = "", .status = 0});
+  CHECK((error.file() == "a.json" && error.place() == "/x" && error.reason() == "wanted a number"));
+  sundog::Session session(test_device());
+  session.start(tiny_scene());
+  static_cast<void>(session.finish());
+  const std::optional<sundog::Pick> pick = session.pick(8, 6);
+  REQUIRE(pick);
+  CHECK(pick->depth > 0);
 }
 
 TEST_CASE("each struct of the public headers is used by a test") {
