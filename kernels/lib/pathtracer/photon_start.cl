@@ -188,6 +188,19 @@ static inline PhotonStart start_photon(const Scene* scene, u32 targets, const Ph
   return start;
 }
 
+// The lanes of `lanes` whose numbers choose the environment: general kernels draw scenes without one, whose
+// tables are empty.
+static inline MASK lanes_of_sky(const Scene* scene, REAL u, MASK lanes) {
+  MASK of_sky = NO_LANES;
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    float share;
+    const u32 light = choose_photon_light(scene, REAL_LANE(u, i), &share);
+    MASK_LANE(of_sky, i) = scene->lights[light].kind == LIGHT_ENVIRONMENT ? -1 : 0;
+  }
+  return of_sky;
+}
+
 // The photons of `lanes`.
 NEVER_INLINE PhotonStarts start_photons(const Scene* scene, const PhotonLaunch* launch, const LaneSamples* at,
                                         MASK lanes) {
@@ -201,7 +214,8 @@ NEVER_INLINE PhotonStarts start_photons(const Scene* scene, const PhotonLaunch* 
   starts.dimmed = (MASK)(NOT_DIMMED);
   starts.light = NO_LANES;
   LightSamples sky;
-  if (HAS_ENVIRONMENT) sky = sample_environment(scene, v.z, v.w, lanes);
+  const MASK of_sky = HAS_ENVIRONMENT ? lanes_of_sky(scene, u.w, lanes) : NO_LANES;
+  if (any_lane(of_sky)) sky = sample_environment(scene, v.z, v.w, of_sky);
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     const PhotonNumbers mine = {REAL_LANE(u.w, i), REAL_LANE(u.z, i), REAL_LANE(u.x, i),
