@@ -97,9 +97,8 @@ TEST_CASE("photons leave no specks on a glossy floor") {
     scene.render.samples = 16;
     return greatest_over_mean(scenes::render_on(device, scene).image);
   };
-  on_picture_devices([&](const DeviceInfo& device) {
-    CHECK(speckled(device, 0.3) < 1.02 * speckled(device, 0));
-  });
+  on_picture_devices(
+      [&](const DeviceInfo& device) { CHECK(speckled(device, 0.3) < 1.02 * speckled(device, 0)); });
 }
 
 TEST_CASE("photons of moving glass make the mean of its stills") {
