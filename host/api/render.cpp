@@ -8,6 +8,7 @@
 
 #include "api/impl.h"
 #include "base/clock.h"
+#include "base/pixels/dither.h"
 
 namespace sundog {
 inline namespace v0 {
@@ -200,7 +201,10 @@ void Film::save(const std::filesystem::path& file) const {
       return sundog::write_file(file,
                                 core::encode_image(image, file, aovs, sundog::ExrColor::half, impl_->texts));
     core::Image colors = without_coverage(image);
-    if (sundog::has_eight_bits(file)) core::apply(impl_->tone_map, colors);
+    if (sundog::has_eight_bits(file)) {
+      core::apply(impl_->tone_map, colors);
+      sundog::dither_to_8_bits(colors);
+    }
     core::write_image(colors, file);
   });
 }

@@ -28,9 +28,7 @@ struct Picture {
 /// The channels that a file of this name keeps: 3, or 4 with coverage.
 inline int image_channels(const std::filesystem::path& path) { return drops_alpha(path) ? 3 : 4; }
 
-/// The image as a file of this name shows it. With `dither` 8 bits are rounded up or down by chance, in
-/// proportion to where a colour lies between two levels, so that means stay and gradients show no steps.
-/// Chance is a function of the pixel's place and the channel; what 8 bits hold already, stays.
+/// The image as a file of this name shows it: 8 bits by the tone map and, if wanted, dithered.
 Image shown_in(const std::filesystem::path& path, Image image, const ToneMap& map, bool dither = true);
 
 /// Writes `path`; "-" is the standard output. When that fails the frame is kept as a checkpoint, or as an

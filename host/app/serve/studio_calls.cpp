@@ -9,6 +9,7 @@
 #include "app/serve/studio.h"
 #include "base/error.h"
 #include "base/image_io.h"
+#include "base/pixels/dither.h"
 #include "scene/json/parse.h"
 #include "scene/model.h"
 
@@ -101,8 +102,9 @@ WebAnswer Studio::picture(const std::string& format) {
   if (now.state != SessionState::settled || !now.picture)
     return plain(409, "the picture is not finished yet");
   const std::string name = "picture." + format;
-  return {200, format == "png" ? "image/png" : "image/x-exr",
-          encode_image(for_format(*now.picture, format), name), name};
+  Image image = for_format(*now.picture, format);
+  if (has_eight_bits(name)) dither_to_8_bits(image);
+  return {200, format == "png" ? "image/png" : "image/x-exr", encode_image(image, name), name};
 }
 
 std::string Studio::command_line() const {

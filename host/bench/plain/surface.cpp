@@ -19,13 +19,11 @@ vec3 color_of(const Vertex& v) { return {v.r, v.g, v.b}; }
 
 float greatest_size(const vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// The mean over [x - w / 2, x + w / 2] of +1 where floor(x) is even and -1 where it is odd.
-float square_wave(float x, float w) {
-  const auto fraction = [](float y) { return y - std::floor(y); };
-  if (!(w > 1e-3f)) return fraction(0.5f * x) >= 0.5f ? -1.0f : 1.0f;
-  const float from = 1 - std::abs(1 - 2 * fraction(0.5f * (x - 0.5f * w))),
-              to = 1 - std::abs(1 - 2 * fraction(0.5f * (x + 0.5f * w)));
-  return (to - from) / w;
+/// How much more of the width w around x lies in the cell that holds x, between whole numbers, than in those
+/// beside it, as a part of w.
+float own_part(float x, float w) {
+  const float f = x - std::floor(x);
+  return std::min(2 * std::min(f, 1 - f), std::min(w, std::max(2 - w, 0.0f))) / w;
 }
 
 /// How much a checker shows of its odd cells where a ray has met it after the way t.
@@ -38,11 +36,13 @@ float odd_part(const CompiledScene& scene, const Ray& ray, float t, const Instan
   const float frequency = s.material->checker_diffuse.w;
   const vec3 scale = rgb(instance.pattern_scale), q = object_point(instance, s.p) * scale * frequency;
   const vec3 n = glm::normalize(object_vector(instance, s.ng) * scale);
-  const vec3 w = glm::sqrt(glm::max(1.0f - n * n, vec3(0))) *
-                 (t * spread / cosine * frequency * instance.pattern_scale.w);
-  constexpr float off = 0x1p-17f;
-  return 0.5f -
-         0.5f * square_wave(q.x + off, w.x) * square_wave(q.y + off, w.y) * square_wave(q.z + off, w.z);
+  const vec3 w = glm::max(glm::sqrt(glm::max(1.0f - n * n, vec3(0))) *
+                              (t * spread / cosine * frequency * instance.pattern_scale.w),
+                          vec3(1e-5f));
+  const vec3 at = q + 0x1p-17f, cell = glm::floor(at);
+  const float contrast = own_part(at.x, w.x) * own_part(at.y, w.y) * own_part(at.z, w.z);
+  const bool odd = std::fmod(std::abs(cell.x + cell.y + cell.z), 2.0f) == 1;
+  return 0.5f + (odd ? 0.5f : -0.5f) * contrast;
 }
 
 /// A mesh's smooth normal, bent no further than the silhouette.

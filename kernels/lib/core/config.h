@@ -85,8 +85,6 @@
 
 // Whether rays carry the cone that a pixel sees, by which textures are filtered.
 #define HAS_CONES (HAS_MAPS && TEXTURE_KINDS)
-// Whether surfaces know how wide what a pixel sees of them is.
-#define HAS_FOOTPRINTS (HAS_MAPS || HAS_CHECKER)
 
 // Whether a sample needs random numbers beyond the camera's.
 #define HAS_RANDOM (HAS_AREA_LIGHTS || HAS_ROUGH)

@@ -66,7 +66,7 @@ static inline REAL index_behind(const Scene* scene, const Bsdfs* bsdf, MASK lane
 #endif
 
 // The checker of the lanes of `lanes`, all of one material. It is fixed to each instance's own space, and
-// filtered as textures are.
+// filtered by what a camera's ray of the same length sees: kernels without cones draw the same.
 #if HAS_CHECKER
 static inline void add_checker(const Scene* scene, __global const Material* material,
                                const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
@@ -77,7 +77,7 @@ static inline void add_checker(const Scene* scene, __global const Material* mate
     const float4 scale = scene->instances[index].pattern_scale;
     const REAL3 q = scale3(multiply3(points_of(scene, index, s, s->p), all3(scale.xyz)), (REAL)(frequency));
     const REAL3 n = safe_unit3(multiply3(vectors_of(scene, index, s, s->ng), all3(scale.xyz)));
-    const REAL width = s->footprint * (frequency * scale.w) / moved_size(scene, index, time_of(s));
+    const REAL width = s->camera_footprint * (frequency * scale.w) / moved_size(scene, index, time_of(s));
     const REAL odd = checker_pattern(q, scale3(sines_to_axes(n), width)), even = 1.0f - odd;
     bsdf->ambient = select3(
         bsdf->ambient, along3(scale3(bsdf->ambient, even), odd, all3(material->checker_ambient.xyz)), mine);

@@ -26,9 +26,10 @@ typedef struct SurfaceInteractions {
 #if HAS_MAPS
   MASK prim;  // the hit's prim, u and v
   REAL b, c;
-#endif
-#if HAS_FOOTPRINTS
   REAL footprint;  // width of what the ray sees of the surface, in the world
+#endif
+#if HAS_CHECKER
+  REAL camera_footprint;  // the same of a camera's ray of this length
 #endif
 #if HAS_RELIEF
   MASK bent;  // ns is not the geometry's
@@ -157,13 +158,9 @@ static inline void keep_place(const Hits* hits, SurfaceInteractions* s) {
   s->b = hits->u;
   s->c = hits->v;
 }
-#else
-static inline void keep_place(const Hits* hits, SurfaceInteractions* s) {}
-#endif
-
-#if HAS_FOOTPRINTS
 static inline void set_footprint(REAL width, SurfaceInteractions* s) { s->footprint = width; }
 #else
+static inline void keep_place(const Hits* hits, SurfaceInteractions* s) {}
 static inline void set_footprint(REAL width, SurfaceInteractions* s) {}
 #endif
 
@@ -233,25 +230,27 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
 
 // Sets the footprints of surfaces that rays have met: the longer axis of the ellipse in which the cone that
 // the pixel sees meets the surface (Akenine-Moeller and others 2019, "Texture Level of Detail Strategies for
-// Real-Time Ray Tracing"). Where rays have no cones it is that of a camera's ray of this length.
+// Real-Time Ray Tracing").
 #if HAS_CONES
-static inline REAL cone_widths(const Scene* scene, const SceneRays* rays, REAL t) {
+static inline REAL cone_widths(const SceneRays* rays, REAL t) {
   return fabs(fma(t, rays->cone_spread, rays->cone_width));
 }
-#elif HAS_CHECKER
-static inline REAL cone_widths(const Scene* scene, const SceneRays* rays, REAL t) {
-  return t * sample_spread(scene->info);
-}
-#endif
-#if HAS_CONES || HAS_CHECKER
-static inline void set_footprints(const Scene* scene, const SceneRays* rays, REAL t, SurfaceInteractions* s) {
-  const REAL cosine = real_max(fabs(dot3(s->ng, rays->d)), (REAL)(0.01f));
-  set_footprint(cone_widths(scene, rays, t) / cosine, s);
-}
 #else
-static inline void set_footprints(const Scene* scene, const SceneRays* rays, REAL t, SurfaceInteractions* s) {
-  set_footprint((REAL)(0.0f), s);
-}
+static inline REAL cone_widths(const SceneRays* rays, REAL t) { return (REAL)(0.0f); }
 #endif
+#if HAS_CHECKER
+static inline void set_camera_footprint(REAL width, SurfaceInteractions* s) { s->camera_footprint = width; }
+#else
+static inline void set_camera_footprint(REAL width, SurfaceInteractions* s) {}
+#endif
+static inline void set_footprints(const Scene* scene, const SceneRays* rays, REAL t, SurfaceInteractions* s) {
+  if (!HAS_CONES && !HAS_CHECKER) {
+    set_footprint((REAL)(0.0f), s);
+    return;
+  }
+  const REAL cosine = real_max(fabs(dot3(s->ng, rays->d)), (REAL)(0.01f));
+  set_footprint(cone_widths(rays, t) / cosine, s);
+  set_camera_footprint(t * sample_spread(scene->info) / cosine, s);
+}
 
 #endif

@@ -25,15 +25,11 @@ static inline REAL smooth_step(REAL s) { return s * s * (3.0f - 2.0f * s); }
 // What is narrower than this is not filtered: the difference of two integrals would be rounding alone.
 #define PATTERN_SHARP 1e-3f
 
-// +1 where floor(x) is even, -1 where it is odd: the mean over [x - w / 2, x + w / 2] by its integral, a
-// triangle (Quilez 2011, "Checkerboard filtering").
-static inline REAL square_wave(REAL x, REAL w) {
-  const REAL a = x - 0.5f * w, b = x + 0.5f * w;
-  const REAL from = 1.0f - fabs(1.0f - 2.0f * fraction(0.5f * a)),
-             to = 1.0f - fabs(1.0f - 2.0f * fraction(0.5f * b));
-  const REAL sharp = select((REAL)(1.0f), (REAL)(-1.0f), MASK_OF(fraction(0.5f * x) >= 0.5f));
-  const MASK wide = MASK_OF(w > PATTERN_SHARP);
-  return select(sharp, (to - from) / select((REAL)(1.0f), w, wide), wide);
+// How much more of the width w around x lies in the cell that holds x, between whole numbers, than in those
+// beside it; 0 above w = 2.
+static inline REAL own_part(REAL x, REAL w) {
+  const REAL f = fraction(x);
+  return real_min(2.0f * real_min(f, 1.0f - f), real_min(w, real_max(2.0f - w, (REAL)(0.0f))));
 }
 
 // 1 on the last `share` of each unit of x, else 0: the mean likewise.
@@ -55,10 +51,17 @@ static inline REAL3 sines_to_axes(REAL3 n) {
                real_sqrt(real_max(rest.z, zero)));
 }
 
+// How much of the odd cells is seen: a box filter along each axis (Quilez 2011, "Checkerboard filtering"),
+// whose ripples above two cells are left out.
 static inline REAL checker_pattern(REAL3 q, REAL3 w) {
   const float off = 0x1p-17f;  // off the lattice, so that a face on a cell's border is one colour
-  return 0.5f -
-         0.5f * square_wave(q.x + off, w.x) * square_wave(q.y + off, w.y) * square_wave(q.z + off, w.z);
+  const float sharp = 1e-5f;
+  const REAL x = q.x + off, y = q.y + off, z = q.z + off;
+  const REAL wx = real_max(w.x, (REAL)(sharp)), wy = real_max(w.y, (REAL)(sharp)),
+             wz = real_max(w.z, (REAL)(sharp));
+  const REAL contrast = own_part(x, wx) * own_part(y, wy) * own_part(z, wz) / (wx * wy * wz);
+  const MASK odd = MASK_OF(fraction(0.5f * (floor(x) + floor(y) + floor(z))) > 0.25f);
+  return fma(select((REAL)(-0.5f), (REAL)(0.5f), odd), contrast, (REAL)(0.5f));
 }
 
 static inline REAL brick_pattern(REAL3 q, REAL3 w, float mortar_x, float mortar_y) {

@@ -35,7 +35,7 @@ TEST_CASE("the page loads, without an error, and shows the scene to the bit") {
   CHECK(viewer().run("return [canvas.width, canvas.height]") == json({96, 96}));
   CHECK(viewer().browser.errors().empty());
   const std::string png = (viewer().served.folder / "reference.png").string();
-  REQUIRE(run_sundog({"render", viewer().served.scene, "-o", png, "--quiet"}).status == 0);
+  REQUIRE(run_sundog({"render", viewer().served.scene, "-o", png, "--quiet", "--no-dither"}).status == 0);
   const json expected = viewer().run(R"(
     const image = await createImageBitmap(new Blob([Uint8Array.from(atob(args[0]), (c) => c.charCodeAt(0))]));
     const other = new OffscreenCanvas(image.width, image.height).getContext('2d');

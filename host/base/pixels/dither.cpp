@@ -1,0 +1,42 @@
+#include "base/pixels/dither.h"
+
+#include <array>
+#include <cstdint>
+
+#include "base/image_io.h"
+
+namespace sundog {
+namespace {
+
+/// In (0, 1), spread so evenly over neighbours that no pattern is seen: the additive recurrence of the
+/// plastic number in two dimensions, folded (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom
+/// Sequences"). It keeps away from 0 and 1, so that rounding of what 8 bits hold moves nothing.
+double dither_threshold(std::size_t x, std::size_t y, std::size_t channel) {
+  const auto turn = static_cast<std::uint32_t>(x * 3242174889u + y * 2447445413u + channel * 1431655765u);
+  const std::uint32_t folded = turn < 0x80000000u ? turn * 2 : ~turn * 2;
+  return (double(folded >> 24) + 0.5) / 256;
+}
+
+/// The linear values of the levels that 8 bits hold.
+std::array<float, 256> make_levels() {
+  std::array<float, 256> levels{};
+  for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = linear_from_srgb(static_cast<float>(i) / 255);
+  return levels;
+}
+
+}  // namespace
+
+void dither_to_8_bits(Image& image) {
+  static const std::array<float, 256> levels = make_levels();
+  const auto channels = static_cast<std::size_t>(image.channels),
+             width = static_cast<std::size_t>(image.width);
+  for (std::size_t i = 0; i < image.data.size(); ++i) {
+    const std::size_t pixel = i / channels, channel = i % channels;
+    float& value = image.data[i];
+    if (channel >= 3 || !(value > 0 && value < 1)) continue;
+    const double up = dither_threshold(pixel % width, pixel / width, channel);
+    value = levels[static_cast<std::size_t>(255 * double(srgb_from_linear(value)) + up)];
+  }
+}
+
+}  // namespace sundog
