@@ -287,6 +287,7 @@ void add_sun(const SceneDescription& scene, const glm::dmat3& axes, CompiledScen
   sun.angle = e.sun_size;
   sun.samples = e.samples;
   sun.visible = e.visible;
+  sun.hidden = e.hidden;
   add_light(scene, sun, "/environment/sun", out);
 }
 
@@ -311,9 +312,9 @@ void add_environment(const SceneDescription& scene, CompiledScene& out, const Ha
   add_shares(picture, packed, out);
   out.environments.push_back(packed);
   out.environment = std::move(picture.pixels);
-  out.info.sees_environment = e.visible;
+  out.info.sees_environment = e.hidden ? SEEN_BY_NONE : e.visible ? SEEN_BY_ALL : SEEN_OFF_CAMERA;
   out.features.environment = out.features.area_lights = true;
-  out.features.sky |= e.visible;
+  out.features.sky |= !e.hidden;
   Light light{};
   light.kind = LIGHT_ENVIRONMENT;
   for (u32 ray = 0; ray < static_cast<u32>(e.samples); ++ray)

@@ -115,6 +115,7 @@ u32 material_flags(const MaterialDescription& material) {
   if (!is_zero(material.emission)) flags |= MATERIAL_EMITS;
   if (material.layers) flags |= MATERIAL_LAYERED;
   if (!material.multiple_scattering) flags |= MATERIAL_SCATTERS_ONCE;
+  if (material.off_camera) flags |= MATERIAL_OFF_CAMERA;
   if (material.medium < 0) flags |= MATERIAL_THIN;
   if (material.medium < 0 && material.wall_ior > 0) flags |= MATERIAL_WALL;
   if (material.vertex_color) flags |= MATERIAL_VERTEX_COLOR;
@@ -189,7 +190,7 @@ void add_light(const SceneDescription& scene, const LightDescription& light, con
   for (u32 ray = 0; ray < rays; ++ray) out.light_rays.push_back({index, ray, rays, 0});
   out.lights.push_back(packed);
   out.features.area_lights |= extent;
-  out.features.sky |= packed.kind == LIGHT_SUN && light.visible;
+  out.features.sky |= packed.kind == LIGHT_SUN && !light.hidden;
 }
 
 void add_lights(const SceneDescription& scene, CompiledScene& out) {

@@ -126,7 +126,8 @@ struct EnvironmentDescription {
   dvec3 up{0, 1, 0};
   double rotate = 0;          // degrees about `up`
   int samples = 1;            // shadow rays that a surface sends to it, and as many to its sun
-  bool visible = true;        // rays that meet nothing see it
+  bool visible = true;        // the camera's rays that meet nothing see it, where others do
+  bool hidden = false;        // no ray sees it
   Image picture;              // image: equirectangular, the sky's top in row 0
   dvec3 bottom{0.3}, top{1};  // gradient: linear in the elevation's sine
   // Sky and halo, which is a sky with ice crystals in it:
@@ -171,6 +172,7 @@ struct MaterialDescription {
   bool shadow_opaque = false;
   bool shadow_filter = false;  // path tracing: shadow rays go straight through an interface that bends light
   bool checker = false;
+  bool off_camera = false;                       // of a lamp: the camera's rays pass it
   dvec3 checker_ambient{0}, checker_diffuse{0};  // ka and kd in odd cells: colour times coefficient
   double checker_size = 1;                       // edge of a cell, object space
   bool vertex_color = false;

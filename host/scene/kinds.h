@@ -40,7 +40,7 @@ inline constexpr auto filter_names = names_of(filters);
 enum class LightExtent {
   none,     // one point or direction
   sampled,  // places on it are chosen; rays do not meet it
-  met       // sampled, and rays meet it unless the scene says `"visible": false`
+  met       // sampled, and rays meet it unless the scene says `"hidden": true`
 };
 
 struct LightTypeFacts {

@@ -63,7 +63,7 @@ void read_spot(JsonObject& object, LightDescription& light) {
 
 // The things that rays meet.
 
-bool is_met(const LightDescription& light) { return facts_of(light.type).can_be_met() && light.visible; }
+bool is_met(const LightDescription& light) { return facts_of(light.type).can_be_met() && !light.hidden; }
 
 /// The rotation and place of something whose axis is +y and whose middle is its origin.
 dmat4 placed_along(const LampAxes& axes, const dvec3& middle) {
@@ -127,7 +127,8 @@ void pack_sun(const LightDescription& light, Light& packed) {
   const double cap = 2 * std::sin(half / 2) * std::sin(half / 2);
   packed.kind = LIGHT_SUN;
   packed.color = pack(light.color * light.intensity / (sine * sine));
-  packed.direction.w = static_cast<float>(light.visible ? cap : -cap);
+  packed.direction.w = static_cast<float>(light.hidden ? -cap : cap);
+  packed.position.w = light.visible ? 0.0f : 1.0f;
 }
 
 void pack_range(const LightDescription& light, Light& packed) {
@@ -165,11 +166,14 @@ void read_light_sampling(JsonObject& object, int& samples) {
   samples = object.integer("samples", samples, 1, 1024);
 }
 
-void read_light_visible(JsonObject& object, bool& visible) { visible = object.boolean("visible", visible); }
+void read_light_visible(JsonObject& object, bool& visible, bool& hidden) {
+  visible = object.boolean("visible", visible);
+  hidden = object.boolean("hidden", hidden);
+}
 
 void read_light_kind(JsonObject& object, LightDescription& light) {
   if (facts_of(light.type).has_extent()) read_light_sampling(object, light.samples);
-  if (facts_of(light.type).can_be_met()) read_light_visible(object, light.visible);
+  if (facts_of(light.type).can_be_met()) read_light_visible(object, light.visible, light.hidden);
   switch (light.type) {
     case LightType::ambient:
       break;
@@ -180,7 +184,7 @@ void read_light_kind(JsonObject& object, LightDescription& light) {
       light.direction = object.at("direction", "the way the light travels [x, y, z]").direction();
       light.angle = object.number("angle", light.angle, {.low = 0, .high = 90});
       read_light_sampling(object, light.samples);
-      read_light_visible(object, light.visible);
+      read_light_visible(object, light.visible, light.hidden);
       break;
     case LightType::spot:
       read_aim(object, light);
@@ -242,7 +246,7 @@ Light pack_light(const NamedLight& named, const dvec3& origin) {
       packed.edge_u.w = static_cast<float>(light.radius);
       break;
   }
-  packed.position.w = facts_of(light.type).has_extent() && !is_met(light) ? 1.0f : 0.0f;
+  if (facts_of(light.type).has_extent()) packed.position.w = is_met(light) ? 0.0f : 1.0f;
   return packed;
 }
 
@@ -280,6 +284,7 @@ void add_lamps(SceneDescription& scene) {
     material.ambient = material.diffuse = dvec3(0);
     material.emission = light.color * light.intensity;
     material.shadow_opaque = true;
+    material.off_camera = !light.visible;
     const Shape shape = lamp_shape(light);
     const bool aimed = facts_of(light.type).aimed;
     const dmat4 place = aimed ? placed_along(lamp_axes(light), light.position)

@@ -17,7 +17,7 @@ void read_light_kind(JsonObject& object, LightDescription& light);
 void read_light_sampling(JsonObject& object, int& samples);
 
 /// Whether rays meet it.
-void read_light_visible(JsonObject& object, bool& visible);
+void read_light_visible(JsonObject& object, bool& visible, bool& hidden);
 
 /// A light and its place in the scene file, for messages.
 struct NamedLight {

@@ -78,7 +78,7 @@ static inline REAL steps_alone(const Scene* scene, const SceneRays* camera, MASK
     SceneRays rays = *camera;
     Encounters met;
     SurfaceInteractions s;
-    see_surfaces(scene, &rays, lanes_of(1u << i), true, &met, counts);
+    see_surfaces(scene, &rays, lanes_of(1u << i), ALL_LANES, true, &met, counts);
     REAL_LANE(steps, i) = (float)counts[COUNT_MARCH_STEPS];
   }
   return steps;
@@ -100,7 +100,7 @@ NEVER_INLINE void write_more(const Scene* scene, MediaStack stack, REAL x, REAL 
     SceneRays rays = scene_rays(&camera, stack);
     Encounters met;
     start_marching(counts);
-    see_surfaces(scene, &rays, lanes, true, &met, counts);
+    see_surfaces(scene, &rays, lanes, ALL_LANES, true, &met, counts);
     const MASK found = lanes & hit_anything(&met.hit);
     for (u32 i = 0; i < BATCH; ++i) {
       const bool seen = MASK_LANE(found, i) != 0;
@@ -153,7 +153,7 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
   SceneRays rays = scene_rays(&camera, stack);
   Encounters met;
   SurfaceInteractions s;
-  see_surfaces(scene, &rays, lanes, true, &met, counts);
+  see_surfaces(scene, &rays, lanes, ALL_LANES, true, &met, counts);
   const MASK hit = lanes & hit_anything(&met.hit);
   interact(scene, rays.o, rays.d, &met.hit, &met.face, hit, &s);
   set_footprints(scene, &rays, met.hit.t, &s);

@@ -35,7 +35,8 @@ SUNDOG_SHARED_BEGIN
   KEY(double, angle, {0})    /* directional: degrees across that it takes up            \
                                 in the sky, [0, 90]; above 0 an extent */               \
   KEY(int, samples, {1})     /* an extent: shadow rays that a surface sends to it */    \
-  KEY(bool, visible, {true}) /* `met`: rays meet it (scene/lamps.h places what they meet) */
+  KEY(bool, visible, {true}) /* the camera's rays see it, where others do */            \
+  KEY(bool, hidden, {false}) /* no ray meets it (scene/lamps.h places what they meet) */
 
 #define LIGHT_CONSTANT(constant, name, placed, aimed, extent) LIGHT_##constant,
 typedef enum LightKind SUNDOG_ENUM_OF_U32 {
@@ -48,10 +49,10 @@ typedef enum LightKind SUNDOG_ENUM_OF_U32 {
 
 // 96 bytes. A light with an extent shines from its front, the side that `direction` points to; a sphere from
 // its outside. direction.w: of a spot the cosine of the cone's outer half angle; of an extent its area; of a
-// sun 1 minus the cosine of its half angle, below 0 where it is not seen.
+// sun 1 minus the cosine of its half angle, below 0 where no ray sees it.
 typedef struct Light {
-  float4
-      position;  // world; of a rectangle the corner, else the centre; w = 1: an extent that rays do not meet
+  float4 position;   // world; of a rectangle the corner, else the centre; w = 1: an extent that rays do not
+                     // meet, of a sun: that those of the camera do not see
   float4 direction;  // unit, the way the light travels; w: see above
   float4 color;  // times intensity (the radiance, of an extent); w = cosine of the cone's inner half angle
   float falloff_constant, falloff_linear,
@@ -62,6 +63,11 @@ typedef struct Light {
                           // point's and a spot's edge_v.x is 1 over the range, 0 without one
 } Light;
 SUNDOG_SHARED_SIZE(Light, 96)
+
+// Which rays see what is infinitely far away.
+#define SEEN_BY_NONE 0u
+#define SEEN_BY_ALL 1u
+#define SEEN_OFF_CAMERA 2u  // all but the camera's
 
 #define LIGHT_CHOSEN 0xFFFFFFFFu  // LightRay.light: one of the lights of the tree, chosen for each surface
 

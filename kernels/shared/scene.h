@@ -24,6 +24,7 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_EMITS 8192u          // `emission` is not black
 #define MATERIAL_FROSTED 16384u       // path tracing: thin, and its facets transmit too
 #define MATERIAL_WALL 32768u          // thin, of an index: transmission.w
+#define MATERIAL_OFF_CAMERA 65536u    // of a lamp: rays from the camera pass it
 
 // Facets of a lesser width alpha are perfect mirrors and interfaces for paths.
 #define LEAST_ALPHA 1e-4f
@@ -111,7 +112,7 @@ typedef struct SceneInfo {
   float4 fog;            // colour of the world's fog; w = its density per unit of length (0: none)
   u32 field_end;         // instances [instance_count, field_end) place distance fields
   u32 table_lights;      // rows of the table of lights
-  u32 sees_environment;  // 1: rays that meet nothing see the environment, else the background
+  u32 sees_environment;  // SEEN_BY_*: rays that meet nothing see the environment, else the background
   u32 texel_page;        // units of TEXEL_UNIT bytes in each of texels0 to texels2
   float4 origin;         // of the tables' coordinates, in the world
   float4 origin_rest;    // what its floats leave out

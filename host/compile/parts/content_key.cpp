@@ -125,10 +125,11 @@ KeyMaker& KeyMaker::add(const LightDescription& light) {
 }
 
 KeyMaker& KeyMaker::add(const EnvironmentDescription& environment) {
-  const auto& [type, color, intensity, up, rotate, samples, visible, picture, bottom, top, sun_altitude,
-               sun_azimuth, sun_size, turbidity, ground, halo, halo_map] = environment;
-  add_each(type, color, intensity, up, rotate, samples, visible, bottom, top, sun_altitude, sun_azimuth,
-           sun_size, turbidity, ground, picture.width, picture.height, picture.channels, halo.optical_depth);
+  const auto& [type, color, intensity, up, rotate, samples, visible, hidden, picture, bottom, top,
+               sun_altitude, sun_azimuth, sun_size, turbidity, ground, halo, halo_map] = environment;
+  add_each(type, color, intensity, up, rotate, samples, visible, hidden, bottom, top, sun_altitude,
+           sun_azimuth, sun_size, turbidity, ground, picture.width, picture.height, picture.channels,
+           halo.optical_depth);
   add_rows(*this, picture.data);
   (void)halo_map;  // follows from the rest
   return add_halo(environment);
@@ -181,17 +182,18 @@ KeyMaker& KeyMaker::add(const TextureDescription& texture) {
 KeyMaker& KeyMaker::add(const MaterialDescription& material) {
   const auto& [name, type, ambient, diffuse, specular, exponent, blinn, emission, reflection, transmission,
                roughness, multiple_scattering, medium, wall_ior, shadow_opaque, shadow_filter, checker,
-               checker_ambient, checker_diffuse, checker_size, vertex_color, opacity, cutoff, one_sided,
-               textures, metal_rough, normal_scale, bump, bump_uv, parallax, displaced_by, displacement,
-               displacement_middle, displacement_edge, occlusion, coat, layers, by_paths] = material;
+               off_camera, checker_ambient, checker_diffuse, checker_size, vertex_color, opacity, cutoff,
+               one_sided, textures, metal_rough, normal_scale, bump, bump_uv, parallax, displaced_by,
+               displacement, displacement_middle, displacement_edge, occlusion, coat, layers, by_paths] =
+      material;
   (void)name;
   // These have made the meshes.
   (void)displaced_by, (void)displacement, (void)displacement_middle, (void)displacement_edge;
   add_each(type, ambient, diffuse, specular, exponent, blinn, emission, reflection, transmission, roughness,
-           multiple_scattering, medium, wall_ior, shadow_opaque, shadow_filter, checker, checker_ambient,
-           checker_diffuse, checker_size, vertex_color, opacity, cutoff, one_sided, normal_scale, bump,
-           bump_uv, parallax, occlusion, coat, metal_rough.has_value(), layers.has_value(),
-           by_paths != nullptr);
+           multiple_scattering, medium, wall_ior, shadow_opaque, off_camera, shadow_filter, checker,
+           checker_ambient, checker_diffuse, checker_size, vertex_color, opacity, cutoff, one_sided,
+           normal_scale, bump, bump_uv, parallax, occlusion, coat, metal_rough.has_value(),
+           layers.has_value(), by_paths != nullptr);
   if (by_paths) add(*by_paths);
   if (layers) boost::pfr::for_each_field(*layers, [&](const auto& value) { add(value); });
   static_assert(sizeof textures % sizeof(int) == 0);

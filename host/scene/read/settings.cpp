@@ -279,7 +279,7 @@ EnvironmentDescription read_environment(const JsonValue& value,
     if (const auto up = object.find("up")) e.up = up->direction();
     e.rotate = object.number("rotate", e.rotate, {.low = -1e6, .high = 1e6});
     read_light_sampling(object, e.samples);
-    read_light_visible(object, e.visible);
+    read_light_visible(object, e.visible, e.hidden);
     if (type == EnvironmentType::image) {
       e.picture = read_picture(object.at("file", "the path of an image"));
     } else if (type == EnvironmentType::gradient) {

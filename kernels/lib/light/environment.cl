@@ -272,15 +272,25 @@ static inline REAL3 distant_along(const Scene* scene, REAL3 d, MASK lanes, REAL*
                                  : background_along(scene->info, d);
 }
 
-// What the rays of `lanes` see, which meet nothing: that, and the suns in front of it.
-static inline REAL3 sky_along(const Scene* scene, REAL3 d, MASK lanes) {
+// The same, where the rays of `camera` do not see what is hidden from them; and what they see of a sun.
+static inline REAL3 hide_environment(const Scene* scene, REAL3 d, REAL3 light, MASK camera) {
+  if (scene->info->sees_environment != SEEN_OFF_CAMERA) return light;
+  return select3(light, background_along(scene->info, d), camera);
+}
+static inline MASK sees_sun(__global const Light* sun, REAL3 d, MASK camera) {
+  return sun->position.w != 0.0f ? in_sun(sun, d) & ~camera : in_sun(sun, d);
+}
+
+// What the rays of `lanes` see, which meet nothing: that, and the suns in front of it. Those of `camera` are
+// its own.
+static inline REAL3 sky_along(const Scene* scene, REAL3 d, MASK camera, MASK lanes) {
   if (!HAS_SKY) return background_along(scene->info, d);
   REAL density;
-  REAL3 light = distant_along(scene, d, lanes, &density);
+  REAL3 light = hide_environment(scene, d, distant_along(scene, d, lanes, &density), camera);
   for (u32 index = 0; index < scene->info->table_lights; ++index) {
     __global const Light* sun = scene->lights + index;
     if (sun->kind != LIGHT_SUN) continue;
-    light = select3(light, add3(light, all3(sun->color.xyz)), in_sun(sun, d));
+    light = select3(light, add3(light, all3(sun->color.xyz)), sees_sun(sun, d, camera));
   }
   return light;
 }

@@ -54,6 +54,17 @@ static inline void stay_in_media(Encounters* met, MASK low, MASK high, MASK lane
 static inline void forget_behind(Encounters* met) {}
 #endif
 
+// Takes the faces of the hits of `lanes` into `met`.
+static inline Faces see_faces(const Scene* scene, const SceneRays* rays, Encounters* met, MASK lanes) {
+  const Faces faces = hit_faces(scene, rays->d, &met->hit, lanes);
+  met->face.outward = select3(met->face.outward, faces.outward, lanes);
+  met->face.entering = select(met->face.entering, faces.entering, lanes);
+  met->face.material = select(met->face.material, faces.material, lanes);
+  met->face.flags = select(met->face.flags, faces.flags, lanes);
+  met->face.medium = select(met->face.medium, faces.medium, lanes);
+  return faces;
+}
+
 #if HAS_MEDIA
 // Lane i at an interface behind which the media are `crossed`. There is nothing to see where both sides are
 // one medium, nor where a clear material parts media of equal index; then the ray's stack becomes the one
@@ -117,12 +128,7 @@ static inline MASK cross_unseen(const Scene* scene, SceneRays* rays, Encounters*
   const MASK here = current_media(scene->media, rays, waiting);
   met->before = select(met->before, here, waiting);
   met->after = select(met->after, here, waiting);
-  const Faces faces = hit_faces(scene, rays->d, &met->hit, hit);
-  met->face.outward = select3(met->face.outward, faces.outward, hit);
-  met->face.entering = select(met->face.entering, faces.entering, hit);
-  met->face.material = select(met->face.material, faces.material, hit);
-  met->face.flags = select(met->face.flags, faces.flags, hit);
-  met->face.medium = select(met->face.medium, faces.medium, hit);
+  const Faces faces = see_faces(scene, rays, met, hit);
   stay_in_media(met, rays->media_low, rays->media_high, waiting);
   const MASK touching =
       may_touch(scene->instances, &met->hit, hit & MASK_OF((faces.flags & (int)MATERIAL_TRANSMITS) != 0));
@@ -166,6 +172,7 @@ static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK ac
 #else
 static inline MASK cross_unseen(const Scene* scene, SceneRays* rays, Encounters* met, MASK waiting,
                                 u32* counts) {
+  see_faces(scene, rays, met, waiting & hit_anything(&met->hit));
   return NO_LANES;
 }
 static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK active, Encounters* met,
@@ -177,6 +184,24 @@ static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK ac
   return NO_LANES;
 }
 #endif
+
+// The camera's rays of `lanes` go on behind lamps that are hidden from them. Returns those.
+#if HAS_MEDIA
+static inline void end_stretch(SceneRays* rays, const Hits* hits, MASK lanes) {
+  rays->since = select(rays->since, hits->t, lanes);
+}
+#else
+static inline void end_stretch(SceneRays* rays, const Hits* hits, MASK lanes) {}
+#endif
+static inline MASK pass_hidden(const Scene* scene, SceneRays* rays, const Encounters* met, MASK lanes) {
+  if (!HAS_EMISSION) return NO_LANES;
+  const MASK hidden =
+      lanes & hit_anything(&met->hit) & MASK_OF((met->face.flags & (int)MATERIAL_OFF_CAMERA) != 0);
+  if (!any_lane(hidden)) return NO_LANES;
+  end_stretch(rays, &met->hit, hidden);
+  continue_behind(scene->info, rays, &met->hit, met->face.entering, hidden);
+  return hidden;
+}
 
 // Whether rays inside of media pass all that they do not see in one walk.
 #define LISTS_UNSEEN (LISTS_HITS && HAS_MEDIA && !HAS_PARALLAX)

@@ -44,7 +44,7 @@ NEVER_INLINE MASK step_features(const Scene* scene, FeatureWalks* f, SceneRays* 
   Encounters met;
   Walks* walks = &f->walks;
   const MASK first = MASK_OF(walks->depth == 1);
-  see_surfaces(scene, rays, lanes, coherent, &met, counts);
+  see_surfaces(scene, rays, lanes, first, coherent, &met, counts);
   forget_glow(rays);
   f->tint = select3(f->tint, multiply3(f->tint, met.absorbed), lanes);
   const MASK hit = lanes & hit_anything(&met.hit);

@@ -91,12 +91,13 @@ static inline REAL3 met_surface(const Scene* scene, const Walks* walks, const Sc
 static inline REAL3 met_sky(const Scene* scene, const Walks* walks, REAL3 d, MASK lanes) {
   if (!HAS_SKY) return background_along(scene->info, d);
   const float chance = 1.0f / (float)max(scene->info->light_count, 1u);
+  const MASK camera = MASK_OF(walks->depth == 1);
   REAL density;
   REAL3 light = distant_along(scene, d, lanes, &density);
   if (sees_environment(scene)) {
     const REAL chosen = density * chance;
     light = scale3(light, weight_of_met(scene, walks, density_on_stretch(walks, 0, chosen)));
-    light = left_by_photons(walks, light, lanes);
+    light = hide_environment(scene, d, left_by_photons(walks, light, lanes), camera);
   }
   for (u32 index = 0; index < scene->info->table_lights; ++index) {
     __global const Light* sun = scene->lights + index;
@@ -104,7 +105,7 @@ static inline REAL3 met_sky(const Scene* scene, const Walks* walks, REAL3 d, MAS
     const REAL chosen = density_on_stretch(walks, 0, (REAL)(sun_density(sun, chance)));
     const REAL weight = weight_of_met(scene, walks, chosen);
     const REAL3 seen = left_by_photons(walks, all3(sun->color.xyz), lanes);
-    light = select3(light, along3(light, weight, seen), in_sun(sun, d));
+    light = select3(light, along3(light, weight, seen), sees_sun(sun, d, camera));
   }
   return light;
 }

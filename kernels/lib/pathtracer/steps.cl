@@ -59,7 +59,8 @@ NEVER_INLINE MASK step_walks(const Scene* scene, Walks* walks, SceneRays* rays, 
                              u32* counts) {
   Encounters met;
   const BegunRays begun = begun_rays_of(rays);
-  const MASK crossing = meet_interfaces(scene, rays, lanes, coherent, &met, counts);
+  MASK crossing = meet_interfaces(scene, rays, lanes, coherent, &met, counts);
+  crossing |= pass_hidden(scene, rays, &met, lanes & ~crossing & MASK_OF(walks->depth == 1));
   if (HAS_GLOW)
     walks->light =
         carry_select(walks->light, carry_add(walks->light, carried_color(walks, emitted(rays))), lanes);

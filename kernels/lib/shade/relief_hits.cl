@@ -169,17 +169,20 @@ static inline MASK meet_interfaces(const Scene* scene, SceneRays* rays, MASK act
   return reach_interfaces(scene, rays, active, met, counts);
 }
 
-// The same to their next visible surfaces, as next_surfaces().
-static inline void see_surfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
+// The same to their next visible surfaces, as next_surfaces(). The rays of `camera` pass what is hidden from
+// them.
+static inline void see_surfaces(const Scene* scene, SceneRays* rays, MASK active, MASK camera, bool coherent,
                                 Encounters* met, u32* counts) {
   MASK waiting = meet_interfaces(scene, rays, active, coherent, met, counts);
-  while (HAS_MEDIA && any_lane(waiting)) {
+  waiting |= pass_hidden(scene, rays, met, active & ~waiting & camera);
+  while ((HAS_MEDIA || HAS_EMISSION) && any_lane(waiting)) {
     Encounters next;
     nearest_hits(scene, rays, waiting, false, &next.hit, counts);
     enter_reliefs(scene, rays, waiting, &next, counts);
     take_depth(&next, waiting, met);
     met->hit = select_hits(&met->hit, &next.hit, waiting);
-    waiting = cross_unseen(scene, rays, met, waiting, counts);
+    const MASK unseen = cross_unseen(scene, rays, met, waiting, counts);
+    waiting = unseen | pass_hidden(scene, rays, met, waiting & ~unseen & camera);
   }
 }
 

@@ -25,7 +25,7 @@ static inline REAL3 see_fog(const Scene* scene, const Encounters* met, MASK ende
 
 static inline REAL3 see_background(const Scene* scene, const SceneRays* rays, const PathStates* paths,
                                    MASK lanes) {
-  return multiply3(paths->throughput, sky_along(scene, rays->d, lanes));
+  return multiply3(paths->throughput, sky_along(scene, rays->d, MASK_OF(paths->depth == 1), lanes));
 }
 
 // Ambient light on surfaces, less in the crevices of fields.

@@ -78,8 +78,9 @@ NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, Scen
   Encounters met;
   Shading at;
   REAL3 seen;
-  const MASK unseen = coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, lanes, coherent, &met, counts)
-                                                : meet_listed(scene, rays, lanes, &met, counts);
+  MASK unseen = coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, lanes, coherent, &met, counts)
+                                          : meet_listed(scene, rays, lanes, &met, counts);
+  unseen |= pass_hidden(scene, rays, &met, lanes & ~unseen & MASK_OF(paths->depth == 1));
   const MASK hit = meet_surfaces(scene, tile, rays, paths, lanes, unseen, ALL_LANES, &met, &at, &seen, stack,
                                  radiance, counts);
   add_lights(scene, tile, rays, paths, hit, coherent, stack->count == 0u, &met.hit, &at, shadows, radiance,

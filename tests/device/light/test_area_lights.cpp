@@ -159,7 +159,7 @@ SceneDescription floor_under(LightDescription light) {
   SceneDescription scene = scenes::line_of_sight({1, 1, 0}, {0, 0, 0});
   scene.image.width = scene.image.height = 16;
   scenes::place(scene, PlaneShape{}, scenes::add_white(scene));
-  light.visible = false;
+  light.hidden = true;
   scene.lights.push_back(light);
   return scene;
 }
@@ -282,7 +282,7 @@ TEST_CASE("a visible lamp shows its radiance from the front, is black behind, an
     LightDescription light = lamp(LightType::sphere, {});
     SceneDescription scene = floor_under(light);
     const auto [without, error] = mean_of(scenes::render_on(device, scene).image);
-    scene.lights.back().visible = true;
+    scene.lights.back().hidden = false;
     add_lamps(scene);
     CHECK(mean_of(scenes::render_on(device, scene).image).first == Approx(without).epsilon(1e-6));
   });

@@ -180,7 +180,7 @@ TEST_CASE("an environment is seen upright, its middle along -z, and turns counte
     turned.environment.rotate = 90;
     CHECK(seen_along(device, turned, {-1, 0.2, -1}).x == Approx(3).epsilon(1e-4));
     SceneDescription hidden = scene;
-    hidden.environment.visible = false;
+    hidden.environment.hidden = true;
     hidden.image.background_bottom = hidden.image.background_top = {0.25, 0, 0};
     CHECK(seen_along(device, hidden, {1, 0.2, -1}).x == Approx(0.25));
     SceneDescription high = scene;
@@ -244,7 +244,7 @@ TEST_CASE("a directional light of some degrees across is as bright, is seen, and
     CHECK(seen_along(device, open, {std::sin(glm::radians(2.9)), std::cos(glm::radians(2.9)), 0}).x ==
           Approx(radiance).epsilon(1e-4));
     CHECK(seen_along(device, open, {std::sin(glm::radians(3.1)), std::cos(glm::radians(3.1)), 0}).x == 0);
-    open.lights.back().visible = false;
+    open.lights.back().hidden = true;
     CHECK(seen_along(device, open, {0, 1, 0}).x == 0);
   });
 }

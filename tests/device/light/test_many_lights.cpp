@@ -28,7 +28,7 @@ SceneDescription floor_under(int count) {
     light.radius = 0.05 + 0.2 * next();
     light.size = {0.1 + 0.3 * next(), 0.2};
     light.intensity = 5 * next();
-    light.visible = false;
+    light.hidden = true;
     scene.lights.push_back(light);
   }
   return scene;

@@ -134,7 +134,7 @@ TEST_CASE("a rectangle that stands in the horizon lights a floor by what is abov
   light.position = {0, 0.3, -2};
   light.direction = {0, 0, 1};
   light.size = {3, 1};
-  light.visible = false;
+  light.hidden = true;
   SceneDescription scene = scenes::line_of_sight({1, 1, 0}, {0, 0, 0});
   scenes::place(scene, DiskShape{0.5, 0}, scenes::add_white(scene));
   scene.lights.push_back(light);
@@ -152,14 +152,14 @@ TEST_CASE("a rectangle that stands in the horizon lights a floor by what is abov
 
 TEST_CASE("a visible lamp does not block its own light") {
   // As scene files have it: the lamp is an object too, in the picture's upper half.
-  const auto scene_with = [](bool visible) {
+  const auto scene_with = [](bool hidden) {
     const nlohmann::json document = parse_json(
         fmt::format(
             R"({{"camera": {{"position": [0, 4, 7], "target": [0, 2, 0]}}, "image": {{"width": 32, "height": 24}},
           "materials": {{"white": {{"color": [0.8, 0.8, 0.8]}}}}, "objects": [{{"type": "plane", "material": "white"}}],
           "lights": [{{"type": "rectangle", "position": [0, 5, 0], "direction": [0, -1, 0], "size": [1, 1],
-            "visible": {}}}]}})",
-            visible),
+            "hidden": {}}}]}})",
+            hidden),
         "test.json");
     const JsonContext context{"test.json"};
     return compile(read_scene(JsonValue(document, context)));

@@ -36,7 +36,7 @@ inline LightDescription lamp(LightType type, const dvec3& position, double radia
   light.type = type;
   light.position = position;
   light.intensity = radiance;
-  light.visible = false;
+  light.hidden = true;
   return light;
 }
 

@@ -161,7 +161,7 @@ TEST_CASE("photons bring what paths find by chance, from every light that has an
       scene.camera.fov = 16;
       scene.render.photons = 16384;
       scene.render.photon_radius = 0.04;
-      for (LightDescription& light : scene.lights) light.visible = true;
+      for (LightDescription& light : scene.lights) light.hidden = false;
       add_lamps(scene);
       const Mean brought = mean_on(device, scene);
       scene.render.caustics = false;

@@ -29,7 +29,7 @@ TEST_CASE(
         scene.lights.push_back(lamp(LightType::sphere, {0, 0, 0}, 3));
         scene.lights.back().radius = 0.3;
         scene.lights.back().position = {1.1 * std::sin(1.2), 1.1 * std::cos(1.2), 0};
-        for (LightDescription& light : scene.lights) light.visible = visible;
+        for (LightDescription& light : scene.lights) light.hidden = !visible;
         INFO("strategy " << strategy << (visible ? ", lamps are met" : ""));
         if (visible) add_lamps(scene);
         check_mean(mean_on(device, scene), albedo * (2 * rectangle + 3 * ball * std::cos(1.2)));
@@ -150,7 +150,7 @@ TEST_CASE("light from within nested media is absorbed by each, and loses radianc
     SceneDescription scene = path_scene(from, at);
     scene.lights.push_back(lamp(LightType::sphere, {0, 0, 0}, radiance));
     scene.lights.back().radius = r;
-    scene.lights.back().visible = true;
+    scene.lights.back().hidden = false;
     add_lamps(scene);
     scenes::place(scene, SphereShape{2}, scenes::add_dielectric(scene, 1, {0.3, 0.1, 0}, 1));
     scenes::place(scene, SphereShape{1}, scenes::add_dielectric(scene, index, {0.5, 0, 0.2}, 2));
@@ -193,7 +193,7 @@ TEST_CASE("paths choose among lamps, points, suns and an environment, and add up
     for (const double angle : {0.4, 0.9}) {  // chosen by the tree
       scene.lights.push_back(lamp(LightType::sphere, {2 * std::sin(angle), 2 * std::cos(angle), 0}, 4));
       scene.lights.back().radius = 0.2;
-      scene.lights.back().visible = true;
+      scene.lights.back().hidden = false;
       expected += 0.01 * std::cos(angle) * (4 - 0.25);  // in front of the environment
     }
     add_lamps(scene);
@@ -233,7 +233,7 @@ TEST_CASE("a large lamp that is chosen or met is weighed by how often each finds
     scenes::place(scene, PlaneShape{}, add_matte(scene, 0.8));
     scene.lights.push_back(lamp(LightType::sphere, {0, 1.5, 0}, 2));
     scene.lights.back().radius = 1.2;
-    scene.lights.back().visible = true;
+    scene.lights.back().hidden = false;
     scene.lights.push_back(lamp(LightType::point, {5, 0.5, 0}, 1));
     add_lamps(scene);
     const double of_lamp = 2 * (1.2 * 1.2) / (1.5 * 1.5), of_point = 0.5 / std::hypot(5, 0.5);

@@ -85,7 +85,7 @@ TEST_CASE("light that fog scatters once towards the camera is what quadrature ha
     scene.lights.back().falloff = {0, 0, 1};
     scene.lights.push_back(lamp(LightType::sphere, light, of_ball));
     scene.lights.back().radius = r;
-    scene.lights.back().visible = true;
+    scene.lights.back().hidden = false;
     add_lamps(scene);
     return scene;
   };
@@ -128,7 +128,7 @@ TEST_CASE("all ways of finding light agree about what a cloud sends back, and so
       scene.lights.back().radius = 0.8;
       scene.lights.push_back(lamp(LightType::rectangle, {0, 3, 1}, 4));
       scene.lights.back().direction = {0, -1, 0};
-      for (LightDescription& light : scene.lights) light.visible = true;
+      for (LightDescription& light : scene.lights) light.hidden = false;
       add_lamps(scene);
       return scene;
     };

@@ -78,7 +78,7 @@ TEST_CASE("a change of lights that rays do not meet gives the scene that reading
   brighter["lights"][1]["intensity"] = 3;
   dark.erase("lights");
   more["lights"].push_back(
-      {{"type", "disk"}, {"position", {0, 3, 0}}, {"direction", {0, -1, 0}}, {"visible", false}});
+      {{"type", "disk"}, {"position", {0, 3, 0}}, {"direction", {0, -1, 0}}, {"hidden", true}});
   lamp["lights"].push_back({{"type", "sphere"}, {"position", {0, 3, 0}}});  // rays meet it
   for (const json& after : {brighter, dark, more, lamp}) {
     const auto changed = change_scene(scene, before, after);

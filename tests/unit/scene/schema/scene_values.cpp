@@ -49,8 +49,8 @@ std::string settings(const SceneDescription& scene) {
                      c.far) +
          fmt::format("{} {} {} {} {} {}\n", c.lens.radius, c.lens.focus.value_or(-1), c.lens.blades,
                      c.lens.rotate, text(to.position), text(to.target)) +
-         fmt::format("environment {} {} {} {} {} {} {} {}", static_cast<int>(e.type), text(e.color),
-                     e.intensity, text(e.up), e.rotate, e.samples, e.visible, e.picture.width) +
+         fmt::format("environment {} {} {} {} {} {} {} {} {}", static_cast<int>(e.type), text(e.color),
+                     e.intensity, text(e.up), e.rotate, e.samples, e.visible, e.hidden, e.picture.width) +
          fmt::format(" {} {} {} {} {} ", e.halo.optical_depth, e.halo.index, e.halo.rays, e.halo.size,
                      e.halo.crystals.size()) +
          fmt::format("{} {} {} {} {} {} {}\n", text(e.bottom), text(e.top), e.sun_altitude, e.sun_azimuth,
