@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/image_io.h"
+#include "base/pixels/dither.h"
 #include "base/tone_map.h"
 #include "compile/compiled_scene.h"
 #include "device/devices.h"

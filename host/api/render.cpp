@@ -8,7 +8,6 @@
 
 #include "api/impl.h"
 #include "base/clock.h"
-#include "base/pixels/dither.h"
 
 namespace sundog {
 inline namespace v0 {

@@ -152,6 +152,14 @@ class Device {
   Buffer<T> upload(std::span<const T> values) {
     return {allocate(values.size_bytes(), values.data()), values.size()};
   }
+  /// Whether the device reads the host's memory: share() copies nothing.
+  bool shares_memory() const { return info_.type == "cpu" && info_.host_unified_memory; }
+  /// The same without a copy where shares_memory(): for kernels to read, and never written. The values stay
+  /// in place and as they are as long as the buffer.
+  template <class T>
+  Buffer<T> share(std::span<const T> values) {
+    return {allocate(values.size_bytes(), values.data(), shares_memory()), values.size()};
+  }
   template <class T>
   Buffer<T> make(std::size_t count) {  // contents undefined
     return {allocate(count * sizeof(T), nullptr), count};
@@ -216,7 +224,7 @@ class Device {
   const std::shared_ptr<ProgramRecord>* find_built(const std::string& entry, const std::string& source) const;
   KernelLimits limits_of(const cl::Kernel& kernel) const;
   void check_argument(cl_int status, const std::string& name, cl_uint index) const;
-  cl::Buffer allocate(std::size_t bytes, const void* data);
+  cl::Buffer allocate(std::size_t bytes, const void* data, bool in_place = false);
   void write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset,
                    cl_bool waits);
   void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset, cl_bool waits);

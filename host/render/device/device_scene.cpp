@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <functional>
 #include <span>
 #include <utility>
 
@@ -24,49 +25,68 @@ bool same_rows(const SharedTable<T>& a, const SharedTable<T>& b) {
   return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-/// Writes tables, which must fit into one allocation each, where the device has others.
+/// Writes tables, which must fit into one allocation each, where the device has others. What the device reads
+/// in place stays there until it is held no more: `held` never lets go of rows that a buffer is made of.
 class Uploader {
  public:
   explicit Uploader(Device& device, bool compact) : device_(device), compact_(compact) {}
 
   template <class T>
   void operator()(const char* label, const SharedTable<T>& table, SharedTable<T>& held, Buffer<T>& buffer) {
-    if (!buffer.memory() || !same_rows(table, held)) write(label, std::span<const T>(table.rows()), buffer);
+    if (buffer.memory() && same_rows(table, held)) return;
+    put(label, std::span<const T>(table.rows()), buffer);
     held = table;
   }
   /// Nodes are of two kinds, so the kernels have them as words.
   void operator()(const char* label, const SharedTable<Bvh8Node>& nodes, SharedTable<Bvh8Node>& held,
                   Buffer<u32>& buffer) {
-    if (!buffer.memory() || !same_rows(nodes, held)) {
-      if (compact_)
-        write_words(label, std::span<const CompactNode>(compact_nodes(nodes.rows())), buffer);
-      else
-        write_words(label, std::span<const Bvh8Node>(nodes.rows()), buffer);
-    }
+    if (buffer.memory() && same_rows(nodes, held)) return;
+    if (compact_)
+      as_words<CompactNode>(buffer, [&](Buffer<CompactNode>& rows) {
+        write(label, std::span<const CompactNode>(compact_nodes(nodes.rows())), rows);
+      });
+    else
+      as_words<Bvh8Node>(
+          buffer, [&](Buffer<Bvh8Node>& rows) { put(label, std::span<const Bvh8Node>(nodes.rows()), rows); });
     held = nodes;
   }
   const UploadFigures& figures() const { return figures_; }
 
  private:
-  /// Into the buffer that is there, where the size is the same.
-  template <class T>
-  void write(const char* label, std::span<const T> table, Buffer<T>& buffer) {
-    const std::size_t bytes = table.size_bytes(), most = device_.info().max_allocation;
+  void check_size(const char* label, std::size_t bytes) const {
+    const std::size_t most = device_.info().max_allocation;
     if (most && bytes > most)
       throw DeviceError(
           fmt::format("{}: the scene's {} take {} MiB, more than the {} MiB that one allocation may have",
                       device_.info().label(), label, bytes >> 20, most >> 20));
+  }
+  void count(std::size_t bytes) {
+    figures_.bytes += bytes;
+    figures_.tables += bytes > 0;
+  }
+  /// In place if the device can read it there and it is large: small tables can change in their buffers.
+  template <class T>
+  void put(const char* label, std::span<const T> table, Buffer<T>& buffer) {
+    constexpr std::size_t large = std::size_t{1} << 20;
+    if (!device_.shares_memory() || table.size_bytes() < large) return write(label, table, buffer);
+    check_size(label, table.size_bytes());
+    buffer = {}, buffer = device_.share(table);
+    count(table.size_bytes());
+  }
+  /// Into the buffer that is there, where the size is the same.
+  template <class T>
+  void write(const char* label, std::span<const T> table, Buffer<T>& buffer) {
+    check_size(label, table.size_bytes());
     if (buffer.memory() && buffer.count == table.size())
       device_.write(buffer, table);
     else
       buffer = {}, buffer = device_.upload(table);
-    figures_.bytes += bytes;
-    figures_.tables += bytes > 0;
+    count(table.size_bytes());
   }
   template <class T>
-  void write_words(const char* label, std::span<const T> table, Buffer<u32>& buffer) {
+  static void as_words(Buffer<u32>& buffer, const std::function<void(Buffer<T>&)>& fill) {
     Buffer<T> rows{buffer.memory, buffer.count * sizeof(u32) / sizeof(T)};
-    write(label, table, rows);
+    fill(rows);
     buffer = {rows.memory, rows.count * sizeof(T) / sizeof(u32)};
   }
   Device& device_;
