@@ -98,8 +98,8 @@ class SUNDOG_API Film {
   /// What a person would want to know of scene, view and devices, one line each.
   const std::vector<std::string>& warnings() const noexcept;
 
-  /// Writes the picture as `sundog render -o` does: tone mapped and dithered in files of 8 bits, with all AOVs
-  /// in an .exr. Throws Error: usage for an extension that is none of Image::save()'s, io.
+  /// Writes the picture as `sundog render -o` does: tone mapped and dithered in files of 8 bits, with all
+  /// AOVs in an .exr. Throws Error: usage for an extension that is none of Image::save()'s, io.
   void save(const std::filesystem::path& file) const;
 
   struct Impl;

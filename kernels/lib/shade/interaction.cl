@@ -243,14 +243,16 @@ static inline void set_camera_footprint(REAL width, SurfaceInteractions* s) { s-
 #else
 static inline void set_camera_footprint(REAL width, SurfaceInteractions* s) {}
 #endif
+#if HAS_CONES || HAS_CHECKER
 static inline void set_footprints(const Scene* scene, const SceneRays* rays, REAL t, SurfaceInteractions* s) {
-  if (!HAS_CONES && !HAS_CHECKER) {
-    set_footprint((REAL)(0.0f), s);
-    return;
-  }
   const REAL cosine = real_max(fabs(dot3(s->ng, rays->d)), (REAL)(0.01f));
   set_footprint(cone_widths(rays, t) / cosine, s);
   set_camera_footprint(t * sample_spread(scene->info) / cosine, s);
 }
+#else
+static inline void set_footprints(const Scene* scene, const SceneRays* rays, REAL t, SurfaceInteractions* s) {
+  set_footprint((REAL)(0.0f), s);
+}
+#endif
 
 #endif
