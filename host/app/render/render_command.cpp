@@ -240,6 +240,7 @@ int render_one(const RenderCommand& command, const LoadedScene& scene, const Set
   const Stopwatch writing;
   save_result(command, scene.description, *scene.flat, result, checkpoint);
   times.write = writing.seconds();
+  warn_of_losses(scene.description, result);
   times.total = clock.seconds();
   if (!command.stats.empty()) {
     using nlohmann::json;

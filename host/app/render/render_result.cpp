@@ -81,27 +81,6 @@ double seconds_of(const RenderTimes& times) {
   return times.build_kernels + times.upload + times.render + times.readback;
 }
 
-void warn(const SceneDescription& scene, const RenderResult& result) {
-  print_warnings(losses(result.counts, scene));
-  for (const DeviceReport& report : result.devices) print_warnings(failures_text(report));
-}
-
-void summarise(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result,
-               const TimeLedger& times) {
-  if (command.quiet) return;
-  const double rays = static_cast<double>(ray_count(result.counts));
-  const double seconds = times.render.render + times.render.readback;
-  fmt::print("{}: {}x{}, {:.4g} Mrays in {:.2f} s ({:.3g} Mrays/s), {:.2f} s in all\n", command.out,
-             result.film.width, result.film.height, rays / 1e6, seconds,
-             seconds > 0 ? rays / 1e6 / seconds : 0, times.total);
-  tell_samples(command, result, static_cast<u32>(scene.render.samples));
-  if (!command.verbose) return;
-  const double pixels = static_cast<double>(result.film.done.size());
-  const std::uint64_t each = bytes_a_pixel(frame_output(command, !result.taken.empty()));
-  fmt::print("{}  {:<22} {:10.1f} MiB, {} bytes a pixel\n", details_text(result, times),
-             "memory of the frame", pixels * static_cast<double>(each) / (1 << 20), each);
-}
-
 /// The frame's picture, without its noise where that is asked for and the frame was not interrupted.
 Image shown_image(const RenderCommand& command, const RenderResult& result) {
   Image image = result.image;
@@ -158,7 +137,7 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
                   scene.image.tone_map,
                   !command.no_dither,
                   texts};
-  if (picture.key == 0) picture.key = hash_scene(flat);
+  if (command.part && picture.key == 0) picture.key = hash_scene(flat);
   if (!command.part && !is_empty(result))
     save_image(picture, command.out);
   else if (command.part && result.complete)
@@ -186,10 +165,25 @@ void tell_kept(const RenderResult& result, const std::string& checkpoint) {
       percent_done(result), checkpoint, checkpoint));
 }
 
+void warn_of_losses(const SceneDescription& scene, const RenderResult& result) {
+  print_warnings(losses(result.counts, scene));
+  for (const DeviceReport& report : result.devices) print_warnings(failures_text(report));
+}
+
 void tell_result(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result,
                  const TimeLedger& times) {
-  warn(scene, result);
-  summarise(command, scene, result, times);
+  if (command.quiet) return;
+  const double rays = static_cast<double>(ray_count(result.counts));
+  const double seconds = times.render.render + times.render.readback;
+  fmt::print("{}: {}x{}, {:.4g} Mrays in {:.2f} s ({:.3g} Mrays/s), {:.2f} s in all\n", command.out,
+             result.film.width, result.film.height, rays / 1e6, seconds,
+             seconds > 0 ? rays / 1e6 / seconds : 0, times.total);
+  tell_samples(command, result, static_cast<u32>(scene.render.samples));
+  if (!command.verbose) return;
+  const double pixels = static_cast<double>(result.film.done.size());
+  const std::uint64_t each = bytes_a_pixel(frame_output(command, !result.taken.empty()));
+  fmt::print("{}  {:<22} {:10.1f} MiB, {} bytes a pixel\n", details_text(result, times),
+             "memory of the frame", pixels * static_cast<double>(each) / (1 << 20), each);
 }
 
 int conclude(const RenderCommand& command, const RenderResult& result, bool told) {

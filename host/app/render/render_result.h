@@ -27,7 +27,10 @@ void write_so_far(const RenderCommand& command, const ToneMap& tone_map, const F
 /// may leave no time.
 void tell_kept(const RenderResult& result, const std::string& checkpoint);
 
-/// Warnings of what was lost on stderr, and the frame's figures on stdout.
+/// Warnings of what was lost, on stderr.
+void warn_of_losses(const SceneDescription& scene, const RenderResult& result);
+
+/// The frame's figures, on stdout.
 void tell_result(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result,
                  const TimeLedger& times);
 

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <compare>
@@ -126,9 +127,26 @@ class PointFans {
     fan_[std::max(first, second)] = std::min(first, second);
   }
 
+  // The same for few corners, whose pairs are sooner compared than sorted.
+  void join_pairs(std::span<const uint32_t> corners) {
+    std::array<std::array<uint32_t, 2>, most_faces_at_edge> ends;
+    for (uint32_t i = 0; i < corners.size(); ++i) {
+      if (!shared_.has_area(corners[i])) continue;
+      for (const uint32_t step : {1u, 2u})
+        ends[i][step - 1] = shared_.point(shared_.neighbour(corners[i], step));
+      const auto [a, b] = ends[i];
+      for (uint32_t j = 0; j < i; ++j) {
+        const auto [c, d] = ends[j];
+        if ((a == c || a == d || b == c || b == d) && shared_.has_area(corners[j]))
+          join_if_smooth(j, i, corners);
+      }
+    }
+  }
+
   void join_across_edges(std::span<const uint32_t> corners) {
     fan_.resize(corners.size());
     std::iota(fan_.begin(), fan_.end(), 0u);
+    if (corners.size() <= most_faces_at_edge) return join_pairs(corners);
     spokes_.clear();
     for (uint32_t i = 0; i < corners.size(); ++i)
       if (shared_.has_area(corners[i]))
@@ -152,10 +170,24 @@ class PointFans {
         sums_[root(i)] += shared_.angle(corners[i]) * dvec3(shared_.face_normals[corners[i] / 3]);
   }
 
+  // Of one vertex, as nearly everywhere.
+  bool is_one_fan(std::span<const uint32_t> corners) {
+    for (uint32_t i = 0; i < corners.size(); ++i)
+      if (corner_vertex(shared_.mesh, corners[i]) != corner_vertex(shared_.mesh, corners[0]) ||
+          !shared_.has_area(corners[i]) || root(i) != 0)
+        return false;
+    return !corners.empty();
+  }
+
   // Each (vertex, fan) is one vertex of the result. Faces without area, sorted last, take what the fan before
   // them got.
   void claim_vertices(std::span<const uint32_t> corners, std::vector<FanVertex>& vertices,
                       uint32_t* vertex_of) {
+    if (is_one_fan(corners)) {
+      std::fill_n(vertex_of, corners.size(), static_cast<uint32_t>(vertices.size()));
+      vertices.push_back({corner_vertex(shared_.mesh, corners[0]), false, normal_of(0, corners)});
+      return;
+    }
     claims_.clear();
     for (uint32_t i = 0; i < corners.size(); ++i)
       claims_.push_back(
