@@ -70,7 +70,7 @@ Track read_track(const JsonValue& value) {
   static constexpr std::array kinds = {NamedValue<Kind>{"linear", Kind::linear},
                                        NamedValue<Kind>{"smooth", Kind::smooth},
                                        NamedValue<Kind>{"rotate", Kind::rotate}};
-  const Kind kind = value.member("type", list_names(names_of(kinds))).choose(kinds);
+  const Kind kind = value.member("type", names_of(kinds)).choose(kinds);
   return value.object(kind == Kind::rotate ? "rotate_track" : "keyed_track", [&](JsonObject& object) {
     Track track;
     object.at("type", "");

@@ -57,6 +57,8 @@ Surface make_surface(const RoundSolid& solid, const Curvature& bends) {
   return {solid.unit, inverse, shrinks, bends.greatest * norm(back) * norm(back) * norm(across)};
 }
 
+constexpr double least_sine = 0.02;  // of the angle at which surfaces cross, not run side by side
+
 struct Ball {
   dvec3 center;
   double radius;
@@ -74,18 +76,14 @@ std::optional<Ball> as_ball(const RoundSolid& solid) {
   return Ball{dvec3(solid.world_from_unit[3]), std::sqrt(square)};
 }
 
-/// Whether the balls' surfaces stay apart, or cross at an angle that CellSearch sees in each of its smallest
-/// cells: it looks at points up to `reach` away from both surfaces, where the angle's cosine differs by no
-/// more than twice the bend.
-bool part_or_cross(const Ball& a, const Ball& b, double reach) {
+/// Whether the balls' surfaces are nowhere closer than the tolerance without crossing at an angle.
+bool part_or_cross(const Ball& a, const Ball& b, double tolerance) {
   const double apart = glm::distance(a.center, b.center), both = a.radius + b.radius;
   const double nested = std::abs(a.radius - b.radius);
-  if (apart > both + 4 * reach || apart < nested - 4 * reach) return true;
-  const double bend = 1.25 * reach * (1 / a.radius + 1 / b.radius);
+  if (apart > both + 4 * tolerance || apart < nested - 4 * tolerance) return true;
   const double cosine =
-      std::abs(a.radius * a.radius + b.radius * b.radius - apart * apart) / (2 * a.radius * b.radius) +
-      2 * bend;
-  return cosine < 1 && std::sqrt(1 - cosine * cosine) > 0.02 + 2 * bend;
+      (a.radius * a.radius + b.radius * b.radius - apart * apart) / (2 * a.radius * b.radius);
+  return std::sqrt(std::max(1 - cosine * cosine, 0.0)) > least_sine;
 }
 
 struct CellSearch {
@@ -104,7 +102,7 @@ struct CellSearch {
     if (!(steep_a > 0) || !(steep_b > 0)) return true;
     const double sine = glm::length(glm::cross(up_a, up_b)) / (steep_a * steep_b);
     const double bend = (a.curvature + b.curvature) * radius;
-    if (sine > 0.02 + 2 * bend) return false;
+    if (sine > least_sine + 2 * bend) return false;
     const double side = glm::dot(up_a, up_b) < 0 ? -1 : 1;
     const double gap = std::abs(at_a / steep_a - side * at_b / steep_b);
     return !(gap > tolerance + radius * (sine + bend));
@@ -127,12 +125,12 @@ struct CellSearch {
 bool round_surfaces_touch(const RoundSolid& a, const RoundSolid& b, const Bounds& box, double tolerance) {
   const auto bends_a = curvature(a.unit), bends_b = curvature(b.unit);
   if (!bends_a || !bends_b) return false;
+  const auto ball_a = as_ball(a), ball_b = as_ball(b);
+  if (ball_a && ball_b) return !part_or_cross(*ball_a, *ball_b, tolerance);
   const dvec3 lower(box.lower[0], box.lower[1], box.lower[2]),
       upper(box.upper[0], box.upper[1], box.upper[2]);
   const dvec3 half = 0.5 * glm::max(upper - lower, dvec3(0)) + tolerance;
   const double least = 4 * tolerance + 1e-3 * glm::length(half);
-  const auto ball_a = as_ball(a), ball_b = as_ball(b);
-  if (ball_a && ball_b && part_or_cross(*ball_a, *ball_b, least + tolerance)) return false;
   const Surface of_a = make_surface(a, *bends_a), of_b = make_surface(b, *bends_b);
   CellSearch search{of_a, of_b, tolerance, least};
   return search.run(0.5 * (lower + upper), half);

@@ -29,7 +29,7 @@ SdfNode read_child(const JsonValue& value, int depth, std::array<double, 6>* bou
     result.insert(result.end(), solid_types().begin(), solid_types().end());
     return result;
   }();
-  const std::string type = value.member("type", list_names(operands)).choice(operands);
+  const std::string type = value.member("type", operands).choice(operands);
   const bool solid = std::find(types.begin(), types.end(), type) == types.end();
   return value.object(solid ? type : type + "_field", [&](JsonObject& object) {
     object.at("type", "");

@@ -220,7 +220,7 @@ FormulaLeaf read_hybrid(JsonObject& object) {
   for (const JsonValue& item : list.items("formulas")) {
     if (all.field.steps.size() == 8) item.fail("a hybrid may have 8 formulas");
     static constexpr std::array<std::string_view, 2> kinds{"fractal", "formula"};
-    const std::string type = item.member("type", list_names(kinds)).choice(kinds);
+    const std::string type = item.member("type", kinds).choice(kinds);
     item.object(type + "_step", [&](JsonObject& step) {
       step.at("type", "");
       FormulaDefinition d = type == "formula" ? read_definition(step) : read_listed(step);

@@ -94,8 +94,10 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
 
   bool key(string_t& name) override {
     key_ = name;
-    if (open_.back()->contains(name))
+    const auto [member, is_new] = open_.back()->emplace(name, nullptr);
+    if (!is_new)
       throw SceneError(file_.string(), pointer(), "duplicate key: wanted each key once in an object");
+    member_ = &*member;
     return true;
   }
 
@@ -129,7 +131,7 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
   json* place(json&& value) {
     if (open_.empty()) return &(root_ = std::move(value));
     if (open_.back()->is_array()) return &open_.back()->emplace_back(std::move(value));
-    return &((*open_.back())[key_] = std::move(value));
+    return &(*member_ = std::move(value));
   }
 
   bool add(json&& value) {
@@ -160,6 +162,7 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
   std::vector<json*> open_;          // the containers around the place, outermost first
   std::vector<std::string> tokens_;  // tokens_[i] leads from open_[i - 1] to open_[i]
   std::string key_;                  // the latest key of the innermost object
+  json* member_ = nullptr;           // its value
 };
 
 }  // namespace

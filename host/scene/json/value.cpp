@@ -55,7 +55,9 @@ std::string describe(const Range& range) {
 }  // namespace
 
 std::string join_pointer(std::string_view pointer, std::string_view key) {
-  std::string result = fmt::format("{}/", pointer);
+  std::string result;
+  result.reserve(pointer.size() + 1 + key.size());
+  result.append(pointer).push_back('/');
   for (const char c : key) {
     if (c == '~')
       result += "~0";
@@ -172,6 +174,11 @@ JsonValue JsonValue::member(std::string_view key, std::string_view what) const {
   const auto found = json_->find(key);
   if (found == json_->end()) fail(fmt::format("missing key \"{}\": wanted {}", key, what));
   return child(key, *found);
+}
+
+JsonValue JsonValue::member(std::string_view key, Names names) const {
+  const bool there = json_->is_object() && json_->contains(key);
+  return member(key, there ? "" : list_names(names));
 }
 
 JsonObject::JsonObject(const JsonValue& value, std::string_view kind) : value_(value), kind_(kind) {

@@ -90,6 +90,8 @@ class JsonValue {
   /// One member of an object, by a key that must be there (but not recorded as asked for): to find out its
   /// type first.
   JsonValue member(std::string_view key, std::string_view what) const;
+  /// The same where `names` are wanted.
+  JsonValue member(std::string_view key, Names names) const;
 
   /// Hands this value, which must be an object, to `read(JsonObject&)`, and then refuses keys it did not ask
   /// for. `kind` is the object's name in the JSON Schema's $defs.

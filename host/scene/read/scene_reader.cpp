@@ -163,7 +163,7 @@ class SceneReader {
       result.insert(result.end(), {"field", "mesh", "model", "group"});
       return result;
     }();
-    const std::string type = value.member("type", list_names(types)).choice(types);
+    const std::string type = value.member("type", types).choice(types);
     const bool solid = is_one_of(type, solid_types()), field = is_one_of(type, field_types());
     value.object(solid || field ? type : type + "_object", [&](JsonObject& object) {
       object.at("type", "");

@@ -268,7 +268,7 @@ void read_halo(JsonObject& object, HaloDescription& halo) {
 
 EnvironmentDescription read_environment(const JsonValue& value,
                                         const std::function<Image(const JsonValue&)>& read_picture) {
-  const JsonValue named = value.member("type", list_names(names_of(environment_types)));
+  const JsonValue named = value.member("type", names_of(environment_types));
   const EnvironmentType type = named.choose(environment_types);
   return value.object(named.text() + "_environment", [&](JsonObject& object) {
     EnvironmentDescription e;
@@ -296,7 +296,7 @@ EnvironmentDescription read_environment(const JsonValue& value,
 }
 
 LightDescription read_light(const JsonValue& value) {
-  const JsonValue named = value.member("type", list_names(names_of(light_types)));
+  const JsonValue named = value.member("type", names_of(light_types));
   const LightType type = named.choose(light_types);
   return value.object(named.text() + "_light", [&](JsonObject& object) {
     LightDescription light;

@@ -90,7 +90,7 @@ void TextureLibrary::read(const JsonValue& value, const std::string& name) {
     std::copy(pattern_types.begin(), pattern_types.end(), all.begin() + 4);
     return all;
   }();
-  const std::string type = value.member("type", list_names(types)).choice(types);
+  const std::string type = value.member("type", types).choice(types);
   Entry entry = value.object(type + "_texture", [&](JsonObject& object) {
     object.at("type", "");
     if (type == "image") return read_image(object);
