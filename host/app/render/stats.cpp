@@ -1,6 +1,7 @@
 #include "app/render/stats.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <array>
@@ -120,6 +121,13 @@ std::vector<std::pair<const char*, double>> entries(const TimeLedger& times) {
           {"total", times.total}};
 }
 
+/// Bytes that the process has held at most, as its system counts them.
+std::uint64_t peak_memory() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
 json seconds_json(const TimeLedger& times) {
   json seconds;
   for (const auto& [step, value] : entries(times)) seconds[step] = value;
@@ -142,7 +150,8 @@ json stats_json(const RenderCommand& command, const SceneDescription& scene, con
           {"rays", rays_json(result.counts)},
           {"counters", counters_json(result.counts)},
           {"seconds", seconds_json(times)},
-          {"kernels_cached", times.render.cached}};
+          {"kernels_cached", times.render.cached},
+          {"peak_memory", peak_memory()}};
 }
 
 std::uint64_t ray_count(const RayCounts& counts) {
@@ -227,6 +236,8 @@ std::string details_text(const RenderResult& result, const TimeLedger& times) {
   for (const json& group : {rays_json(result.counts), counters_json(result.counts)})
     for (const auto& [kind, count] : group.items())
       text += fmt::format("  {:<22} {:10}\n", kind, count.get<std::uint64_t>());
+  text +=
+      fmt::format("  {:<22} {:10.1f} MiB\n", "peak_memory", static_cast<double>(peak_memory()) / (1 << 20));
   for (const DeviceReport& report : result.devices) text += device_text(report);
   if (result.devices.size() > 1)
     text += fmt::format("  {:<22} {:10.1f} %\n", "efficiency", 100 * result.efficiency);

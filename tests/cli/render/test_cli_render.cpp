@@ -212,6 +212,7 @@ TEST_CASE("the times of --stats add up to the total") {
   }
   CHECK(sum == Approx(stats["seconds"]["total"].get<double>()));
   CHECK(stats["kernels_cached"].is_boolean());
+  CHECK(stats["peak_memory"].get<std::uint64_t>() > (1u << 20));
   REQUIRE(stats["devices"].size() == 1);
   const json& device = stats["devices"][0];
   CHECK(device["tiles"] > 0);
