@@ -45,8 +45,8 @@ std::shared_ptr<core::DriverThreads> make_owner() {
 
 /// Of renders and sessions on a device that was not named. Made after the drivers are loaded: so it waits for
 /// the threads inside of them before they are taken away at the end of the process.
-std::shared_ptr<core::DriverThreads>& threads_of_process() {
-  static auto threads = make_owner();
+const std::shared_ptr<core::DriverThreads>& threads_of_process() {
+  static const auto threads = make_owner();
   return threads;
 }
 
@@ -70,7 +70,7 @@ bool is_forked() noexcept { return process_of_threads() != ::getpid(); }
 
 void wait_for_threads_at_exit() noexcept {
   const auto& threads = threads_of_process();
-  if (!is_forked() && threads && threads->count() > 0) std::atexit([] { threads_of_process().reset(); });
+  if (!is_forked() && threads && threads->count() > 0) std::atexit([] { threads_of_process()->wait(); });
 }
 
 void enter_threads() {

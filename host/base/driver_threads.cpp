@@ -18,9 +18,14 @@ void join_ended(std::vector<DriverThread>& threads) {
 
 }  // namespace
 
-DriverThreads::~DriverThreads() {
+void DriverThreads::wait() {
+  std::vector<DriverThread> all;
+  {
+    const std::lock_guard lock(mutex_);
+    all.swap(threads_);
+  }
   const auto limit = std::chrono::steady_clock::now() + patience_;
-  for (DriverThread& left : threads_) {
+  for (DriverThread& left : all) {
     const bool own = left.thread.get_id() == std::this_thread::get_id();  // which lets go of its owner last
     if (!own && left.ended.wait_until(limit) == std::future_status::ready)
       left.thread.join();

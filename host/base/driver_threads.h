@@ -35,12 +35,13 @@ class DriverThreads {
   /// on llvmpipe.
   explicit DriverThreads(std::chrono::milliseconds patience = std::chrono::minutes(1))
       : patience_(patience) {}
-  /// Waits for all; those that hang are detached.
-  ~DriverThreads();
+  ~DriverThreads() { wait(); }
   DriverThreads(const DriverThreads&) = delete;
   DriverThreads& operator=(const DriverThreads&) = delete;
 
   void take(DriverThread thread);
+  /// For all that it has; those that hang are detached.
+  void wait();
   /// How many have not ended.
   unsigned count();
 
