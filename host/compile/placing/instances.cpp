@@ -271,6 +271,7 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
 
   const auto root = static_cast<u32>(out.nodes.size());
   std::vector<Bvh8Node>& nodes = out.nodes.edit();
+  nodes.reserve(nodes.size() + tree.nodes.size());  // no room that stays empty
   for (Bvh8Node node : tree.nodes) {
     for (u32& child : node.child)
       if (!(child & BVH_LEAF)) child += root;
