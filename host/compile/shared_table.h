@@ -48,6 +48,9 @@ class SharedTable {
   void assign(std::size_t size, const T& row) { rows_ = std::make_shared<std::vector<T>>(size, row); }
   void clear() { rows_.reset(); }
 
+  /// What keeps the rows where they are, as long as they are not edited; null where there are none.
+  std::shared_ptr<const void> owner() const { return rows_; }
+
   /// Whether both have the same rows in memory: then they are equal.
   bool shares(const SharedTable& other) const { return rows_ == other.rows_; }
 

@@ -252,7 +252,7 @@ KernelLimits Device::limits_of(const cl::Kernel& kernel) const {
   return limits;
 }
 
-cl::Buffer Device::allocate(std::size_t bytes, const void* data, bool in_place) {
+cl::Buffer Device::allocate(std::size_t bytes, const void* data, std::shared_ptr<const void> owner) {
   constexpr std::size_t unused = 16;  // OpenCL has no empty buffers
   if (bytes > info_.max_allocation)
     check_cl(CL_MEM_OBJECT_ALLOCATION_FAILURE, info_,
@@ -260,13 +260,18 @@ cl::Buffer Device::allocate(std::size_t bytes, const void* data, bool in_place) 
   if (const auto injected = fault(value_of(info_.environment).faults, "alloc", place(info_), bytes))
     check_cl(*injected, info_, fmt::format("a buffer of {} bytes", bytes));
   cl_int status = CL_SUCCESS;
-  const bool given = bytes > 0 && data;
+  const bool given = bytes > 0 && data, in_place = given && owner && shares_memory();
   const cl_mem_flags flags = !given     ? CL_MEM_READ_WRITE
                              : in_place ? CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR
                                         : CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR;
   cl::Buffer buffer(context_, flags, bytes > 0 ? bytes : unused, given ? const_cast<void*>(data) : nullptr,
                     &status);
   check_cl(status, info_, fmt::format("a buffer of {} bytes", bytes));
+  if (!in_place) return buffer;
+  auto held = std::make_unique<std::shared_ptr<const void>>(std::move(owner));
+  const auto let_go = [](cl_mem, void* of) { delete static_cast<std::shared_ptr<const void>*>(of); };
+  check_cl(buffer.setDestructorCallback(let_go, held.get()), info_, "clSetMemObjectDestructorCallback");
+  (void)held.release();
   return buffer;
 }
 

@@ -154,11 +154,11 @@ class Device {
   }
   /// Whether the device reads the host's memory: share() copies nothing.
   bool shares_memory() const { return info_.type == "cpu" && info_.host_unified_memory; }
-  /// The same without a copy where shares_memory(): for kernels to read, and never written. The values stay
-  /// in place and as they are as long as the buffer.
+  /// The same without a copy where shares_memory(): for kernels to read, and never written. `owner` keeps the
+  /// values in place and as they are; it is let go of when the last launch that reads them has ended.
   template <class T>
-  Buffer<T> share(std::span<const T> values) {
-    return {allocate(values.size_bytes(), values.data(), shares_memory()), values.size()};
+  Buffer<T> share(std::span<const T> values, std::shared_ptr<const void> owner) {
+    return {allocate(values.size_bytes(), values.data(), std::move(owner)), values.size()};
   }
   template <class T>
   Buffer<T> make(std::size_t count) {  // contents undefined
@@ -224,7 +224,7 @@ class Device {
   const std::shared_ptr<ProgramRecord>* find_built(const std::string& entry, const std::string& source) const;
   KernelLimits limits_of(const cl::Kernel& kernel) const;
   void check_argument(cl_int status, const std::string& name, cl_uint index) const;
-  cl::Buffer allocate(std::size_t bytes, const void* data, bool in_place = false);
+  cl::Buffer allocate(std::size_t bytes, const void* data, std::shared_ptr<const void> owner = nullptr);
   void write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset,
                    cl_bool waits);
   void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset, cl_bool waits);

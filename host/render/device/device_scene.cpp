@@ -25,8 +25,7 @@ bool same_rows(const SharedTable<T>& a, const SharedTable<T>& b) {
   return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-/// Writes tables, which must fit into one allocation each, where the device has others. What the device reads
-/// in place stays there until it is held no more: `held` never lets go of rows that a buffer is made of.
+/// Writes tables, which must fit into one allocation each, where the device has others.
 class Uploader {
  public:
   explicit Uploader(Device& device, bool compact) : device_(device), compact_(compact) {}
@@ -34,7 +33,7 @@ class Uploader {
   template <class T>
   void operator()(const char* label, const SharedTable<T>& table, SharedTable<T>& held, Buffer<T>& buffer) {
     if (buffer.memory() && same_rows(table, held)) return;
-    put(label, std::span<const T>(table.rows()), buffer);
+    put(label, table, buffer);
     held = table;
   }
   /// Nodes are of two kinds, so the kernels have them as words.
@@ -46,8 +45,7 @@ class Uploader {
         write(label, std::span<const CompactNode>(compact_nodes(nodes.rows())), rows);
       });
     else
-      as_words<Bvh8Node>(
-          buffer, [&](Buffer<Bvh8Node>& rows) { put(label, std::span<const Bvh8Node>(nodes.rows()), rows); });
+      as_words<Bvh8Node>(buffer, [&](Buffer<Bvh8Node>& rows) { put(label, nodes, rows); });
     held = nodes;
   }
   const UploadFigures& figures() const { return figures_; }
@@ -66,12 +64,13 @@ class Uploader {
   }
   /// In place if the device can read it there and it is large: small tables can change in their buffers.
   template <class T>
-  void put(const char* label, std::span<const T> table, Buffer<T>& buffer) {
+  void put(const char* label, const SharedTable<T>& table, Buffer<T>& buffer) {
     constexpr std::size_t large = std::size_t{1} << 20;
-    if (!device_.shares_memory() || table.size_bytes() < large) return write(label, table, buffer);
-    check_size(label, table.size_bytes());
-    buffer = {}, buffer = device_.share(table);
-    count(table.size_bytes());
+    const std::span<const T> rows = table.rows();
+    if (!device_.shares_memory() || rows.size_bytes() < large) return write(label, rows, buffer);
+    check_size(label, rows.size_bytes());
+    buffer = {}, buffer = device_.share(rows, table.owner());
+    count(rows.size_bytes());
   }
   /// Into the buffer that is there, where the size is the same.
   template <class T>

@@ -9,9 +9,7 @@
 #include "touching_scenes.h"
 
 using namespace sundog;
-using glm::dmat4;
-using glm::dvec3;
-
+using glm::dmat4, glm::dvec3;
 using namespace touching;
 
 namespace {
@@ -51,7 +49,7 @@ void with_each_tracer(Body body) {
 /// `parts` in any order of the file look like `whole`, but for `most` pixels. On borders of the floor's
 /// cells, a pixel wide, rounding is magnified by the cells' size over a pixel's.
 void check_alike(const SceneDescription& whole, const SceneDescription& parts, int most = 0) {
-  const float filtered = 1e-3f;
+  constexpr float filtered = 1e-3f;
   SceneDescription backwards = parts;
   std::reverse(backwards.objects.begin(), backwards.objects.end());
   with_each_tracer([&](const DeviceInfo& device, Tracer tracer) {
