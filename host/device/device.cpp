@@ -271,7 +271,7 @@ cl::Buffer Device::allocate(std::size_t bytes, const void* data, std::shared_ptr
   auto held = std::make_unique<std::shared_ptr<const void>>(std::move(owner));
   const auto let_go = [](cl_mem, void* of) { delete static_cast<std::shared_ptr<const void>*>(of); };
   check_cl(buffer.setDestructorCallback(let_go, held.get()), info_, "clSetMemObjectDestructorCallback");
-  (void)held.release();
+  [[maybe_unused]] const auto* const the_buffers = held.release();
   return buffer;
 }
 
