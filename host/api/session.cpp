@@ -18,7 +18,9 @@ struct SUNDOG_LOCAL Session::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
-    if (is_forked()) static_cast<void>(session.release());  // its threads are not here to be waited for
+    // A fork has no threads that could be waited for: the session is left as it is.
+    if (is_forked()) [[maybe_unused]]
+      const auto* const left = session.release();
     session.reset();
     wait_for_threads_at_exit();
   }

@@ -30,7 +30,8 @@ enum class EscapeEstimate { logarithmic, linear };
 /// Which derivative the estimate divides by. running: one number, a bound on the growth of lengths. radial:
 /// the same with the triplex power's growth along z alone, n r^(n-1): what most programs use, faster and no
 /// bound near the poles. jacobian: all partial derivatives of z and their greatest stretch. automatic:
-/// running where the rules give it tightly, else jacobian.
+/// jacobian where the rules would give away too much, else radial, or running where the map folds or is a
+/// hybrid's.
 enum class FormulaDerivative { automatic, running, radial, jacobian };
 
 struct FormulaDefinition {

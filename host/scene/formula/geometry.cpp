@@ -91,6 +91,7 @@ std::optional<Value> Values::cheap_fold(const Value& v, const Value& n, const Va
 }
 
 Value Values::fold(const Value& v, const Value& n, const Value& d) {
+  folds = true;
   require(v.type == ValueType::vec3 && n.type == ValueType::vec3 && d.type == ValueType::scalar,
           "fold takes a vec3, a normal (vec3) and a distance");
   if (auto cheap = cheap_fold(v, n, d)) return *cheap;
@@ -107,6 +108,7 @@ Value Values::fold(const Value& v, const Value& n, const Value& d) {
 }
 
 Value Values::box_fold(const Value& v, const Value& limit) {
+  folds = true;
   const Value inner = clamped(v, negate(limit), limit);
   Value r = result(v.type, {&v, &limit});
   for (std::size_t i = 0; i < static_cast<std::size_t>(v.size()); ++i)
@@ -121,6 +123,7 @@ Value Values::box_fold(const Value& v, const Value& limit) {
 /// Mandelbox's ball fold (Lowe 2010): inversion in the ball of radius `fixed`, linear inside `least`;
 /// conformal, so lengths grow by its factor.
 Value Values::ball_fold(const Value& v, const Value& least, const Value& fixed) {
+  folds = true;
   require(v.size() > 1 && least.type == ValueType::scalar && fixed.type == ValueType::scalar,
           "ballfold takes a point and two radii");
   const NodeId square = square_length(v).x();
@@ -136,6 +139,7 @@ Value Values::ball_fold(const Value& v, const Value& least, const Value& fixed) 
 }
 
 Value Values::invert(const Value& v, const Value& square_radius) {
+  folds = true;
   require(v.size() > 1 && square_radius.type == ValueType::scalar,
           "invert takes a point and a squared radius");
   const NodeId factor =
@@ -150,6 +154,7 @@ Value Values::invert(const Value& v, const Value& square_radius) {
 }
 
 Value Values::wrap(const Value& v, const Value& period) {
+  folds = true;
   const Value cells = each(Op::round_down, add(divide(v, period), number(0.5)));
   Value r = add(v, multiply(period, cells), true);
   if (!period.varies) {

@@ -68,6 +68,7 @@ void lower_start(LoweredFormula& out, const FormulaDefinition& d, const std::vec
   low.declare("z", z);
   low.declare("c", z);
   low.run(parse_statements(d.start));
+  out.folds = low.v.folds;
   s.z = parts(low.variable("z"));
   s.c = parts(low.was_set("z") && !low.was_set("c") ? low.variable("z") : low.variable("c"));
   s.derivative = slope_of(s.graph, low.variable("z"));

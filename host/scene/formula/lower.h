@@ -42,6 +42,7 @@ struct Section {
 struct LoweredFormula {
   int size = 3;           // components of z
   bool jacobian = false;  // the derivative is the gradient's length; else the running one
+  bool folds = false;     // of the map: Values::folds
   Section start, map, finish;
 };
 

@@ -163,6 +163,13 @@ FormulaDefinition read_listed(JsonObject& object) {
   return d;
 }
 
+/// A map with the running derivative and no fold takes the radial one, as listed powers do: without a triplex
+/// power both are the same.
+bool suits_radial(const FormulaDefinition& d, const LoweredFormula& lowered) {
+  return d.derivative == FormulaDerivative::automatic && d.kind == FormulaKind::escape &&
+         d.estimate == EscapeEstimate::logarithmic && !lowered.jacobian && !lowered.folds;
+}
+
 /// The keys that say how far orbits are followed; checks the formula by lowering it.
 FormulaLeaf read_leaf(JsonObject& object, const FormulaDefinition& d) {
   FormulaLeaf leaf{{}, d.bounds};
@@ -172,7 +179,8 @@ FormulaLeaf read_leaf(JsonObject& object, const FormulaDefinition& d) {
   leaf.field.safety = object.number("safety", d.safety, {.low = 1e-3, .high = 1});
   leaf.field.steps.push_back({d, default_values(d), 1});
   try {
-    lower(d, leaf.field.steps[0].values);
+    const LoweredFormula lowered = lower(d, leaf.field.steps[0].values);
+    if (suits_radial(d, lowered)) leaf.field.steps[0].definition.derivative = FormulaDerivative::radial;
   } catch (const FormulaError& error) {
     fail_formula(object.value(), error);
   }

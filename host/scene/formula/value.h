@@ -83,6 +83,7 @@ class Values {
   Graph& g;
   std::vector<DomainGuard> guards;
   bool radial = false;  // a triplex power's slope is the one along z alone
+  bool folds = false;   // a fold, an inversion or a repetition was met
 
  private:
   friend class Powers;

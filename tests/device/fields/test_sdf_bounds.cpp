@@ -160,8 +160,8 @@ TEST_CASE("estimates have room for what the greatest powers and bailouts make of
       {R"f("type": "fractal", "formula": "bicomplex", "bailout": 1e9, "iterations": 16)f"},
       {R"f("type": "fractal", "formula": "tricorn", "parameters": {"power": 16}, "bailout": 1e9)f", 0.01},
       {R"f("type": "fractal", "formula": "mandelbox", "bailout": 1e6, "iterations": 64)f"},
-      {R"f("type": "formula", "map": "z = z ^ 8 + c", "bailout": 1000)f"},
-      {R"f("type": "formula", "map": "z = z ^ 8 + c", "bailout": 1e9)f"},
+      {R"f("type": "formula", "map": "z = z ^ 8 + c", "bailout": 1000)f", 0.01},
+      {R"f("type": "formula", "map": "z = z ^ 8 + c", "bailout": 1e9)f", 0.01},
       {R"f("type": "formula", "map": "z = vec3(z.x^3 - 3 * z.x * z.y^2, 3 * z.x^2 * z.y - z.y^3, z.z * z.z * z.z) + c", "bailout": 1e9)f"},
       {R"f("type": "formula", "map": "z = z ^ 4 + c", "estimate": "linear", "bailout": 1e9)f", 0.01, true},
       {R"f("type": "hybrid", "steps": [{"type": "fractal", "formula": "mandelbox"}, {"type": "fractal", "formula": "mandelbulb"}], "iterations": 8, "bailout": 1e6)f",
@@ -219,10 +219,12 @@ TEST_CASE("operations keep the bound of what they put together") {
 
 TEST_CASE("estimates of a user's formulas keep their bound, whatever their expressions") {
   check_bounds({
-      {R"f("type": "formula", "map": "z = z ^ 8 + c")f"},
+      {R"f("type": "formula", "map": "z = z ^ 8 + c")f", 0.01},
+      {R"f("type": "formula", "map": "z = z ^ 8 + c", "derivative": "running")f"},
+      {R"f("type": "formula", "map": ["z = boxfold(z, 1)", "z = z ^ 3 + c"], "iterations": 10)f"},
       {R"f("type": "formula", "map": "z = vec3(z.x * z.x - z.y * z.y - z.z * z.z, 2 * z.x * z.y, 2 * z.x * z.z) + c")f"},
       {R"f("type": "formula", "map": "z = vec3(z.x^3 - 3 * z.x * z.y^2, 3 * z.x^2 * z.y - z.y^3, z.z * z.z * z.z) + c", "iterations": 10)f"},
-      {R"f("type": "formula", "map": ["z = abs(z) - vec3(0.1, 0, 0)", "z = rotate(z, vec3(1, 1, 1), 0.25)", "z = z ^ 5 + c"], "iterations": 12)f"},
+      {R"f("type": "formula", "map": ["z = abs(z) - vec3(0.1, 0, 0)", "z = rotate(z, vec3(1, 1, 1), 0.25)", "z = z ^ 5 + c"], "iterations": 12)f", 0.01},
       {R"f("type": "formula", "map": "z = z ^ 2 + c + 0.2 * vec3(sin(3 * z.x), sin(3 * z.y), sin(3 * z.z))", "iterations": 10)f"},
       {R"f("type": "formula", "map": "z = normalize(z) * dot(z, z) + vec3(z.y, z.z, z.x) * 0.3 + c", "iterations": 10)f"},
       {R"f("type": "formula", "space": "quat", "start": "z = quat(p, 0.2); c = quat(-0.2, 0.6, 0.2, 0.2)", "map": "z = z * z * z + c", "iterations": 20)f"},

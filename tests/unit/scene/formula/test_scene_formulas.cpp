@@ -1,5 +1,6 @@
 // Formulas that are hostile, or simply wrong, in a scene file: each is refused before anything is built, with
 // its object and key, and inside the text with line and column.
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
@@ -108,6 +109,37 @@ TEST_CASE("a formula that its default interval cuts says so, and no other does")
             .empty());
   CHECK(load_scene_text(scene_of(R"({"type": "fractal", "formula": "gyroid", "material": "m"})"))
             .warnings.empty());
+}
+
+TEST_CASE("a map of one's own estimates as the listed one of the same text, at any bailout") {
+  const auto field = [](const std::string& members) {
+    return load_scene_text(scene_of(R"({"material": "m", "iterations": 16, "safety": 1, )" + members + "}"))
+        .fields.at(0)
+        .root.formula;
+  };
+  for (const char* bailout : {"16", "1000"}) {
+    const std::string options = fmt::format(R"(, "bailout": {})", bailout);
+    FormulaEvaluator own(field(R"("type": "formula", "map": "z = z ^ 8 + c")" + options));
+    FormulaEvaluator listed(field(R"("type": "fractal", "formula": "mandelbulb")" + options));
+    for (const glm::dvec3& p : {glm::dvec3(1.2, 0.1, 0.3), {0.1, 0.2, -1.1}, {-0.7, 0.6, 0.5}})
+      CHECK(own.at(p).distance == Approx(listed.at(p).distance));
+  }
+}
+
+TEST_CASE("only a single map without folds takes the radial derivative by itself") {
+  const auto derivative = [](const std::string& members) {
+    return load_scene_text(scene_of(R"({"material": "m", )" + members + "}"))
+        .fields.at(0)
+        .root.formula.steps.at(0)
+        .definition.derivative;
+  };
+  using enum FormulaDerivative;
+  CHECK(derivative(R"("type": "formula", "map": "z = z ^ 8 + c")") == radial);
+  CHECK(derivative(R"("type": "formula", "map": "z = z ^ 8 + c", "derivative": "running")") == running);
+  CHECK(derivative(R"f("type": "formula", "map": ["z = boxfold(z, 1)", "z = z ^ 3 + c"])f") == automatic);
+  CHECK(derivative(R"f("type": "formula", "map": "z = z ^ 2 + sin(z) + c")f") == automatic);
+  CHECK(derivative(R"("type": "hybrid", "steps": [{"type": "formula", "map": "z = z ^ 3 + c"}])") ==
+        automatic);
 }
 
 TEST_CASE("exact solids are operands of fields: their distances are those of the solids") {
