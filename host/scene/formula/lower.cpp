@@ -68,7 +68,6 @@ void lower_start(LoweredFormula& out, const FormulaDefinition& d, const std::vec
   low.declare("z", z);
   low.declare("c", z);
   low.run(parse_statements(d.start));
-  out.folds = low.v.folds;
   s.z = parts(low.variable("z"));
   s.c = parts(low.was_set("z") && !low.was_set("c") ? low.variable("z") : low.variable("c"));
   s.derivative = slope_of(s.graph, low.variable("z"));
@@ -135,6 +134,7 @@ void lower_map(LoweredFormula& out, const FormulaDefinition& d, const std::vecto
   const auto statements = parse_statements(d.map);
   low.run(statements);
   if (!low.was_set("z")) throw FormulaError(1, 1, "a map must set z, as in \"z = z^8 + c\"");
+  out.folds = low.v.folds;
   s.z = parts(low.variable("z"));
   s.derivative = slope_of(g, low.variable("z"));
   s.guards = low.v.guards;
