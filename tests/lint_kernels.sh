@@ -2,7 +2,7 @@
 # Every kernel file through clang as OpenCL C 1.2, warnings as errors, with all features of a scene and with few; then both
 # integrators with features by chance, as scenes may combine them. Unused parameters are allowed: what a feature needs stays in the
 # signature without it.
-#   tests/lint_kernels.sh [COMBINATIONS [SEED]]   (24 of them, seed 1)
+#   tests/lint_kernels.sh [COMBINATIONS [SEED]]   (24 of them, seed 1; SUNDOG: the program, default build/release/sundog)
 set -eu
 cd "$(dirname "$0")/.."
 clang=$(command -v clang || ls /usr/bin/clang-[0-9]* 2>/dev/null | sort -V | tail -n 1 || true)
@@ -14,8 +14,15 @@ for shape in MESH $solids BVH; do shapes+=" -DHAS_$shape=1"; done
 for feature in $features; do all+=" -D$feature=1"; few+=" -D$feature=0"; done
 all+=$shapes; few+=$shapes
 failed=0
+# Plain files in lanes stand in for themselves.
+made=$(mktemp -d)
+trap 'rm -rf "$made"' EXIT
+for file in $(cd kernels && find plain -name '*.cl'); do
+  mkdir -p "$made/${file%/*}"
+  SUNDOG_KERNEL_DIR=$PWD/kernels "${SUNDOG:-build/release/sundog}" kernels "$file" --lines >"$made/$file"
+done
 check() {  # FILE OPTION...
-  "$clang" -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter -Werror -Ikernels \
+  "$clang" -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter -Werror -I"$made" -Ikernels \
     "${@:2}" "$1" || failed=1
 }
 for lanes in "-DTILE_W=4 -DTILE_H=4 $all" "-DTILE_W=4 -DTILE_H=4 -DSUNDOG_PORTABLE $all" "-DTILE_W=1 -DTILE_H=1 -DWIDE_VECTORS=0 $all" \

@@ -15,6 +15,7 @@
 #include "app/commands/formulas_command.h"
 #include "app/commands/gallery_command.h"
 #include "app/commands/halo_command.h"
+#include "app/commands/kernels_command.h"
 #include "app/options/command_words.h"
 #include "app/options/commands.h"
 #include "app/options/option_helpers.h"
@@ -274,6 +275,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_render(arguments, chosen);
   add_devices(arguments, chosen);
   add_formulas(arguments, chosen);
+  add_kernels(arguments, chosen);
   add_info(arguments, chosen);
   add_compare(arguments, chosen);
   add_check(arguments, chosen);

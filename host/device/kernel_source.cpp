@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "device/embedded_kernels.h"
+#include "lanes/lanes.h"
 
 namespace sundog {
 namespace {
@@ -65,7 +66,7 @@ class Expander {
       : generated_(generated), folder_(folder) {}
 
   void expand(const std::string& path) {
-    const std::string text = file_text(path);
+    const std::string text = spmd::is_plain(path) ? spmd::in_lanes(path, read(), true) : file_text(path);
     const bool guarded = has_include_guard(text);
     open_.push_back(path);
     if (!guarded) out += fmt::format("#ifndef {0}\n#define {0}\n", guard_name(path));
@@ -79,6 +80,9 @@ class Expander {
   std::string out;
 
  private:
+  spmd::ReadFile read() const {
+    return [this](const std::string& path) { return file_text(path); };
+  }
   std::string file_text(const std::string& path) const {
     if (const auto found = generated_.find(path); found != generated_.end()) return found->second;
     return embedded_kernel(path, folder_);

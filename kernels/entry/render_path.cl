@@ -56,7 +56,7 @@ static inline void take_pixel(const Launch* launch, __global const u32* restrict
 // The lanes of `idle` that have samples left begin with them. Returns those lanes.
 NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
                                   __global const u32* restrict pixels, MediaStack around, MASK idle,
-                                  LaneWork* work, Walks* walks, SceneRays* rays, u32* counts,
+                                  LaneWork* work, PathStates* paths, SceneRays* rays, u32* counts,
                                   __global u32* restrict ray_counts) {
   for (u32 bits = lane_bits(idle & MASK_OF(work->left == 0)); bits; bits &= bits - 1u)
     take_pixel(launch, pixels, lowest_bit(bits), work, counts, ray_counts);
@@ -65,9 +65,9 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
   work->at.sample -= begun.lanes;
   work->left += begun.lanes;
   const SceneRays first = begun_rays(scene, &begun, scene->info->samples, around, work->sign);
-  const Walks fresh = start_walks(scene, &begun.at, begun.lanes);
+  const PathStates fresh = start_paths(scene, &begun.at, begun.lanes);
   join_rays(rays, &first, begun.lanes);
-  join_walks(walks, &fresh, begun.lanes);
+  join_paths(paths, &fresh, begun.lanes);
   return begun.lanes;
 }
 
@@ -81,24 +81,24 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
   for (u32 item = first; item < end; ++item) begin_film(launch, item, film, weights, ray_counts);
   LaneWork work = begin_work(scene, first, end);
   const Rays none = camera_rays(scene->info, (REAL)(0.0f), (REAL)(0.0f));
-  Walks walks = start_walks(scene, &work.at, NO_LANES);
+  PathStates paths = start_paths(scene, &work.at, NO_LANES);
   SceneRays rays = scene_rays(&none, around);
   MASK lanes = NO_LANES;
   for (;;) {
     const MASK begun =
-        fill_idle_lanes(scene, launch, pixels, around, ~lanes, &work, &walks, &rays, counts, ray_counts);
+        fill_idle_lanes(scene, launch, pixels, around, ~lanes, &work, &paths, &rays, counts, ray_counts);
     const MASK going = lanes | begun;
     if (!any_lane(going)) break;
     counts[COUNT_PRIMARY] += lane_count(begun);
     note_own_rays(begun, counts);
     start_marching(counts);
-    lanes = step_walks(scene, &walks, &rays, going, !any_lane(lanes), counts);
+    lanes = going & step_path(scene, &paths, &rays, !any_lane(lanes), counts, going);
     const MASK over = going & ~lanes;
     if (!any_lane(over)) continue;
-    const REAL3 seen = carry_seen(scene, &walks.wavelengths, &walks.light, over);
+    const REAL3 seen = spectrum_seen(scene, &paths.wavelengths, &paths.radiance, over);
     for (u32 bits = lane_bits(over); bits; bits &= bits - 1u) {
       const u32 lane = lowest_bit(bits);
-      const float4 radiance = (float4)(get3(&seen, lane), MASK_LANE(walks.met, lane) ? 1.0f : 0.0f);
+      const float4 radiance = (float4)(get3(&seen, lane), MASK_LANE(paths.met, lane) ? 1.0f : 0.0f);
       store_sample((u32)MASK_LANE(work.place, lane), radiance, work.sign[lane], film, weights, counts);
     }
   }

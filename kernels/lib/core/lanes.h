@@ -1,8 +1,8 @@
-// One source for every number of lanes: REAL is a float or a vector of LANES floats, MASK an int or a vector
-// of ints whose lanes are 0 or -1 (all bits set) for scalars too, so that select(), any() and the bit
-// operators mean the same for LANES = 1, 4, 8 and 16. Comparisons go through MASK_OF(a < b). Everything here
-// gives the same bits for every number of lanes. Included once a program: LANES is a definition of the whole
-// build.
+// One source for every number of lanes: REAL is a float or a vector of LANES floats, UINTS one of words, MASK
+// an int or a vector of ints whose lanes are 0 or -1 (all bits set) for scalars too, so that select(), any()
+// and the bit operators mean the same for LANES = 1, 4, 8 and 16. Comparisons go through MASK_OF(a < b).
+// Everything here gives the same bits for every number of lanes. Included once a program: LANES is a
+// definition of the whole build.
 #ifndef SUNDOG_LIB_LANES_H
 #define SUNDOG_LIB_LANES_H
 #include "lib/core/config.h"
@@ -15,41 +15,57 @@
 #if LANES == 1
 typedef float REAL;
 typedef int MASK;
+typedef uint UINTS;
 #define MASK_OF(comparison) (-(int)(comparison))
 #define AS_MASK(x) as_int(x)
 #define AS_REAL(x) as_float(x)
 #define TO_MASK(x) convert_int_rtz(x)
 #define TO_REAL(x) convert_float(x)
+#define AS_UINTS(x) as_uint(x)
+#define UINTS_TO_MASK(x) as_int(x)
+#define REAL_TO_UINTS(x) convert_uint_rtz(x)
 #define LANE_BITS (MASK)(1)
 #define LANE_NUMBERS (MASK)(0)
 #elif LANES == 4
 typedef float4 REAL;
 typedef int4 MASK;
+typedef uint4 UINTS;
 #define MASK_OF(comparison) (comparison)
 #define AS_MASK(x) as_int4(x)
 #define AS_REAL(x) as_float4(x)
 #define TO_MASK(x) convert_int4_rtz(x)
 #define TO_REAL(x) convert_float4(x)
+#define AS_UINTS(x) as_uint4(x)
+#define UINTS_TO_MASK(x) as_int4(x)
+#define REAL_TO_UINTS(x) convert_uint4_rtz(x)
 #define LANE_BITS (MASK)(1, 2, 4, 8)
 #define LANE_NUMBERS (MASK)(0, 1, 2, 3)
 #elif LANES == 8
 typedef float8 REAL;
 typedef int8 MASK;
+typedef uint8 UINTS;
 #define MASK_OF(comparison) (comparison)
 #define AS_MASK(x) as_int8(x)
 #define AS_REAL(x) as_float8(x)
 #define TO_MASK(x) convert_int8_rtz(x)
 #define TO_REAL(x) convert_float8(x)
+#define AS_UINTS(x) as_uint8(x)
+#define UINTS_TO_MASK(x) as_int8(x)
+#define REAL_TO_UINTS(x) convert_uint8_rtz(x)
 #define LANE_BITS (MASK)(1, 2, 4, 8, 16, 32, 64, 128)
 #define LANE_NUMBERS (MASK)(0, 1, 2, 3, 4, 5, 6, 7)
 #elif LANES == 16
 typedef float16 REAL;
 typedef int16 MASK;
+typedef uint16 UINTS;
 #define MASK_OF(comparison) (comparison)
 #define AS_MASK(x) as_int16(x)
 #define AS_REAL(x) as_float16(x)
 #define TO_MASK(x) convert_int16_rtz(x)
 #define TO_REAL(x) convert_float16(x)
+#define AS_UINTS(x) as_uint16(x)
+#define UINTS_TO_MASK(x) as_int16(x)
+#define REAL_TO_UINTS(x) convert_uint16_rtz(x)
 #define LANE_BITS (MASK)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768)
 #define LANE_NUMBERS (MASK)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
 #else
@@ -58,6 +74,7 @@ typedef int16 MASK;
 
 #define NO_LANES ((MASK)(0))
 #define ALL_LANES ((MASK)(-1))
+#define LANES_IF(condition) ((condition) ? ALL_LANES : NO_LANES)
 
 // True when some lane of the mask is set: one instruction where there is one; OpenCL's any() is a chain of
 // branches in PoCL.
@@ -195,6 +212,7 @@ static inline REAL3 select3(REAL3 a, REAL3 b, MASK m) {
 }
 
 static inline REAL3 multiply3(REAL3 a, REAL3 b) { return real3(a.x * b.x, a.y * b.y, a.z * b.z); }
+static inline REAL3 divide3(REAL3 a, REAL3 b) { return real3(a.x / b.x, a.y / b.y, a.z / b.z); }
 // The same vector in every lane; lane i of vectors, to read or to write.
 static inline REAL3 all3(float3 a) { return real3((REAL)(a.x), (REAL)(a.y), (REAL)(a.z)); }
 static inline float3 get3(const REAL3* a, u32 i) {
@@ -318,6 +336,12 @@ static inline REAL real_exp(REAL x) {
   return select(AS_REAL(AS_MASK(p) + (TO_MASK(n) << 23)), (REAL)(0.0f), MASK_OF(x < -87.0f));
 }
 
+#if LANES > 1 && defined(__AVX2__) && !defined(SUNDOG_PORTABLE)
+static inline int8 gather_eight(__global const u32* from, int8 index, int8 lanes) {
+  return __builtin_ia32_gatherd_d256((int8)(0), (const void*)(size_t)from, index, lanes, 4);
+}
+#endif
+
 // Words at the indices of `lanes`, which count from `from`; the others are 0.
 static inline MASK gather_words(__global const u32* from, MASK index, MASK lanes) {
 #if LANES == 1
@@ -325,6 +349,12 @@ static inline MASK gather_words(__global const u32* from, MASK index, MASK lanes
 #elif LANES == 16 && defined(__AVX512F__) && !defined(SUNDOG_PORTABLE)
   return __builtin_ia32_gathersiv16si(NO_LANES, (const void*)(size_t)from, index, (ushort)lane_bits(lanes),
                                       4);
+#elif LANES == 16 && defined(__AVX2__) && !defined(SUNDOG_PORTABLE)
+  return (MASK)(gather_eight(from, index.lo, lanes.lo), gather_eight(from, index.hi, lanes.hi));
+#elif LANES == 8 && defined(__AVX2__) && !defined(SUNDOG_PORTABLE)
+  return gather_eight(from, index, lanes);
+#elif LANES == 4 && defined(__AVX2__) && !defined(SUNDOG_PORTABLE)
+  return __builtin_ia32_gatherd_d(NO_LANES, (const void*)(size_t)from, index, lanes, 4);
 #else
   MASK words = NO_LANES;
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {

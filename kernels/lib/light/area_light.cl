@@ -90,7 +90,7 @@ static inline void place_in_rectangle(const SphericalRectangles* r, REAL u_x, RE
 
 // The density, per steradian, of directions to points that are uniform on the light's area: at the distance
 // d along wi.
-static inline REAL density_by_area(__global const Light* light, REAL3 wi, REAL d) {
+static inline REAL pdf_by_area(__global const Light* light, REAL3 wi, REAL d) {
   const REAL cosine = fabs(dot3(wi, all3(light->direction.xyz)));
   return d * d / real_max(cosine * light->direction.w, (REAL)(1e-37f));
 }
@@ -103,8 +103,8 @@ static inline LightSamples sample_of_flat(__global const Light* light, REAL3 to,
   sample.distance = dot3(to, sample.wi);
   sample.delta = NO_LANES;
   const MASK by_angle = MASK_OF(solid_angle > 0.0f);
-  sample.density = select(density_by_area(light, sample.wi, sample.distance),
-                          1.0f / select((REAL)(1.0f), solid_angle, by_angle), by_angle);
+  sample.pdf = select(pdf_by_area(light, sample.wi, sample.distance),
+                      1.0f / select((REAL)(1.0f), solid_angle, by_angle), by_angle);
   const MASK front = MASK_OF(dot3(sample.wi, all3(light->direction.xyz)) < 0.0f);
   sample.radiance = select3(all3((float3)(0.0f)), all3(light->color.xyz), front);
   sample.distance *= SHORT_OF_LIGHT;
@@ -159,7 +159,7 @@ static inline REAL sphere_cap(__global const Light* light, REAL square) {
   return select((REAL)(0.0f), cap, MASK_OF(sine2 < 1.0f));
 }
 
-static inline REAL sphere_density(REAL cap) { return 1.0f / (2.0f * M_PI_F * real_max(cap, (REAL)(1e-37f))); }
+static inline REAL sphere_pdf(REAL cap) { return 1.0f / (2.0f * M_PI_F * real_max(cap, (REAL)(1e-37f))); }
 
 // Directions of the cone in which the sphere is seen (Shirley, Wang and Zimmerman 1996, section 3.2).
 static inline LightSamples sample_sphere(__global const Light* light, REAL3 p, REAL u_x, REAL u_y) {
@@ -172,7 +172,7 @@ static inline LightSamples sample_sphere(__global const Light* light, REAL3 p, R
   const float radius2 = light->edge_u.w * light->edge_u.w;
   const REAL half_chord = real_sqrt(real_max(radius2 - square * sine2, (REAL)(0.0f)) + 1e-3f * radius2);
   sample.distance = real_max(middle * (1.0f - drop) - half_chord, (REAL)(0.0f)) * SHORT_OF_LIGHT;
-  sample.density = sphere_density(cap);
+  sample.pdf = sphere_pdf(cap);
   sample.delta = NO_LANES;
   sample.radiance = select3(all3((float3)(0.0f)), all3(light->color.xyz), MASK_OF(cap > 0.0f));
   return sample;
@@ -187,12 +187,12 @@ static inline LightSamples sample_area_light(__global const Light* light, REAL3 
 
 // The density, per steradian, with which sample_area_light() chooses the direction wi from p, which meets the
 // light at the distance d.
-static inline REAL area_light_density(__global const Light* light, REAL3 p, REAL3 wi, REAL d) {
+static inline REAL area_light_pdf(__global const Light* light, REAL3 p, REAL3 wi, REAL d) {
   if (light->kind == LIGHT_SPHERE) {
     const REAL3 to = subtract3(all3(light->position.xyz), p);
-    return sphere_density(sphere_cap(light, dot3(to, to)));
+    return sphere_pdf(sphere_cap(light, dot3(to, to)));
   }
-  const REAL by_area = density_by_area(light, wi, d);
+  const REAL by_area = pdf_by_area(light, wi, d);
   if (light->kind != LIGHT_RECTANGLE) return by_area;
   const SphericalRectangles r = see_rectangle(light, p);
   const REAL used = used_solid_angle(&r);

@@ -62,7 +62,7 @@ static inline MASK hidden_lanes(const Scene* scene, u32 solids, const Shafts* sh
 // Light of the samples of the light of `way` on the surfaces of `lanes`, which `bsdf` describes; of those of
 // `soft` what passes `solids`.
 static inline REAL3 sampled_light(const Scene* scene, const LightRay* way, const TileSamples* tile,
-                                  const PathStates* paths, REAL3 wo, const SurfaceInteractions* s,
+                                  const WaitingRays* paths, REAL3 wo, const SurfaceInteractions* s,
                                   const Bsdfs* bsdf, MASK lanes, MASK soft, u32 solids, u32* counts) {
   __global const Light* light = scene->lights + way->light;
   BounceNumbers numbers;
@@ -97,7 +97,7 @@ static inline REAL3 sampled_light(const Scene* scene, const LightRay* way, const
 // The light of `way` on the surfaces of `lanes`: goes to `sum` for those that see it behind solids at most.
 // Returns the others, which have to send their rays through the scene.
 NEVER_INLINE MASK direct_light(const Scene* scene, const LightRay* way, const TileSamples* tile,
-                               const SceneRays* rays, const PathStates* paths, MASK lanes, const Shading* at,
+                               const SceneRays* rays, const WaitingRays* paths, MASK lanes, const Shading* at,
                                REAL3* sum, u32* counts) {
   const SurfaceInteractions* s = &at->s;
   __global const Light* light = scene->lights + way->light;
@@ -150,7 +150,7 @@ static inline bool has_shafts(const Scene* scene, u32 light) {
 // it. Where it is the first to a light that shafts are for, the pixels receive what these find; where they
 // find all, *index becomes the first ray to the next light.
 static inline bool sends_ray(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
-                             const PathStates* paths, MASK lanes, const Shading* at, u32* index,
+                             const WaitingRays* paths, MASK lanes, const Shading* at, u32* index,
                              MASK* casting, float4* radiance, u32* counts) {
   if (!scene->info->shafts) return true;
   const LightRay way = scene->light_rays[*index];
@@ -166,7 +166,7 @@ static inline bool sends_ray(const Scene* scene, const TileSamples* tile, const 
 }
 #else
 static inline bool sends_ray(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
-                             const PathStates* paths, MASK lanes, const Shading* at, u32* index,
+                             const WaitingRays* paths, MASK lanes, const Shading* at, u32* index,
                              MASK* casting, float4* radiance, u32* counts) {
   return true;
 }

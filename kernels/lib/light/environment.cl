@@ -166,7 +166,7 @@ static inline REAL row_fact(const Scene* scene, MASK row, MASK lanes) {
 }
 
 // The density, per steradian, of directions that rows of cells between pixels choose by their radiance.
-static inline REAL blended_density(const Scene* scene, REAL3 radiance, MASK row, REAL sine, MASK lanes) {
+static inline REAL blended_pdf(const Scene* scene, REAL3 radiance, MASK row, REAL sine, MASK lanes) {
   const REAL light =
       fma((REAL)(0.0722f), radiance.z, fma((REAL)(0.7152f), radiance.y, (REAL)(0.2126f) * radiance.x));
   return light * row_fact(scene, row, lanes) / real_max(sine, (REAL)(1e-6f));
@@ -174,13 +174,13 @@ static inline REAL blended_density(const Scene* scene, REAL3 radiance, MASK row,
 
 // The density, per steradian, of the directions of cells with the share `share`, which are chosen evenly in
 // them; `height`: the difference of the cosines of their row's borders.
-static inline REAL even_density(__global const Environment* e, REAL share, REAL height) {
+static inline REAL even_pdf(__global const Environment* e, REAL share, REAL height) {
   return share * (float)e->columns / (2.0f * M_PI_F * height);
 }
 
 // What the environment sends along the directions of `lanes`, and the density with which
 // sample_environment() chooses them.
-static inline REAL3 environment_along(const Scene* scene, REAL3 d, MASK lanes, REAL* density) {
+static inline REAL3 environment_along(const Scene* scene, REAL3 d, MASK lanes, REAL* pdf) {
   __global const Environment* e = scene->environments;
   REAL x, y;
   environment_place(e, d, &x, &y);
@@ -189,7 +189,7 @@ static inline REAL3 environment_along(const Scene* scene, REAL3 d, MASK lanes, R
     REAL sine, cosine;
     sincos_of_turn(0.5f * y, &sine, &cosine);
     const MASK row = TO_MASK(fma(y, (REAL)((float)e->height), (REAL)(0.5f)));
-    *density = blended_density(scene, radiance, row, sine, lanes);
+    *pdf = blended_pdf(scene, radiance, row, sine, lanes);
     return radiance;
   }
   const MASK column = min(TO_MASK(x * (float)e->columns), (MASK)((int)e->columns - 1)),
@@ -197,8 +197,7 @@ static inline REAL3 environment_along(const Scene* scene, REAL3 d, MASK lanes, R
   const int above = (int)e->rows + 1;
   const REAL row_share = share_of_step(scene, (MASK)(above), row, lanes),
              share = share_of_step(scene, row * ((int)e->columns + 1) + 2 * above, column, lanes);
-  *density =
-      even_density(e, share * row_share, row_fact(scene, row, lanes) - row_fact(scene, row + 1, lanes));
+  *pdf = even_pdf(e, share * row_share, row_fact(scene, row, lanes) - row_fact(scene, row + 1, lanes));
   return radiance;
 }
 
@@ -224,7 +223,7 @@ static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL
     up = fma(-cells.down, height, top);
     side = real_sqrt(real_max(fma(-up, up, one), zero));
     y = real_acos(real_clamp(up, -one, one)) * (1.0f / M_PI_F);
-    sample.density = even_density(e, cells.share, height);
+    sample.pdf = even_pdf(e, cells.share, height);
   }
   REAL sine, cosine;
   sincos_of_turn(x - 0.5f, &sine, &cosine);
@@ -233,12 +232,12 @@ static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL
   sample.distance = (REAL)(INFINITY);
   sample.delta = NO_LANES;
   sample.radiance = environment_at(scene, x, y, lanes);
-  if (blended) sample.density = blended_density(scene, sample.radiance, cells.row, side, lanes);
+  if (blended) sample.pdf = blended_pdf(scene, sample.radiance, cells.row, side, lanes);
   return sample;
 }
 
 // The density of a sun that is chosen with `chance`, whose disk's size is 1 minus the cosine of its radius.
-static inline float sun_density(__global const Light* sun, float chance) {
+static inline float sun_pdf(__global const Light* sun, float chance) {
   return chance / (2.0f * M_PI_F * fabs(sun->direction.w));
 }
 
@@ -256,7 +255,7 @@ static inline LightSamples sample_sun(__global const Light* light, REAL u_x, REA
   LightSamples sample;
   sample.wi = direction_at(all3(-light->direction.xyz), 1.0f - drop, real_sqrt(sine2), u_y);
   sample.distance = (REAL)(INFINITY);
-  sample.density = (REAL)(sun_density(light, 1.0f));
+  sample.pdf = (REAL)(sun_pdf(light, 1.0f));
   sample.delta = NO_LANES;
   sample.radiance = all3(light->color.xyz);
   return sample;
@@ -267,9 +266,8 @@ static inline LightSamples sample_sun(__global const Light* light, REAL u_x, REA
 static inline bool sees_environment(const Scene* scene) {
   return HAS_ENVIRONMENT && scene->info->sees_environment;
 }
-static inline REAL3 distant_along(const Scene* scene, REAL3 d, MASK lanes, REAL* density) {
-  return sees_environment(scene) ? environment_along(scene, d, lanes, density)
-                                 : background_along(scene->info, d);
+static inline REAL3 distant_along(const Scene* scene, REAL3 d, MASK lanes, REAL* pdf) {
+  return sees_environment(scene) ? environment_along(scene, d, lanes, pdf) : background_along(scene->info, d);
 }
 
 // The same, where the rays of `camera` do not see what is hidden from them; and what they see of a sun.
@@ -285,8 +283,8 @@ static inline MASK sees_sun(__global const Light* sun, REAL3 d, MASK camera) {
 // its own.
 static inline REAL3 sky_along(const Scene* scene, REAL3 d, MASK camera, MASK lanes) {
   if (!HAS_SKY) return background_along(scene->info, d);
-  REAL density;
-  REAL3 light = hide_environment(scene, d, distant_along(scene, d, lanes, &density), camera);
+  REAL pdf;
+  REAL3 light = hide_environment(scene, d, distant_along(scene, d, lanes, &pdf), camera);
   for (u32 index = 0; index < scene->info->table_lights; ++index) {
     __global const Light* sun = scene->lights + index;
     if (sun->kind != LIGHT_SUN) continue;

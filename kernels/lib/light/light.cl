@@ -10,7 +10,7 @@
 // The way from the points p to a light without extent.
 static inline LightSamples way_to_lamp(__global const Light* light, REAL3 p) {
   LightSamples sample;
-  sample.density = (REAL)(1.0f);
+  sample.pdf = (REAL)(1.0f);
   sample.delta = ALL_LANES;
   sample.radiance = all3(light->color.xyz);
   if (light->kind == LIGHT_DIRECTIONAL) {

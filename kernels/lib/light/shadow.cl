@@ -208,7 +208,7 @@ static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits,
 
 // The shadow rays of `lanes` at what they met: what reaches the lights is added to the pixels. Returns those
 // that continue.
-static inline MASK reach_filters(const Scene* scene, SceneRays* rays, PathStates* paths, Hits* hits,
+static inline MASK reach_filters(const Scene* scene, SceneRays* rays, WaitingRays* paths, Hits* hits,
                                  MASK lanes, float4* radiance, u32* counts) {
   const MASK passing = pass_filters(scene, rays, hits, lanes, &paths->throughput);
   const MASK too_many = passing & MASK_OF(rays->crossings >= MAX_FILTERS);
@@ -224,7 +224,7 @@ static inline Hits shadow_hits(const Scene* scene, SceneRays* rays, MASK lanes, 
   return hits;
 }
 #else
-static inline MASK reach_filters(const Scene* scene, SceneRays* rays, PathStates* paths, Hits* hits,
+static inline MASK reach_filters(const Scene* scene, SceneRays* rays, WaitingRays* paths, Hits* hits,
                                  MASK lanes, float4* radiance, u32* counts) {
   const MASK arriving = lanes & ~hit_anything(hits);
   REAL3 light = paths->throughput;

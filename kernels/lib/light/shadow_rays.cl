@@ -54,7 +54,7 @@ static inline void shade_hits(const Scene* scene, const SceneRays* rays, const E
 // A way to one of the lights of the tree for each point, for which it stands with all its light. Other rays
 // may meet those of `met`.
 NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, const TileSamples* tile,
-                                       const PathStates* paths, REAL3 p, MASK lanes, MASK* met) {
+                                       const WaitingRays* paths, REAL3 p, MASK lanes, MASK* met) {
   REAL u_x, u_y, choice, unused, chance;
   const u32 turn = scene->info->table_lights;  // of the lights whose numbers these are: none's
   bounce_numbers(tile, paths, turn, BOUNCE_LIGHT_POINT, way->ray, way->rays, lanes, &u_x, &u_y);
@@ -64,7 +64,7 @@ NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, 
   light.wi = all3((float3)(0.0f));
   light.distance = (REAL)(0.0f);
   light.radiance = all3((float3)(0.0f));
-  light.density = (REAL)(1.0f);
+  light.pdf = (REAL)(1.0f);
   light.delta = NO_LANES;
   u32 index;
   for (u32 left = lane_bits(lanes); left;) {
@@ -73,7 +73,7 @@ NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, 
     light.wi = select3(light.wi, one.wi, mine);
     light.distance = select(light.distance, one.distance, mine);
     light.radiance = select3(light.radiance, one.radiance, mine);
-    light.density = select(light.density, one.density * chance, mine);
+    light.pdf = select(light.pdf, one.pdf * chance, mine);
     if (rays_meet(scene, index)) *met |= mine;
   }
   light.radiance = scale3(light.radiance, light_weight(&light) / (float)way->rays);
@@ -81,7 +81,7 @@ NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, 
 }
 #else
 static inline LightSamples choose_among(const Scene* scene, const LightRay* way, const TileSamples* tile,
-                                        const PathStates* paths, REAL3 p, MASK lanes, MASK* met) {
+                                        const WaitingRays* paths, REAL3 p, MASK lanes, MASK* met) {
   return sample_light(scene, way->light, p, (REAL)(0.5f), (REAL)(0.5f), lanes);
 }
 #endif
@@ -90,7 +90,7 @@ static inline LightSamples choose_among(const Scene* scene, const LightRay* way,
 // light_rays. The radiance of rays that share a light is divided among them. Other rays may meet the lights
 // of `met`.
 static inline LightSamples choose_way(const Scene* scene, u32 index, const TileSamples* tile,
-                                      const PathStates* paths, REAL3 p, MASK lanes, MASK* met) {
+                                      const WaitingRays* paths, REAL3 p, MASK lanes, MASK* met) {
   const REAL middle = (REAL)(0.5f);
   *met = NO_LANES;
   if (!HAS_AREA_LIGHTS) return sample_light(scene, index, p, middle, middle, lanes);
@@ -109,7 +109,7 @@ static inline LightSamples choose_way(const Scene* scene, u32 index, const TileS
 // Sends shadow rays from the surfaces of `lanes` to one light, with what it would do there: Ij (kd n.l +
 // ks (r.v)^b) Vj.
 static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples* tile, const SceneRays* rays,
-                                const PathStates* paths, MASK lanes, const Hits* hits, const Shading* at,
+                                const WaitingRays* paths, MASK lanes, const Hits* hits, const Shading* at,
                                 ShadowStack* stack, u32* counts) {
   const SurfaceInteractions* s = &at->s;
   MASK met;
@@ -139,7 +139,7 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
   to_light.d = light.wi;
   to_light.t_min = (REAL)(0.0f);
   to_light.t_max = light.distance - way;
-  PathStates weights = *paths;
+  WaitingRays weights = *paths;
   weights.depth = NO_LANES;
   weights.throughput = multiply3(paths->throughput, possible);
   weights.throughput = scale3(weights.throughput, soft_shadows(scene, &to_light, lit, counts));

@@ -20,7 +20,7 @@ static inline void set_tile_pixels(TileSamples* tile, const LaneSamples* at) {
   tile->seed = at->seed;
 }
 
-static inline void start_branches(PathStates* paths) { paths->branch = NO_LANES; }
+static inline void start_branches(WaitingRays* paths) { paths->branch = NO_LANES; }
 
 // Place in the ray tree of a child of `branch` (0: the camera's ray) by the number of its kind: what it adds
 // to dimensions, so that surfaces of one depth differ.
@@ -28,7 +28,7 @@ static inline MASK child_branch(MASK branch, u32 kind) {
   return AS_MASK(hash_lanes(AS_LANE_U32(branch) + (kind + 1u)) & ~0xFFFu);
 }
 
-static inline void start_branch(const PathStates* parent, u32 kind, PathStates* child) {
+static inline void start_branch(const WaitingRays* parent, u32 kind, WaitingRays* child) {
   child->branch = child_branch(parent->branch, kind);
 }
 
@@ -40,7 +40,7 @@ typedef struct BounceNumbers {
   bool later;
 } BounceNumbers;
 
-static inline void begin_numbers(const TileSamples* tile, const PathStates* paths, u32 light, u32 offset,
+static inline void begin_numbers(const TileSamples* tile, const WaitingRays* paths, u32 light, u32 offset,
                                  MASK lanes, BounceNumbers* numbers) {
   numbers->at.x = numbers->at.y = NO_LANES;
   numbers->at.seed = tile->seed;
@@ -61,7 +61,7 @@ static inline void next_numbers(const TileSamples* tile, u32 part, u32 parts, Bo
   pair_lanes(&numbers->at, numbers->first, numbers->later, u_x, u_y);
 }
 
-NEVER_INLINE void bounce_numbers(const TileSamples* tile, const PathStates* paths, u32 light, u32 offset,
+NEVER_INLINE void bounce_numbers(const TileSamples* tile, const WaitingRays* paths, u32 light, u32 offset,
                                  u32 part, u32 parts, MASK lanes, REAL* u_x, REAL* u_y) {
   BounceNumbers numbers;
   begin_numbers(tile, paths, light, offset, lanes, &numbers);
@@ -69,9 +69,9 @@ NEVER_INLINE void bounce_numbers(const TileSamples* tile, const PathStates* path
 }
 #else
 static inline void set_tile_pixels(TileSamples* tile, const LaneSamples* at) {}
-static inline void start_branches(PathStates* paths) {}
-static inline void start_branch(const PathStates* parent, u32 kind, PathStates* child) {}
-static inline void bounce_numbers(const TileSamples* tile, const PathStates* paths, u32 light, u32 offset,
+static inline void start_branches(WaitingRays* paths) {}
+static inline void start_branch(const WaitingRays* parent, u32 kind, WaitingRays* child) {}
+static inline void bounce_numbers(const TileSamples* tile, const WaitingRays* paths, u32 light, u32 offset,
                                   u32 part, u32 parts, MASK lanes, REAL* u_x, REAL* u_y) {
   *u_x = *u_y = (REAL)(0.5f);
 }

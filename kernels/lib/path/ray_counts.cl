@@ -11,6 +11,9 @@
 #define RAYS_BY_LANE HAS_RAY_COUNTS
 #endif
 
+// Counts a ray for each lane of `lanes`.
+static inline void count_lanes(u32* counts, u32 which, MASK lanes) { counts[which] += lane_count(lanes); }
+
 #if RAYS_BY_LANE
 #define ALL_COUNTS (COUNTERS + BATCH)
 

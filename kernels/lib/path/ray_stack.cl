@@ -5,18 +5,18 @@
 #include "lib/path/scene_ray.cl"
 
 // What rays carry besides their way.
-typedef struct PathStates {
+typedef struct WaitingRays {
   REAL3 throughput;  // of a shadow ray: the light that it would bring
   MASK pixel;        // in the work-item's tile
   MASK depth;        // the camera's ray has 1, a shadow ray 0; with TURNED
 #if HAS_RANDOM
   MASK branch;  // the ray's place in the ray tree, for random numbers; 0: the camera's ray
 #endif
-} PathStates;
+} WaitingRays;
 
 // In the depth of rays that do not go straight on from the camera.
 #define TURNED 0x80
-static inline MASK depth_of(const PathStates* paths) { return paths->depth & (TURNED - 1); }
+static inline MASK depth_of(const WaitingRays* paths) { return paths->depth & (TURNED - 1); }
 
 // What is kept of each waiting ray, in this order: from this list come the count, the writing and the
 // reading.
@@ -88,7 +88,7 @@ typedef struct RayStack {
 } RayStack;
 
 // Writes the lanes of `lanes` one behind the other; member k goes to to[k * stride].
-NEVER_INLINE void write_rays(float* to, u32 stride, const SceneRays* rays, const PathStates* paths,
+NEVER_INLINE void write_rays(float* to, u32 stride, const SceneRays* rays, const WaitingRays* paths,
                              MASK lanes) {
 #define WRITE_REALS(member) write_packed(to, member, lanes), to += stride;
 #define WRITE_MASKS(member) WRITE_REALS(AS_REAL(member))
@@ -96,7 +96,7 @@ NEVER_INLINE void write_rays(float* to, u32 stride, const SceneRays* rays, const
 }
 
 // Reads a ray for every lane.
-NEVER_INLINE void read_rays(const float* from, u32 stride, SceneRays* rays, PathStates* paths) {
+NEVER_INLINE void read_rays(const float* from, u32 stride, SceneRays* rays, WaitingRays* paths) {
   paths->pixel = NO_LANES;
   rays->media_low = NO_LANES;
   rays->media_high = NO_LANES;
@@ -107,24 +107,24 @@ NEVER_INLINE void read_rays(const float* from, u32 stride, SceneRays* rays, Path
 }
 
 // The lanes of `lanes`; there must be room.
-static inline void push_rays(RayStack* stack, const SceneRays* rays, const PathStates* paths, MASK lanes) {
+static inline void push_rays(RayStack* stack, const SceneRays* rays, const WaitingRays* paths, MASK lanes) {
   write_rays(stack->members + stack->count, STACK_LENGTH, rays, paths, lanes);
   stack->count += lane_count(lanes);
 }
-static inline void push_shadows(ShadowStack* stack, const SceneRays* rays, const PathStates* paths,
+static inline void push_shadows(ShadowStack* stack, const SceneRays* rays, const WaitingRays* paths,
                                 MASK lanes) {
   write_rays(stack->members + stack->count, SHADOW_LENGTH, rays, paths, lanes);
   stack->count += lane_count(lanes);
 }
 
 // Takes the newest rays, at most `most`, which is at most BATCH. Returns their lanes.
-static inline MASK pop_rays(RayStack* stack, u32 most, SceneRays* rays, PathStates* paths) {
+static inline MASK pop_rays(RayStack* stack, u32 most, SceneRays* rays, WaitingRays* paths) {
   const u32 count = min(stack->count, most);
   stack->count -= count;
   read_rays(stack->members + stack->count, STACK_LENGTH, rays, paths);
   return lanes_of((1u << count) - 1u);
 }
-static inline MASK pop_shadows(ShadowStack* stack, u32 most, SceneRays* rays, PathStates* paths) {
+static inline MASK pop_shadows(ShadowStack* stack, u32 most, SceneRays* rays, WaitingRays* paths) {
   const u32 count = min(stack->count, most);
   stack->count -= count;
   read_rays(stack->members + stack->count, SHADOW_LENGTH, rays, paths);

@@ -16,14 +16,14 @@ typedef struct Features {
 
 // One sample of each lane on its way.
 typedef struct FeatureWalks {
-  Walks walks;
+  PathStates paths;
   REAL3 tint, first;  // what mirrors and glass have left; the first one's normal
   Features seen;
 } FeatureWalks;
 
 static inline FeatureWalks start_features(const Scene* scene, const LaneSamples* at, MASK lanes) {
   const REAL3 none = all3((float3)(0.0f));
-  FeatureWalks f = {start_walks(scene, at, lanes), all3((float3)(1.0f)), none, {none, none}};
+  FeatureWalks f = {start_paths(scene, at, lanes), all3((float3)(1.0f)), none, {none, none}};
   return f;
 }
 
@@ -42,8 +42,8 @@ static inline void end_features(REAL3 albedo, REAL3 normal, MASK lanes, FeatureW
 NEVER_INLINE MASK step_features(const Scene* scene, FeatureWalks* f, SceneRays* rays, MASK lanes,
                                 bool coherent, u32* counts) {
   Encounters met;
-  Walks* walks = &f->walks;
-  const MASK first = MASK_OF(walks->depth == 1);
+  PathStates* paths = &f->paths;
+  const MASK first = MASK_OF(paths->depth == 1);
   see_surfaces(scene, rays, lanes, first, coherent, &met, counts);
   forget_glow(rays);
   f->tint = select3(f->tint, multiply3(f->tint, met.absorbed), lanes);
@@ -52,19 +52,19 @@ NEVER_INLINE MASK step_features(const Scene* scene, FeatureWalks* f, SceneRays* 
   if (!any_lane(hit)) return NO_LANES;
   Shading at;
   shade_hits(scene, rays, &met, hit, &at);
-  follow_hero(&walks->wavelengths, &at.bsdf);
+  follow_hero(&paths->wavelengths, &at.bsdf);
   const REAL3 wo = negate3(rays->d);
   const Lobes lobes = make_lobes(scene, &at.bsdf, wo, hit);
-  const FourNumbers u = sample_lanes(&walks->at, dimension_here(walks, BOUNCE_DIRECTION));
+  const FourNumbers u = sample_lanes(&paths->at, dimension_here(paths, BOUNCE_DIRECTION));
   const BsdfSamples sample = sample_lobes(scene, &at.bsdf, &lobes, wo, u.z, u.x, u.y, hit);
-  const MASK follows = hit & MASK_OF(walks->depth < FEATURE_DEPTH) &
-                       (sample.specular | MASK_OF(sample.density > FEATURE_DENSITY)) &
+  const MASK follows = hit & MASK_OF(paths->depth < FEATURE_DEPTH) &
+                       (sample.specular | MASK_OF(sample.pdf > FEATURE_DENSITY)) &
                        MASK_OF(greatest3(sample.weight) > 0.0f);
   end_features(albedo_of(&at.bsdf), at.s.ns, hit & ~follows, f);
   f->first = select3(f->first, at.s.ns, follows & first);
   f->tint = select3(f->tint, at_most_one3(multiply3(f->tint, sample.weight)), follows);
   const MASK free = cut_away(&at.bsdf, &lobes.split, follows) & may_cross(rays);
-  walks->depth -= follows & ~free;
+  paths->depth -= follows & ~free;
   leave_surfaces(scene, &met, &at, &sample, MASK_OF(dot3(at.s.ng, sample.wi) < 0.0f) & follows, free, follows,
                  rays);
   return follows;

@@ -2,8 +2,8 @@
 #ifndef SUNDOG_LIB_GATHER_PHOTONS_CL
 #define SUNDOG_LIB_GATHER_PHOTONS_CL
 #include "lib/light/shadow_rays.cl"
+#include "lib/pathtracer/path_state.cl"
 #include "lib/pathtracer/photon_cells.cl"
-#include "lib/pathtracer/walk_state.cl"
 #include "lib/shade/wide_lobes.cl"
 
 #if HAS_CAUSTICS
@@ -25,10 +25,10 @@ typedef struct PhotonSearch {
 } PhotonSearch;
 
 // The photons of the map that the sample looks at.
-static inline PhotonSearch search_photons(const Scene* scene, const Walks* walks, REAL time,
+static inline PhotonSearch search_photons(const Scene* scene, const PathStates* paths, REAL time,
                                           const SurfaceInteractions* s, u32 i) {
   PhotonSearch search;
-  const u32 sample = (u32)MASK_LANE(walks->at.sample, i), depth = (u32)MASK_LANE(walks->depth, i);
+  const u32 sample = (u32)MASK_LANE(paths->at.sample, i), depth = (u32)MASK_LANE(paths->depth, i);
   search.p = get3(&s->p, i);
   search.n = get3(&s->ng, i);
   search.map = scene->photon_maps[photon_map_of(sample) - scene->photon_maps[0].number];
@@ -36,7 +36,7 @@ static inline PhotonSearch search_photons(const Scene* scene, const Walks* walks
   search.slice = photon_slice(REAL_LANE(time, i));
   search.deepest = (int)scene->info->max_depth - (int)depth;
   search.turn =
-      hash_pixel((u32)MASK_LANE(walks->at.x, i), (u32)MASK_LANE(walks->at.y, i), sample * 64u + depth);
+      hash_pixel((u32)MASK_LANE(paths->at.x, i), (u32)MASK_LANE(paths->at.y, i), sample * 64u + depth);
   search.cell = search.at = search.end = 0u;
   search.stride = 1u;
   return search;
@@ -95,8 +95,9 @@ static inline REAL3 scatter_photons(const Scene* scene, const SurfaceInteraction
 }
 
 // The light of photons that the surfaces of `lanes` send along their paths.
-NEVER_INLINE Carried gather_photons(const Scene* scene, const Walks* walks, const SceneRays* rays,
-                                    const Shading* at, const Lobes* lobes, MASK lanes) {
+NEVER_INLINE SampledSpectrum gather_photons(const Scene* scene, const PathStates* paths,
+                                            const SceneRays* rays, const Shading* at, const Lobes* lobes,
+                                            MASK lanes) {
   const REAL3 wo = negate3(rays->d);
   REAL3 sum = all3((float3)(0.0f)), wi = wo, flux = sum;
   REAL area = (REAL)(1.0f);
@@ -104,7 +105,7 @@ NEVER_INLINE Carried gather_photons(const Scene* scene, const Walks* walks, cons
   PhotonSearch searches[BATCH];
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    searches[i] = search_photons(scene, walks, time_of_rays(rays), &at->s, i);
+    searches[i] = search_photons(scene, paths, time_of_rays(rays), &at->s, i);
     REAL_LANE(area, i) = M_PI_F * searches[i].map.radius * searches[i].map.radius;
   }
   for (MASK left = lanes; any_lane(left);) {
@@ -120,12 +121,13 @@ NEVER_INLINE Carried gather_photons(const Scene* scene, const Walks* walks, cons
     }
     if (any_lane(left)) sum = add3(sum, scatter_photons(scene, &at->s, &wide, wo, wi, flux, left));
   }
-  return carried_color(walks, scale3(sum, 1.0f / area));
+  return carried_color(paths, scale3(sum, 1.0f / area));
 }
 #else
-static inline Carried gather_photons(const Scene* scene, const Walks* walks, const SceneRays* rays,
-                                     const Shading* at, const Lobes* lobes, MASK lanes) {
-  return carry_all(0.0f);
+static inline SampledSpectrum gather_photons(const Scene* scene, const PathStates* paths,
+                                             const SceneRays* rays, const Shading* at, const Lobes* lobes,
+                                             MASK lanes) {
+  return spectrum_all(0.0f);
 }
 #endif
 

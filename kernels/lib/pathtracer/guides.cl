@@ -27,7 +27,7 @@ static inline REAL cone_to_guide(float4 ball, REAL3 p, REAL3* axis) {
 }
 
 // The density of wi for directions to the balls.
-static inline REAL guide_density(const Scene* scene, REAL3 p, REAL3 wi) {
+static inline REAL guide_pdf(const Scene* scene, REAL3 p, REAL3 wi) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
   REAL sum = zero;
   for (u32 i = 0; i < scene->info->guide_count; ++i) {
@@ -35,19 +35,19 @@ static inline REAL guide_density(const Scene* scene, REAL3 p, REAL3 wi) {
     const REAL span = cone_to_guide(scene->guides[i], p, &axis);
     const REAL3 chord = subtract3(wi, axis);  // its square is 2 - 2 cos: exact for narrow cones
     const MASK inside = MASK_OF(span > 0.0f) & MASK_OF(0.5f * dot3(chord, chord) <= span);
-    const REAL density = 1.0f / (2.0f * M_PI_F * select(one, span, inside));
-    sum += select(zero, density, inside);
+    const REAL pdf = 1.0f / (2.0f * M_PI_F * select(one, span, inside));
+    sum += select(zero, pdf, inside);
   }
   return sum / (float)scene->info->guide_count;
 }
 
 // The density with which the surfaces of `lanes` choose wi, where their lobes choose it with `density`.
-static inline REAL guided_density(const Scene* scene, const Lobes* lobes, REAL3 p, REAL3 wi, REAL density,
-                                  MASK lanes) {
+static inline REAL guided_pdf(const Scene* scene, const Lobes* lobes, REAL3 p, REAL3 wi, REAL pdf,
+                              MASK lanes) {
   const MASK guided = guided_surfaces(lobes, lanes);
-  if (!any_lane(guided)) return density;
-  const REAL mixed = fma(density, (REAL)(1.0f - GUIDED_PART), GUIDED_PART * guide_density(scene, p, wi));
-  return select(density, mixed, guided);
+  if (!any_lane(guided)) return pdf;
+  const REAL mixed = fma(pdf, (REAL)(1.0f - GUIDED_PART), GUIDED_PART * guide_pdf(scene, p, wi));
+  return select(pdf, mixed, guided);
 }
 
 // sample_lobes() of which part goes to the balls; its number u_term chooses that too. That many paths go
@@ -74,22 +74,22 @@ static inline BsdfSamples sample_guided(const Scene* scene, const Bsdfs* bsdf, c
     }
     sample.specular &= ~aims;
   }
-  REAL density;
-  const REAL3 value = bsdf_scatter(scene, bsdf, lobes, wo, sample.wi, guided, &density);
-  const REAL alone = density;
-  density = guided_density(scene, lobes, p, sample.wi, density, guided);
-  const MASK some = MASK_OF(density > 0.0f), either = guided & MASK_OF(alone > 0.0f);
-  *spread = select(*spread, *spread * density / select(one, alone, either), either);
-  const REAL3 weight = scale3(value, 1.0f / (M_PI_F * select(one, density, some)));
+  REAL pdf;
+  const REAL3 value = bsdf_scatter(scene, bsdf, lobes, wo, sample.wi, guided, &pdf);
+  const REAL alone = pdf;
+  pdf = guided_pdf(scene, lobes, p, sample.wi, pdf, guided);
+  const MASK some = MASK_OF(pdf > 0.0f), either = guided & MASK_OF(alone > 0.0f);
+  *spread = select(*spread, *spread * pdf / select(one, alone, either), either);
+  const REAL3 weight = scale3(value, 1.0f / (M_PI_F * select(one, pdf, some)));
   sample.weight = select3(sample.weight, select3(all3((float3)(0.0f)), weight, some), guided);
-  sample.density = select(sample.density, density, guided);
+  sample.pdf = select(sample.pdf, pdf, guided);
   return sample;
 }
 
 #else
-static inline REAL guided_density(const Scene* scene, const Lobes* lobes, REAL3 p, REAL3 wi, REAL density,
-                                  MASK lanes) {
-  return density;
+static inline REAL guided_pdf(const Scene* scene, const Lobes* lobes, REAL3 p, REAL3 wi, REAL pdf,
+                              MASK lanes) {
+  return pdf;
 }
 static inline BsdfSamples sample_guided(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 p,
                                         REAL3 wo, REAL u_term, REAL u_x, REAL u_y, MASK lanes, REAL* spread) {

@@ -6,7 +6,7 @@
 #include "lib/core/directions.cl"
 #include "lib/core/tables.h"
 #include "lib/light/area_light.cl"
-#include "lib/pathtracer/carried.cl"
+#include "lib/pathtracer/sampled_spectrum.cl"
 
 #if HAS_SCATTERING
 // What a scattered path remembers of the stretch that it was scattered on.
@@ -46,13 +46,13 @@ static inline REAL next_of(REAL decay, REAL share, REAL length, REAL at) {
 // Of decays and shares, one a colour or a wavelength: what is kept over a distance; the sum; the decay that
 // the number u chooses by the shares, whose sum is 1; and the density of a distance by all of them.
 #if HAS_DISPERSION
-static inline Carried carry_over(Carried decay, REAL distance) {
-  Carried kept;
+static inline SampledSpectrum spectrum_over(SampledSpectrum decay, REAL distance) {
+  SampledSpectrum kept;
   EACH_WAVELENGTH(i) kept.of[i] = kept_over(decay.of[i], distance);
   return kept;
 }
-static inline REAL carry_sum(Carried a) { return (a.of[0] + a.of[1]) + (a.of[2] + a.of[3]); }
-static inline REAL by_share(Carried of, Carried shares, REAL u) {
+static inline REAL spectrum_sum(SampledSpectrum a) { return (a.of[0] + a.of[1]) + (a.of[2] + a.of[3]); }
+static inline REAL by_share(SampledSpectrum of, SampledSpectrum shares, REAL u) {
   REAL chosen = of.of[0], sum = shares.of[0];
   for (u32 i = 1; i < WAVELENGTHS; ++i) {
     chosen = select(chosen, of.of[i], MASK_OF(u >= sum) & MASK_OF(shares.of[i] > 0.0f));
@@ -60,30 +60,30 @@ static inline REAL by_share(Carried of, Carried shares, REAL u) {
   }
   return chosen;
 }
-static inline REAL next_density(Carried decay, Carried shares, REAL length, REAL at) {
-  REAL density = (REAL)(0.0f);
-  EACH_WAVELENGTH(i) density += next_of(decay.of[i], shares.of[i], length, at);
-  return density;
+static inline REAL next_pdf(SampledSpectrum decay, SampledSpectrum shares, REAL length, REAL at) {
+  REAL pdf = (REAL)(0.0f);
+  EACH_WAVELENGTH(i) pdf += next_of(decay.of[i], shares.of[i], length, at);
+  return pdf;
 }
-static inline Carried where_positive(Carried a, Carried b) {
-  Carried made;
+static inline SampledSpectrum where_positive(SampledSpectrum a, SampledSpectrum b) {
+  SampledSpectrum made;
   EACH_WAVELENGTH(i) made.of[i] = select((REAL)(0.0f), a.of[i], MASK_OF(b.of[i] > 0.0f));
   return made;
 }
 #else
-static inline Carried carry_over(Carried decay, REAL distance) {
+static inline SampledSpectrum spectrum_over(SampledSpectrum decay, REAL distance) {
   return real3(kept_over(decay.x, distance), kept_over(decay.y, distance), kept_over(decay.z, distance));
 }
-static inline REAL carry_sum(Carried a) { return a.x + a.y + a.z; }
-static inline REAL by_share(Carried of, Carried shares, REAL u) {
+static inline REAL spectrum_sum(SampledSpectrum a) { return a.x + a.y + a.z; }
+static inline REAL by_share(SampledSpectrum of, SampledSpectrum shares, REAL u) {
   const REAL two = select(of.x, of.y, MASK_OF(u >= shares.x) & MASK_OF(shares.y > 0.0f));
   return select(two, of.z, MASK_OF(u >= shares.x + shares.y) & MASK_OF(shares.z > 0.0f));
 }
-static inline REAL next_density(Carried decay, Carried shares, REAL length, REAL at) {
+static inline REAL next_pdf(SampledSpectrum decay, SampledSpectrum shares, REAL length, REAL at) {
   return next_of(decay.x, shares.x, length, at) + next_of(decay.y, shares.y, length, at) +
          next_of(decay.z, shares.z, length, at);
 }
-static inline Carried where_positive(Carried a, Carried b) {
+static inline SampledSpectrum where_positive(SampledSpectrum a, SampledSpectrum b) {
   const REAL zero = (REAL)(0.0f);
   return real3(select(zero, a.x, MASK_OF(b.x > 0.0f)), select(zero, a.y, MASK_OF(b.y > 0.0f)),
                select(zero, a.z, MASK_OF(b.z > 0.0f)));
@@ -91,15 +91,16 @@ static inline Carried where_positive(Carried a, Carried b) {
 #endif
 
 // Numbers that are not negative as shares; where all are 0, even ones.
-static inline Carried shares_of(Carried a) {
-  const REAL sum = carry_sum(a), all = carry_sum(carry_all(1.0f));
+static inline SampledSpectrum shares_of(SampledSpectrum a) {
+  const REAL sum = spectrum_sum(a), all = spectrum_sum(spectrum_all(1.0f));
   const MASK some = MASK_OF(sum > 0.0f) & MASK_OF(sum < INFINITY);
-  return carry_select(carry_scale(carry_all(1.0f), 1.0f / all),
-                      carry_scale(a, 1.0f / select((REAL)(1.0f), sum, some)), some);
+  return spectrum_select(spectrum_scale(spectrum_all(1.0f), 1.0f / all),
+                         spectrum_scale(a, 1.0f / select((REAL)(1.0f), sum, some)), some);
 }
 
 // A distance within the length by the decay; u chooses it, u_color the decay's component.
-static inline REAL next_distance(Carried decay, Carried shares, REAL length, REAL u, REAL u_color) {
+static inline REAL next_distance(SampledSpectrum decay, SampledSpectrum shares, REAL length, REAL u,
+                                 REAL u_color) {
   const REAL chosen = by_share(decay, shares, u_color);
   return real_min(depth_of_lost(u * lost_part(chosen * length)) / nonzero(chosen), length);
 }
@@ -135,14 +136,14 @@ static inline REAL distance_by_angle(const SeenStretch* s, REAL length, REAL u) 
 }
 
 // The density of a distance that is chosen both ways, where the other way's is `chance`.
-static inline REAL density_towards(const SeenStretch* s, REAL at, REAL chance) {
+static inline REAL pdf_towards(const SeenStretch* s, REAL at, REAL chance) {
   const REAL x = at - s->nearest, square = fma(x, x, s->height * s->height);
   const REAL seen = s->height / (real_max(s->angle, (REAL)(1e-6f)) * square);
   return fma(s->part, seen, (1.0f - s->part) * chance);
 }
 
 // The density of directions at the cosine to the way that light went.
-static inline REAL phase_density(REAL g, REAL cosine) {
+static inline REAL phase_pdf(REAL g, REAL cosine) {
   const REAL base = real_max(fma(g, g - 2.0f * cosine, (REAL)(1.0f)), (REAL)(1e-12f));
   return 0.25f / M_PI_F * fma(-g, g, (REAL)(1.0f)) / (base * real_sqrt(base));
 }

@@ -72,17 +72,17 @@ static inline float cone_span(float4 ball, float3 p) {
 }
 
 // The density, per steradian, with which photons leave p in the direction d.
-static inline float density_to_balls(const Scene* scene, u32 targets, float3 p, float3 d) {
-  float density = 0.0f;
+static inline float pdf_to_balls(const Scene* scene, u32 targets, float3 p, float3 d) {
+  float pdf = 0.0f;
   for (u32 i = 1; i < targets && !is_plane(scene->photon_targets + i); ++i) {
     const float4 ball = scene->photon_targets[i].ball;
     const float span = cone_span(ball, p);
     const float3 way = ball.xyz - p, chord = d - way * rsqrt(fmax(dot(way, way), 1e-30f));
     // The square of the chord is 2 - 2 cos.
     if (span >= 2.0f || 0.5f * dot(chord, chord) <= span)
-      density += scene->photon_targets[i].weight / (2.0f * M_PI_F * span);
+      pdf += scene->photon_targets[i].weight / (2.0f * M_PI_F * span);
   }
-  return density;
+  return pdf;
 }
 
 static inline float3 direction_to_ball(float4 ball, float3 p, float a, float b) {
@@ -95,15 +95,15 @@ static inline float3 direction_to_ball(float4 ball, float3 p, float a, float b) 
 }
 
 // The same for parallel light along d: the density per area across it, and a place before everything.
-static inline float density_across(const Scene* scene, u32 targets, float3 p, float3 d) {
-  float density = 0.0f;
+static inline float pdf_across(const Scene* scene, u32 targets, float3 p, float3 d) {
+  float pdf = 0.0f;
   for (u32 i = 1; i < targets && !is_plane(scene->photon_targets + i); ++i) {
     const float4 ball = scene->photon_targets[i].ball;
     const float3 way = p - ball.xyz, across = way - dot(way, d) * d;
     if (dot(across, across) <= ball.w * ball.w)
-      density += scene->photon_targets[i].weight / (M_PI_F * ball.w * ball.w);
+      pdf += scene->photon_targets[i].weight / (M_PI_F * ball.w * ball.w);
   }
-  return density;
+  return pdf;
 }
 
 static inline float3 place_across(const Scene* scene, float4 ball, float3 d, float a, float b) {
@@ -140,7 +140,7 @@ static inline float3 direction_in_sun(__global const Light* light, float c, floa
 static inline void start_from_afar(const Scene* scene, u32 targets, float4 ball, float3 sent,
                                    const PhotonNumbers* u, PhotonStart* start) {
   start->o = place_across(scene, ball, start->d, u->a, u->b);
-  start->flux = sent / density_across(scene, targets, start->o, start->d);
+  start->flux = sent / pdf_across(scene, targets, start->o, start->d);
   start->o -= 1.001f * way_to_planes(scene, targets, start->o, start->d) * start->d;
 }
 
@@ -150,8 +150,8 @@ static inline void start_on_light(const Scene* scene, u32 targets, float4 ball, 
   float area;
   const float3 p = place_on_light(light, u->c, u->e, &n, &area);
   start->d = direction_to_ball(ball, p, u->a, u->b);
-  start->flux = light->color.xyz *
-                (fmax(dot(n, start->d), 0.0f) * area / density_to_balls(scene, targets, p, start->d));
+  start->flux =
+      light->color.xyz * (fmax(dot(n, start->d), 0.0f) * area / pdf_to_balls(scene, targets, p, start->d));
   const float3 size = fabs(p);
   start->o = p + n * (OFF_LIGHT * fmax(fmax(size.x, size.y), fmax(size.z, light->edge_u.w)));
 }
@@ -171,17 +171,17 @@ static inline PhotonStart start_photon(const Scene* scene, u32 targets, const Ph
     start_from_afar(scene, targets, ball, M_PI_F * light->color.xyz, u, &start);
   } else if (HAS_AREA_LIGHTS && light->kind == LIGHT_SUN) {
     start.d = direction_in_sun(light, u->c, u->e);
-    start_from_afar(scene, targets, ball, light->color.xyz / sun_density(light, 1.0f), u, &start);
+    start_from_afar(scene, targets, ball, light->color.xyz / sun_pdf(light, 1.0f), u, &start);
   } else if (HAS_ENVIRONMENT && light->kind == LIGHT_ENVIRONMENT) {
     start.d = -get3(&sky->wi, lane);
-    const float3 sent = get3(&sky->radiance, lane) / fmax(REAL_LANE(sky->density, lane), 1e-30f);
+    const float3 sent = get3(&sky->radiance, lane) / fmax(REAL_LANE(sky->pdf, lane), 1e-30f);
     start_from_afar(scene, targets, ball, sent, u, &start);
   } else if (HAS_AREA_LIGHTS && light->kind >= LIGHT_RECTANGLE) {
     start_on_light(scene, targets, ball, light, u, &start);
   } else {
     start.o = light->position.xyz;
     start.d = direction_to_ball(ball, start.o, u->a, u->b);
-    start.flux = (float3)(1.0f / density_to_balls(scene, targets, start.o, start.d));
+    start.flux = (float3)(1.0f / pdf_to_balls(scene, targets, start.o, start.d));
     start.dimmed = (int)index;
   }
   start.flux /= share;

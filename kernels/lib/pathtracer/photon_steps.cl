@@ -7,9 +7,9 @@
 #include "lib/pathtracer/photon_start.cl"
 
 typedef struct Photons {
-  Walks walks;  // throughput is the flux; depth 1 + what has sent the photon on
-  MASK bent;    // it has been mirrored or bent
-  MASK dimmed;  // PhotonStarts.dimmed, while that is not done
+  PathStates paths;  // throughput is the flux; depth 1 + what has sent the photon on
+  MASK bent;         // it has been mirrored or bent
+  MASK dimmed;       // PhotonStarts.dimmed, while that is not done
 } Photons;
 
 // Photons that have landed, with the light that they bring.
@@ -21,8 +21,8 @@ typedef struct Landings {
 
 static inline Photons begun_photons(const Scene* scene, const PhotonStarts* starts, const LaneSamples* at) {
   Photons photons;
-  photons.walks = start_walks(scene, at, starts->lanes);
-  photons.walks.throughput = carry_color(&photons.walks.wavelengths, starts->flux);
+  photons.paths = start_paths(scene, at, starts->lanes);
+  photons.paths.throughput = spectrum_of(&photons.paths.wavelengths, starts->flux);
   photons.bent = NO_LANES;
   photons.dimmed = starts->dimmed;
   return photons;
@@ -36,9 +36,9 @@ static inline void dim_with_distance(const Scene* scene, REAL3 p, MASK lanes, Ph
     const MASK mine = take_alike(photons->dimmed, &left, &index);
     const LightSamples light = way_to_lamp(scene->lights + index, p);
     const REAL3 sent = scale3(light.radiance, M_PI_F * light.distance * light.distance);
-    photons->walks.throughput = carry_select(
-        photons->walks.throughput,
-        carry_multiply(photons->walks.throughput, carry_color(&photons->walks.wavelengths, sent)), mine);
+    photons->paths.throughput = spectrum_select(
+        photons->paths.throughput,
+        spectrum_multiply(photons->paths.throughput, spectrum_of(&photons->paths.wavelengths, sent)), mine);
   }
   photons->dimmed = select(photons->dimmed, (MASK)(NOT_DIMMED), lanes);
 }
@@ -55,20 +55,20 @@ static inline REAL flux_by_normals(const Bsdfs* bsdf, REAL3 wo, REAL3 wi) {
 // The photons of `lanes` are sent on in the directions of `sample`. Returns those that continue.
 static inline MASK send_on(const Scene* scene, const Encounters* met, const Shading* at, const Lobes* lobes,
                            const BsdfSamples* sample, Photons* photons, SceneRays* rays, MASK lanes) {
-  Walks* walks = &photons->walks;
+  PathStates* paths = &photons->paths;
   const REAL3 wo = negate3(rays->d);
   const MASK below = lanes & MASK_OF(dot3(at->s.ng, sample->wi) < 0.0f);
   const MASK passes = below & MASK_OF((at->bsdf.flags & (int)MATERIAL_SHADOW_OPAQUE) == 0);
   const MASK turns = lanes & ~passes;
   dim_with_distance(scene, at->s.p, turns, photons);
   const REAL change = select((REAL)(1.0f), flux_by_normals(&at->bsdf, wo, sample->wi), turns);
-  const Carried weight = carry_color(&walks->wavelengths, scale3(sample->weight, change));
-  walks->throughput = carry_select(walks->throughput, carry_multiply(walks->throughput, weight), lanes);
-  part_wavelengths(scene, at, &lobes->split, walks, lanes, lanes & ~below);
+  const SampledSpectrum weight = spectrum_of(&paths->wavelengths, scale3(sample->weight, change));
+  paths->throughput = spectrum_select(paths->throughput, spectrum_multiply(paths->throughput, weight), lanes);
+  part_wavelengths(scene, at, &lobes->split, paths, lanes, lanes & ~below);
   photons->bent |= turns;
   const MASK free = cut_away(&at->bsdf, &lobes->split, lanes) & may_cross(rays);
-  walks->depth -= lanes & ~free;
-  const MASK going = lanes & (free | MASK_OF(walks->depth <= (int)scene->info->max_depth));
+  paths->depth -= lanes & ~free;
+  const MASK going = lanes & (free | MASK_OF(paths->depth <= (int)scene->info->max_depth));
   leave_surfaces(scene, met, at, sample, below, free, going, rays);
   return going;
 }
@@ -78,35 +78,35 @@ static inline MASK send_on(const Scene* scene, const Encounters* met, const Shad
 NEVER_INLINE MASK step_photons(const Scene* scene, Photons* photons, SceneRays* rays, MASK lanes,
                                Landings* landed, u32* counts) {
   Encounters met;
-  Walks* walks = &photons->walks;
+  PathStates* paths = &photons->paths;
   landed->lanes = NO_LANES;
   const MASK unseen = lanes & meet_interfaces(scene, rays, lanes, false, &met, counts);
   forget_glow(rays);
-  walks->throughput =
-      carry_select(walks->throughput,
-                   carry_multiply(walks->throughput, carry_kept(&walks->wavelengths, met.absorbed)), lanes);
+  paths->throughput = spectrum_select(
+      paths->throughput,
+      spectrum_multiply(paths->throughput, spectrum_kept(&paths->wavelengths, met.absorbed)), lanes);
   const MASK hit = lanes & ~unseen & hit_anything(&met.hit);
   if (!any_lane(hit)) return unseen;
-  if (HAS_FOG) walks->throughput = carry_scale(walks->throughput, clear_of_fog(scene, &met, hit));
+  if (HAS_FOG) paths->throughput = spectrum_scale(paths->throughput, clear_of_fog(scene, &met, hit));
   Shading at;
   shade_hits(scene, rays, &met, hit, &at);
-  follow_hero(&walks->wavelengths, &at.bsdf);
+  follow_hero(&paths->wavelengths, &at.bsdf);
   const REAL3 wo = negate3(rays->d);
   const Lobes lobes = make_lobes(scene, &at.bsdf, wo, hit);
-  const FourNumbers u = wanted_lanes(&walks->at, dimension_here(walks, BOUNCE_DIRECTION), false, true);
+  const FourNumbers u = wanted_lanes(&paths->at, dimension_here(paths, BOUNCE_DIRECTION), false, true);
   const BsdfSamples sample = sample_perfect_lobes(&at.bsdf, &lobes, wo, u.z, hit);
   const MASK perfect = hit & sample.specular, some = MASK_OF(greatest3(sample.weight) > 0.0f);
   // On a surface that scatters and mirrors, chance decides which of the two the photon represents.
   const REAL one = (REAL)(1.0f), rest = scattered_share(&lobes);
   const MASK lands = hit & ~perfect & photons->bent & MASK_OF(rest > 0.0f) &
-                     MASK_OF(carry_greatest(walks->throughput) > 0.0f);
+                     MASK_OF(spectrum_greatest(paths->throughput) > 0.0f);
   landed->p = at.s.p;
   landed->wi = wo;
-  landed->sent_on = walks->depth - 1;
+  landed->sent_on = paths->depth - 1;
   landed->lanes = lands;
   if (any_lane(lands)) {
-    const Carried flux = carry_scale(walks->throughput, lobes.all / select(one, rest, lands));
-    landed->flux = carry_seen(scene, &walks->wavelengths, &flux, lands);
+    const SampledSpectrum flux = spectrum_scale(paths->throughput, lobes.all / select(one, rest, lands));
+    landed->flux = spectrum_seen(scene, &paths->wavelengths, &flux, lands);
   }
   return unseen | send_on(scene, &met, &at, &lobes, &sample, photons, rays, perfect & some);
 }

@@ -5,27 +5,8 @@
 #define SUNDOG_LIB_SCATTER_MEDIA_CL
 #include "lib/path/ray_counts.cl"
 #include "lib/pathtracer/next_event.cl"
-#include "lib/pathtracer/walk_state.cl"
-
-// Paths with at least this part of the light that they began with never end by chance. Others continue with
-// it: those that remain would else bring much light each, seldom, which is more noise than their time is
-// worth.
-#define LEAST_WORTH (1.0f / 3.0f)
-
-// Paths of `lanes` that continue after Russian roulette, by the numbers of `dimension`: they stand for those
-// that end. What refraction took from the radiance comes back when the ray leaves the medium, and says
-// nothing of its worth.
-static inline MASK play_roulette(const Scene* scene, Walks* walks, MASK dimension, MASK lanes) {
-  const REAL one = (REAL)(1.0f);
-  const REAL worth = carry_worth(walks->throughput) * walks->spread;
-  const MASK playing =
-      lanes & MASK_OF(walks->depth >= (int)scene->info->roulette_depth) & MASK_OF(worth < LEAST_WORTH);
-  if (!any_lane(playing)) return lanes;
-  const REAL u = wanted_lanes(&walks->at, dimension, false, true).w;
-  const REAL chance = select(one, worth * (1.0f / LEAST_WORTH), playing);
-  walks->throughput = carry_scale(walks->throughput, 1.0f / real_max(chance, (REAL)(1e-20f)));
-  return lanes & MASK_OF(u < chance);
-}
+#include "lib/pathtracer/path_state.cl"
+#include "plain/pathtracer/roulette.cl"
 
 #if HAS_SCATTERING
 // What rays are before they go to their next interfaces.
@@ -42,19 +23,19 @@ static inline BegunRays begun_rays_of(const SceneRays* rays) {
 // Stretches of rays in media that scatter.
 typedef struct Stretches {
   MASK lanes;
-  REAL3 o, d;          // where they begin
-  REAL length;         // to the next interface
-  REAL begin;          // length in the medium before them, for absorption
-  Carried decay;       // light lost per unit of length
-  Carried scattering;  // light scattered
-  REAL g;              // mean cosine of turns
-  REAL mean;           // of the decay's colours
-  Carried shares;      // of the colours, in the choice of the place where the path is scattered
-  Carried drawn;       // and of the one that gets light
+  REAL3 o, d;                  // where they begin
+  REAL length;                 // to the next interface
+  REAL begin;                  // length in the medium before them, for absorption
+  SampledSpectrum decay;       // light lost per unit of length
+  SampledSpectrum scattering;  // light scattered
+  REAL g;                      // mean cosine of turns
+  REAL mean;                   // of the decay's colours
+  SampledSpectrum shares;      // of the colours, in the choice of the place where the path is scattered
+  SampledSpectrum drawn;       // and of the one that gets light
 } Stretches;
 
 static inline Stretches find_stretches(const Scene* scene, const BegunRays* begun, const SceneRays* rays,
-                                       const Encounters* met, const Walks* walks, MASK lanes) {
+                                       const Encounters* met, const PathStates* paths, MASK lanes) {
   const REAL zero = (REAL)(0.0f);
   Stretches s;
   s.lanes = NO_LANES;
@@ -75,25 +56,25 @@ static inline Stretches find_stretches(const Scene* scene, const BegunRays* begu
     s.g = select(s.g, (REAL)(some.w), mine);
   }
   s.mean = (decay.x + decay.y + decay.z) * (1.0f / 3.0f);
-  s.decay = carry_color(&walks->wavelengths, decay);
-  s.scattering = carry_color(&walks->wavelengths, scattering);
-  s.shares = shares_of(walks->throughput);
-  s.drawn = shares_of(where_positive(walks->throughput, s.scattering));
+  s.decay = spectrum_of(&paths->wavelengths, decay);
+  s.scattering = spectrum_of(&paths->wavelengths, scattering);
+  s.shares = shares_of(paths->throughput);
+  s.drawn = shares_of(where_positive(paths->throughput, s.scattering));
   return s;
 }
 
 // What arrives at the distance `at` of light that comes from the stretches' ends, and is scattered there.
-static inline Carried scattered_at(const Walks* walks, const Stretches* s, REAL at) {
-  const Carried kept = carry_over(s->decay, s->begin + at);
-  return carry_multiply(carry_multiply(walks->throughput, kept), s->scattering);
+static inline SampledSpectrum scattered_at(const PathStates* paths, const Stretches* s, REAL at) {
+  const SampledSpectrum kept = spectrum_over(s->decay, s->begin + at);
+  return spectrum_multiply(spectrum_multiply(paths->throughput, kept), s->scattering);
 }
 
 // The density of the distance `at` as the place where a path is scattered, and the chance that none is.
-static inline REAL free_density(const Stretches* s, REAL at) {
-  return carry_sum(carry_multiply(carry_multiply(s->shares, s->decay), carry_over(s->decay, at)));
+static inline REAL free_pdf(const Stretches* s, REAL at) {
+  return spectrum_sum(spectrum_multiply(spectrum_multiply(s->shares, s->decay), spectrum_over(s->decay, at)));
 }
 static inline REAL chance_to_pass(const Stretches* s) {
-  return carry_sum(carry_multiply(s->shares, carry_over(s->decay, s->length)));
+  return spectrum_sum(spectrum_multiply(s->shares, spectrum_over(s->decay, s->length)));
 }
 
 // Rays of `lanes` that begin at the distance `at` of the stretches.
@@ -113,9 +94,9 @@ static inline SceneRays rays_from_stretch(const Scene* scene, const BegunRays* b
 
 // A distance on each stretch that suits its light, with its density.
 static inline REAL distance_for_light(const Scene* scene, const Stretches* s, MASK chosen, REAL u_way, REAL u,
-                                      REAL u_color, MASK lanes, REAL* density) {
+                                      REAL u_color, MASK lanes, REAL* pdf) {
   REAL at = next_distance(s->decay, s->drawn, s->length, u, u_color);
-  *density = next_density(s->decay, s->drawn, s->length, at);
+  *pdf = next_pdf(s->decay, s->drawn, s->length, at);
   u32 index;
   for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(chosen, &left, &index);
@@ -123,60 +104,62 @@ static inline REAL distance_for_light(const Scene* scene, const Stretches* s, MA
     if (!has_place(lamp)) continue;
     const SeenStretch seen = see_stretch(s->o, s->d, s->length, s->mean, middle_of_light(lamp));
     at = select(at, distance_by_angle(&seen, s->length, u), mine & MASK_OF(u_way < seen.part));
-    const REAL chance = next_density(s->decay, s->drawn, s->length, at);
-    *density = select(*density, density_towards(&seen, at, chance), mine);
+    const REAL chance = next_pdf(s->decay, s->drawn, s->length, at);
+    *pdf = select(*pdf, pdf_towards(&seen, at, chance), mine);
   }
   return at;
 }
 
 // Light of one lamp that the stretches of `lanes` scatter towards their beginnings.
-NEVER_INLINE Carried light_on_stretch(const Scene* scene, const Walks* walks, const BegunRays* begun,
-                                      const SceneRays* rays, const Stretches* s, MASK dimension, MASK lanes,
-                                      u32* counts) {
+NEVER_INLINE SampledSpectrum light_on_stretch(const Scene* scene, const PathStates* paths,
+                                              const BegunRays* begun, const SceneRays* rays,
+                                              const Stretches* s, MASK dimension, MASK lanes, u32* counts) {
   const REAL zero = (REAL)(0.0f);
-  const FourNumbers u = sample_lanes(&walks->at, dimension), v = sample_lanes(&walks->at, dimension + 4);
+  const FourNumbers u = sample_lanes(&paths->at, dimension), v = sample_lanes(&paths->at, dimension + 4);
   const REAL3 place = place_for_lights(s->o, s->d, s->length, s->mean);
-  REAL chance, density;
+  REAL chance, pdf;
   const MASK chosen = choose_index(scene, place, u.z, lanes, &chance);
-  const REAL at = distance_for_light(scene, s, chosen, u.w, v.z, v.w, lanes, &density);
+  const REAL at = distance_for_light(scene, s, chosen, u.w, v.z, v.w, lanes, &pdf);
   MASK seen;
   const LightSamples light = sample_chosen(scene, along3(s->o, at, s->d), u.x, u.y, chosen, lanes, &seen);
-  const REAL turned = phase_density(s->g, dot3(s->d, light.wi));
-  density *= light.density * chance;
-  const REAL weight = weight_of_chosen(scene, density, select(zero, free_density(s, at) * turned, seen));
-  const REAL over = select((REAL)(1.0f), (REAL)(M_PI_F), light.delta) * turned * weight / density;
-  Carried possible =
-      carry_multiply(scattered_at(walks, s, at), carry_color(&walks->wavelengths, light.radiance));
-  possible = carry_scale(possible, over);
-  const MASK lit = lanes & MASK_OF(carry_greatest(possible) >= FLT_MIN) & MASK_OF(light.distance > 0.0f);
-  if (!any_lane(lit)) return carry_all(0.0f);
+  const REAL turned = phase_pdf(s->g, dot3(s->d, light.wi));
+  pdf *= light.pdf * chance;
+  const REAL weight = weight_of_chosen(scene, pdf, select(zero, free_pdf(s, at) * turned, seen));
+  const REAL over = select((REAL)(1.0f), (REAL)(M_PI_F), light.delta) * turned * weight / pdf;
+  SampledSpectrum possible =
+      spectrum_multiply(scattered_at(paths, s, at), spectrum_of(&paths->wavelengths, light.radiance));
+  possible = spectrum_scale(possible, over);
+  const MASK lit = lanes & MASK_OF(spectrum_greatest(possible) >= FLT_MIN) & MASK_OF(light.distance > 0.0f);
+  if (!any_lane(lit)) return spectrum_all(0.0f);
   counts[COUNT_SHADOW] += lane_count(lit);
   note_own_rays(lit, counts);
   SceneRays to_light = rays_from_stretch(scene, begun, rays, s, at, light.wi, light.distance, lit);
-  return carry_select(carry_all(0.0f),
-                      carried_to_light(scene, &walks->wavelengths, &to_light, possible, lit, counts), lit);
+  return spectrum_select(spectrum_all(0.0f),
+                         arriving_spectrum(scene, &paths->wavelengths, &to_light, possible, lit, counts),
+                         lit);
 }
 
 // The paths of `lanes` are scattered at the distances `at` of their stretches. Returns those that continue.
-static inline MASK turn_on_stretch(const Scene* scene, Walks* walks, const BegunRays* begun, SceneRays* rays,
-                                   const Stretches* s, REAL at, MASK lanes, u32* counts) {
-  const MASK dimension = dimension_here(walks, BOUNCE_DIRECTION);
-  const FourNumbers u = wanted_lanes(&walks->at, dimension, true, false);
-  const REAL density = free_density(s, at), cosine = phase_cosine(s->g, u.x);
-  const Carried left = carry_scale(scattered_at(walks, s, at), 1.0f / real_max(density, (REAL)(1e-30f)));
-  walks->throughput = carry_select(walks->throughput, left, lanes);
+static inline MASK turn_on_stretch(const Scene* scene, PathStates* paths, const BegunRays* begun,
+                                   SceneRays* rays, const Stretches* s, REAL at, MASK lanes, u32* counts) {
+  const MASK dimension = dimension_here(paths, BOUNCE_DIRECTION);
+  const FourNumbers u = wanted_lanes(&paths->at, dimension, true, false);
+  const REAL pdf = free_pdf(s, at), cosine = phase_cosine(s->g, u.x);
+  const SampledSpectrum left =
+      spectrum_scale(scattered_at(paths, s, at), 1.0f / real_max(pdf, (REAL)(1e-30f)));
+  paths->throughput = spectrum_select(paths->throughput, left, lanes);
   const Scattered scattered = {
-      lanes, s->o, s->d, s->length, at, s->mean, next_density(s->decay, s->drawn, s->length, at)};
-  join_stretch(walks, &scattered, lanes);
-  forget_gathered(walks, lanes);
-  walks->density = select(walks->density, density * phase_density(s->g, cosine), lanes);
-  walks->from = select3(walks->from, along3(s->o, at, s->d), lanes);
-  walks->straight &= ~lanes;
-  MASK going = lanes & MASK_OF(carry_greatest(walks->throughput) > 0.0f);
-  const MASK allowed = going & MASK_OF(walks->depth <= (int)scene->info->max_depth);
+      lanes, s->o, s->d, s->length, at, s->mean, next_pdf(s->decay, s->drawn, s->length, at)};
+  join_stretch(paths, &scattered, lanes);
+  forget_gathered(paths, lanes);
+  paths->pdf = select(paths->pdf, pdf * phase_pdf(s->g, cosine), lanes);
+  paths->from = select3(paths->from, along3(s->o, at, s->d), lanes);
+  paths->straight &= ~lanes;
+  MASK going = lanes & MASK_OF(spectrum_greatest(paths->throughput) > 0.0f);
+  const MASK allowed = going & MASK_OF(paths->depth <= (int)scene->info->max_depth);
   counts[COUNT_DEPTH_LIMIT] += lane_count(going & ~allowed);
-  going = play_roulette(scene, walks, dimension, allowed);
-  walks->depth -= lanes;
+  going = allowed & survives(scene, paths, dimension, allowed);
+  paths->depth -= lanes;
   counts[COUNT_REFLECTION] += lane_count(going);
   note_own_rays(going, counts);
   SceneRays child = rays_from_stretch(scene, begun, rays, s, at, direction_about(s->d, cosine, u.y),
@@ -187,25 +170,27 @@ static inline MASK turn_on_stretch(const Scene* scene, Walks* walks, const Begun
 
 // The paths of `lanes` on their ways to what they have met. Returns those that do not get there, with those
 // of them that continue.
-NEVER_INLINE MASK scatter_in_media(const Scene* scene, Walks* walks, const BegunRays* begun, SceneRays* rays,
-                                   const Encounters* met, MASK lanes, MASK* going, u32* counts) {
-  const Stretches s = find_stretches(scene, begun, rays, met, walks, lanes);
+NEVER_INLINE MASK scatter_in_media(const Scene* scene, PathStates* paths, const BegunRays* begun,
+                                   SceneRays* rays, const Encounters* met, MASK lanes, MASK* going,
+                                   u32* counts) {
+  const Stretches s = find_stretches(scene, begun, rays, met, paths, lanes);
   *going = NO_LANES;
   if (!any_lane(s.lanes)) return NO_LANES;
-  const MASK dimension = (MASK)((int)DIMENSION_STRETCH) + (walks->depth - 1) * (int)DIMENSIONS_A_BOUNCE +
+  const MASK dimension = (MASK)((int)DIMENSION_STRETCH) + (paths->depth - 1) * (int)DIMENSIONS_A_BOUNCE +
                          begun->crossings * (int)DIMENSIONS_A_CROSSING;
-  const MASK lit = s.lanes & MASK_OF(walks->depth <= (int)scene->info->max_depth);
+  const MASK lit = s.lanes & MASK_OF(paths->depth <= (int)scene->info->max_depth);
   if (scene->info->light_count && any_lane(lit)) {
-    const Carried light = light_on_stretch(scene, walks, begun, rays, &s, dimension, lit, counts);
-    walks->light = carry_select(walks->light, carry_add(walks->light, light), lit);
+    const SampledSpectrum light = light_on_stretch(scene, paths, begun, rays, &s, dimension, lit, counts);
+    paths->radiance = spectrum_select(paths->radiance, spectrum_add(paths->radiance, light), lit);
   }
-  const FourNumbers v = sample_lanes(&walks->at, dimension + 4);
+  const FourNumbers v = sample_lanes(&paths->at, dimension + 4);
   const REAL chosen = by_share(s.decay, s.shares, v.y);
   const REAL at = select((REAL)(INFINITY), depth_of_lost(v.x) / nonzero(chosen), MASK_OF(chosen > 0.0f));
   const MASK turning = s.lanes & MASK_OF(at < s.length), passing = s.lanes & ~turning;
   const REAL passed = real_max(chance_to_pass(&s), (REAL)(1e-30f));
-  walks->throughput = carry_select(walks->throughput, carry_scale(walks->throughput, 1.0f / passed), passing);
-  if (any_lane(turning)) *going = turn_on_stretch(scene, walks, begun, rays, &s, at, turning, counts);
+  paths->throughput =
+      spectrum_select(paths->throughput, spectrum_scale(paths->throughput, 1.0f / passed), passing);
+  if (any_lane(turning)) *going = turn_on_stretch(scene, paths, begun, rays, &s, at, turning, counts);
   return turning;
 }
 
@@ -217,8 +202,9 @@ static inline BegunRays begun_rays_of(const SceneRays* rays) {
   const BegunRays none = {NO_LANES};
   return none;
 }
-static inline MASK scatter_in_media(const Scene* scene, Walks* walks, const BegunRays* begun, SceneRays* rays,
-                                    const Encounters* met, MASK lanes, MASK* going, u32* counts) {
+static inline MASK scatter_in_media(const Scene* scene, PathStates* paths, const BegunRays* begun,
+                                    SceneRays* rays, const Encounters* met, MASK lanes, MASK* going,
+                                    u32* counts) {
   *going = NO_LANES;
   return NO_LANES;
 }

@@ -10,7 +10,7 @@
 typedef struct BsdfSamples {
   REAL3 wi;       // unit
   REAL3 weight;   // BSDF times cosine over density: what light from wi counts for
-  REAL density;   // of wi, per steradian; of a specular sample the probability of its term
+  REAL pdf;       // of wi, per steradian; of a specular sample the probability of its term
   MASK specular;  // perfect reflection or transmission: bsdf_scatter() does not know it
 } BsdfSamples;
 
@@ -30,20 +30,19 @@ typedef struct Lobes {
 } Lobes;
 
 // Density of directions whose cosine c to an axis is distributed as c^e, on its hemisphere.
-static inline REAL lobe_density(REAL c, REAL e) {
+static inline REAL lobe_pdf(REAL c, REAL e) {
   const REAL value = (e + 1.0f) * (0.5f / M_PI_F) * pow(real_max(c, (REAL)(0.0f)), e);
   return select((REAL)(0.0f), value, MASK_OF(c > 0.0f));
 }
 
 // Densities of the diffuse and of the highlight's term for the direction wi.
-static inline REAL diffuse_density(const Bsdfs* bsdf, REAL3 wi) {
+static inline REAL diffuse_pdf(const Bsdfs* bsdf, REAL3 wi) {
   return real_max(dot3(bsdf->ns, wi), (REAL)(0.0f)) * (1.0f / M_PI_F);
 }
-static inline REAL highlight_density(const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK blinn, REAL exponent) {
+static inline REAL highlight_pdf(const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK blinn, REAL exponent) {
   const REAL3 h = safe_unit3(add3(wi, wo)), mirrored = reflect_direction(negate3(wo), bsdf->ns);
-  const REAL of_half =
-      lobe_density(dot3(bsdf->ns, h), exponent) / (4.0f * real_max(dot3(wo, h), (REAL)(1e-6f)));
-  return select(lobe_density(dot3(mirrored, wi), exponent), of_half, blinn);
+  const REAL of_half = lobe_pdf(dot3(bsdf->ns, h), exponent) / (4.0f * real_max(dot3(wo, h), (REAL)(1e-6f)));
+  return select(lobe_pdf(dot3(mirrored, wi), exponent), of_half, blinn);
 }
 
 // The greatest part of ks and its exponent of the materials of `lanes`.
@@ -157,17 +156,17 @@ static inline Lobes make_lobes(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, 
 // pi times the BSDF times the cosine of all terms that are not perfect, for the directions wi on either side
 // of the surfaces of `lanes`; `density`: that with which bsdf_sample() chooses them.
 static inline REAL3 bsdf_scatter(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
-                                 REAL3 wi, MASK lanes, REAL* density) {
+                                 REAL3 wi, MASK lanes, REAL* pdf) {
   const REAL zero = (REAL)(0.0f);
   const MASK above = lanes & MASK_OF(dot3(bsdf->ns, wi) > 0.0f) & MASK_OF(dot3(bsdf->ng, wi) > 0.0f);
-  REAL chosen = lobes->matte * diffuse_density(bsdf, wi);
+  REAL chosen = lobes->matte * diffuse_pdf(bsdf, wi);
   if (any_lane(above & MASK_OF(lobes->glossy > 0.0f)))
-    chosen += lobes->glossy * highlight_density(bsdf, wo, wi, lobes->blinn, lobes->exponent);
+    chosen += lobes->glossy * highlight_pdf(bsdf, wo, wi, lobes->blinn, lobes->exponent);
   chosen = select(zero, chosen, above);
   REAL3 value = select3(all3((float3)(0.0f)), bsdf_eval(scene, bsdf, wo, wi, above), above);
   add_facet_scatter(scene, bsdf, lobes, wo, wi, lanes, &value, &chosen);
   add_layer_scatter(scene, bsdf, lobes, wo, wi, lanes, &value, &chosen);
-  *density = chosen / select((REAL)(1.0f), lobes->all, MASK_OF(lobes->all > 0.0f));
+  *pdf = chosen / select((REAL)(1.0f), lobes->all, MASK_OF(lobes->all > 0.0f));
   return value;
 }
 
@@ -192,7 +191,7 @@ static inline void send_perfectly(const Bsdfs* bsdf, const Lobes* lobes, REAL3 w
   sample->wi = select3(sample->wi, transmitted_direction(bsdf, &lobes->split, wo), specular & ~mirror);
   const REAL chosen = select(lobes->through, lobes->mirror, mirror) / select(one, lobes->all, specular);
   const REAL3 part = select3(lobes->split.kt, lobes->split.kr, mirror);
-  sample->density = select(sample->density, chosen, specular);
+  sample->pdf = select(sample->pdf, chosen, specular);
   sample->weight = select3(sample->weight, scale3(part, 1.0f / select(one, chosen, specular)), specular);
 }
 
@@ -214,15 +213,15 @@ static inline BsdfSamples sample_lobes(const Scene* scene, const Bsdfs* bsdf, co
   const MASK facets = lanes & ~specular & MASK_OF(at < scattered);
   const MASK below = send_by_facets(scene, bsdf, lobes, wo, at - perfect, u_x, u_y, facets, &sample.wi);
   send_by_layers(scene, bsdf, lobes, wo, at - scattered, u_x, u_y, lanes & ~specular, &sample.wi);
-  const REAL3 value = bsdf_scatter(scene, bsdf, lobes, wo, sample.wi, lanes & ~specular, &sample.density);
+  const REAL3 value = bsdf_scatter(scene, bsdf, lobes, wo, sample.wi, lanes & ~specular, &sample.pdf);
   const MASK strays = below ^ MASK_OF(dot3(bsdf->ns, sample.wi) <= 0.0f);
-  sample.density = select(sample.density, zero, strays);
-  const MASK some = MASK_OF(sample.density > 0.0f);
+  sample.pdf = select(sample.pdf, zero, strays);
+  const MASK some = MASK_OF(sample.pdf > 0.0f);
   sample.weight =
-      select3(all3((float3)(0.0f)), scale3(value, 1.0f / (M_PI_F * select(one, sample.density, some))), some);
+      select3(all3((float3)(0.0f)), scale3(value, 1.0f / (M_PI_F * select(one, sample.pdf, some))), some);
   if (any_lane(lanes & specular)) send_perfectly(bsdf, lobes, wo, mirror, specular, &sample);
   sample.weight = select3(sample.weight, all3((float3)(0.0f)), black);
-  sample.density = select(sample.density, zero, black);
+  sample.pdf = select(sample.pdf, zero, black);
   return sample;
 }
 
@@ -233,7 +232,7 @@ static inline BsdfSamples sample_perfect_lobes(const Bsdfs* bsdf, const Lobes* l
   BsdfSamples sample;
   sample.specular = MASK_OF(at < lobes->mirror + lobes->through);
   sample.wi = sample.weight = all3((float3)(0.0f));
-  sample.density = (REAL)(0.0f);
+  sample.pdf = (REAL)(0.0f);
   if (any_lane(lanes & sample.specular))
     send_perfectly(bsdf, lobes, wo, MASK_OF(at < lobes->mirror), sample.specular, &sample);
   return sample;

@@ -42,7 +42,7 @@ static inline REAL3 seen_facet(REAL3 wo, REAL alpha_x, REAL alpha_y, REAL u_x, R
 // pi times the lobe times the cosine of white facets in single reflection, the density of wi, and what
 // further reflections add to it per 1 of colour, by the gains of both directions (lib/shade/microfacets.cl).
 typedef struct FacetLobe {
-  REAL value, density, more;
+  REAL value, pdf, more;
 } FacetLobe;
 
 static inline FacetLobe facet_lobe(REAL3 wo, REAL3 wi, REAL3 h, REAL alpha_x, REAL alpha_y, REAL gains) {
@@ -50,7 +50,7 @@ static inline FacetLobe facet_lobe(REAL3 wo, REAL3 wi, REAL3 h, REAL alpha_x, RE
   const REAL lambda_o = facet_lambda(wo, alpha_x, alpha_y), lambda_i = facet_lambda(wi, alpha_x, alpha_y);
   FacetLobe lobe;
   lobe.value = M_PI_F * seen / (1.0f + lambda_o + lambda_i);
-  lobe.density = seen / (1.0f + lambda_o);
+  lobe.pdf = seen / (1.0f + lambda_o);
   lobe.more = gains - 1.0f;
   return lobe;
 }

@@ -92,11 +92,11 @@ static inline void layer_scatter(const Scene* scene, const Bsdfs* bsdf, const La
                        mine & under);
     const MASK lit = mine & above;
     if (!any_lane(lit)) continue;
-    REAL density;
+    REAL pdf;
     const LayerBase base = base_of(scene, m, bsdf, lit);
-    const REAL3 own = layered_value(scene, m, bsdf, &base, shares, o, i, NO_LANES, lit, &density);
+    const REAL3 own = layered_value(scene, m, bsdf, &base, shares, o, i, NO_LANES, lit, &pdf);
     *value = select3(*value, along3(*value, bsdf->there, own), lit);
-    *chosen = select(*chosen, *chosen + density, lit);
+    *chosen = select(*chosen, *chosen + pdf, lit);
   }
 }
 

@@ -109,7 +109,7 @@ static inline REAL3 shine_color(const Scene* scene, __global const Layers* m, co
 // coat and shine are without the share that mirror_layers() sends as a reflected ray.
 static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, const Bsdfs* bsdf,
                                   const LayerBase* base, const LayerShares* shares, REAL3 wo, REAL3 wi,
-                                  MASK mirrored, MASK lanes, REAL* density) {
+                                  MASK mirrored, MASK lanes, REAL* pdf) {
   const REAL one = (REAL)(1.0f);
   const MASK coated = lanes & bsdf->coated;
   const REAL3 h = safe_unit3(add3(wo, wi));
@@ -133,11 +133,11 @@ static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, 
     kept = real_min(past_layers(scene, m, base, wo.z, coated), past_layers(scene, m, base, wi.z, coated));
     tint = multiply3(coat_tints(m, base, wo.z), coat_tints(m, base, wi.z));
     tint = multiply3(tint, coat_darkening(m, base, bsdf->base));
-    chance += shares->coat * lobe.density;
+    chance += shares->coat * lobe.pdf;
   }
   const REAL gains = shine_gain(scene, m, base, wo, lanes) * shine_gain(scene, m, base, wi, lanes);
   const FacetLobe shine = facet_lobe(wo, wi, h, base->alpha_x, base->alpha_y, gains);
-  chance += shares->shine * shine.density;
+  chance += shares->shine * shine.pdf;
   const REAL3 color = mend_shares(shine_color(scene, m, base, bsdf->base, wo_h, one, lanes), shine.more);
   const REAL left =
       if_wide(shares, base->alpha_x, base->alpha_y) * share_left(base->alpha_x, base->alpha_y, mirrored);
@@ -154,7 +154,7 @@ static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, 
                      coated);
     own = along3(own, through * above * ground, matte);
   }
-  *density = chance;
+  *pdf = chance;
   return add3(value, multiply3(own, select3(all3((float3)(1.0f)), tint, coated)));
 }
 
@@ -177,9 +177,9 @@ static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 w
   for (u32 left = lane_bits(layered); left;) {
     const MASK mine = take_alike(bsdf->material, &left, &index);
     __global const Layers* m = scene->layers + index;
-    REAL density;
+    REAL pdf;
     const LayerBase base = base_of(scene, m, bsdf, mine);
-    const REAL3 own = layered_value(scene, m, bsdf, &base, &none, o, i, met, mine, &density);
+    const REAL3 own = layered_value(scene, m, bsdf, &base, &none, o, i, met, mine, &pdf);
     sum = select3(sum, along3(sum, bsdf->there, own), mine);
   }
   return sum;

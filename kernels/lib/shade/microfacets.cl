@@ -106,7 +106,7 @@ static inline Microfacets make_microfacets(const Scene* scene, const Bsdfs* bsdf
 }
 
 // The distribution at facets whose normal h is at the cosine c to n.
-static inline REAL facet_density(REAL3 n, REAL3 h, REAL alpha) {
+static inline REAL facet_pdf(REAL3 n, REAL3 h, REAL alpha) {
   const REAL c = dot3(n, h), a = alpha * alpha;
   const REAL3 off = along3(h, -c, n);
   const REAL width = fma(a * c, c, dot3(off, off));
@@ -131,7 +131,7 @@ static inline REAL facet_reflects(const Microfacets* facets, const SpecularSplit
 // the others.
 #if HAS_ROUGH_GLASS
 static inline void add_further(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
-                               REAL c, MASK lanes, REAL3* value, REAL* density) {
+                               REAL c, MASK lanes, REAL3* value, REAL* pdf) {
   const MASK glass = lanes & facets->glass;
   if (!any_lane(glass)) return;
   const FurtherLight* further = &facets->further;
@@ -151,8 +151,8 @@ static inline void add_further(const Scene* scene, const Bsdfs* bsdf, const Micr
         select3(tint, select3(reflection_of(bsdf, material), transmission_of(bsdf, material), below), mine);
   }
   *value = select3(*value, along3(*value, size, tint), glass);
-  const REAL drawn = fma(1.0f - further->lost, *density, further->lost * part * fabs(c) * (1.0f / M_PI_F));
-  *density = select(*density, drawn, glass);
+  const REAL drawn = fma(1.0f - further->lost, *pdf, further->lost * part * fabs(c) * (1.0f / M_PI_F));
+  *pdf = select(*pdf, drawn, glass);
 }
 static inline MASK draw_further(const Bsdfs* bsdf, const Microfacets* facets, REAL u_side, REAL u_x, REAL u_y,
                                 MASK lanes, REAL* rest, MASK* through, REAL3* wi) {
@@ -168,7 +168,7 @@ static inline MASK draw_further(const Bsdfs* bsdf, const Microfacets* facets, RE
 }
 #else
 static inline void add_further(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
-                               REAL c, MASK lanes, REAL3* value, REAL* density) {}
+                               REAL c, MASK lanes, REAL3* value, REAL* pdf) {}
 static inline MASK draw_further(const Bsdfs* bsdf, const Microfacets* facets, REAL u_side, REAL u_x, REAL u_y,
                                 MASK lanes, REAL* rest, MASK* through, REAL3* wi) {
   *rest = u_side;
@@ -180,7 +180,7 @@ static inline MASK draw_further(const Bsdfs* bsdf, const Microfacets* facets, RE
 // the density of wi among them. `below`: of transmission. Of frosted walls wi is then mirrored, for which
 // refraction's change of solid angle, with an eta of 1, is that of reflection.
 static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
-                                REAL3 wo, REAL3 wi, REAL3 h, MASK below, MASK good, REAL* density) {
+                                REAL3 wo, REAL3 wi, REAL3 h, MASK below, MASK good, REAL* pdf) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), cos_i = dot3(bsdf->ns, wi);
   const REAL wo_h = dot3(wo, h), wi_h = dot3(wi, h);
   Bsdfs facet = *bsdf;
@@ -191,10 +191,10 @@ static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Mic
   const REAL jacobian = select(0.25f / real_max(wo_h, (REAL)(1e-6f)),
                                eta * eta * fabs(wi_h) / real_max(bent * bent, (REAL)(1e-20f)), below);
   const REAL cos_o = real_max(dot3(bsdf->ns, wo), (REAL)(1e-6f));
-  const REAL seen = facet_density(bsdf->ns, h, facets->alpha) * wo_h / cos_o * jacobian;
+  const REAL seen = facet_pdf(bsdf->ns, h, facets->alpha) * wo_h / cos_o * jacobian;
   const REAL lambda_i = smith_lambda(fabs(cos_i), facets->alpha);
   const REAL drawn = seen / (1.0f + facets->lambda_o) * select(chance, one - chance, below);
-  *density = select(zero, drawn, good);
+  *pdf = select(zero, drawn, good);
   const REAL size = M_PI_F * seen / (1.0f + facets->lambda_o + lambda_i);
   REAL3 color = select3(split.kr, split.kt, below);
   const MASK mends = good & facets->mends;
@@ -213,7 +213,7 @@ static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Mic
 // that they send light from wo to. Behind an interface the density is that of directions there; the BSDF has
 // no factor for radiance in media of other indices.
 static inline REAL3 facet_scatter(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
-                                  REAL3 wo, REAL3 wi, MASK lanes, REAL* density) {
+                                  REAL3 wo, REAL3 wi, MASK lanes, REAL* pdf) {
   const REAL zero = (REAL)(0.0f);
   const REAL cos_i = dot3(bsdf->ns, wi), side = dot3(bsdf->ng, wi);
   const MASK above = lanes & facets->rough & MASK_OF(cos_i > 0.0f) & MASK_OF(side > 0.0f);
@@ -225,9 +225,9 @@ static inline REAL3 facet_scatter(const Scene* scene, const Bsdfs* bsdf, const M
   const MASK good =
       ((above | mirrored) & MASK_OF(wo_h > 0.0f)) | (bent & MASK_OF(wo_h > 0.0f) & MASK_OF(wi_h < 0.0f));
   REAL3 value = all3((float3)(0.0f));
-  *density = zero;
-  if (any_lane(good)) value = facet_light(scene, bsdf, facets, eta, wo, from, h, below, good, density);
-  add_further(scene, bsdf, facets, eta, cos_i, above | below, &value, density);
+  *pdf = zero;
+  if (any_lane(good)) value = facet_light(scene, bsdf, facets, eta, wo, from, h, below, good, pdf);
+  add_further(scene, bsdf, facets, eta, cos_i, above | below, &value, pdf);
   return value;
 }
 

@@ -63,13 +63,13 @@ static inline WideLobes wide_lobes(const Bsdfs* bsdf, const Lobes* lobes) {
 static inline REAL3 narrow_part(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
                                 const BsdfSamples* sample, MASK lanes) {
   const REAL one = (REAL)(1.0f), least = (REAL)(1e-30f);
-  const MASK mine = lanes & ~sample->specular & MASK_OF(sample->density > 0.0f) &
+  const MASK mine = lanes & ~sample->specular & MASK_OF(sample->pdf > 0.0f) &
                     (narrow_highlights(lobes) | narrow_facets(lobes) | layered_surfaces(lobes));
   if (!any_lane(mine)) return all3((float3)(0.0f));
   REAL unused;
   const WideLobes wide = wide_lobes(bsdf, lobes);
   const REAL3 value = bsdf_scatter(scene, &wide.bsdf, &wide.lobes, wo, sample->wi, mine, &unused);
-  const REAL3 weight = scale3(value, 1.0f / (M_PI_F * select(one, sample->density, mine)));
+  const REAL3 weight = scale3(value, 1.0f / (M_PI_F * select(one, sample->pdf, mine)));
   const REAL3 part = real3(one - weight.x / real_max(sample->weight.x, least),
                            one - weight.y / real_max(sample->weight.y, least),
                            one - weight.z / real_max(sample->weight.z, least));

@@ -15,7 +15,7 @@
 // Puts children on the stack, those of `lanes` that are not too weak, nor too deep, nor without room; each
 // case is counted.
 NEVER_INLINE void spawn(__global const SceneInfo* restrict info, RayStack* stack, const SceneRays* rays,
-                        const PathStates* paths, MASK lanes, u32 kind, u32* counts) {
+                        const WaitingRays* paths, MASK lanes, u32 kind, u32* counts) {
   const REAL weight = greatest3(paths->throughput);
   const MASK some = lanes & MASK_OF(weight > 0.0f);
   const MASK deep = some & MASK_OF(depth_of(paths) > (int)info->max_depth);
@@ -36,7 +36,7 @@ NEVER_INLINE void spawn(__global const SceneInfo* restrict info, RayStack* stack
 
 // What rays meet at surfaces: rough ones have facets there, others are their own.
 #if HAS_ROUGH
-static inline Facets met_facets(const Scene* scene, const TileSamples* tile, const PathStates* paths,
+static inline Facets met_facets(const Scene* scene, const TileSamples* tile, const WaitingRays* paths,
                                 const Bsdfs* surface, REAL3 wo, MASK lanes) {
   REAL u_x, u_y;
   bounce_numbers(tile, paths, 0u, BOUNCE_DIRECTION, 0u, 1u, lanes, &u_x, &u_y);
@@ -62,7 +62,7 @@ static inline void weigh_by_facets(const Facets* facets, const Bsdfs* surface, R
 typedef struct Facets {
   Bsdfs bsdf;
 } Facets;
-static inline Facets met_facets(const Scene* scene, const TileSamples* tile, const PathStates* paths,
+static inline Facets met_facets(const Scene* scene, const TileSamples* tile, const WaitingRays* paths,
                                 const Bsdfs* surface, REAL3 wo, MASK lanes) {
   const Facets facets = {*surface};
   return facets;
@@ -81,7 +81,7 @@ static inline void weigh_by_facets(const Facets* facets, const Bsdfs* surface, R
 // not there.
 static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, const SurfaceInteractions* s,
                                   const Bsdfs* surface, const Encounters* met, const SceneRays* rays,
-                                  const PathStates* paths, MASK lanes, RayStack* stack, u32* counts) {
+                                  const WaitingRays* paths, MASK lanes, RayStack* stack, u32* counts) {
   const REAL3 wo = negate3(rays->d);
   const Facets facets = met_facets(scene, tile, paths, surface, wo, lanes);
   SpecularSplits split = bsdf_specular(scene, &facets.bsdf, wo, lanes);
@@ -90,7 +90,7 @@ static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, c
   SceneRays child = *rays;
   child.t_min = (REAL)(0.0f);
   child.t_max = (REAL)(INFINITY);
-  PathStates state = *paths;
+  WaitingRays state = *paths;
   state.depth = (paths->depth + 1) | TURNED;
   start_on_surfaces(scene->info, &child, &met->hit, ~s->entering, split.branches);
   const REAL curvature = curvatures(scene, s, split.branches);
@@ -123,7 +123,7 @@ static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, c
 #else
 static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, const SurfaceInteractions* s,
                                   const Bsdfs* surface, const Encounters* met, const SceneRays* rays,
-                                  const PathStates* paths, MASK lanes, RayStack* stack, u32* counts) {
+                                  const WaitingRays* paths, MASK lanes, RayStack* stack, u32* counts) {
   return NO_LANES;
 }
 #endif

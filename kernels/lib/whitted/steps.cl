@@ -9,13 +9,13 @@
 #include "lib/whitted/children.cl"
 
 // Light of the fields that glow along the rays.
-static inline REAL3 see_glow(const SceneRays* rays, const PathStates* paths) {
+static inline REAL3 see_glow(const SceneRays* rays, const WaitingRays* paths) {
   return HAS_GLOW ? multiply3(paths->throughput, emitted(rays)) : all3((float3)(0.0f));
 }
 
 // The world's fog, for rays of `ended` that were not inside anything: what it adds, and what it takes from
 // all behind it.
-static inline REAL3 see_fog(const Scene* scene, const Encounters* met, MASK ended, PathStates* paths) {
+static inline REAL3 see_fog(const Scene* scene, const Encounters* met, MASK ended, WaitingRays* paths) {
   if (!HAS_FOG) return all3((float3)(0.0f));
   const REAL clear = clear_of_fog(scene, met, ended);
   const REAL3 light = multiply3(scale3(paths->throughput, 1.0f - clear), all3(scene->info->fog.xyz));
@@ -23,13 +23,13 @@ static inline REAL3 see_fog(const Scene* scene, const Encounters* met, MASK ende
   return light;
 }
 
-static inline REAL3 see_background(const Scene* scene, const SceneRays* rays, const PathStates* paths,
+static inline REAL3 see_background(const Scene* scene, const SceneRays* rays, const WaitingRays* paths,
                                    MASK lanes) {
   return multiply3(paths->throughput, sky_along(scene, rays->d, MASK_OF(paths->depth == 1), lanes));
 }
 
 // Ambient light on surfaces, less in the crevices of fields.
-static inline REAL3 see_ambient(const Scene* scene, const SceneRays* rays, const PathStates* paths,
+static inline REAL3 see_ambient(const Scene* scene, const SceneRays* rays, const WaitingRays* paths,
                                 const Hits* hits, const Bsdfs* bsdf, MASK lanes) {
   REAL3 own = multiply3(bsdf->ambient, all3(scene->info->ambient.xyz));
   own = scale3(own, field_openness(scene, rays, hits, lanes));
@@ -37,7 +37,7 @@ static inline REAL3 see_ambient(const Scene* scene, const SceneRays* rays, const
 }
 
 // What surfaces of `lanes` shine by themselves, on their outsides.
-static inline REAL3 see_emission(const Scene* scene, const PathStates* paths, const SurfaceInteractions* s,
+static inline REAL3 see_emission(const Scene* scene, const WaitingRays* paths, const SurfaceInteractions* s,
                                  const Bsdfs* bsdf, MASK lanes) {
   REAL3 light = all3((float3)(0.0f));
   if (!HAS_EMISSION) return light;
@@ -50,7 +50,7 @@ static inline REAL3 see_emission(const Scene* scene, const PathStates* paths, co
 }
 
 // Marks the pixels whose camera rays have hit something that is there.
-static inline void note_first_hits(const PathStates* paths, MASK lanes, float4* radiance, u32* counts) {
+static inline void note_first_hits(const WaitingRays* paths, MASK lanes, float4* radiance, u32* counts) {
   const MASK first = lanes & MASK_OF(paths->depth == 1);
   counts[COUNT_PRIMARY_HIT] += lane_count(first);
   for (u32 bits = lane_bits(first); bits; bits &= bits - 1u)
@@ -60,7 +60,7 @@ static inline void note_first_hits(const PathStates* paths, MASK lanes, float4* 
 // The rays of `lanes` at what they met: the surfaces of those that hit something, which are returned, and
 // what the `fresh` ones see and spawn there. The rays of `unseen` saw only what lay before.
 static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
-                                 PathStates* paths, MASK lanes, MASK unseen, MASK fresh,
+                                 WaitingRays* paths, MASK lanes, MASK unseen, MASK fresh,
                                  const Encounters* met, Shading* at, REAL3* light, RayStack* stack,
                                  float4* radiance, u32* counts) {
   REAL3 seen = see_glow(rays, paths);

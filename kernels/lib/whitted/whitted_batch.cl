@@ -13,7 +13,7 @@
 NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 most, bool coherent,
                                   float4* radiance, u32* counts) {
   SceneRays rays;
-  PathStates paths;
+  WaitingRays paths;
   HitList lists[BATCH];
   Hits last, hits;
   MASK lanes = pop_shadows(stack, most, &rays, &paths);
@@ -36,7 +36,7 @@ NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 mo
 NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 most, bool coherent,
                                   float4* radiance, u32* counts) {
   SceneRays rays;
-  PathStates paths;
+  WaitingRays paths;
   const MASK lanes = pop_shadows(stack, most, &rays, &paths);
   Hits hits = shadow_hits(scene, &rays, lanes, coherent, counts);
   const MASK passing = reach_filters(scene, &rays, &paths, &hits, lanes, radiance, counts);
@@ -47,8 +47,9 @@ NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 mo
 // Adds the lights that the surfaces of `lanes` see. `coherent`: the rays run close together, and so do those
 // to one light; else shadow rays wait until there are many, or with `last` until no others come.
 static inline void add_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
-                              const PathStates* paths, MASK lanes, bool coherent, bool last, const Hits* hits,
-                              const Shading* at, ShadowStack* stack, float4* radiance, u32* counts) {
+                              const WaitingRays* paths, MASK lanes, bool coherent, bool last,
+                              const Hits* hits, const Shading* at, ShadowStack* stack, float4* radiance,
+                              u32* counts) {
   u32 light = any_lane(lanes) ? 0u : scene->info->light_count;
   MASK casting = lanes;
   for (;;) {
@@ -73,7 +74,7 @@ static inline void add_lights(const Scene* scene, const TileSamples* tile, const
 // Takes a batch to the next interfaces, adds what it sees there to the pixels and leaves the rays that come
 // of it on the stacks.
 NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, SceneRays* rays,
-                               PathStates* paths, MASK lanes, bool coherent, RayStack* stack,
+                               WaitingRays* paths, MASK lanes, bool coherent, RayStack* stack,
                                ShadowStack* shadows, float4* radiance, u32* counts) {
   Encounters met;
   Shading at;
@@ -92,7 +93,7 @@ NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, Scen
 // receives the light of pixel i of the tile, w whether its camera ray hit anything.
 static inline void trace_whitted(const Scene* scene, const TileSamples* tile, SceneRays* rays, MASK lanes,
                                  RayStack* stack, float4* radiance, u32* counts) {
-  PathStates paths;
+  WaitingRays paths;
   start_branches(&paths);
   paths.throughput = all3((float3)(1.0f));
   paths.depth = (MASK)(1);

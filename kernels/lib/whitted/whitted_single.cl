@@ -17,7 +17,7 @@
 // the rest.
 #if HAS_SHAFTS
 static inline void send_to_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
-                                  const PathStates* paths, const PathStates* whole, u32 light, MASK hit,
+                                  const WaitingRays* paths, const WaitingRays* whole, u32 light, MASK hit,
                                   const Hits* hits, const Shading* at, RayStack* stack, float4* radiance,
                                   u32* counts) {
   u32 sent[LIGHT_ROOM], count = 0;
@@ -26,7 +26,7 @@ static inline void send_to_lights(const Scene* scene, const TileSamples* tile, c
     if (sends_ray(scene, tile, rays, paths, hit, at, &light, &casting, radiance, counts))
       sent[count++] = light++;
   if (light < scene->info->light_count) {
-    PathStates again = *whole;
+    WaitingRays again = *whole;
     again.depth = paths->depth | (int)(light << DEPTH_BITS);
     push_rays(stack, rays, &again, ALL_LANES);
   }
@@ -35,12 +35,12 @@ static inline void send_to_lights(const Scene* scene, const TileSamples* tile, c
 }
 #else
 static inline void send_to_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
-                                  const PathStates* paths, const PathStates* whole, u32 light, MASK hit,
+                                  const WaitingRays* paths, const WaitingRays* whole, u32 light, MASK hit,
                                   const Hits* hits, const Shading* at, RayStack* stack, float4* radiance,
                                   u32* counts) {
   const u32 last = min(scene->info->light_count, light + LIGHT_ROOM);
   if (last < scene->info->light_count) {
-    PathStates again = *whole;
+    WaitingRays again = *whole;
     again.depth = paths->depth | (int)(last << DEPTH_BITS);
     push_rays(stack, rays, &again, ALL_LANES);
   }
@@ -49,8 +49,8 @@ static inline void send_to_lights(const Scene* scene, const TileSamples* tile, c
 #endif
 
 // Takes a ray to what it meets next. Returns whether it continues.
-static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, SceneRays* rays, PathStates* paths,
-                              RayStack* stack, float4* radiance, u32* counts) {
+static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, SceneRays* rays,
+                              WaitingRays* paths, RayStack* stack, float4* radiance, u32* counts) {
   Encounters met;
   const bool to_light = paths->depth == 0;
   next_hits(scene, rays, ALL_LANES, to_light, &met.hit, counts);
@@ -58,7 +58,7 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   enter_reliefs(scene, rays, ALL_LANES, &met, counts);
   MASK unseen = reach_interfaces(scene, rays, ALL_LANES, &met, counts);
   unseen |= pass_hidden(scene, rays, &met, ~unseen & MASK_OF((paths->depth & ((1 << DEPTH_BITS) - 1)) == 1));
-  const PathStates whole = *paths;
+  const WaitingRays whole = *paths;
   u32 light = (u32)paths->depth >> DEPTH_BITS;
   const MASK fresh = MASK_OF(light == 0u);
   paths->depth &= (1 << DEPTH_BITS) - 1;
@@ -77,7 +77,7 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
 // whether the ray hit anything.
 static inline void trace_whitted(const Scene* scene, const TileSamples* tile, SceneRays* rays, MASK lanes,
                                  RayStack* stack, float4* radiance, u32* counts) {
-  PathStates paths;
+  WaitingRays paths;
   paths.throughput = all3((float3)(1.0f));
   paths.pixel = NO_LANES;
   paths.depth = (MASK)(1);

@@ -19,12 +19,13 @@ const std::map<std::string, Names> allowed = {
     {"base", {}},
     {"scene", {"base", "shared"}},
     {"compile", {"base", "scene", "shared"}},
-    {"device", {"base"}},
+    {"lanes", {"base"}},
+    {"device", {"base", "lanes"}},
     {"render", {"base", "scene", "compile", "device", "shared"}},
     {"bench", {"base", "scene", "compile", "device", "render", "shared"}},
     {"api", {"base", "scene", "compile", "device", "render", "shared"}},
     {"mpi", {"render"}},
-    {"app", {"base", "scene", "compile", "device", "render", "bench", "shared"}},
+    {"app", {"base", "scene", "compile", "lanes", "device", "render", "bench", "shared"}},
 };
 
 /// The folders of a layer in their order: each includes only itself and those before it. Files of the layer's

@@ -1,0 +1,73 @@
+// See kernels_command.h.
+#include "app/commands/kernels_command.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/options/commands.h"
+#include "app/options/option_helpers.h"
+#include "app/process/environment.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "device/embedded_kernels.h"
+#include "lanes/lanes.h"
+
+namespace sundog {
+namespace {
+
+struct KernelsCommand {
+  std::string file;
+  int lanes = 0;
+  bool explains = false, lines = false;
+};
+
+/// A kernel's path as it is, a file's below plain/.
+std::string plain_path(const std::string& file) {
+  if (spmd::is_plain(file)) return file;
+  return "plain/" + std::filesystem::path(file).filename().string();
+}
+
+std::string list_text() {
+  std::string out;
+  for (const EmbeddedKernel& kernel : embedded_kernels())
+    if (spmd::is_plain(std::string(kernel.path)) && kernel.path.ends_with(".cl"))
+      out += fmt::format("{}\n", kernel.path);
+  return out;
+}
+
+std::string made_text(const KernelsCommand& c) {
+  const std::string path = plain_path(c.file);
+  const spmd::ReadFile read = [&](const std::string& wanted) {
+    return wanted == path && wanted != c.file
+               ? read_file(c.file)
+               : embedded_kernel(wanted, value_of(program_environment()).kernels);
+  };
+  if (c.explains) return spmd::explained(path, read);
+  return (c.lanes > 0 ? fmt::format("#define LANES {}\n", c.lanes) : "") +
+         spmd::in_lanes(path, read, c.lines);
+}
+
+}  // namespace
+
+void add_kernels(Arguments& root, Command& chosen) {
+  Arguments* app =
+      root.add_subcommand("kernels", "Print what is made of a plain kernel file: functions in lanes");
+  const auto c = std::make_shared<KernelsCommand>();
+  app->add_option("file", c->file, "a file of kernels/plain, or of your own (without it, the list)");
+  value(app, "--lanes", "N", c->lanes, "1, 4, 8 or 16: begin with #define LANES N");
+  app->add_flag("--explain", c->explains, "what varies from lane to lane in each function, and why");
+  app->add_flag("--lines", c->lines, "with #line directives that name the plain file");
+  app->callback([c, &chosen] {
+    if (c->lanes != 0 && c->lanes != 1 && c->lanes != 4 && c->lanes != 8 && c->lanes != 16)
+      throw UsageError(fmt::format("--lanes: wanted 1, 4, 8 or 16, found {}", c->lanes));
+    chosen = RunLater{[c] {
+      fmt::print("{}", c->file.empty() ? list_text() : made_text(*c));
+      return static_cast<int>(exit_done);
+    }};
+  });
+}
+
+}  // namespace sundog

@@ -1,0 +1,106 @@
+// See lanes.h.
+#include "lanes/lanes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lanes/parse.h"
+#include "lanes/writer.h"
+
+namespace sundog::spmd {
+namespace {
+
+/// A program with all that its entries call.
+struct Made {
+  Source source;
+  Program program;
+  Specialisations specialisations;
+
+  Made(const std::string& path, const ReadFile& read) {
+    source = preprocess(path, read, [](const std::string& file) { return !is_plain(file); });
+    program = parse(source, is_plain);
+    for (const Function& f : program.functions) {
+      if (!f.is_entry) continue;
+      std::vector<bool> vary;
+      for (const Variable* p : f.parameters) vary.push_back(!p->uniform && !p->type.is_table());
+      specialisations.of(f, vary);
+    }
+  }
+};
+
+/// Text whose lines are told where they come from.
+class Text {
+ public:
+  explicit Text(bool lines) : lines_(lines) {}
+  void add(const Line& line) {
+    const Place& p = line.place;
+    if (lines_ && p.file && (p.file != file_ || p.line != number_)) {
+      text += fmt::format("#line {} \"{}\"\n", p.line, *p.file);
+      file_ = p.file;
+      number_ = p.line;
+    }
+    text += std::string(2 * static_cast<std::size_t>(line.depth), ' ') + line.text + "\n";
+    ++number_;
+  }
+  std::string text;
+
+ private:
+  bool lines_;
+  const std::string* file_ = nullptr;
+  int number_ = 0;
+};
+
+}  // namespace
+
+bool is_plain(const std::string& path) { return path.starts_with("plain/"); }
+
+std::string in_lanes(const std::string& path, const ReadFile& read, bool lines) {
+  Made made(path, read);
+  std::vector<std::vector<Line>> functions;
+  Writer::Structures used;
+  // Writing may ask for structures alone: what is called is known.
+  for (Specialisation* s : std::vector(made.specialisations.done())) {
+    Writer writer(made.specialisations, *s);
+    functions.push_back(writer.function());
+    used.insert(writer.structures().begin(), writer.structures().end());
+  }
+  Text out(lines);
+  out.text = fmt::format("// Made of {} in lanes.\n", path);
+  if (!made.specialisations.done().empty()) {
+    Writer writer(made.specialisations, *made.specialisations.done().front());
+    for (const auto& [s, lanes] : Writer::Structures(used)) writer.structure(*s, lanes);  // those of members
+    used.insert(writer.structures().begin(), writer.structures().end());
+    for (const Structure& s : made.program.structures) {
+      const bool plain = used.contains({&s, false}), lanes = used.contains({&s, true});
+      std::vector<std::string> lines_of;
+      const auto append = [&](const std::vector<std::string>& more) {
+        lines_of.insert(lines_of.end(), more.begin(), more.end());
+      };
+      if (plain) append(writer.structure(s, false));
+      if (lanes) append(writer.structure(s, true));
+      if (plain && lanes) append(writer.spread_structure(s));
+      for (const std::string& line : lines_of) out.add({0, line, s.place});
+    }
+  }
+  for (const auto& function : functions) {
+    out.text += "\n";
+    for (const Line& line : function) out.add(line);
+  }
+  return out.text;
+}
+
+std::string explained(const std::string& path, const ReadFile& read) {
+  Made made(path, read);
+  std::string out;
+  for (const Specialisation* s : made.specialisations.done()) {
+    out += fmt::format("{} ({} operations{})\n", s->name, s->cost, s->masked ? ", takes a mask" : "");
+    std::vector<std::pair<const Variable*, std::string>> all(s->why.begin(), s->why.end());
+    std::ranges::sort(all, {},
+                      [](const auto& row) { return std::pair(row.first->place.line, row.first->name); });
+    for (const auto& [v, why] : all) out += fmt::format("  {} varies: {}\n", v->name, why);
+  }
+  return out;
+}
+
+}  // namespace sundog::spmd

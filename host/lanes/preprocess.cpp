@@ -1,0 +1,386 @@
+// See preprocess.h.
+#include "lanes/preprocess.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <set>
+
+#include "base/error.h"
+
+namespace sundog::spmd {
+
+void fail(const Place& place, std::string_view what) {
+  if (!place.file) throw BuildError(std::string(what), "");
+  throw BuildError(fmt::format("{}:{}:{}: {}", *place.file, place.line, place.column, what), "");
+}
+
+namespace {
+
+bool begins_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
+bool continues_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+/// The text with comments made blank; lines and columns stay.
+std::string without_comments(std::string text) {
+  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+    if (text[i] != '/') continue;
+    if (text[i + 1] == '/') {
+      for (; i < text.size() && text[i] != '\n'; ++i) text[i] = ' ';
+    } else if (text[i + 1] == '*') {
+      const std::size_t end = std::min(text.find("*/", i + 2), text.size() - 2) + 2;
+      for (; i < end; ++i)
+        if (text[i] != '\n') text[i] = ' ';
+    }
+  }
+  return text;
+}
+
+std::size_t number_length(std::string_view text) {
+  std::size_t n = 0;
+  while (n < text.size() && (continues_name(text[n]) || text[n] == '.' ||
+                             ((text[n] == '+' || text[n] == '-') && n > 0 &&
+                              std::string_view("eEpP").find(text[n - 1]) != std::string_view::npos &&
+                              (!text.starts_with("0x") || text[n - 1] == 'p'))))
+    ++n;
+  return n;
+}
+
+std::size_t sign_length(std::string_view text) {
+  for (const std::string_view sign :
+       {"<<=", ">>=", "...", "->", "++", "--", "<<", ">>", "<=", ">=", "==", "!=",
+        "&&",  "||",  "+=",  "-=", "*=", "/=", "%=", "&=", "|=", "^=", "##"})
+    if (text.starts_with(sign)) return sign.size();
+  return 1;
+}
+
+/// The words of a line of `text`, which begins at `place`.
+void read_words(std::string_view text, Place place, Tokens& out) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::string_view rest = text.substr(at);
+    if (std::isspace(static_cast<unsigned char>(rest[0]))) {
+      ++at;
+      continue;
+    }
+    Token token;
+    token.place = place;
+    token.place.column = static_cast<int>(at) + 1;
+    std::size_t length = 0;
+    if (begins_name(rest[0])) {
+      token.kind = Token::Kind::name;
+      while (length < rest.size() && continues_name(rest[length])) ++length;
+    } else if (std::isdigit(static_cast<unsigned char>(rest[0])) ||
+               (rest[0] == '.' && rest.size() > 1 && std::isdigit(static_cast<unsigned char>(rest[1])))) {
+      token.kind = Token::Kind::number;
+      length = number_length(rest);
+    } else {
+      token.kind = Token::Kind::sign;
+      length = sign_length(rest);
+    }
+    token.text = rest.substr(0, length);
+    out.push_back(std::move(token));
+    at += length;
+  }
+}
+
+struct Macro {
+  std::optional<std::vector<std::string>> parameters;  // none: it takes no list
+  Tokens body;
+  bool keeps_name = false;
+};
+
+class Preprocessor {
+ public:
+  Preprocessor(const ReadFile& read, const std::function<bool(const std::string&)>& keeps_names)
+      : read_(read), keeps_names_(keeps_names) {
+    for (const char* name : {"__OPENCL_VERSION__", "__OPENCL_C_VERSION__"})
+      macros_[name].body = {{Token::Kind::number, "120", {}, ""}};
+  }
+
+  void file(const std::string& path, const Place& from) {
+    if (!seen_.insert(path).second) return;
+    std::string text;
+    try {
+      text = without_comments(read_(path));
+    } catch (const std::exception& error) {
+      if (!from.file) throw;
+      fail(from, error.what());
+    }
+    const std::string* name = &source.files.emplace_back(path);
+    Place place{name, 1, 1};
+    const std::size_t depth = open_.size();
+    Tokens words;
+    for (std::size_t at = 0; at < text.size();) {
+      words.clear();
+      bool continues = true;
+      const int first = place.line;
+      while (continues && at < text.size()) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        std::string_view line = std::string_view(text).substr(at, end - at);
+        continues = line.ends_with('\\');
+        if (continues) line.remove_suffix(1);
+        read_words(line, place, words);
+        at = end + 1;
+        ++place.line;
+      }
+      if (!words.empty() && words[0].is("#"))
+        directive(words, Place{name, first, 1});
+      else if (is_active())
+        pending_.insert(pending_.end(), words.begin(), words.end());
+    }
+    flush();
+    if (open_.size() != depth) fail({name, place.line, 1}, "an #if has no #endif");
+  }
+
+  Source source;
+
+ private:
+  struct Condition {
+    bool active, taken;
+  };
+
+  bool is_active() const {
+    return std::ranges::all_of(open_, [](const Condition& c) { return c.active; });
+  }
+
+  void flush() {
+    expand(pending_, {}, source.tokens);
+    pending_.clear();
+  }
+
+  void directive(Tokens words, const Place& place) {
+    flush();
+    const std::string what = words.size() > 1 ? words[1].text : "";
+    words.erase(words.begin(), words.begin() + std::min<std::ptrdiff_t>(2, std::ssize(words)));
+    if (what == "if" || what == "ifdef" || what == "ifndef") {
+      const bool holds = is_active() && condition(what, words, place);
+      open_.push_back({holds, holds});
+    } else if (what == "elif" || what == "else") {
+      if (open_.empty()) fail(place, "#" + what + " without an #if");
+      Condition& c = open_.back();
+      c.active = false;
+      c.active = !c.taken && is_outside_active() && (what == "else" || condition("if", words, place));
+      c.taken |= c.active;
+    } else if (what == "endif") {
+      if (open_.empty()) fail(place, "#endif without an #if");
+      open_.pop_back();
+    } else if (is_active()) {
+      active_directive(what, words, place);
+    }
+  }
+
+  bool is_outside_active() const {
+    return std::all_of(open_.begin(), open_.end() - 1, [](const Condition& c) { return c.active; });
+  }
+
+  void active_directive(const std::string& what, const Tokens& words, const Place& place) {
+    if (what == "include") {
+      std::string path;  // a path in quotation marks: its words stand side by side
+      for (const Token& word : words)
+        if (!word.is("\"")) path += word.text;
+      if (words.size() < 3 || !words[0].is("\"")) fail(place, "wanted #include \"path\"");
+      file(path, place);
+    } else if (what == "define") {
+      define(words, place);
+    } else if (what == "undef") {
+      if (!words.empty()) macros_.erase(words[0].text);
+    } else if (what == "error") {
+      fail(place, "#error");
+    } else if (what != "pragma" && what != "line" && !what.empty()) {
+      fail(place, "#" + what + " is not known");
+    }
+  }
+
+  void define(const Tokens& words, const Place& place) {
+    if (words.empty() || words[0].kind != Token::Kind::name) fail(place, "#define wants a name");
+    Macro macro;
+    std::size_t at = 1;
+    const int behind = words[0].place.column + static_cast<int>(words[0].text.size());
+    if (words.size() > 1 && words[1].is("(") && words[1].place.line == words[0].place.line &&
+        words[1].place.column == behind) {
+      macro.parameters.emplace();
+      for (at = 2; at < words.size() && !words[at].is(")"); ++at)
+        if (!words[at].is(",")) macro.parameters->push_back(words[at].text);
+      ++at;
+    }
+    macro.body.assign(words.begin() + static_cast<std::ptrdiff_t>(std::min(at, words.size())), words.end());
+    macro.keeps_name = keeps_names_(*place.file);
+    macros_[words[0].text] = std::move(macro);
+  }
+
+  // ---- conditions
+  bool condition(const std::string& what, const Tokens& words, const Place& place) {
+    if (words.empty()) fail(place, "#" + what + " wants a condition");
+    if (what != "if") return macros_.contains(words[0].text) == (what == "ifdef");
+    Tokens asked;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      if (!words[i].is("defined")) {
+        asked.push_back(words[i]);
+        continue;
+      }
+      const bool in_brackets = i + 1 < words.size() && words[i + 1].is("(");
+      const std::size_t name = i + (in_brackets ? 2 : 1);
+      if (name >= words.size()) fail(place, "defined wants a name");
+      Token value = words[i];
+      value.kind = Token::Kind::number;
+      value.text = macros_.contains(words[name].text) ? "1" : "0";
+      asked.push_back(value);
+      i = name + (in_brackets ? 1 : 0);
+    }
+    Tokens words_left;
+    expand(asked, {}, words_left);
+    std::size_t at = 0;
+    return value_of(words_left, at, 0, place) != 0;
+  }
+
+  static int strength(const std::string& sign) {
+    if (sign == "||") return 1;
+    if (sign == "&&") return 2;
+    if (sign == "==" || sign == "!=") return 3;
+    if (sign == "<" || sign == ">" || sign == "<=" || sign == ">=") return 4;
+    if (sign == "+" || sign == "-") return 5;
+    if (sign == "*" || sign == "/") return 6;
+    return 0;
+  }
+
+  static long long combined(const std::string& sign, long long a, long long b) {
+    if (sign == "||") return a || b;
+    if (sign == "&&") return a && b;
+    if (sign == "==") return a == b;
+    if (sign == "!=") return a != b;
+    if (sign == "<") return a < b;
+    if (sign == ">") return a > b;
+    if (sign == "<=") return a <= b;
+    if (sign == ">=") return a >= b;
+    if (sign == "+") return a + b;
+    if (sign == "-") return a - b;
+    if (sign == "*") return a * b;
+    return b == 0 ? 0 : a / b;
+  }
+
+  static long long value_of(const Tokens& words, std::size_t& at, int least, const Place& place) {
+    if (at >= words.size()) fail(place, "the condition of an #if ends too early");
+    const Token& first = words[at++];
+    long long value = 0;
+    if (first.is("!")) {
+      value = !value_of(words, at, 7, place);
+    } else if (first.is("-")) {
+      value = -value_of(words, at, 7, place);
+    } else if (first.is("(")) {
+      value = value_of(words, at, 0, place);
+      if (at >= words.size() || !words[at].is(")")) fail(place, "the condition of an #if wants a ')'");
+      ++at;
+    } else if (first.kind == Token::Kind::number) {
+      value = std::stoll(first.text, nullptr, 0);
+    } else if (first.kind != Token::Kind::name) {
+      fail(place, fmt::format("'{}' in the condition of an #if", first.text));
+    }
+    while (at < words.size()) {
+      const int strong = strength(words[at].text);
+      if (strong == 0 || strong <= least) break;
+      const std::string sign = words[at++].text;
+      value = combined(sign, value, value_of(words, at, strong, place));
+    }
+    return value;
+  }
+
+  // ---- macros
+  using Names = std::set<std::string>;
+
+  void expand(const Tokens& in, const Names& hidden, Tokens& out) {
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      const Token& token = in[i];
+      const auto found = token.kind == Token::Kind::name && !hidden.contains(token.text)
+                             ? macros_.find(token.text)
+                             : macros_.end();
+      if (found == macros_.end() ||
+          (found->second.parameters && (i + 1 >= in.size() || !in[i + 1].is("(")))) {
+        out.push_back(token);
+        continue;
+      }
+      const Macro& macro = found->second;
+      std::vector<Tokens> arguments;
+      if (macro.parameters) i = read_arguments(in, i + 1, arguments);
+      Tokens body = substituted(macro, arguments, hidden);
+      for (Token& word : body) word.place = token.place;
+      Names inner = hidden;
+      inner.insert(token.text);
+      const std::size_t first = out.size();
+      expand(body, inner, out);
+      if (macro.keeps_name && !macro.parameters && out.size() == first + 1 &&
+          out[first].kind == Token::Kind::number)
+        out[first].macro = token.text;
+    }
+  }
+
+  /// The position of the closing bracket.
+  static std::size_t read_arguments(const Tokens& in, std::size_t open, std::vector<Tokens>& arguments) {
+    arguments.emplace_back();
+    int depth = 0;
+    for (std::size_t i = open; i < in.size(); ++i) {
+      if (in[i].is("(") && depth++ == 0) continue;
+      if (in[i].is(")") && --depth == 0) return i;
+      if (in[i].is(",") && depth == 1)
+        arguments.emplace_back();
+      else
+        arguments.back().push_back(in[i]);
+    }
+    fail(in[open].place, "the arguments of a macro have no ')'");
+  }
+
+  Tokens substituted(const Macro& macro, const std::vector<Tokens>& arguments, const Names& hidden) {
+    Tokens out;
+    const auto argument = [&](const Token& word) -> const Tokens* {
+      if (!macro.parameters) return nullptr;
+      const auto found = std::ranges::find(*macro.parameters, word.text);
+      const auto index = static_cast<std::size_t>(found - macro.parameters->begin());
+      return index < macro.parameters->size() && index < arguments.size() ? &arguments[index] : nullptr;
+    };
+    bool joins = false;
+    for (std::size_t i = 0; i < macro.body.size(); ++i) {
+      const Token& word = macro.body[i];
+      if (word.is("##")) {
+        joins = true;
+        continue;
+      }
+      const bool pasted = joins || (i + 1 < macro.body.size() && macro.body[i + 1].is("##"));
+      Tokens words;
+      if (const Tokens* given = argument(word); given && !pasted)
+        expand(*given, hidden, words);
+      else if (given)
+        words = *given;
+      else
+        words = {word};
+      if (joins && !out.empty() && !words.empty()) {
+        out.back().text += words[0].text;
+        words.erase(words.begin());
+      }
+      joins = false;
+      out.insert(out.end(), words.begin(), words.end());
+    }
+    return out;
+  }
+
+  const ReadFile& read_;
+  const std::function<bool(const std::string&)>& keeps_names_;
+  std::map<std::string, Macro> macros_;
+  std::set<std::string> seen_;
+  std::vector<Condition> open_;
+  Tokens pending_;  // not yet expanded: the arguments of a macro may stand on several lines
+};
+
+}  // namespace
+
+Source preprocess(const std::string& path, const ReadFile& read,
+                  const std::function<bool(const std::string&)>& keeps_names) {
+  Preprocessor preprocessor(read, keeps_names);
+  preprocessor.file(path, {});
+  Source source = std::move(preprocessor.source);
+  Token end;
+  end.place = source.tokens.empty() ? Place{&source.files.front(), 1, 1} : source.tokens.back().place;
+  source.tokens.push_back(std::move(end));
+  return source;
+}
+
+}  // namespace sundog::spmd

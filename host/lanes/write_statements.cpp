@@ -1,0 +1,396 @@
+// Statements: what is stored where lanes have parted, branches, and what is returned.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lanes/writer.h"
+
+namespace sundog::spmd {
+namespace {
+
+using Kind = Expression::Kind;
+
+constexpr double cheap = 12;      // operations up to which a branch is computed rather than jumped over
+constexpr double long_rest = 24;  // operations left from which on it pays to ask whether any lane is left
+
+bool is_constant_place(const Statement& s) { return s.kind == Statement::Kind::block && s.body.empty(); }
+
+}  // namespace
+
+std::vector<const Statement*> parts_of_block(const Statement& s) {
+  if (s.kind != Statement::Kind::block) return {&s};
+  std::vector<const Statement*> all;
+  for (const StatementPtr& part : s.body) all.push_back(part.get());
+  return all;
+}
+
+Exits exits_of(const Statement& s) {
+  Exits out;
+  out.leaves = s.kind == Statement::Kind::leave_loop;
+  out.next = s.kind == Statement::Kind::next_round;
+  out.gives = s.kind == Statement::Kind::give;
+  const bool is_loop = s.kind == Statement::Kind::loop || s.kind == Statement::Kind::do_loop;
+  for (const StatementPtr& part : s.body) {
+    if (!part) continue;
+    const Exits inner = exits_of(*part);
+    out.gives |= inner.gives;
+    out.leaves |= inner.leaves && !is_loop;
+    out.next |= inner.next && !is_loop;
+  }
+  return out;
+}
+
+bool has_loop(const Statement& s) {
+  return s.kind == Statement::Kind::loop || s.kind == Statement::Kind::do_loop ||
+         std::ranges::any_of(s.body, [](const StatementPtr& part) { return part && has_loop(*part); });
+}
+
+Writer::Writer(Specialisations& all, Specialisation& made)
+    : all_(all), s_(made), place_(made.function.place) {
+  mask_ = s_.masked ? "m_" : "ALL_LANES";
+}
+
+void Writer::line(std::string text) { out_.push_back({depth_, std::move(text), place_}); }
+std::string Writer::fresh(const char* stem) { return fmt::format("{}_{}", stem, ++count_); }
+
+double Writer::weight(const Expression& e) {
+  double all = cost_of(e);
+  if (e.kind == Kind::call && e.function)
+    all = e.function->body ? all_.of(*e.function, s_.arguments_of(e, frames_)).cost : 15;
+  for (const ExpressionPtr& part : e.of) all += weight(*part);
+  return all;
+}
+
+double Writer::weight(const Statement& s) {
+  double all = s.kind == Statement::Kind::give ? 1 : 0;
+  for (const ExpressionPtr& e : s.expressions)
+    if (e) all += weight(*e);
+  for (const StatementPtr& part : s.body)
+    if (part) all += weight(*part);
+  return all;
+}
+
+std::vector<Line> Writer::function() {
+  const Function& f = s_.function;
+  const bool gives = !f.result.is(Type::Kind::nothing);
+  std::string parameters;
+  for (const Variable* p : f.parameters) {
+    Type type = p->type;
+    if (!type.is(Type::Kind::pointer)) type.constant = false;
+    parameters +=
+        fmt::format("{}{} {}", parameters.empty() ? "" : ", ", type_text(type, s_.varies(p)), p->name);
+  }
+  if (s_.masked) parameters += parameters.empty() ? "MASK m_" : ", MASK m_";
+  depth_ = 0;
+  line(fmt::format("{} {} {}({}) {{", f.is_inline ? "static inline" : "NEVER_INLINE",
+                   type_text(f.result, s_.result_varies), s_.name, parameters.empty() ? "void" : parameters));
+  depth_ = 1;
+  const bool keeps = s_.divergent_return && gives;
+  if (keeps && !s_.only_result)
+    line(fmt::format("{} result_ = {};", type_text(f.result, s_.result_varies), nothing(f.result)));
+  const auto body = parts_of_block(*f.body);
+  const std::string result = s_.only_result ? s_.only_result->name : "result_";
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    statement(*body[i]);
+    if (!s_.divergent_return || i + 1 == body.size() || !exits_of(*body[i]).gives) continue;
+    double rest = 0;
+    bool loops = false;
+    for (std::size_t k = i + 1; k < body.size(); ++k) {
+      rest += weight(*body[k]);
+      loops |= has_loop(*body[k]);
+    }
+    if (rest > long_rest || loops)
+      line(fmt::format("if (!any_lane(m_)) return{};", gives ? " " + result : ""));
+  }
+  if (keeps && (body.empty() || body.back()->kind != Statement::Kind::give))
+    line(fmt::format("return {};", result));
+  depth_ = 0;
+  line("}");
+  return std::move(out_);
+}
+
+void Writer::statement(const Statement& s) {
+  place_ = s.place;
+  switch (s.kind) {
+    case Statement::Kind::block: {
+      if (is_constant_place(s)) return;
+      line("{");
+      ++depth_;
+      block(parts_of_block(s), false);
+      --depth_;
+      return line("}");
+    }
+    case Statement::Kind::declare:
+      return declaration(s);
+    case Statement::Kind::branch:
+      return s.feature.empty() ? branch(s) : feature_branch(s);
+    case Statement::Kind::loop:
+    case Statement::Kind::do_loop:
+      return loop(s);
+    case Statement::Kind::each_alike:
+      return each_alike(s);
+    case Statement::Kind::leave_loop:
+    case Statement::Kind::next_round:
+      return leave(s);
+    case Statement::Kind::give:
+      return give(s);
+    case Statement::Kind::compute:
+      return line(computed(*s.expressions[0]) + ";");
+  }
+}
+
+/// `in_loop`: the round of the innermost loop.
+void Writer::block(const std::vector<const Statement*>& all, bool in_loop) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    statement(*all[i]);
+    const bool leaves = in_loop && divergent_loop() && divergent_loop()->node == all_loops_.back().node &&
+                        all[i]->kind == Statement::Kind::branch && exits_of(*all[i]).any() &&
+                        all[i]->feature.empty() && varies(*all[i]->expressions[0]);
+    if (!leaves) continue;
+    double rest = 0;
+    bool loops = false;
+    for (std::size_t k = i + 1; k < all.size(); ++k) {
+      rest += weight(*all[k]);
+      loops |= has_loop(*all[k]);
+    }
+    if (!(rest > long_rest) && !loops) continue;
+    const Loop& l = loops_.back();
+    line(fmt::format("if (!any_lane({})) {}", l.going, l.going == l.lanes ? "break;" : "continue;"));
+    if (i == 0 && l.going == l.lanes) checked_.insert(l.lanes);  // the loop itself need not ask
+  }
+}
+
+const Writer::Loop* Writer::divergent_loop() const { return loops_.empty() ? nullptr : &loops_.back(); }
+std::string Writer::alive() const { return loops_.empty() ? "m_" : loops_.back().going; }
+
+void Writer::declaration(const Statement& s) {
+  for (std::size_t i = 0; i < s.variables.size(); ++i) declaration(*s.variables[i], s.expressions[i].get());
+}
+
+std::string Writer::nothing(const Type& type) {
+  if (type.is(Type::Kind::boolean)) return "NO_LANES";
+  if (type.is_number()) return fmt::format("({})(0)", type_text(type, true));
+  return "{0}";
+}
+
+void Writer::declaration(const Variable& v, const Expression* first) {
+  const bool vary = s_.varies(&v);
+  s_.declare(&v, frames_);
+  if (vary && v.type.is_table()) {
+    if (!first) fail(v.place, "a pointer without a place");
+    const auto [table, index] = table_and_index(*first);
+    tables_[&v] = table;
+    return line(fmt::format("const MASK {} = {};", v.name, index));
+  }
+  const bool constant = v.type.constant && !v.type.is(Type::Kind::pointer) && first;
+  Type type = v.type;
+  if (!type.is(Type::Kind::pointer)) type.constant = false;
+  if (type.is(Type::Kind::array)) {
+    const std::string value = first ? " = " + (vary ? varying(*first) : plain(*first)) : vary ? " = {0}" : "";
+    return line(fmt::format("{}{} {}[{}]{};", constant ? "const " : "", type_text(*type.of, vary), v.name,
+                            type.length, value));
+  }
+  // Nothing stays undefined: to hand that to select() would be undefined behaviour, for which LLVM drops a
+  // kernel.
+  const bool by_hand = type.is(Type::Kind::structure) && type.structure->by_hand;
+  std::string value;
+  if (first)
+    value = vary ? lanes(*first) : plain(*first);
+  else if (vary && !by_hand)
+    value = nothing(type);
+  line(fmt::format("{}{} {}{};", constant ? "const " : "", type_text(type, vary), v.name,
+                   value.empty() ? "" : " = " + value));
+}
+
+/// An expression for what it does.
+std::string Writer::computed(const Expression& e) {
+  if (e.kind == Kind::assign) return assigned(e);
+  if (e.kind == Kind::unary && (e.text == "++" || e.text == "--")) return stepped(e);
+  return value(e);
+}
+
+std::string Writer::assigned(const Expression& e) {
+  const Expression &to = *e.of[0], &of = *e.of[1];
+  const bool scatters = to.kind == Kind::index && varies(*to.of[1]);
+  if (!varies(to) && !scatters) return plain(e);
+  const std::string value = lanes(of);
+  return scatters ? scatter(to, value) : store(to, value);
+}
+
+std::string Writer::stepped(const Expression& e) {
+  const Expression& of = *e.of[0];
+  if (!varies(of)) return plain(e);
+  const std::string place = place_of(of);
+  const auto [root, through] = s_.root_of(of);
+  if (of.type.is(Type::Kind::integer) && (through || !s_.between(root, frames_).empty()))
+    return fmt::format("{} {}= {}", place, e.text == "++" ? '-' : '+', mask_);
+  return store(of, fmt::format("{} {} 1", place, e.text[0]));
+}
+
+/// `to = value` in the lanes that are there, and that the variable still matters to.
+std::string Writer::store(const Expression& to, const std::string& value) {
+  const auto [root, through] = s_.root_of(to);
+  const std::string place = place_of(to);
+  std::vector<const Frame*> divergent = s_.between(root, frames_);
+  std::string mask = mask_;
+  const bool is_result = root == s_.only_result && s_.divergent_return && (returned_ || !all_loops_.empty());
+  if (!through && !is_result) {
+    if (divergent.empty()) return fmt::format("{} = {}", place, value);
+    if (divergent.size() == 1 && divergent[0] == &frames_.back() && !divergent[0]->only.empty())
+      mask = divergent[0]->only;
+  }
+  const Type& type = to.type;
+  if (type.is(Type::Kind::structure) && type.structure->by_hand && !type.structure->join.empty()) {
+    const std::string name = fresh("other");
+    line(fmt::format("const {} {} = {};", type_text(type, true), name, value));
+    return fmt::format("{}(&{}, &{}, {})", type.structure->join, place, name, mask);
+  }
+  return fmt::format("{} = {}", place, selected(type, place, value, mask, to.place));
+}
+
+/// A place of an array that differs from lane to lane.
+std::string Writer::scatter(const Expression& to, const std::string& value) {
+  if (!to.type.is(Type::Kind::real) && !to.type.is(Type::Kind::integer))
+    fail(to.place, fmt::format("an element that varies of an array of {}", name_of(to.type)));
+  const std::string name = fresh("value"), lane = fresh("lane"), index = simple(*to.of[1]);
+  const char* part = to.type.is(Type::Kind::real) ? "REAL_LANE" : "MASK_LANE";
+  line(fmt::format("const {} {} = {};", type_text(to.type, true), name, value));
+  line(fmt::format("for (u32 bits_ = lane_bits({}); bits_; bits_ &= bits_ - 1u) {{", mask_));
+  line(fmt::format("  const u32 {} = lowest_bit(bits_);", lane));
+  line(fmt::format("  {0}({1}[MASK_LANE({2}, {3})], {3}) = {0}({4}, {3});", part, place_of(*to.of[0]), index,
+                   lane, name));
+  line("}");
+  return "";
+}
+
+void Writer::inside(Frame frame, const std::string& mask, const Statement& s) {
+  const std::string outer = mask_;
+  const bool is_round = frame.kind == Frame::Kind::round;
+  mask_ = mask;
+  frames_.push_back(std::move(frame));
+  ++depth_;
+  block(parts_of_block(s), is_round);
+  --depth_;
+  frames_.pop_back();
+  mask_ = outer;
+}
+
+void Writer::feature_branch(const Statement& s) {
+  const int depth = depth_;
+  const auto directive = [&](std::string text) { out_.push_back({0, std::move(text), {}}); };
+  directive("#if " + s.feature);
+  for (std::size_t i = 0; i < s.body.size(); ++i) {
+    if (i == 1) directive("#else");
+    depth_ = depth;
+    line("{");
+    inside({Frame::Kind::branch, &s, static_cast<int>(i), false, ""}, mask_, *s.body[i]);
+    line("}");
+  }
+  directive("#endif");
+}
+
+void Writer::branch(const Statement& s) {
+  const Expression& asked = *s.expressions[0];
+  if (!varies(asked)) {
+    line(fmt::format("if ({}) {{", plain(asked)));
+    inside({Frame::Kind::branch, &s, 0, false, ""}, mask_, *s.body[0]);
+    if (s.body.size() > 1) {
+      line("} else {");
+      inside({Frame::Kind::branch, &s, 1, false, ""}, mask_, *s.body[1]);
+    }
+    return line("}");
+  }
+  const std::string is = fresh("is");
+  line(fmt::format("const MASK {} = {};", is, mask_of(asked)));
+  for (std::size_t i = 0; i < s.body.size(); ++i) {
+    const Statement& part = *s.body[i];
+    const std::string name = i == 0 ? is : "~" + is;
+    const bool leaves = exits_of(part).any();
+    const std::string mask = fresh("m");
+    const std::size_t at = out_.size();
+    line(fmt::format("{}MASK {} = {} & {};", leaves ? "" : "const ", mask, mask_, name));
+    line(weight(part) > cheap || has_loop(part) ? fmt::format("if (any_lane({})) {{", mask) : "{");
+    inside({Frame::Kind::branch, &s, static_cast<int>(i), true, leaves ? "" : name}, mask, part);
+    line("}");
+    const bool used = std::any_of(out_.begin() + static_cast<std::ptrdiff_t>(at) + 1, out_.end(),
+                                  [&](const Line& l) { return l.text.find(mask) != std::string::npos; });
+    if (!used) out_.erase(out_.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+  if (exits_of(s).any() && alive() != mask_) line(fmt::format("{} &= {};", mask_, alive()));
+}
+
+void Writer::leave(const Statement& s) {
+  const bool breaks = s.kind == Statement::Kind::leave_loop;
+  bool divergent = false;
+  const Frame* loop = nullptr;
+  for (auto f = frames_.rbegin(); f != frames_.rend() && !loop; ++f) {
+    divergent |= f->kind == Frame::Kind::branch && f->divergent;
+    if (f->kind == Frame::Kind::loop) loop = &*f;
+  }
+  const Loop& l = *std::ranges::find(all_loops_, loop->node, &Loop::node);
+  if (!divergent && (breaks || !s_.divergent_continue.contains(loop->node)))
+    return line(breaks ? "break;" : "continue;");
+  const std::string gone = mask_;
+  if (breaks) line(fmt::format("{} &= ~{};", l.lanes, gone));
+  if (l.going != l.lanes) line(fmt::format("{} &= ~{};", l.going, gone));
+  if (gone != l.going && gone != l.lanes) line(fmt::format("{} = NO_LANES;", gone));
+}
+
+void Writer::give(const Statement& s) {
+  const Type& type = s_.function.result;
+  const bool gives = !s.expressions.empty();
+  if (!s_.divergent_return) {
+    if (!gives) return line("return;");
+    const std::string value = s_.result_varies ? lanes(*s.expressions[0]) : plain(*s.expressions[0]);
+    return line(fmt::format("return {};", value));
+  }
+  const bool parted = std::ranges::any_of(frames_, &Frame::divergent);
+  if (gives && s_.only_result) {
+    if (!parted) return line(fmt::format("return {};", s_.only_result->name));
+  } else if (gives) {
+    const std::string value = lanes(*s.expressions[0]);
+    line(!returned_ && all_loops_.empty()
+             ? fmt::format("result_ = {};", value)
+             : fmt::format("result_ = {};", selected(type, "result_", value, mask_, s.place)));
+  }
+  returned_ = true;
+  if (!parted) return line(gives ? "return result_;" : "return;");
+  const std::string gone = mask_;
+  std::vector<std::string> masks{"m_"};
+  for (const Loop& l : loops_) masks.insert(masks.end(), {l.lanes, l.going});
+  std::set<std::string> seen{gone};
+  for (const std::string& mask : masks)
+    if (seen.insert(mask).second) line(fmt::format("{} &= ~{};", mask, gone));
+  line(fmt::format("{} = NO_LANES;", gone));
+}
+
+void Writer::each_alike(const Statement& s) {
+  const Variable& v = *s.variables[0];
+  const Expression& of = *s.expressions[0];
+  const std::string type = type_text(v.type, false);
+  if (!varies(of)) {
+    line("{");
+    ++depth_;
+    line(fmt::format("const {} {} = {};", type, v.name, plain(of)));
+    --depth_;
+    inside({Frame::Kind::alike, &s, 0, false, ""}, mask_, *s.body[0]);
+    return line("}");
+  }
+  std::string all = simple(of);
+  if (v.type.is(Type::Kind::natural)) all = fmt::format("UINTS_TO_MASK({})", all);
+  const std::string left = fresh("left"), word = fresh("word"), mask = fresh("m");
+  line(fmt::format("u32 {};", word));
+  line(fmt::format("for (u32 {0} = lane_bits({1}); {0};) {{", left, mask_));
+  ++depth_;
+  line(fmt::format("MASK {} = take_alike({}, &{}, &{});", mask, all, left, word));
+  line(fmt::format("const {0} {1} = ({0}){2};", type, v.name, word));
+  --depth_;
+  frames_.push_back({Frame::Kind::alike, &s, 0, true, ""});
+  s_.declare(&v, frames_);
+  frames_.pop_back();
+  inside({Frame::Kind::alike, &s, 0, true, ""}, mask, *s.body[0]);
+  line("}");
+  if (exits_of(*s.body[0]).gives && mask_ != "m_") line(fmt::format("{} &= m_;", mask_));
+}
+
+}  // namespace sundog::spmd

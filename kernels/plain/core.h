@@ -1,0 +1,11 @@
+// What plain kernels may call of lib/core. Vectors have operators; +, * and the others are add3, scale3, ...
+#include "lib/core/tables.h"
+
+CALLED(dot3) float dot(float3 a, float3 b);
+CALLED(greatest3) float greatest(float3 a);
+float real_min(float a, float b);
+float real_max(float a, float b);
+
+// Counts a ray of each path that is here. A ray also counts for its path's pixel.
+CALLED(count_lanes) void count(UNIFORM u32* counts, UNIFORM u32 which, HERE);
+CALLED(note_own_rays) void note_ray(HERE, UNIFORM u32* counts);

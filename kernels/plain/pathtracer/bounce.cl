@@ -1,0 +1,133 @@
+// One bounce of a path: its ray to the next interface, the light that it meets there, the light of one lamp
+// that the surface chooses, and the ray that continues.
+#include "plain/pathtracer/interface.h"
+
+bool survives(UNIFORM const Scene* scene, PathState* path, int dimension, HERE);
+
+// What a lamp that is chosen sends to the surface, times what that makes of it.
+static SampledSpectrum light_of_lamp(UNIFORM const Scene* scene, const PathState* path, const SceneRay* ray,
+                                     const Encounter* met, const SurfaceShading* at, const LobeSet* lobes,
+                                     const Numbers* u, UNIFORM u32* counts) {
+  bool seen;  // rays may meet the lamp: the path's next ray has its share
+  float scattered;
+  const LightSample light = choose_one(scene, at->s.p, u, &seen);
+  const float3 scattering = bsdf_scatter(scene, &at->bsdf, lobes, -ray->d, light.wi, &scattered);
+  scattered = guided_pdf(scene, lobes, at->s.p, light.wi, scattered);
+  const float weight = weight_of_chosen(scene, light.pdf, seen ? scattered : 0.0f);
+  const float over = light.delta ? 1.0f / light.pdf : 1.0f / (M_PI_F * light.pdf);
+  SampledSpectrum possible = spectrum_of(&path->wavelengths, scattering);
+  possible = possible * spectrum_of(&path->wavelengths, light.radiance) * (weight * over);
+  const bool below = dot(at->s.ng, light.wi) < 0.0f;
+  if (HAS_RELIEF && !below) possible *= terminator(&at->s, light.wi);
+  if (HAS_PARALLAX) {
+    possible *= relief_visibility(scene, &at->s, light.wi);
+    possible *= walls_visibility(scene, ray, &at->s, light.wi, counts);
+  }
+  if (HAS_MEDIA && below) possible *= 1.0f / (lobes->split.eta * lobes->split.eta);
+  possible *= path->throughput;
+  if (!(spectrum_greatest(possible) >= FLT_MIN && light.distance > 0.0f)) return (SampledSpectrum)(0.0f);
+  count(counts, COUNT_SHADOW);
+  note_ray(counts);
+  SceneRay to_light = rays_to_light(scene, ray, met, at, &light, below);
+  return arriving_spectrum(scene, &path->wavelengths, &to_light, possible, counts);
+}
+
+// The surface scatters: the path's next ray, and whether the path continues. `free`: the surface is not
+// there.
+static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
+                    const LobeSet* lobes, bool free, PathState* path, SceneRay* ray, UNIFORM u32* counts) {
+  const int dimension = dimension_here(path, BOUNCE_DIRECTION);
+  const bool chooses = HAS_GUIDES || any(lobes->matte != lobes->all);  // matte surfaces have one lobe
+  const Numbers u = numbers_at(&path->at, dimension, true, chooses);
+  const float3 wo = -ray->d;
+  const BsdfSample sample = sample_guided(scene, &at->bsdf, lobes, at->s.p, wo, u.z, u.x, u.y, &path->spread);
+  const bool some = greatest(sample.weight) > 0.0f, below = some && dot(at->s.ng, sample.wi) < 0.0f;
+  path->throughput *= spectrum_of(&path->wavelengths, sample.weight);
+  if (some) part_wavelengths(scene, at, &lobes->split, path, sample.specular && !below);
+  if (HAS_RELIEF && !below && !sample.specular) path->throughput *= terminator(&at->s, sample.wi);
+  if (HAS_MEDIA && below) {  // the radiance is spread, or comes together again
+    const float square = lobes->split.eta * lobes->split.eta;
+    path->throughput *= 1.0f / square;
+    path->spread *= square;
+  }
+  // Shadow rays go through filters as the path does: what it was about to find, it still is.
+  const bool passes = below && sample.specular;
+  if (!(passes && (at->bsdf.flags & (int)MATERIAL_SHADOW_OPAQUE) == 0)) {
+    path->pdf = sample.specular ? 0.0f : sample.pdf;
+    path->from = at->s.p;
+    leave_stretch(path);
+    note_gathered(path, sample.specular, narrow_part(scene, &at->bsdf, lobes, wo, &sample));
+  }
+  path->straight = path->straight && passes && lobes->split.eta == 1.0f;
+  bool going = free;
+  if (some && !free) going = survives(scene, path, dimension);
+  if (!free) ++path->depth;
+  if (!going) return false;
+  if (below)
+    count(counts, COUNT_REFRACTION);
+  else
+    count(counts, COUNT_REFLECTION);
+  note_ray(counts);
+  leave_surfaces(scene, met, at, &sample, below, free, ray);
+  return true;
+}
+
+// Takes the path a step further: whether it continues. The light of one that does not is complete.
+// `coherent`: the rays run close together.
+ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRay* ray, UNIFORM bool coherent,
+                            UNIFORM u32* counts) {
+  Encounter met;
+  const BegunRay begun = begun_rays_of(ray);
+  bool crossing = meet_interfaces(scene, ray, coherent, &met, counts);
+  if (!crossing && path->depth == 1) crossing = pass_hidden(scene, ray, &met);
+  if (HAS_GLOW) path->radiance += path->throughput * spectrum_of(&path->wavelengths, emitted(ray));
+  forget_glow(ray);
+  bool turned;  // by the medium, to a place from which it goes on
+  if (scatter_in_media(scene, path, &begun, ray, &met, &turned, counts)) return turned;
+  path->throughput *= spectrum_kept(&path->wavelengths, met.absorbed);
+  if (crossing) {  // an interface that cannot be seen may stop shadow rays all the same
+    if ((met.face.flags & (int)MATERIAL_SHADOW_OPAQUE) != 0) path->pdf = 0.0f;
+    return true;
+  }
+  SampledSpectrum light = (SampledSpectrum)(0.0f);
+  if (HAS_FOG) light = met_fog(scene, &met, path);
+  if (!hit_anything(&met.hit)) {
+    path->radiance +=
+        light + path->throughput * spectrum_of(&path->wavelengths, met_sky(scene, path, ray->d));
+    return false;
+  }
+
+  SurfaceShading at;
+  shade_hits(scene, ray, &met, &at);
+  follow_hero(&path->wavelengths, &at.bsdf);
+  light += path->throughput * spectrum_of(&path->wavelengths, met_surface(scene, path, ray, &met.hit, &at));
+  const bool deep = path->depth > (int)scene->info->max_depth;
+  const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
+  const bool nothing = (at.bsdf.flags & (int)MATERIAL_TRANSMITS) != 0 && cut_away(&at.bsdf, &lobes.split);
+  const bool free = nothing && may_cross(ray);
+  if (!nothing && path->depth == 1) {
+    count(counts, COUNT_PRIMARY_HIT);
+    path->met = true;
+  }
+  if (deep && !free && (at.bsdf.flags & (int)MATERIAL_EMITS) == 0) {
+    count(counts, COUNT_DEPTH_LIMIT);
+    if (path->straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);
+  }
+  if (!deep && scatters(&lobes)) {
+    if (scene->info->light_count > 0u) {
+      const bool chooses = HAS_LIGHT_TREE || scene->info->light_count > 1u;
+      const Numbers u = numbers_at(&path->at, dimension_here(path, BOUNCE_LIGHT_POINT), true, chooses);
+      SampledSpectrum chosen = light_of_lamp(scene, path, ray, &met, &at, &lobes, &u, counts);
+      keep_hero(scene, &at, &lobes.split, path, &chosen);
+      light += chosen;
+    }
+    if (HAS_CAUSTICS) {
+      SampledSpectrum brought = gather_photons(scene, path, ray, &at, &lobes);
+      keep_hero(scene, &at, &lobes.split, path, &brought);
+      light += brought;
+    }
+  }
+  path->radiance += light;
+  if (deep && !free) return false;
+  return scatter(scene, &met, &at, &lobes, free, path, ray, counts);
+}

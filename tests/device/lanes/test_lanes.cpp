@@ -1,0 +1,104 @@
+// Plain kernels in lanes give the bits of one path: random programs, 4, 8 and 16 lanes and one, on every
+// device.
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+
+#include "catch.h"
+#include "devices.h"
+#include "random_program.h"
+
+using namespace sundog;
+
+namespace {
+
+constexpr u32 paths = 512;
+
+/// What plain text means for one path, without the translator.
+const char* const one_path = R"(
+#define UNIFORM
+#define ENTRY
+#define EACH_ALIKE(type, name, value) for (type name = (value), name##_once = 1; name##_once; name##_once = 0)
+)";
+
+/// A kernel that calls all the functions; 0 lanes: the text as it is.
+std::string kernel_of(const std::string& program, int functions, int lanes) {
+  std::string text = "#include \"lib/core/lanes.h\"\n";
+  text += lanes == 0 ? one_path + program : "#include \"plain/random.cl\"\n";
+  text +=
+      "__kernel void run(__global const float* x, __global const float* y, __global const float* k,\n"
+      "                  __global const float* q, __global float* out) {\n";
+  const int wide = std::max(lanes, 1);
+  text += fmt::format("  const uint i = get_global_id(0) * {};\n", wide);
+  const bool one = lanes == 0;
+  text += fmt::format("  const {0} a = {1}x[i]{2}, b = {1}y[i]{2};\n", one ? "float" : "REAL",
+                      one ? "" : "load_lanes(&", one ? "" : ")");
+  text += one ? "  const int c = as_int(k[i]);\n" : "  const MASK c = AS_MASK(load_lanes(&k[i]));\n";
+  for (int f = 0; f < functions; ++f) {
+    const std::string call = fmt::format("f{}(a, b, c, 3, q, &o{})", f, one ? "" : ", ALL_LANES");
+    text += fmt::format("  {{\n    {0} o = b;\n    const {0} v = {1};\n", one ? "float" : "REAL", call);
+    const std::string first = fmt::format("out + {} + i", 2 * f * static_cast<int>(paths)),
+                      second = fmt::format("out + {} + i", (2 * f + 1) * static_cast<int>(paths));
+    text += lanes <= 1 ? fmt::format("    *({}) = v;\n    *({}) = o;\n  }}\n", first, second)
+                       : fmt::format("    vstore{0}(v, 0, {1});\n    vstore{0}(o, 0, {2});\n  }}\n", lanes,
+                                     first, second);
+  }
+  return text + "}\n";
+}
+
+std::vector<float> inputs(unsigned seed, float low, float high) {
+  std::vector<float> all;
+  for (u32 i = 0; i < paths; ++i) {
+    const u32 mixed = (i + 1) * 2654435761u ^ (seed + 1) * 2246822519u;
+    all.push_back(low + (high - low) * static_cast<float>((mixed >> 8) & 0xFFFF) / 65536.0f);
+  }
+  return all;
+}
+
+std::vector<float> run(Device& device, const std::string& program, unsigned seed, int functions, int lanes) {
+  KernelDefines defines;
+  if (lanes > 0) defines["LANES"] = std::to_string(lanes);
+  const GeneratedFiles files{{"plain/random.cl", program}, {"run.cl", kernel_of(program, functions, lanes)}};
+  using In = Buffer<float>;
+  auto kernel = device.build("run.cl", defines, nullptr, files).kernel<In, In, In, In, In>("run");
+  std::vector<float> wholes = inputs(seed + 2, -3, 9);
+  for (u32 i = 0; i < paths; ++i)
+    wholes[i] = std::bit_cast<float>(i % 37 == 0 ? 1000000000 : static_cast<int>(std::floor(wholes[i])));
+  const auto x = device.upload<float>(inputs(seed, -2, 2)), y = device.upload<float>(inputs(seed + 1, -2, 2)),
+             k = device.upload<float>(wholes), q = device.upload<float>(inputs(seed + 3, -1.5f, 1.5f)),
+             out = device.make<float>(2ul * paths * static_cast<std::size_t>(functions));
+  device.run(kernel, {.x = paths / static_cast<u32>(std::max(lanes, 1)), .local_x = 16}, x, y, k, q, out);
+  std::vector<float> result(out.count);
+  device.read(out, std::span<float>(result));
+  return result;
+}
+
+bool same(float a, float b) {
+  return std::bit_cast<u32>(a) == std::bit_cast<u32>(b) || (std::isnan(a) && std::isnan(b));
+}
+
+}  // namespace
+
+TEST_CASE("random plain programs give the same bits for one path and for any number of lanes") {
+  // More of them once, after a change to the translator.
+  const char* wanted = std::getenv("SUNDOG_LANES_SEEDS");
+  const unsigned seeds = wanted ? static_cast<unsigned>(std::atoi(wanted)) : 2;
+  constexpr int functions = 6;
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    for (unsigned seed = 1; seed <= seeds; ++seed) {
+      const std::string program = random_program(seed, functions);
+      const std::vector<float> expected = run(device, program, seed, functions, 0);
+      for (const int lanes : {1, 4, 8, 16}) {
+        const std::vector<float> found = run(device, program, seed, functions, lanes);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+          if (same(found[i], expected[i])) continue;
+          FAIL("seed " << seed << ", " << lanes << " lanes: f" << i / (2 * paths) << " gives " << found[i]
+                       << " for path " << i % paths << ", right " << expected[i]);
+        }
+      }
+    }
+  });
+}

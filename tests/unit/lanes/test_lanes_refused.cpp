@@ -1,0 +1,55 @@
+// Plain text that cannot be made into lanes, or that nobody should write: refused with file, line and column.
+#include "catch.h"
+#include "plain_text.h"
+
+using plain_text::function;
+using plain_text::refused;
+
+TEST_CASE("plain text that has no lanes is refused at its place") {
+  struct Case {
+    std::string text, message;
+  };
+  const Case cases[] = {
+      {function("goto end;"), "plain/t.cl:2:1: 'goto' has no lanes: use if"},
+      {function("switch (k) {}"), "2:1: 'switch' has no lanes"},
+      {function("return 1.0 * x;"), "2:8: 1.0 is a double: write 1.0f"},
+      {function("return y;"), "2:8: 'y' is not known"},
+      {function("return far(x);"), "2:8: there is no function 'far' for lanes"},
+      {function("return f(x, k, n, q, o);"), "2:8: 'f' calls itself"},
+      {function("return fma(x, x);"), "2:8: 'fma' takes 3 arguments, found 2"},
+      {function("float x = 1.0f; return x;"), "2:7: 'x' hides another one"},
+      {function("return x.y;"), "2:10: float has no members"},
+      {function("return ((float2)(x, x)).z;"), "2:25: a float2 has no 'z'"},
+      {function("return (float3)(x, x);"), "2:8: a float3 of 2 parts"},
+      {function("q[k] = x; return x;"), "2:2: tables are only read"},
+      {function("n = k; return x;"), "'n' is uniform, but what it is set to varies"},
+      {function("if (x > 0.0f) n = 2; return x;"), "'n' is uniform, but it is set where lanes part"},
+      {function("__global const float* p = x > 0.0f ? q : q + 1; return *p;"),
+       "2:36: a pointer that varies is a table and an index"},
+      {function("EACH_ALIKE(int, j, k) break; return x;"), "2:23: break or continue out of EACH_ALIKE"},
+      {function("break; return x;"), "2:1: there is no loop about it"},
+      {function("return;"), "2:7: 'f' gives float"},
+      {function("float a = x = 1.0f; return a;"), "wanted ';', found '='"},
+      {function("double d = 1.0f; d += x; return x;"), "a double has no lanes"},
+      {function("return q;"), "wanted float, found a pointer to float"},
+      {"ENTRY static float f(float x) {\n  if (x > 0.0f {\n", "plain/t.cl:2:16: wanted ')', found '{'"},
+      {"float f(float x", "wanted ',', found ''"},
+      {"#if A\nint f();\n", "plain/t.cl:3:1: an #if has no #endif"},
+      {"#include \"plain/missing.h\"\n", "plain/t.cl:1:1: plain/missing.h: there is no such kernel file"},
+      {"typedef struct A { float a; } A;\ntypedef struct A { float a; } A;\n", "there is a type 'A' already"},
+      {"static float g(UNIFORM int i, float x) { return x * (float)i; }\n" + function("return g(k, x);"),
+       "3:10: g: 'i' is uniform, but is given what varies"},
+      {"float by_hand(UNIFORM int i, HERE);\n" + function("return by_hand(k);"),
+       "by_hand: 'i' is uniform, but is given what varies"},
+      {"typedef struct LANES(Rays) { float t; } Ray;\nRay ray_of(float t);\n" +
+           function("Ray r = ray_of(x); if (x > 0.0f) r = ray_of(2.0f); return r.t;"),
+       "a Ray is set where lanes part, and nothing joins two"},
+      {"#include \"shared/lights.h\"\n" +
+           function("const Light l = ((__global const Light*)q)[k]; return x;"),
+       "a cast of a pointer to float to a pointer to Light"},
+  };
+  for (const Case& c : cases) {
+    INFO(c.text);
+    CHECK_THAT(refused(c.text), Catch::Contains(c.message));
+  }
+}

@@ -1,0 +1,76 @@
+// What is made of plain text: where masks stand, what is left to the preprocessor, and what is told about it.
+#include "catch.h"
+#include "device/embedded_kernels.h"
+#include "device/kernel_source.h"
+#include "lanes/lanes.h"
+#include "plain_text.h"
+
+using Catch::Contains;
+using plain_text::function;
+using plain_text::in_lanes;
+
+TEST_CASE("what is one value for all lanes stays as it was written") {
+  const std::string made =
+      in_lanes(function("float s = 0.0f;\nfor (int i = 0; i < n; ++i) s += q[i];\nreturn s * x;"));
+  CHECK_THAT(made, Contains("float s = 0.0f;"));
+  CHECK_THAT(made, Contains("for (; (i < n); ++i) {"));
+  CHECK_THAT(made, Contains("s = (s + q[i]);"));
+  CHECK_THAT(made, Contains("return (s * x);"));
+  CHECK_THAT(made, !Contains("select"));
+}
+
+TEST_CASE("a variable that only lanes of a branch read is set without a mask") {
+  const std::string made =
+      in_lanes(function("if (x > 0.0f) {\n  float y = x;\n  y *= 2.0f;\n  *o = y;\n}\nreturn x;"));
+  CHECK_THAT(made, Contains("y = (y * 2.0f);"));
+  CHECK_THAT(made, Contains("(*o) = select((*o), y, m_2);"));
+}
+
+TEST_CASE("features are the preprocessor's") {
+  const std::string made = in_lanes(function(
+      "float y = x;\nif (HAS_MEDIA && x > 1.0f) y = 2.0f;\nif (HAS_FOG || !HAS_SKY) y = 3.0f;\nreturn y;"));
+  CHECK_THAT(made, Contains("#if HAS_MEDIA\n"));
+  CHECK_THAT(made, Contains("#if (HAS_FOG || !HAS_SKY)\n"));
+  const std::string members = in_lanes("typedef struct P { float a; HAVING(HAS_FOG) float b; } P;\n" +
+                                       function("P p; p.a = x; return p.a;"));
+  CHECK_THAT(members, Contains("#if HAS_FOG\n  REAL b;\n#endif"));
+}
+
+TEST_CASE("constants of headers keep their names, those of plain files are written out") {
+  const std::string made = in_lanes("#include \"shared/scene.h\"\n#define HALF 0.5f\n" +
+                                    function("return (float)COUNT_SHADOW * HALF * x;"));
+  CHECK_THAT(made, Contains("COUNT_SHADOW"));
+  CHECK_THAT(made, Contains("0.5f"));
+}
+
+TEST_CASE("a function is made anew for each kind of call") {
+  const std::string text = "static inline float twice(float a, float b) { return a + b; }\n" +
+                           function("return twice(x, 1.0f) + twice(x, x) + (float)n * twice(1.0f, 2.0f);");
+  const std::string made = in_lanes(text);
+  CHECK_THAT(made, Contains("REAL twice_vu(REAL a, float b)"));
+  CHECK_THAT(made, Contains("REAL twice(REAL a, REAL b)"));
+  CHECK_THAT(made, Contains("float twice_uu(float a, float b)"));
+}
+
+TEST_CASE("lines are those of the plain file, and the explanation names them") {
+  const std::string text = function("const float y = x * 2.0f;\nreturn y;");
+  CHECK_THAT(in_lanes(text, true),
+             Contains("#line 2 \"plain/t.cl\"\n  const REAL y = (x * 2.0f);\n  return y;"));
+  const std::string told = sundog::spmd::explained("plain/t.cl", [&](const std::string&) { return text; });
+  CHECK_THAT(told, Contains("y varies: line 2: its first value varies"));
+}
+
+TEST_CASE("every plain kernel is made, and expands in its place") {
+  std::size_t files = 0;
+  for (const sundog::EmbeddedKernel& kernel : sundog::embedded_kernels()) {
+    const std::string path(kernel.path);
+    if (!sundog::spmd::is_plain(path) || !path.ends_with(".cl")) continue;
+    ++files;
+    const auto read = [](const std::string& wanted) { return sundog::embedded_kernel(wanted); };
+    CHECK(sundog::spmd::in_lanes(path, read, false) == sundog::spmd::in_lanes(path, read, false));
+  }
+  CHECK(files > 1);
+  const std::string source = sundog::expand_kernel("entry/render_path.cl", {});
+  CHECK_THAT(source, Contains("MASK step_path("));
+  CHECK_THAT(source, Contains("\"plain/pathtracer/bounce.cl\""));
+}
