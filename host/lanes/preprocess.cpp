@@ -153,6 +153,8 @@ class Preprocessor {
     flush();
     const std::string what = words.size() > 1 ? words[1].text : "";
     words.erase(words.begin(), words.begin() + std::min<std::ptrdiff_t>(2, std::ssize(words)));
+    if (what.starts_with("if") && !keeps_names_(*place.file))
+      fail(place, "a plain file is read once, and asks for features by if (HAS_...): #" + what);
     if (what == "if" || what == "ifdef" || what == "ifndef") {
       const bool holds = is_active() && condition(what, words, place);
       open_.push_back({holds, holds});
@@ -209,80 +211,23 @@ class Preprocessor {
     macros_[words[0].text] = std::move(macro);
   }
 
-  // ---- conditions
-  bool condition(const std::string& what, const Tokens& words, const Place& place) {
+  /// `defined(X)` and `!defined(X)`, joined by && or ||, is what headers ask.
+  bool condition(const std::string& what, const Tokens& words, const Place& place) const {
     if (words.empty()) fail(place, "#" + what + " wants a condition");
     if (what != "if") return macros_.contains(words[0].text) == (what == "ifdef");
-    Tokens asked;
+    bool all = true, any = false, joined_by_or = false;
     for (std::size_t i = 0; i < words.size(); ++i) {
-      if (!words[i].is("defined")) {
-        asked.push_back(words[i]);
-        continue;
-      }
-      const bool in_brackets = i + 1 < words.size() && words[i + 1].is("(");
-      const std::size_t name = i + (in_brackets ? 2 : 1);
-      if (name >= words.size()) fail(place, "defined wants a name");
-      Token value = words[i];
-      value.kind = Token::Kind::number;
-      value.text = macros_.contains(words[name].text) ? "1" : "0";
-      asked.push_back(value);
-      i = name + (in_brackets ? 1 : 0);
+      const bool opposite = words[i].is("!");
+      if (opposite) ++i;
+      if (i + 3 >= words.size() || !words[i].is("defined") || !words[i + 1].is("(") || !words[i + 3].is(")"))
+        fail(place, "wanted defined(NAME), or several joined by && or ||");
+      const bool holds = macros_.contains(words[i + 2].text) != opposite;
+      all &= holds;
+      any |= holds;
+      i += 4;
+      if (i < words.size()) joined_by_or = words[i].is("||");
     }
-    Tokens words_left;
-    expand(asked, {}, words_left);
-    std::size_t at = 0;
-    return value_of(words_left, at, 0, place) != 0;
-  }
-
-  static int strength(const std::string& sign) {
-    if (sign == "||") return 1;
-    if (sign == "&&") return 2;
-    if (sign == "==" || sign == "!=") return 3;
-    if (sign == "<" || sign == ">" || sign == "<=" || sign == ">=") return 4;
-    if (sign == "+" || sign == "-") return 5;
-    if (sign == "*" || sign == "/") return 6;
-    return 0;
-  }
-
-  static long long combined(const std::string& sign, long long a, long long b) {
-    if (sign == "||") return a || b;
-    if (sign == "&&") return a && b;
-    if (sign == "==") return a == b;
-    if (sign == "!=") return a != b;
-    if (sign == "<") return a < b;
-    if (sign == ">") return a > b;
-    if (sign == "<=") return a <= b;
-    if (sign == ">=") return a >= b;
-    if (sign == "+") return a + b;
-    if (sign == "-") return a - b;
-    if (sign == "*") return a * b;
-    return b == 0 ? 0 : a / b;
-  }
-
-  static long long value_of(const Tokens& words, std::size_t& at, int least, const Place& place) {
-    if (at >= words.size()) fail(place, "the condition of an #if ends too early");
-    const Token& first = words[at++];
-    long long value = 0;
-    if (first.is("!")) {
-      value = !value_of(words, at, 7, place);
-    } else if (first.is("-")) {
-      value = -value_of(words, at, 7, place);
-    } else if (first.is("(")) {
-      value = value_of(words, at, 0, place);
-      if (at >= words.size() || !words[at].is(")")) fail(place, "the condition of an #if wants a ')'");
-      ++at;
-    } else if (first.kind == Token::Kind::number) {
-      value = std::stoll(first.text, nullptr, 0);
-    } else if (first.kind != Token::Kind::name) {
-      fail(place, fmt::format("'{}' in the condition of an #if", first.text));
-    }
-    while (at < words.size()) {
-      const int strong = strength(words[at].text);
-      if (strong == 0 || strong <= least) break;
-      const std::string sign = words[at++].text;
-      value = combined(sign, value, value_of(words, at, strong, place));
-    }
-    return value;
+    return joined_by_or ? any : all;
   }
 
   // ---- macros

@@ -277,7 +277,7 @@ void Specialisation::assign(const Expression& to, bool value_varies, const Frame
         fail(to.place, fmt::format("'{}' is uniform, but is written a lane at a time", root->name));
       return;
     }
-    masked = writes = true;
+    masked = true;
     return;
   }
   if (value_varies || scatters) make_vary(root, to.place, "what it is set to varies");
@@ -403,7 +403,6 @@ bool Specialisation::call_varies(const Expression& e, const Frames& frames) {
   const Specialisation& called = all_.of(f, vary);
   cost += called.cost;
   masked |= called.masked;
-  writes |= called.writes;
   return called.result_varies;
 }
 

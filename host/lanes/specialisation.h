@@ -44,9 +44,9 @@ class Specialisation {
   std::vector<bool> arguments_of(const Expression& call, const Frames& frames);
 
   const Function& function;
-  std::string name;                                            // of what is made
-  std::vector<bool> given;                                     // which parameters vary
-  bool result_varies = false, masked = false, writes = false;  // writes: through pointers
+  std::string name;         // of what is made
+  std::vector<bool> given;  // which parameters vary
+  bool result_varies = false, masked = false;
   double cost = 0;
   bool divergent_return = false;
   std::set<const Statement*> divergent_break, divergent_continue;

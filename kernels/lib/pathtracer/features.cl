@@ -78,7 +78,7 @@ NEVER_INLINE Features mean_features(const Scene* scene, MediaStack around, MASK 
   Features sum = {none, none};
   REAL weights = (REAL)(0.0f);
   for (u32 k = 0; k < samples; ++k) {
-    const BegunSamples begun = {{x, y, (MASK)((int)k)}, lanes};
+    const BegunSamples begun = {{x, y, (MASK)((int)k), scene->info->seed}, lanes};
     float signs[BATCH];
     SceneRays rays = begun_rays(scene, &begun, samples, around, signs);
     FeatureWalks f = start_features(scene, &begun.at, lanes);
