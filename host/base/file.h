@@ -18,9 +18,9 @@ std::string read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, std::string_view bytes,
                 const std::shared_ptr<Faults>& faults = nullptr);
 
-/// Removes what write_file() calls for `path` have left that were killed on this machine; never what another
+/// Removes what write_file() calls for `named` have left that were killed on this machine; never what another
 /// process is writing.
-void remove_left_over(const std::filesystem::path& path);
+void remove_left_over(const std::filesystem::path& named);
 
 /// Throws IoError when `write_file` would fail for want of a folder or a permission, or by its name: call it
 /// before long work.

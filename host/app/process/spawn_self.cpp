@@ -61,7 +61,10 @@ class SpawnedSelf : public StartedProgram {
 constexpr const char* own_link = "/proc/self/exe";
 
 /// What the kernel was told to start. Relative where the user's shell said so: nothing changes the folder.
-const char* started_file() { return reinterpret_cast<const char*>(::getauxval(AT_EXECFN)); }
+const char* started_file() {
+  return reinterpret_cast<const char*>(
+      ::getauxval(AT_EXECFN));  // NOLINT(performance-no-int-to-ptr): an address
+}
 
 }  // namespace
 

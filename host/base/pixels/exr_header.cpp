@@ -43,8 +43,9 @@ class Walk {
   }
   template <class Number>
   Number number() {
+    const std::string_view bytes = take(sizeof(Number));
     Number value;
-    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    std::memcpy(&value, bytes.data(), bytes.size());
     return value;
   }
   std::size_t left() const { return rest_.size(); }

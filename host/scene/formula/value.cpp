@@ -237,6 +237,7 @@ Value Values::choose(const Value& condition, const Value& a, const Value& b) {
 }
 
 Value Values::each(Op op, const Value& a) {
+  folds |= op == Op::absolute && a.size() > 1;
   require(a.type != ValueType::condition, "a condition is no number");
   Value r = result(a.type, {&a});
   for (std::size_t i = 0; i < static_cast<std::size_t>(r.size()); ++i) r.part[i] = g.apply(op, a.part[i]);

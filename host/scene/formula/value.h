@@ -83,7 +83,7 @@ class Values {
   Graph& g;
   std::vector<DomainGuard> guards;
   bool radial = false;  // a triplex power's slope is the one along z alone
-  bool folds = false;   // a fold, an inversion or a repetition was met
+  bool folds = false;   // a fold, an inversion or a repetition was met; |z| folds too
 
  private:
   friend class Powers;

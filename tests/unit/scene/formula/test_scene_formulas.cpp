@@ -137,6 +137,7 @@ TEST_CASE("only a single map without folds takes the radial derivative by itself
   CHECK(derivative(R"("type": "formula", "map": "z = z ^ 8 + c")") == radial);
   CHECK(derivative(R"("type": "formula", "map": "z = z ^ 8 + c", "derivative": "running")") == running);
   CHECK(derivative(R"f("type": "formula", "map": ["z = boxfold(z, 1)", "z = z ^ 3 + c"])f") == automatic);
+  CHECK(derivative(R"f("type": "formula", "map": ["z = abs(z)", "z = z ^ 3 + c"])f") == automatic);
   CHECK(derivative(R"f("type": "formula", "map": "z = z ^ 2 + vec3(sin(z.x), z.y, z.z) + c")f") == automatic);
   CHECK(derivative(R"("type": "hybrid", "steps": [{"type": "formula", "map": "z = z ^ 3 + c"}])") ==
         automatic);
