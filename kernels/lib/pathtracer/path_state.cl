@@ -11,8 +11,8 @@
 typedef struct PathStates {
   SampledSpectrum throughput;
   SampledSpectrum radiance;  // gathered so far
-  REAL3 from;             // the place that chose the ray's direction, with the density `density`
-  REAL pdf;               // 0: no light that is chosen at surfaces counts twice on this ray
+  REAL3 from;                // the place that chose the ray's direction, with the density `pdf`
+  REAL pdf;                  // 0: no light that is chosen at surfaces counts twice on this ray
   // The factor of the throughput that says nothing of the path's worth: radiance spread by refraction since
   // the camera (squared index by squared index), and paths drawn to guides.
   REAL spread;
