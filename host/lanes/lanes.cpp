@@ -57,12 +57,16 @@ bool is_plain(const std::string& path) { return path.starts_with("plain/"); }
 
 std::string in_lanes(const std::string& path, const ReadFile& read, bool lines) {
   Made made(path, read);
-  std::vector<std::vector<Line>> functions;
+  struct Written {
+    std::string feature;
+    std::vector<Line> lines;
+  };
+  std::vector<Written> functions;
   Writer::Structures used;
   // Writing may ask for structures alone: what is called is known.
   for (Specialisation* s : std::vector(made.specialisations.done())) {
     Writer writer(made.specialisations, *s);
-    functions.push_back(writer.function());
+    functions.push_back({s->function.feature, writer.function()});
     used.insert(writer.structures().begin(), writer.structures().end());
   }
   Text out(lines);
@@ -83,9 +87,11 @@ std::string in_lanes(const std::string& path, const ReadFile& read, bool lines) 
       for (const std::string& line : lines_of) out.add({0, line, s.place});
     }
   }
-  for (const auto& function : functions) {
+  for (const Written& function : functions) {
     out.text += "\n";
-    for (const Line& line : function) out.add(line);
+    if (!function.feature.empty()) out.add({0, "#if " + function.feature, {}});
+    for (const Line& line : function.lines) out.add(line);
+    if (!function.feature.empty()) out.add({0, "#endif", {}});
   }
   return out.text;
 }

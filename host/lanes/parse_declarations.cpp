@@ -307,7 +307,10 @@ void Parser::function() {
       f.is_entry = true;
     else if (at("UNIFORM"))
       f.uniform = true;
-    else if (at("CALLED")) {
+    else if (at("HAVING")) {
+      at_ += 2;
+      f.feature = name("a feature");
+    } else if (at("CALLED")) {
       at_ += 2;
       f.lanes = name("a function");
     } else if (!at("static") && !at("NEVER_INLINE"))
@@ -323,9 +326,9 @@ void Parser::function() {
   const bool plain = is_plain_(*f.place.file);
   f.uniform |= !plain;
   Function& kept = out_.functions.emplace_back(std::move(f));
-  const auto [known, is_new] = out_.function_of.try_emplace(kept.name, &kept);
-  if (!is_new && (known->second->body || at("{")))
-    fail(kept.place, fmt::format("'{}' is there already", kept.name));
+  const Function*& known = out_.function_of[kept.name];  // a prototype may stand before the text
+  if (known && (known->body || !at("{"))) fail(kept.place, fmt::format("'{}' is there already", kept.name));
+  known = &kept;
   if (!at("{")) {
     want(";");
   } else if (!plain) {

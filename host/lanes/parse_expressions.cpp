@@ -44,6 +44,10 @@ ExpressionPtr Parser::converted(ExpressionPtr e, const Type& type) const {
     if (!same) fail(e->place, fmt::format("wanted {}, found {}", name_of(type), name_of(own)));
     return e;
   }
+  if (type.is_table() && e->kind == Kind::number && e->text == "0") {  // none
+    e->type = type;
+    return e;
+  }
   const bool spread = type.is(Type::Kind::vector) && own.is_number();
   if (!spread && !(own.is_number() && type.is_number()) &&
       !(own.is(Type::Kind::array) && type.is(Type::Kind::pointer)))

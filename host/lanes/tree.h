@@ -129,7 +129,8 @@ struct Function {
   std::string name, lanes;  // `lanes`: what the hand-written one is called
   Type result;
   std::vector<const Variable*> parameters;
-  StatementPtr body;                                                              // none: written by hand
+  std::string feature;  // it is there only with it; empty: always
+  StatementPtr body;    // none: written by hand
   bool is_inline = false, is_entry = false, takes_mask = false, uniform = false;  // uniform: gives one value
   Place place;
 };

@@ -3,6 +3,8 @@
 
 CALLED(dot3) float dot(float3 a, float3 b);
 CALLED(greatest3) float greatest(float3 a);
+CALLED(length3) float length(float3 a);
+CALLED(along3) float3 along(float3 a, float s, float3 b);  // a + s b
 float real_min(float a, float b);
 float real_max(float a, float b);
 

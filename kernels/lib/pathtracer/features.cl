@@ -65,8 +65,8 @@ NEVER_INLINE MASK step_features(const Scene* scene, FeatureWalks* f, SceneRays* 
   f->tint = select3(f->tint, at_most_one3(multiply3(f->tint, sample.weight)), follows);
   const MASK free = cut_away(&at.bsdf, &lobes.split, follows) & may_cross(rays);
   paths->depth -= follows & ~free;
-  leave_surfaces(scene, &met, &at, &sample, MASK_OF(dot3(at.s.ng, sample.wi) < 0.0f) & follows, free, follows,
-                 rays);
+  leave_surface(scene, &met, &at, &sample, MASK_OF(dot3(at.s.ng, sample.wi) < 0.0f) & follows, free & follows,
+                rays, follows);
   return follows;
 }
 

@@ -41,26 +41,7 @@ static inline void join_paths(PathStates* paths, const PathStates* other, MASK l
   join_gathered(paths, other, lanes);
 }
 
-// The rays of `lanes` in the directions that their surfaces sampled. Those of `free` are not there.
-static inline void leave_surfaces(const Scene* scene, const Encounters* met, const Shading* at,
-                                  const BsdfSamples* sample, MASK below, MASK free, MASK lanes,
-                                  SceneRays* rays) {
-  const SurfaceInteractions* s = &at->s;
-  SceneRays child = *rays;
-  start_on_surfaces(scene->info, &child, &met->hit, ~s->entering, lanes);
-  child.t_min = (REAL)(0.0f);
-  child.t_max = (REAL)(INFINITY);
-  child.d = sample->wi;
-  REAL way;
-  const REAL3 outside = along3(leave_relief(s, child.d, &way), s->offset, leaving_normal(s));
-  child.o = select3(outside, points_behind(scene, s, rays->d, below), below);
-  if (any_lane(below)) {
-    start_on_hits(scene->info, &child, &met->hit, s->entering, below);
-    enter_behind(met, rays, below, &child);
-  }
-  cross_further(rays, free, &child);
-  join_rays(rays, &child, lanes);
-}
+#include "plain/pathtracer/leave_surface.cl"
 
 // The hero wavelength decides where surfaces send light. SampledWavelengths part where a dispersing interface
 // transmits or scatters light. Where it mirrors light all of them remain, each with its own reflectance.

@@ -76,25 +76,6 @@ static inline LightSamples choose_one(const Scene* scene, REAL3 p, const FourNum
   return light;
 }
 
-// Shadow rays of `lanes` from the surfaces to the lights. `below`: they leave behind the surface.
-static inline SceneRays rays_to_light(const Scene* scene, const SceneRays* rays, const Encounters* met,
-                                      const Shading* at, const LightSamples* light, MASK below, MASK lanes) {
-  const SurfaceInteractions* s = &at->s;
-  SceneRays to_light = *rays;
-  start_on_surfaces(scene->info, &to_light, &met->hit, ~s->entering, lanes);
-  REAL way;
-  const REAL3 outside = along3(leave_relief(s, light->wi, &way), s->offset, leaving_normal(s));
-  to_light.o = select3(outside, points_behind(scene, s, rays->d, below), below);
-  if (any_lane(below)) {
-    start_on_hits(scene->info, &to_light, &met->hit, s->entering, below);
-    enter_behind(met, rays, below, &to_light);
-  }
-  to_light.d = light->wi;
-  to_light.t_min = (REAL)(0.0f);
-  to_light.t_max = select(light->distance - way, light->distance, below);
-  return to_light;
-}
-
 // The part of `light` that arrives at the ends of shadow rays.
 #if HAS_DISPERSION
 static inline SampledSpectrum arriving_spectrum(const Scene* scene, const SampledWavelengths* w,

@@ -122,31 +122,6 @@ static inline SampledSpectrum carried_color(const PathStates* paths, REAL3 color
   return spectrum_multiply(paths->throughput, spectrum_of(&paths->wavelengths, color));
 }
 
-// The weight of a sample of density `own` where another way finds the same light with density `other`.
-static inline REAL power_heuristic(REAL own, REAL other) {
-  const REAL ratio = other / real_max(own, (REAL)(1e-30f));
-  return 1.0f / fma(ratio, ratio, (REAL)(1.0f));
-}
-
-// The weight of light that a ray has met, which its surface would have chosen with the density `chosen`.
-static inline REAL weight_of_met(const Scene* scene, const PathStates* paths, REAL chosen) {
-  const REAL one = (REAL)(1.0f);
-  const MASK found_twice = MASK_OF(paths->pdf > 0.0f) & MASK_OF(chosen > 0.0f);
-  if (scene->info->light_strategy == STRATEGY_SURFACES) return one;
-  const REAL shared =
-      scene->info->light_strategy == STRATEGY_LIGHTS ? (REAL)(0.0f) : power_heuristic(paths->pdf, chosen);
-  return select(one, shared, found_twice);
-}
-
-// The weight of a light that a surface has chosen with the density `chosen`, which its scattered ray would
-// have met with the density `scattered`; 0: never.
-static inline REAL weight_of_chosen(const Scene* scene, REAL chosen, REAL scattered) {
-  const MASK found_twice = MASK_OF(scattered > 0.0f);
-  const REAL one = (REAL)(1.0f);
-  if (scene->info->light_strategy == STRATEGY_LIGHTS) return one;
-  const REAL shared =
-      scene->info->light_strategy == STRATEGY_SURFACES ? (REAL)(0.0f) : power_heuristic(chosen, scattered);
-  return select(one, shared, found_twice);
-}
+#include "plain/pathtracer/mis.cl"
 
 #endif

@@ -69,7 +69,7 @@ static inline MASK send_on(const Scene* scene, const Encounters* met, const Shad
   const MASK free = cut_away(&at->bsdf, &lobes->split, lanes) & may_cross(rays);
   paths->depth -= lanes & ~free;
   const MASK going = lanes & (free | MASK_OF(paths->depth <= (int)scene->info->max_depth));
-  leave_surfaces(scene, met, at, sample, below, free, going, rays);
+  leave_surface(scene, met, at, sample, going & below, going & free, rays, going);
   return going;
 }
 

@@ -124,7 +124,7 @@ NEVER_INLINE SampledSpectrum light_on_stretch(const Scene* scene, const PathStat
   const LightSamples light = sample_chosen(scene, along3(s->o, at, s->d), u.x, u.y, chosen, lanes, &seen);
   const REAL turned = phase_pdf(s->g, dot3(s->d, light.wi));
   pdf *= light.pdf * chance;
-  const REAL weight = weight_of_chosen(scene, pdf, select(zero, free_pdf(s, at) * turned, seen));
+  const REAL weight = weight_of_chosen(scene, pdf, select(zero, free_pdf(s, at) * turned, seen), lanes);
   const REAL over = select((REAL)(1.0f), (REAL)(M_PI_F), light.delta) * turned * weight / pdf;
   SampledSpectrum possible =
       spectrum_multiply(scattered_at(paths, s, at), spectrum_of(&paths->wavelengths, light.radiance));

@@ -1,6 +1,7 @@
 // One bounce of a path: its ray to the next interface, the light that it meets there, the light of one lamp
 // that the surface chooses, and the ray that continues.
 #include "plain/pathtracer/interface.h"
+#include "plain/pathtracer/met_light.cl"
 
 bool survives(UNIFORM const Scene* scene, PathState* path, int dimension, HERE);
 
@@ -28,7 +29,7 @@ static SampledSpectrum light_of_lamp(UNIFORM const Scene* scene, const PathState
   if (!(spectrum_greatest(possible) >= FLT_MIN && light.distance > 0.0f)) return (SampledSpectrum)(0.0f);
   count(counts, COUNT_SHADOW);
   note_ray(counts);
-  SceneRay to_light = rays_to_light(scene, ray, met, at, &light, below);
+  SceneRay to_light = ray_to_light(scene, ray, met, at, &light, below);
   return arriving_spectrum(scene, &path->wavelengths, &to_light, possible, counts);
 }
 
@@ -68,7 +69,7 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
   else
     count(counts, COUNT_REFLECTION);
   note_ray(counts);
-  leave_surfaces(scene, met, at, &sample, below, free, ray);
+  leave_surface(scene, met, at, &sample, below, free, ray);
   return true;
 }
 
@@ -100,7 +101,8 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   SurfaceShading at;
   shade_hits(scene, ray, &met, &at);
   follow_hero(&path->wavelengths, &at.bsdf);
-  light += path->throughput * spectrum_of(&path->wavelengths, met_surface(scene, path, ray, &met.hit, &at));
+  if (HAS_EMISSION)
+    light += path->throughput * spectrum_of(&path->wavelengths, met_surface(scene, path, ray, &met.hit, &at));
   const bool deep = path->depth > (int)scene->info->max_depth;
   const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
   const bool nothing = (at.bsdf.flags & (int)MATERIAL_TRANSMITS) != 0 && cut_away(&at.bsdf, &lobes.split);

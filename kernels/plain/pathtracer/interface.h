@@ -8,12 +8,13 @@ LANE_VECTOR(SampledSpectrum, SampledSpectrum, spectrum);  // a colour, or wavele
 
 typedef struct LANES(SceneRays, join_rays) {
   float3 o, d;
+  float t_min, t_max;
 } SceneRay;
 typedef struct LANES(BegunRays) {
   int unused;
 } BegunRay;
 typedef struct LANES(Hits) {
-  int instance;
+  int instance, prim;
 } SurfaceHit;
 typedef struct LANES(Faces) {
   int flags;
@@ -25,6 +26,9 @@ typedef struct LANES(Encounters) {
 } Encounter;
 typedef struct LANES(SurfaceInteractions) {
   float3 p, ng, ns;
+  float offset;
+  int instance, material;
+  bool entering;
 } SurfaceInteraction;
 typedef struct LANES(Bsdfs) {
   int flags;
@@ -97,11 +101,20 @@ void forget_glow(SceneRay* ray);
 bool scatter_in_media(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun, SceneRay* ray,
                       const Encounter* met, HERE, bool* going, UNIFORM u32* counts);
 
-// Light that is met.
-SampledSpectrum met_fog(UNIFORM const Scene* scene, const Encounter* met, HERE, PathState* path);
-float3 met_sky(UNIFORM const Scene* scene, const PathState* path, float3 d, HERE);
-float3 met_surface(UNIFORM const Scene* scene, const PathState* path, const SceneRay* ray,
-                   const SurfaceHit* hit, const SurfaceShading* at, HERE);
+// Light that is met, and the chances that it was chosen with.
+float area_light_pdf(UNIFORM __global const Light* light, float3 p, float3 wi, float distance);
+float pdf_in_tree(UNIFORM const Scene* scene, const PathState* path, UNIFORM u32 index, float pdf, HERE);
+float pdf_on_stretch(const PathState* path, UNIFORM __global const Light* light, float pdf);
+float weight_of_met(UNIFORM const Scene* scene, const PathState* path, float chosen, HERE);
+float3 left_by_photons(const PathState* path, float3 light, HERE);
+float3 mapped_emission(const Bsdf* bsdf, float3 light);
+float3 distant_along(UNIFORM const Scene* scene, float3 d, HERE, float* pdf);
+float3 background_along(UNIFORM __global const SceneInfo* info, float3 d);
+float3 hide_environment(UNIFORM const Scene* scene, float3 d, float3 light, bool camera);
+UNIFORM bool sees_environment(UNIFORM const Scene* scene);
+UNIFORM float sun_pdf(UNIFORM __global const Light* sun, UNIFORM float chance);
+bool sees_sun(UNIFORM __global const Light* sun, float3 d, bool camera);
+float clear_of_fog(UNIFORM const Scene* scene, const Encounter* met, HERE);
 SampledSpectrum gather_photons(UNIFORM const Scene* scene, const PathState* path, const SceneRay* ray,
                                const SurfaceShading* at, const LobeSet* lobes, HERE);
 
@@ -121,16 +134,27 @@ float3 narrow_part(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* 
 float terminator(const SurfaceInteraction* s, float3 wi);
 void leave_stretch(PathState* path, HERE);
 void note_gathered(PathState* path, bool specular, float3 narrow, HERE);
-void leave_surfaces(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
-                    const BsdfSample* sample, bool below, bool free, HERE, SceneRay* ray);
+
+// Rays that leave surfaces.
+void start_on_surfaces(UNIFORM __global const SceneInfo* info, SceneRay* ray, const SurfaceHit* hit,
+                       bool inside, HERE);
+void start_on_hits(UNIFORM __global const SceneInfo* info, SceneRay* ray, const SurfaceHit* hit, bool inside,
+                   HERE);
+float3 leave_relief(const SurfaceInteraction* s, float3 wi, float* way);
+float3 leaving_normal(const SurfaceInteraction* s);
+float3 points_behind(UNIFORM const Scene* scene, const SurfaceInteraction* s, float3 d, HERE);
+void enter_behind(const Encounter* met, const SceneRay* ray, HERE, SceneRay* child);
+void cross_further(const SceneRay* before, HERE, SceneRay* ray);
+void leave_surface(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
+                   const BsdfSample* sample, bool below, bool free, SceneRay* ray, HERE);
 
 // Lights that are chosen.
 LightSample choose_one(UNIFORM const Scene* scene, float3 p, const Numbers* u, HERE, bool* seen);
-float weight_of_chosen(UNIFORM const Scene* scene, float chosen, float scattered);
+float weight_of_chosen(UNIFORM const Scene* scene, float chosen, float scattered, HERE);
 float relief_visibility(UNIFORM const Scene* scene, const SurfaceInteraction* s, float3 wi, HERE);
 float walls_visibility(UNIFORM const Scene* scene, const SceneRay* ray, const SurfaceInteraction* s,
                        float3 wi, HERE, UNIFORM u32* counts);
-SceneRay rays_to_light(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met,
-                       const SurfaceShading* at, const LightSample* light, bool below, HERE);
+SceneRay ray_to_light(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met,
+                      const SurfaceShading* at, const LightSample* light, bool below, HERE);
 SampledSpectrum arriving_spectrum(UNIFORM const Scene* scene, const SampledWavelengths* w, SceneRay* ray,
                                   SampledSpectrum light, HERE, UNIFORM u32* counts);

@@ -1,0 +1,41 @@
+// How rays leave surfaces. Photons and features of the denoiser use the same functions.
+#include "plain/pathtracer/interface.h"
+
+// The ray that leaves the surface in the direction d, above it or `below`, behind it. `way`: how far its
+// start is from where the relief lets it go.
+static inline SceneRay leaving_ray(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met,
+                                   const SurfaceShading* at, float3 d, bool below, float* way) {
+  const SurfaceInteraction* s = &at->s;
+  SceneRay child = *ray;
+  start_on_surfaces(scene->info, &child, &met->hit, !s->entering);
+  child.d = d;
+  child.t_min = 0.0f;
+  child.o = along(leave_relief(s, d, way), s->offset, leaving_normal(s));
+  if (below) {
+    child.o = points_behind(scene, s, ray->d);
+    start_on_hits(scene->info, &child, &met->hit, s->entering);
+    enter_behind(met, ray, &child);
+  }
+  return child;
+}
+
+// The ray goes on in the direction that the surface sampled. `free`: the surface is not there.
+ENTRY static inline void leave_surface(UNIFORM const Scene* scene, const Encounter* met,
+                                       const SurfaceShading* at, const BsdfSample* sample, bool below,
+                                       bool free, SceneRay* ray) {
+  float way;
+  SceneRay child = leaving_ray(scene, ray, met, at, sample->wi, below, &way);
+  child.t_max = INFINITY;
+  if (free) cross_further(ray, &child);
+  *ray = child;
+}
+
+// The shadow ray to a light that was chosen.
+ENTRY static inline SceneRay ray_to_light(UNIFORM const Scene* scene, const SceneRay* ray,
+                                          const Encounter* met, const SurfaceShading* at,
+                                          const LightSample* light, bool below) {
+  float way;
+  SceneRay to_light = leaving_ray(scene, ray, met, at, light->wi, below, &way);
+  to_light.t_max = below ? light->distance : light->distance - way;
+  return to_light;
+}

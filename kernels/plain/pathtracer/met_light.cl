@@ -1,0 +1,90 @@
+// Light that the rays of paths meet: what shines on surfaces, the sky, and what lies on the way.
+#include "plain/pathtracer/interface.h"
+
+// The density with which path->from chooses the light `lamp` at the point p, which the ray met in the
+// direction d.
+HAVING(HAS_AREA_LIGHTS)
+static float chosen_pdf(UNIFORM const Scene* scene, const PathState* path, float3 d, float3 p, int lamp) {
+  const float distance = length(p - path->from);
+  float pdf = 0.0f;
+  EACH_ALIKE(int, index, lamp) {
+    __global const Light* light = scene->lights + index;
+    if (light->position.w == 0.0f) {
+      pdf = area_light_pdf(light, path->from, d, distance);
+      pdf = pdf_in_tree(scene, path, (u32)index, pdf);
+      pdf = pdf_on_stretch(path, light, pdf);
+    }
+  }
+  return pdf / (float)scene->info->light_count;
+}
+
+// The light that an instance shows where it was hit: a mesh may have one a triangle.
+HAVING(HAS_AREA_LIGHTS)
+static inline int light_of_instance(UNIFORM const Scene* scene, UNIFORM int index, int prim) {
+  const u32 first = scene->instances[index].light;
+  if (first == NO_LIGHT || scene->lights[first].kind != LIGHT_TRIANGLE) return (int)first;
+  return prim + (int)(first - scene->instances[index].first_prim);
+}
+
+// The surface's light with the weight that it has where it is a light to choose, too.
+HAVING(HAS_AREA_LIGHTS)
+static inline float3 weighed_emission(UNIFORM const Scene* scene, const PathState* path, float3 d,
+                                      const SurfaceHit* hit, const SurfaceShading* at, float3 light) {
+  int lamp = (int)NO_LIGHT;
+  EACH_ALIKE(int, index, at->s.instance) lamp = light_of_instance(scene, index, hit->prim);
+  if (lamp == (int)NO_LIGHT) return light;
+  const float3 left = left_by_photons(path, light);
+  if (!(path->pdf > 0.0f)) return left;
+  return left * weight_of_met(scene, path, chosen_pdf(scene, path, d, at->s.p, lamp));
+}
+
+// What the surface shines by itself, on its outside.
+HAVING(HAS_EMISSION)
+static inline float3 met_surface(UNIFORM const Scene* scene, const PathState* path, const SceneRay* ray,
+                                 const SurfaceHit* hit, const SurfaceShading* at) {
+  if ((at->bsdf.flags & (int)MATERIAL_EMITS) == 0 || !at->s.entering) return (float3)(0.0f);
+  float3 light = (float3)(0.0f);
+  EACH_ALIKE(int, index, at->s.material) light = scene->materials[index].emission.xyz;
+  light = mapped_emission(&at->bsdf, light);
+  if (HAS_AREA_LIGHTS) light = weighed_emission(scene, path, ray->d, hit, at, light);
+  return light;
+}
+
+// What a ray sees that meets nothing: sky_along() with the weight of each part.
+HAVING(HAS_SKY)
+static inline float3 met_lit_sky(UNIFORM const Scene* scene, const PathState* path, float3 d) {
+  const float chance = 1.0f / (float)max(scene->info->light_count, 1u);
+  const bool camera = path->depth == 1;
+  float pdf;
+  float3 light = distant_along(scene, d, &pdf);
+  if (sees_environment(scene)) {
+    light *= weight_of_met(scene, path, pdf_on_stretch(path, 0, pdf * chance));
+    light = hide_environment(scene, d, left_by_photons(path, light), camera);
+  }
+  for (u32 index = 0; index < scene->info->table_lights; ++index) {
+    __global const Light* sun = scene->lights + index;
+    if (sun->kind == LIGHT_SUN) {
+      const float weight = weight_of_met(scene, path, pdf_on_stretch(path, 0, sun_pdf(sun, chance)));
+      const float3 seen = left_by_photons(path, sun->color.xyz);
+      if (sees_sun(sun, d, camera)) light = along(light, weight, seen);
+    }
+  }
+  return light;
+}
+static inline float3 met_sky(UNIFORM const Scene* scene, const PathState* path, float3 d) {
+  if (HAS_SKY)
+    return met_lit_sky(scene, path, d);
+  else
+    return background_along(scene->info, d);
+}
+
+// The world's fog, for rays that were not inside anything: what it adds, and what it takes from all behind
+// it.
+HAVING(HAS_FOG)
+static inline SampledSpectrum met_fog(UNIFORM const Scene* scene, const Encounter* met, PathState* path) {
+  const float clear = clear_of_fog(scene, met);
+  const SampledSpectrum color = spectrum_of(&path->wavelengths, scene->info->fog.xyz);
+  const SampledSpectrum light = path->throughput * (1.0f - clear) * color;
+  path->throughput *= clear;
+  return light;
+}
