@@ -293,7 +293,7 @@ Type Parser::lengthened(Type type) {
   if (length->kind != Expression::Kind::number) fail(where, "the length of an array is a number");
   Type array;
   array.kind = Type::Kind::array;
-  array.length = std::stoi(length->text, nullptr, 0);
+  array.length = std::stoi(length->digits, nullptr, 0);
   array.of = std::make_shared<const Type>(lengthened(std::move(type)));
   return array;
 }

@@ -71,8 +71,13 @@ ExpressionPtr Parser::truth(ExpressionPtr e) const {
 }
 
 ExpressionPtr Parser::expression() {
-  ExpressionPtr to = condition();
-  if (!is_assignment(word().text)) return to;
+  ExpressionPtr to = conditional();
+  if (!is_assignment(word().text)) {
+    const bool steps = to->kind == Kind::unary && (to->text == "++" || to->text == "--");
+    refuse_steps(steps ? *to->of[0] : *to);
+    return to;
+  }
+  refuse_steps(*to);
   Token sign = tokens_[at_++];
   const Place where = sign.place;
   ExpressionPtr value = condition();
@@ -88,7 +93,20 @@ ExpressionPtr Parser::expression() {
   return e;
 }
 
+/// Steps stand by themselves: elsewhere the order in which lanes do them would matter.
+void Parser::refuse_steps(const Expression& e) const {
+  if (e.kind == Kind::unary && (e.text == "++" || e.text == "--"))
+    fail(e.place, fmt::format("'{}' within an expression: write it as a statement", e.text));
+  for (const ExpressionPtr& part : e.of) refuse_steps(*part);
+}
+
 ExpressionPtr Parser::condition() {
+  ExpressionPtr e = conditional();
+  refuse_steps(*e);
+  return e;
+}
+
+ExpressionPtr Parser::conditional() {
   ExpressionPtr asked = binary(0);
   if (!at("?")) return asked;
   const Place where = place();
@@ -139,6 +157,11 @@ ExpressionPtr Parser::combined(const Token& sign, ExpressionPtr a, ExpressionPtr
     type = a->type.kind >= b->type.kind ? a->type : b->type;
     if (type.is(Type::Kind::boolean)) type = whole;
     const bool shifts = sign.is("<<") || sign.is(">>");
+    if (shifts && b->type.is(Type::Kind::boolean)) b = converted(std::move(b), whole);
+    if (shifts && b->type.is(Type::Kind::real)) fail(sign.place, "a shift by a float");
+    if ((a->type.is(Type::Kind::other) || b->type.is(Type::Kind::other)) && a->type.name != b->type.name)
+      fail(sign.place,
+           fmt::format("'{}' of {} and {}: cast them first", sign.text, name_of(a->type), name_of(b->type)));
     if (shifts) type = a->type.is(Type::Kind::boolean) ? whole : a->type;
     a = converted(std::move(a), type);
     if (!shifts) b = converted(std::move(b), type);
@@ -160,7 +183,10 @@ ExpressionPtr Parser::unary() {
   ExpressionPtr of = unary();
   if (sign.is("!")) of = truth(std::move(of));
   Type type = of->type;
-  if (sign.is("-") && type.is(Type::Kind::boolean)) {
+  const bool steps = sign.is("++") || sign.is("--");
+  if (steps && !type.is_whole() && !type.is(Type::Kind::real))
+    fail(sign.place, fmt::format("'{}' of {}", sign.text, name_of(type)));
+  if ((sign.is("-") || sign.is("+") || sign.is("~")) && type.is(Type::Kind::boolean)) {
     of = converted(std::move(of), types_.at("int"));
     type = of->type;
   }
@@ -185,7 +211,7 @@ ExpressionPtr Parser::cast_or_brackets() {
   const Place where = place();
   want("(");
   if (!begins_type()) {
-    ExpressionPtr inner = expression();
+    ExpressionPtr inner = condition();
     want(")");
     return postfix(std::move(inner));
   }
@@ -226,7 +252,7 @@ ExpressionPtr Parser::postfix(ExpressionPtr of) {
     } else if (at("[")) {
       const Place where = place();
       want("[");
-      ExpressionPtr index = expression();
+      ExpressionPtr index = condition();
       want("]");
       if (!of->type.is(Type::Kind::pointer) && !of->type.is(Type::Kind::array))
         fail(where, fmt::format("'[' behind {}", name_of(of->type)));
@@ -237,6 +263,8 @@ ExpressionPtr Parser::postfix(ExpressionPtr of) {
       e->of.push_back(std::move(index));
       of = std::move(e);
     } else if (at("++") || at("--")) {
+      if (!of->type.is_whole() && !of->type.is(Type::Kind::real))
+        fail(place(), fmt::format("'{}' of {}", word().text, name_of(of->type)));
       ExpressionPtr e = made(Kind::unary, of->type, place());
       e->text = word().text;
       e->postfix = true;
@@ -297,15 +325,17 @@ ExpressionPtr Parser::number() {
                          (!hex && text.find_first_of("eE") != std::string::npos) ||
                          (hex && text.find_first_of("pP") != std::string::npos);
   const char last = text.back();
+  const bool is_large = hex && !has_point && std::stoull(text, nullptr, 16) > 0x7FFFFFFFull;
   if (has_point && last != 'f' && last != 'F')
     fail(token.place, fmt::format("{} is a double: write {}f", text, text));
-  const bool natural = !has_point && (last == 'u' || last == 'U');
+  const bool natural = is_large || (!has_point && (last == 'u' || last == 'U'));
   ExpressionPtr e = made(Kind::number,
                          types_.at(has_point ? "float"
                                    : natural ? "uint"
                                              : "int"),
                          token.place);
   e->text = token.macro.empty() ? text : token.macro;
+  e->digits = text;
   return e;
 }
 
@@ -404,6 +434,8 @@ ExpressionPtr Parser::built_in(const Token& called, std::vector<ExpressionPtr> g
     type = types_.at(found->second.second);
     if (!given.empty() && !found->second.first.empty())
       given[0] = converted(std::move(given[0]), types_.at(found->second.first));
+    if (!given.empty() && given[0]->type.is(Type::Kind::boolean))
+      given[0] = converted(std::move(given[0]), types_.at("int"));
   } else if (const auto wholes = of_wholes.find(called.text); whole && wholes != of_wholes.end()) {
     wanted = wholes->second;
     const bool natural =
@@ -431,6 +463,10 @@ ExpressionPtr Parser::initial(const Type& type) {
 
 ExpressionPtr Parser::list(const Type& type) {
   ExpressionPtr e = made(Kind::list, type, place());
+  if (type.is(Type::Kind::structure))
+    for (const Member& m : type.structure->members)
+      if (!m.feature.empty())
+        fail(place(), fmt::format("a list for a {}, some of whose members come with features", type.name));
   want("{");
   std::size_t i = 0;
   for (; !take("}"); ++i) {

@@ -49,6 +49,9 @@ const Variable* Parser::declare(std::string named, Type type, const Place& where
   v.name = std::move(named);
   v.type = std::move(type);
   v.place = where;
+  const std::size_t stem = v.name.find_last_not_of("0123456789");
+  if (stem + 1 < v.name.size() && v.name[stem] == '_')
+    fail(where, fmt::format("'{}': names that end in _ and a number are the translator's", v.name));
   for (const auto& scope : scopes_)
     if (scope.contains(v.name)) fail(where, fmt::format("'{}' hides another one", v.name));
   const Variable& kept = out_.variables.emplace_back(std::move(v));
@@ -98,6 +101,8 @@ StatementPtr Parser::declared() {
     Type type = pointed(base);
     std::string named = name("a variable");
     type = lengthened(std::move(type));
+    if (type.is_own_pointer() && !type.constant)
+      fail(where, "a pointer to what may be set is a parameter alone");
     ExpressionPtr value;
     if (take("=")) value = initial(type);
     s->variables.push_back(declare(std::move(named), std::move(type), where));

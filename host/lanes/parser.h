@@ -54,6 +54,8 @@ class Parser {
   // Expressions (parse_expressions.cpp).
   ExpressionPtr expression();
   ExpressionPtr condition();
+  ExpressionPtr conditional();
+  void refuse_steps(const Expression& e) const;
   ExpressionPtr binary(int least);
   ExpressionPtr combined(const Token& sign, ExpressionPtr a, ExpressionPtr b);
   ExpressionPtr unary();

@@ -32,6 +32,7 @@ std::string without_comments(std::string text) {
       const std::size_t end = std::min(text.find("*/", i + 2), text.size() - 2) + 2;
       for (; i < end; ++i)
         if (text[i] != '\n' && !(text[i] == '\\' && text[i + 1] == '\n')) text[i] = ' ';
+      --i;  // another comment may follow at once
     }
   }
   return text;

@@ -72,6 +72,7 @@ Specialisation::Specialisation(Specialisations& all, const Function& f, std::vec
   }
   if (differs) name += "_" + letters;
   masked = f.is_entry;
+  result_varies = f.is_entry && !f.uniform && !f.result.is(Type::Kind::nothing);
   int at = 0;
   number(*f.body, at);
   find_only_result();
@@ -101,9 +102,11 @@ void Specialisation::find_only_result() {
       if (inner) self(self, *inner);
   };
   visit(visit, *function.body);
-  if (all.size() != 1 || !*all.begin()) return;
-  if (std::ranges::find(function.parameters, *all.begin()) == function.parameters.end())
-    only_result = *all.begin();
+  if (all.size() != 1) return;
+  for (const auto& part : function.body->body)  // in a block within, its name would not be known at the end
+    if (std::ranges::find(part->variables, *all.begin()) != part->variables.end() &&
+        part->kind == Statement::Kind::declare)
+      only_result = *all.begin();
 }
 
 void Specialisation::analyse() {
@@ -113,6 +116,8 @@ void Specialisation::analyse() {
     cost = 0;
     Frames frames;
     statement(*function.body, frames);
+    if (divergent_return && only_result)
+      make_vary(only_result, only_result->place, "lanes return it one after the other");
     if (before ==
         std::tuple(varying_, result_varies, masked, divergent_break, divergent_continue, divergent_return))
       return;
@@ -233,7 +238,8 @@ void Specialisation::leave(const Statement& s, const Frames& frames) {
   bool divergent = false;
   for (auto f = frames.rbegin(); f != frames.rend(); ++f) {
     if (f->kind == Frame::Kind::alike) fail(s.place, "break or continue out of EACH_ALIKE");
-    divergent |= f->kind == Frame::Kind::branch && f->divergent;
+    divergent |= f->divergent && (f->kind == Frame::Kind::branch ||
+                                  (f->kind == Frame::Kind::round && s.kind == Statement::Kind::leave_loop));
     if (f->kind != Frame::Kind::loop) continue;
     if (divergent)
       (s.kind == Statement::Kind::leave_loop ? divergent_break : divergent_continue).insert(f->node);
@@ -270,14 +276,26 @@ void Specialisation::assign(const Expression& to, bool value_varies, const Frame
   while (place->kind == Kind::member || place->kind == Kind::component) place = place->of[0].get();
   const bool scatters = place->kind == Kind::index && varies(*place->of[1], frames);
   masked |= scatters;
+  const bool parted = divergent_return || std::ranges::any_of(frames, &Frame::divergent);
+  for (const Expression* at = &to; at->kind == Kind::member; at = at->of[0].get()) {
+    const Type& whole = at->arrow ? *at->of[0]->type.of : at->of[0]->type;
+    if (whole.structure->member(at->text)->uniform && (value_varies || parted))
+      fail(at->place, fmt::format("'{}' is uniform, but is set a lane at a time", at->text));
+  }
+  const bool has_uniform =
+      to.type.is(Type::Kind::structure) && std::ranges::any_of(to.type.structure->members, &Member::uniform);
+  if (has_uniform && (through || !between(root, frames).empty()))
+    fail(to.place, fmt::format("a {} has uniform members, but is set a lane at a time", to.type.name));
   if (through) {
     if (root->type.is_table()) fail(to.place, "tables are only read");
     if (root->uniform) {
-      if (value_varies || scatters || std::ranges::any_of(frames, &Frame::divergent))
+      writes_uniform = true;
+      if (value_varies || scatters || parted)
         fail(to.place, fmt::format("'{}' is uniform, but is written a lane at a time", root->name));
       return;
     }
     masked = true;
+    if (value_varies || scatters || parted) make_vary(root, to.place, "what is written there varies");
     return;
   }
   if (value_varies || scatters) make_vary(root, to.place, "what it is set to varies");
@@ -325,6 +343,9 @@ bool Specialisation::varies(const Expression& e, const Frames& frames) {
       assign(*e.of[0], v, frames);
       return v;
     }
+    case Kind::binary:
+    case Kind::choose:
+      return parts_vary(e, frames);
     case Kind::call:
       return call_varies(e, frames);
     case Kind::any:
@@ -337,6 +358,21 @@ bool Specialisation::varies(const Expression& e, const Frames& frames) {
       return v;
     }
   }
+}
+
+/// What stands right of &&, || and ? is computed for the lanes that ask for it.
+bool Specialisation::parts_vary(const Expression& e, const Frames& frames) {
+  const bool first = varies(*e.of[0], frames);
+  bool v = first || is_by_hand(e.type);
+  Frames inner = frames;
+  if (first && (e.kind == Kind::choose || joins(e.text)))
+    inner.push_back({Frame::Kind::branch, nullptr, 0, true, ""});
+  for (std::size_t i = 1; i < e.of.size(); ++i) {
+    const bool part = varies(*e.of[i], inner);
+    masked |= part && i == 1 && (e.text == "/" || e.text == "%") && e.type.is_whole();
+    v |= part;
+  }
+  return v;
 }
 
 std::vector<bool> Specialisation::arguments_of(const Expression& call, const Frames& frames) {
@@ -401,6 +437,12 @@ bool Specialisation::call_varies(const Expression& e, const Frames& frames) {
     if (is_own_pointer(parameters[i]) && vary[i] && !varies(root_of(*e.of[i]).variable))
       make_vary(root_of(*e.of[i]).variable, e.place, fmt::format("{} takes it with what varies", f.name));
   const Specialisation& called = all_.of(f, vary);
+  if (parted && called.writes_uniform)
+    fail(e.place, fmt::format("{} writes what is uniform, but is called a lane at a time", f.name));
+  writes_uniform |= called.writes_uniform;
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (is_own_pointer(parameters[i]) && called.varies(parameters[i]))
+      make_vary(root_of(*e.of[i]).variable, e.place, fmt::format("{} writes what varies to it", f.name));
   cost += called.cost;
   masked |= called.masked;
   return called.result_varies;

@@ -46,7 +46,7 @@ class Specialisation {
   const Function& function;
   std::string name;         // of what is made
   std::vector<bool> given;  // which parameters vary
-  bool result_varies = false, masked = false;
+  bool result_varies = false, masked = false, writes_uniform = false;
   double cost = 0;
   bool divergent_return = false;
   std::set<const Statement*> divergent_break, divergent_continue;
@@ -64,6 +64,7 @@ class Specialisation {
   void leave(const Statement& s, const Frames& frames);
   void assign(const Expression& to, bool value_varies, const Frames& frames);
   void make_vary(const Variable* v, const Place& place, const std::string& what);
+  bool parts_vary(const Expression& e, const Frames& frames);
   bool call_varies(const Expression& e, const Frames& frames);
   bool hand_written_varies(const Expression& e, const std::vector<bool>& vary, const Frames& frames);
   bool pointee_varies(const Expression& e) const;

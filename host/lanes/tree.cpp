@@ -67,6 +67,7 @@ ExpressionPtr copy_of(const Expression& e) {
   copy->kind = e.kind;
   copy->type = e.type;
   copy->text = e.text;
+  copy->digits = e.digits;
   copy->arrow = e.arrow;
   copy->postfix = e.postfix;
   copy->implicit = e.implicit;

@@ -86,7 +86,7 @@ struct Expression {
   };
   Kind kind = Kind::number;
   Type type;
-  std::string text;
+  std::string text, digits;  // digits: of a number whose text is a constant's name
   bool arrow = false, postfix = false, implicit = false;
   const Variable* variable = nullptr;
   const Function* function = nullptr;

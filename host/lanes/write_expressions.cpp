@@ -72,7 +72,7 @@ bool Writer::varies(const Expression& e) {
 std::string Writer::value(const Expression& e) { return varies(e) ? varying(e) : plain(e); }
 
 std::string Writer::lanes(const Expression& e) {
-  if (varies(e)) return varying(e);
+  if (varies(e) || e.kind == Kind::list) return varying(e);
   const Expression* number = spread_number(e);
   if (number && e.type.form->parts == 0)
     return fmt::format("{}({})", e.type.form->function("all"), plain(*number));
@@ -121,7 +121,9 @@ std::string Writer::plain(const Expression& e) {
     case Kind::index:
       return fmt::format("{}[{}]", part(0), part(1));
     case Kind::unary:
-      return e.postfix ? part(0) + e.text : e.text + part(0);
+      if (e.postfix) return part(0) + e.text;
+      return e.text == "&" || e.text == "!" || e.text.size() == 2 ? e.text + part(0)
+                                                                  : fmt::format("({}{})", e.text, part(0));
     case Kind::binary:
       return fmt::format("({} {} {})", part(0), e.text, part(1));
     case Kind::assign:
@@ -171,11 +173,21 @@ std::string Writer::under(const std::string& mask, const Write& write) {
   return text;
 }
 
+/// Whether computing e sets variables.
+bool Writer::writes(const Expression& e) const {
+  if (e.kind == Kind::call && e.function)
+    for (const Variable* p : e.function->parameters)
+      if (p->type.is_own_pointer() && !p->type.constant) return true;
+  return std::ranges::any_of(e.of, [&](const ExpressionPtr& part) { return writes(*part); });
+}
+
 /// Whether e must not be computed in lanes that do not ask for it.
 bool Writer::is_guarded(const Expression& e) {
   if (e.kind == Kind::index && varies(*e.of[1])) return true;
   if (e.kind == Kind::member && is_gathered(e)) return true;
   if (e.kind == Kind::any) return true;
+  if (e.kind == Kind::binary && (e.text == "/" || e.text == "%") && e.type.is_whole() && varies(*e.of[1]))
+    return true;
   if (e.kind == Kind::call && e.function) {
     if (!e.function->body && e.function->takes_mask) return true;
     if (e.function->body && all_.of(*e.function, s_.arguments_of(e, frames_)).masked) return true;
@@ -296,7 +308,7 @@ std::string Writer::varying_unary(const Expression& e) {
   const Expression& of = *e.of[0];
   if (e.text == "-" && e.type.is(Type::Kind::vector))
     return fmt::format("{}({})", e.type.form->function("negate"), lanes(of));
-  if (e.text == "-" || e.text == "~") return e.text + lanes(of);
+  if (e.text == "-" || e.text == "~") return fmt::format("({}{})", e.text, lanes(of));
   if (e.text == "+") return lanes(of);
   if (e.text == "*") return fmt::format("(*{})", varying(of));
   if (e.text == "&") return "&" + place_of(of);
@@ -346,7 +358,7 @@ std::string Writer::varying_choice(const Expression& e) {
   } else {
     mask = mask_of(asked);
   }
-  if (!is_guarded(a) && !is_guarded(b)) {
+  if (!is_guarded(a) && !is_guarded(b) && !writes(asked)) {
     const std::string second = lanes(b);
     return selected(e.type, second, lanes(a), mask, e.place);
   }
@@ -375,7 +387,15 @@ std::string Writer::mask_of(const Expression& e) {
   }
   if (e.kind == Kind::binary && joins(e.text)) {
     const char sign = e.text[0];
-    if (!is_guarded(*e.of[1])) {
+    if (!varies(*e.of[0])) {  // the second is asked only where C asks it
+      const std::size_t at = out_.size();
+      const std::string first = plain(*e.of[0]), second = mask_of(*e.of[1]);
+      if (out_.size() == at)
+        return sign == '&' ? fmt::format("({} ? {} : NO_LANES)", first, second)
+                           : fmt::format("({} ? ALL_LANES : {})", first, second);
+      out_.resize(at);
+    }
+    if (!is_guarded(*e.of[1]) && !writes(*e.of[0])) {
       const std::string first = mask_of(*e.of[0]);
       return fmt::format("({} {} {})", first, sign, mask_of(*e.of[1]));
     }
@@ -390,9 +410,8 @@ std::string Writer::mask_of(const Expression& e) {
     return fmt::format("MASK_OF({} != 0)", lanes(*e.of[0]));
   }
   if (e.kind == Kind::choose) {
-    const std::string asked = mask_of(*e.of[0]);
-    if (is_guarded(*e.of[1]) || is_guarded(*e.of[2])) return varying_choice(e);
-    const std::string otherwise = mask_of(*e.of[2]);
+    if (is_guarded(*e.of[1]) || is_guarded(*e.of[2]) || writes(*e.of[0])) return varying_choice(e);
+    const std::string asked = mask_of(*e.of[0]), otherwise = mask_of(*e.of[2]);
     return fmt::format("select({}, {}, {})", otherwise, mask_of(*e.of[1]), asked);
   }
   return varying(e);

@@ -49,6 +49,8 @@ void Writer::loop(const Statement& s) {
                            std::make_move_iterator(out_.end()));
   out_.resize(begin);
   const std::string step = s.expressions[1] ? computed(*s.expressions[1]) : "";
+  if (out_.size() != begin)
+    fail(s.expressions[1]->place, "the step of a loop is simple: put this into its body");
   std::erase(tests, "true");
 
   const bool asks_later = is_do && (!before.empty() || rounds);

@@ -30,6 +30,8 @@ std::string Writer::gather(const Expression& e, int extra, bool whole) {
     return fmt::format("real{}({})", e.type.form->parts, all);
   }
   const Type::Kind part = e.type.is(Type::Kind::vector) ? e.type.part : e.type.kind;
+  if (e.type.is(Type::Kind::vector) && e.type.form->parts == 0)
+    fail(e.place, fmt::format("a {} is in no table", e.type.name));
   int offset = 4 * extra, stride = 0;
   std::string table, index;
   for (const Expression* at = &e; stride == 0;) {
@@ -50,7 +52,7 @@ std::string Writer::gather(const Expression& e, int extra, bool whole) {
       index = index.empty() ? more : fmt::format("({} + {})", index, more);
       stride = size_of(*base.type.of);
     } else if (at->kind == Kind::index && at->of[1]->kind == Kind::number) {
-      offset += std::stoi(at->of[1]->text, nullptr, 0) * size_of(at->type);
+      offset += std::stoi(at->of[1]->digits, nullptr, 0) * size_of(at->type);
     } else {
       fail(at->place, "a table is read at a place that varies by an index of the table alone");
     }
@@ -96,7 +98,7 @@ std::string Writer::call(const Expression& e) {
   for (std::size_t i = 0; i < e.of.size(); ++i) {
     const Expression& given = *e.of[i];
     const std::string text = given.type.is_own_pointer() || given.type.is(Type::Kind::array) ? pointed(given)
-                             : vary[i]                                                       ? lanes(given)
+                             : vary[i] || called.varies(e.function->parameters[i])           ? lanes(given)
                                                                                              : plain(given);
     all += (all.empty() ? "" : ", ") + text;
   }
@@ -136,6 +138,8 @@ std::string Writer::argument(const Expression& e, const Variable& parameter, boo
 }
 
 std::string Writer::pointed(const Expression& e) {
+  for (const Expression* at = &e; !at->of.empty(); at = at->of[0].get())
+    if (at->kind == Kind::index && varies(*at->of[1])) fail(at->place, "a pointer to an element that varies");
   if (e.kind == Kind::unary && e.text == "&") return "&" + place_of(*e.of[0]);
   return place_of(e);
 }

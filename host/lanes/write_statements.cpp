@@ -160,6 +160,13 @@ void Writer::block(const std::vector<const Statement*>& all, bool in_loop) {
   }
 }
 
+/// Whether this place is reached several times.
+bool Writer::comes_again() const {
+  return !all_loops_.empty() || std::ranges::any_of(frames_, [](const Frame& f) {
+    return f.kind == Frame::Kind::alike && f.divergent;
+  });
+}
+
 const Writer::Loop* Writer::divergent_loop() const { return loops_.empty() ? nullptr : &loops_.back(); }
 std::string Writer::alive() const { return loops_.empty() ? "m_" : loops_.back().going; }
 
@@ -179,7 +186,10 @@ void Writer::declaration(const Variable& v, const Expression* first) {
   if (vary && v.type.is_table()) {
     if (!first) fail(v.place, "a pointer without a place");
     const auto [table, index] = table_and_index(*first);
-    tables_[&v] = table;
+    const std::string kept = fresh("table");
+    line(fmt::format("{} {} = {};", type_text(v.type, false), kept, table));
+    if (index.empty()) fail(v.place, "a pointer that varies is a table and an index from the beginning");
+    tables_[&v] = kept;
     return line(fmt::format("const MASK {} = {};", v.name, index));
   }
   const bool constant = v.type.constant && !v.type.is(Type::Kind::pointer) && first;
@@ -219,7 +229,9 @@ std::string Writer::assigned(const Expression& e) {
 
 std::string Writer::stepped(const Expression& e) {
   const Expression& of = *e.of[0];
-  if (!varies(of)) return plain(e);
+  if (!varies(of) && !(of.kind == Kind::index && varies(*of.of[1]))) return plain(e);
+  if (of.kind == Kind::index && varies(*of.of[1]))
+    return scatter(of, fmt::format("({} {} 1)", lanes(of), e.text[0]));
   const std::string place = place_of(of);
   const auto [root, through] = s_.root_of(of);
   if (of.type.is(Type::Kind::integer) && (through || !s_.between(root, frames_).empty()))
@@ -233,7 +245,7 @@ std::string Writer::store(const Expression& to, const std::string& value) {
   const std::string place = place_of(to);
   std::vector<const Frame*> divergent = s_.between(root, frames_);
   std::string mask = mask_;
-  const bool is_result = root == s_.only_result && s_.divergent_return && (returned_ || !all_loops_.empty());
+  const bool is_result = root == s_.only_result && s_.divergent_return && (returned_ || comes_again());
   if (!through && !is_result) {
     if (divergent.empty()) return fmt::format("{} = {}", place, value);
     if (divergent.size() == 1 && divergent[0] == &frames_.back() && !divergent[0]->only.empty())
@@ -324,7 +336,8 @@ void Writer::leave(const Statement& s) {
   bool divergent = false;
   const Frame* loop = nullptr;
   for (auto f = frames_.rbegin(); f != frames_.rend() && !loop; ++f) {
-    divergent |= f->kind == Frame::Kind::branch && f->divergent;
+    divergent |=
+        f->divergent && (f->kind == Frame::Kind::branch || (f->kind == Frame::Kind::round && breaks));
     if (f->kind == Frame::Kind::loop) loop = &*f;
   }
   const Loop& l = *std::ranges::find(all_loops_, loop->node, &Loop::node);
@@ -349,7 +362,7 @@ void Writer::give(const Statement& s) {
     if (!parted) return line(fmt::format("return {};", s_.only_result->name));
   } else if (gives) {
     const std::string value = lanes(*s.expressions[0]);
-    line(!returned_ && all_loops_.empty()
+    line(!returned_ && !comes_again()
              ? fmt::format("result_ = {};", value)
              : fmt::format("result_ = {};", selected(type, "result_", value, mask_, s.place)));
   }

@@ -60,6 +60,7 @@ class Writer {
   std::string simple(const Expression& e);  // may be written several times
   std::string under(const std::string& mask, const Write& write);
   bool is_guarded(const Expression& e);
+  bool writes(const Expression& e) const;
 
   // Memory and calls (write_memory.cpp).
   bool is_gathered(const Expression& e);
@@ -89,6 +90,7 @@ class Writer {
   void give(const Statement& s);
   void each_alike(const Statement& s);
   void end_early(const std::vector<const Statement*>& rest, const Statement& behind);
+  bool comes_again() const;
   const Loop* divergent_loop() const;
   std::string alive() const;
   double weight(const Statement& s);

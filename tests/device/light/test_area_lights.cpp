@@ -49,7 +49,7 @@ __kernel void run(__global const Lit* in, __global Estimate* out, u32 count) {
     const float u_x = ((float)(k % SIDE) + unit_float(hash_u32(2u * k + 77u * i))) / SIDE;
     const float u_y = ((float)(k / SIDE) + unit_float(hash_u32(2u * k + 1u + 77u * i))) / SIDE;
     const LightSamples s = sample_light(&scene, 0, p, u_x, u_y, ALL_LANES);
-    const float value = s.radiance.x * max(dot3(s.wi, n), 0.0f) / s.density;
+    const float value = s.radiance.x * max(dot3(s.wi, n), 0.0f) / s.pdf;
     sum += value;
     squares += value * value;
     float area;
@@ -61,7 +61,7 @@ __kernel void run(__global const Lit* in, __global Estimate* out, u32 count) {
     place_squares += sent * sent;
     if (s.radiance.x == 0.0f) continue;
     const float density = area_light_pdf(&in[i].light, p, s.wi, s.distance);
-    error = max(error, fabs(density / s.density - 1.0f));
+    error = max(error, fabs(density / s.pdf - 1.0f));
   }
   const float mean = sum / (SIDE * SIDE);
   out[i].mean = mean;

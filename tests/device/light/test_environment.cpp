@@ -55,7 +55,7 @@ __kernel void draw(__global const Environment* environments, __global const floa
   for (u32 i = 0; i < LANES; ++i) {
     out[2u * (first + i)] = (float4)(REAL_LANE(density, i), REAL_LANE(seen, i), REAL_LANE(d.y, i), 0.0f);
     out[2u * (first + i) + 1u] =
-        (float4)(REAL_LANE(s.density, i), REAL_LANE(again, i), REAL_LANE(s.radiance.x, i) / REAL_LANE(s.density, i),
+        (float4)(REAL_LANE(s.pdf, i), REAL_LANE(again, i), REAL_LANE(s.radiance.x, i) / REAL_LANE(s.pdf, i),
                  REAL_LANE(s.wi.y, i));
   }
 }

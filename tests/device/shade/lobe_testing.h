@@ -66,7 +66,7 @@ __kernel void run(__global const Material* materials, __global const Medium* med
   const float3 u = convert_float3(turns >> 8) * (1.0f / 16777216.0f);
   const BsdfSamples s = sample_lobes(&scene, &bsdf, &lobes, wo, u.x, u.y, u.z, ALL_LANES);
   const bool draws = dot3(given, given) == 0.0f;
-  REAL density = s.density;
+  REAL density = s.pdf;
   const REAL3 value = draws ? s.weight : bsdf_scatter(&scene, &bsdf, &lobes, wo, given, ALL_LANES, &density);
   const REAL3 wi = draws ? s.wi : given;
   __global float* to = out + 8u * i;

@@ -32,7 +32,7 @@ __kernel void draw(__global const Material* materials, __global const Medium* me
   const FourNumbers u = chosen_lanes(&at, 0, true, true);
   const BsdfSamples s = bsdf_sample(&scene, &bsdf, wo, u.x, u.y, u.z, ALL_LANES);
   __global float* to = out + 8u * i;
-  to[0] = s.wi.x; to[1] = s.wi.y; to[2] = s.wi.z; to[3] = s.density;
+  to[0] = s.wi.x; to[1] = s.wi.y; to[2] = s.wi.z; to[3] = s.pdf;
   to[4] = s.weight.x; to[5] = s.weight.y; to[6] = s.weight.z; to[7] = s.specular ? 1.0f : 0.0f;
 }
 )";
