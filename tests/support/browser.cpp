@@ -68,7 +68,7 @@ Browser::Browser(int width, int height) : driver_({"chromedriver", "--port=0"}, 
                        {"goog:chromeOptions", options},
                        {"goog:loggingPrefs", {{"browser", "ALL"}}}};
   session_ = command("POST", "", {{"capabilities", {{"alwaysMatch", wanted}}}})["sessionId"];
-  command("POST", "/timeouts", {{"script", 60000}});
+  command("POST", "/timeouts", {{"script", 150000}});
   resize(width, height);
 }
 

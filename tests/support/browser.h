@@ -25,7 +25,7 @@ class Browser {
   /// Runs the body of an async function in the page; its value. What it throws becomes std::runtime_error.
   nlohmann::json run(const std::string& script, const nlohmann::json& arguments = nlohmann::json::array());
   /// Waits until the script's value is true.
-  void wait_until(const std::string& script, double seconds = 30);
+  void wait_until(const std::string& script, double seconds = 120);
   /// Moves the mouse over the page, in its pixels: down at the first point, up at the last; one point is a
   /// click.
   void drag(const std::vector<std::pair<int, int>>& points, const std::string& modifier = "");

@@ -31,7 +31,7 @@ struct Viewer {
   json run(const std::string& script, const json& arguments = json::array()) {
     return browser.run(viewer_prelude + script, arguments);
   }
-  void wait(const std::string& script, double seconds = 30) {
+  void wait(const std::string& script, double seconds = 120) {
     browser.wait_until(viewer_prelude + script, seconds);
   }
   void settle() { wait("return settled()"); }
