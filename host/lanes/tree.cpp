@@ -57,6 +57,20 @@ int offset_of(const Structure& structure, const std::string& name) {
   return at;
 }
 
+bool is_own_pointer(const Variable* v) { return v->type.is_own_pointer() && !v->uniform; }
+
+bool is_by_hand(const Type& type) {
+  if (type.is(Type::Kind::array)) return is_by_hand(*type.of);
+  return type.is(Type::Kind::structure) && type.structure->by_hand;
+}
+
+std::vector<const Variable*> taken(const Function& f) {
+  std::vector<const Variable*> all;
+  for (const Variable* p : f.parameters)
+    if (!p->here) all.push_back(p);
+  return all;
+}
+
 bool compares(const std::string& sign) {
   return sign == "<" || sign == ">" || sign == "<=" || sign == ">=" || sign == "==" || sign == "!=";
 }

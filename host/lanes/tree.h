@@ -143,6 +143,13 @@ struct Program {
   std::map<std::string, const Function*> function_of;
 };
 
+/// A parameter that is written through, or read, behind a pointer to what lanes have.
+bool is_own_pointer(const Variable* v);
+/// Whether its lane form is written by hand.
+bool is_by_hand(const Type& type);
+/// The parameters that a call gives.
+std::vector<const Variable*> taken(const Function& f);
+
 /// Bytes of a value in a table, as OpenCL lays it out, and what they are aligned to.
 int size_of(const Type& type);
 int alignment_of(const Type& type);

@@ -1,8 +1,9 @@
-// Loops: lanes leave them one by one, and the loop ends when none is left.
+// Loops and ways out: lanes leave one by one, and a loop ends when none is left.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 #include "lanes/writer.h"
 
@@ -99,6 +100,81 @@ void Writer::loop(const Statement& s) {
   frames_.pop_back();
   --depth_;
   line("}");
+}
+
+void Writer::leave(const Statement& s) {
+  const bool breaks = s.kind == Statement::Kind::leave_loop;
+  bool divergent = false;
+  const Frame* loop = nullptr;
+  for (auto f = frames_.rbegin(); f != frames_.rend() && !loop; ++f) {
+    divergent |=
+        f->divergent && (f->kind == Frame::Kind::branch || (f->kind == Frame::Kind::round && breaks));
+    if (f->kind == Frame::Kind::loop) loop = &*f;
+  }
+  const Loop& l = *std::ranges::find(all_loops_, loop->node, &Loop::node);
+  if (!divergent && (breaks || !s_.divergent_continue.contains(loop->node)))
+    return line(breaks ? "break;" : "continue;");
+  const std::string gone = mask_;
+  if (breaks) line(fmt::format("{} &= ~{};", l.lanes, gone));
+  if (l.going != l.lanes) line(fmt::format("{} &= ~{};", l.going, gone));
+  if (gone != l.going && gone != l.lanes) line(fmt::format("{} = NO_LANES;", gone));
+}
+
+void Writer::give(const Statement& s) {
+  const Type& type = s_.function.result;
+  const bool gives = !s.expressions.empty();
+  if (!s_.divergent_return) {
+    if (!gives) return line("return;");
+    const std::string value = s_.result_varies ? lanes(*s.expressions[0]) : plain(*s.expressions[0]);
+    return line(fmt::format("return {};", value));
+  }
+  const bool parted = std::ranges::any_of(frames_, &Frame::divergent);
+  if (gives && s_.only_result) {
+    if (!parted) return line(fmt::format("return {};", s_.only_result->name));
+  } else if (gives) {
+    const std::string value = lanes(*s.expressions[0]);
+    line(!returned_ && !comes_again()
+             ? fmt::format("result_ = {};", value)
+             : fmt::format("result_ = {};", selected(type, "result_", value, mask_, s.place)));
+  }
+  returned_ = true;
+  if (!parted) return line(gives ? "return result_;" : "return;");
+  const std::string gone = mask_;
+  std::vector<std::string> masks{"m_"};
+  for (const Loop& l : loops_) masks.insert(masks.end(), {l.lanes, l.going});
+  std::set<std::string> seen{gone};
+  for (const std::string& mask : masks)
+    if (seen.insert(mask).second) line(fmt::format("{} &= ~{};", mask, gone));
+  line(fmt::format("{} = NO_LANES;", gone));
+}
+
+void Writer::each_alike(const Statement& s) {
+  const Variable& v = *s.variables[0];
+  const Expression& of = *s.expressions[0];
+  const std::string type = type_text(v.type, false);
+  if (!varies(of)) {
+    line("{");
+    ++depth_;
+    line(fmt::format("const {} {} = {};", type, v.name, plain(of)));
+    --depth_;
+    inside({Frame::Kind::alike, &s, 0, false, ""}, mask_, *s.body[0]);
+    return line("}");
+  }
+  std::string all = simple(of);
+  if (v.type.is(Type::Kind::natural)) all = fmt::format("UINTS_TO_MASK({})", all);
+  const std::string left = fresh("left"), word = fresh("word"), mask = fresh("m");
+  line(fmt::format("u32 {};", word));
+  line(fmt::format("for (u32 {0} = lane_bits({1}); {0};) {{", left, mask_));
+  ++depth_;
+  line(fmt::format("MASK {} = take_alike({}, &{}, &{});", mask, all, left, word));
+  line(fmt::format("const {0} {1} = ({0}){2};", type, v.name, word));
+  --depth_;
+  frames_.push_back({Frame::Kind::alike, &s, 0, true, ""});
+  s_.declare(&v, frames_);
+  frames_.pop_back();
+  inside({Frame::Kind::alike, &s, 0, true, ""}, mask, *s.body[0]);
+  line("}");
+  if (exits_of(*s.body[0]).gives && mask_ != "m_") line(fmt::format("{} &= m_;", mask_));
 }
 
 }  // namespace sundog::spmd

@@ -83,7 +83,7 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   if (!crossing && path->depth == 1) crossing = pass_hidden(scene, ray, &met);
   if (HAS_GLOW) path->radiance += path->throughput * spectrum_of(&path->wavelengths, emitted(ray));
   forget_glow(ray);
-  bool turned;  // by the medium, to a place from which it goes on
+  bool turned;  // the medium has scattered the path, which may continue
   if (scatter_in_media(scene, path, &begun, ray, &met, &turned, counts)) return turned;
   path->throughput *= spectrum_kept(&path->wavelengths, met.absorbed);
   if (crossing) {  // an interface that cannot be seen may stop shadow rays all the same

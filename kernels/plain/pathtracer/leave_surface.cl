@@ -19,7 +19,7 @@ static inline SceneRay leaving_ray(UNIFORM const Scene* scene, const SceneRay* r
   return child;
 }
 
-// The ray goes on in the direction that the surface sampled. `free`: the surface is not there.
+// The path continues in the direction that the surface sampled. `free`: the surface is not there.
 ENTRY static inline void leave_surface(UNIFORM const Scene* scene, const Encounter* met,
                                        const SurfaceShading* at, const BsdfSample* sample, bool below,
                                        bool free, SceneRay* ray) {

@@ -1,4 +1,5 @@
-// What is made of plain text: where masks stand, what is left to the preprocessor, and what is told about it.
+// What is made of plain text: where masks stand, what is left to the preprocessor, and what the explanation
+// says.
 #include "catch.h"
 #include "device/embedded_kernels.h"
 #include "device/kernel_source.h"

@@ -1,51 +1,15 @@
 // What a scene file may not hold: each error names the place, what was wanted and what was found.
-#include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "bad_scenes.h"
 #include "catch.h"
-#include "json_schema.h"
-#include "scene/json/parse.h"
 #include "scene_text.h"
 
+using namespace bad_scenes;
 using namespace sundog;
 
 namespace {
-
-/// A bad scene, the place that its error names, and words that the error says. `schema` is false where the
-/// fault is beyond a JSON Schema: a name that leads nowhere, one number against another.
-struct Bad {
-  std::string text, place;
-  std::vector<std::string> words;
-  bool schema = true;
-};
-
-void check(const std::vector<Bad>& table) {
-  for (const Bad& bad : table) {
-    INFO(bad.text);
-    const SceneError error = error_of(bad.text);
-    INFO(error.what());
-    CHECK(error.place == bad.place);
-    CHECK(std::filesystem::path(error.file).filename() == "scene.json");
-    CHECK(error.reason.find('\n') == std::string::npos);
-    for (const std::string& word : bad.words) {
-      INFO(word);
-      CHECK(error.reason.find(word) != std::string::npos);
-    }
-    CHECK(schema_errors(scene_schema(), parse_json(bad.text, "scene.json")).empty() == !bad.schema);
-  }
-}
-
-Bad object(const std::string& text, const std::string& place, std::vector<std::string> words,
-           bool schema = true) {
-  return {scene_of(text), "/objects/0" + place, std::move(words), schema};
-}
-
-Bad sphere(const std::string& members, const std::string& place, std::vector<std::string> words,
-           bool schema = true) {
-  return object(R"({"type": "sphere", "material": "m", )" + members + "}", place, std::move(words), schema);
-}
 
 Bad material(const std::string& text, const std::string& place, std::vector<std::string> words,
              bool schema = true) {
@@ -372,38 +336,5 @@ TEST_CASE("bad meshes and models are refused with their place") {
       {scene_with(R"("meshes": {"a": {"generate": {"type": "ice_block", "sed": 1}}})"),
        "/meshes/a/generate/sed",
        {"did you mean \"seed\"?"}},
-  });
-}
-
-TEST_CASE("bad transforms are refused with their place") {
-  const auto transform = [](const std::string& list, const std::string& place, std::vector<std::string> words,
-                            bool schema = true) {
-    return sphere(R"("transform": )" + list, "/transform" + place, std::move(words), schema);
-  };
-  check({
-      transform("{}", "", {"wanted an array of transforms", "found an object"}),
-      transform("[{}]", "/0", {"wanted one of", "\"translate\"", "\"matrix\"", "found none"}),
-      transform(R"([{"translate": [0, 0, 0], "scale": 2}])", "/0", {"found \"translate\" and \"scale\""}),
-      transform(R"([{"rotation": 3}])", "/0/rotation", {"unknown key", "did you mean \"rotate\"?"}),
-      transform(R"([{"rotate": {"degrees": 30}}])", "/0/rotate", {"missing key \"axis\""}),
-      transform(R"([{"rotate": {"axis": [0, 0, 0], "degrees": 30}}])", "/0/rotate/axis", {"length 0"}, false),
-      transform(R"([{"scale": 2}, {"scale": 0}])", "/1/scale", {"singular", "not 0"}),
-      transform(R"([{"scale": [1, 0, 1]}])", "/0/scale", {"singular", "not 0"}, false),
-      transform(R"([{"scale": "2"}])", "/0/scale", {"a factor", "found the string \"2\""}),
-      transform(R"([{"matrix": [1, 0, 0, 0]}])", "/0/matrix", {"16 numbers", "4 items"}),
-      transform(R"([{"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 5,5,5,1]}])", "/0/matrix", {"last row is 0 0 0 1"},
-                false),
-      transform(R"([{"matrix": [1,2,0,0, 2,4,0,0, 0,0,1,0, 0,0,0,1]}])", "/0", {"singular"}, false),
-      transform(R"([{"matrix": [1,2,3,0, 4,5,6,0, 7,8,9,0, 0,0,0,1]}])", "/0", {"singular"}, false),
-      transform(R"([{"scale": 1e10}, {"scale": 1e10}])", "", {"range of floats"}, false),
-      transform(R"([{"scale": 1e-10}, {"scale": 1e-10}])", "", {"singular"}, false),
-      object(R"({"type": "group", "transform": [{"scale": 1e-9}], "material": "m", "objects": [
-                 {"type": "sphere", "transform": [{"scale": 1e-9}]}]})",
-             "/objects/0/transform", {"singular"}, false),
-      sphere(R"("turns_by": {"degrees": 10})", "/turns_by", {"axis"}),
-      sphere(R"("turns_by": {"axis": [0, 0, 0], "degrees": 10})", "/turns_by/axis", {"length 0"}, false),
-      sphere(R"("turns_by": {"axis": [0, 1, 0], "degrees": 1e6})", "/turns_by/degrees", {"36000"}),
-      sphere(R"("turns_by": 10)", "/turns_by", {"object"}),
-      sphere(R"("grows_to": 0)", "/grows_to", {"0.001", "found 0"}),
   });
 }
