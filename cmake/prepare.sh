@@ -136,7 +136,7 @@ build_beside_packages() {
   build program &
   program=$!
   set +m
-  trap 'kill -- "-$program" 2>/dev/null || true' EXIT
+  trap "kill -- -$program 2>/dev/null || true" EXIT  # the name is the function's own, the trap is not
   wait -n || { wait "$packages" || say "the packages could not be installed"; exit 1; }
   wait "$packages" || { say "the packages could not be installed"; exit 1; }
   wait "$program"
