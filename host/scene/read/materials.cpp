@@ -2,10 +2,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "base/names.h"
+#include "scene/materials/presets.h"
 #include "scene/read/surface_terms.h"
 #include "scene/read/textures.h"
 
@@ -299,10 +302,12 @@ int find_name(const JsonValue& name, const NameTable& table, std::string_view wh
   if (const auto found = table.find(text); found != table.end()) return found->second;
   std::vector<std::string> known;
   for (const auto& [key, index] : table) known.push_back(key);
-  const std::string mend =
-      did_you_mean(text, known,
-                   known.empty() ? fmt::format("the scene names no {}", what)
-                                 : fmt::format("the scene has \"{}\"", fmt::join(known, "\", \"")));
+  const std::string own = known.empty() ? fmt::format("the scene names no {}", what)
+                                        : fmt::format("the scene has \"{}\"", fmt::join(known, "\", \""));
+  const bool presets = what == "material";
+  if (presets) std::ranges::copy(preset_names(), std::back_inserter(known));
+  const std::string mend = did_you_mean(
+      text, known, presets ? own + ", and docs/materials.md lists presets such as \"ice\"" : own);
   name.wanted(fmt::format("the name of a {} of this scene ({})", what, mend));
 }
 

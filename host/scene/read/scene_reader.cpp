@@ -16,6 +16,7 @@
 #include "scene/inside.h"
 #include "scene/json/parse.h"
 #include "scene/lamps.h"
+#include "scene/materials/presets.h"
 #include "scene/procedural/procedural.h"
 #include "scene/read/dark_world.h"
 #include "scene/read/library.h"
@@ -69,7 +70,8 @@ class SceneReader {
   }
 
   void read_tables(JsonObject& object) {
-    names_ = read_surfaces([&](std::string_view key) { return object.find(key); }, scene_, textures_);
+    object.number("unit", default_unit, above_0);  // for presets
+    names_ = read_surfaces(root_, [&](std::string_view key) { return object.find(key); }, scene_, textures_);
     if (const auto meshes = object.find("meshes"))
       for (const auto& [name, value] : meshes->members("meshes"))
         meshes_.emplace(name, read_mesh(value, name));

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scene/materials/by_integrator.h"
+#include "scene/materials/presets.h"
 #include "scene/read/textures.h"
 
 namespace sundog {
@@ -46,7 +47,7 @@ Head read_head(const json& document, const JsonContext& context, const SceneDesc
     if (found == document.end()) return std::nullopt;
     return JsonValue(*found, own, join_pointer("", key));
   };
-  head.names = read_surfaces(find, head.scene, textures);
+  head.names = read_surfaces(JsonValue(document, own), find, head.scene, textures);
   head.lacks_images = textures.lacks_images();
   return head;
 }
@@ -93,8 +94,15 @@ void shift_rest(SceneDescription& scene, const SceneDescription& from, const Sce
 
 Names surface_sections() { return sections; }
 
-SurfaceNames read_surfaces(const FindSection& find, SceneDescription& scene, TextureLibrary& textures) {
+SurfaceNames read_surfaces(const JsonValue& root, const FindSection& find_own, SceneDescription& scene,
+                           TextureLibrary& textures) {
   SurfaceNames names;
+  const json with_presets = preset_sections(root.json(), root.context());
+  const auto find = [&](std::string_view key) {
+    const auto own = find_own(key);
+    const auto found = with_presets.find(key);
+    return found == with_presets.end() ? own : JsonValue(*found, root.context(), join_pointer("", key));
+  };
   if (const auto media = find("media"))
     for (const auto& [name, value] : media->members("media")) {
       names.media.emplace(name, static_cast<int>(scene.media.size()));

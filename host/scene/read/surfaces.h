@@ -19,9 +19,10 @@ struct SurfaceNames {
 /// A section of the document, where it is there.
 using FindSection = std::function<std::optional<JsonValue>(std::string_view key)>;
 
-/// Reads them into `scene`, whose only medium so far is the world's. `textures` adds to the same scene.
-/// Throws SceneError.
-SurfaceNames read_surfaces(const FindSection& find, SceneDescription& scene, TextureLibrary& textures);
+/// Reads them, and the presets that the document `root` uses, into `scene`, whose only medium so far is the
+/// world's. `textures` adds to the same scene. Throws SceneError.
+SurfaceNames read_surfaces(const JsonValue& root, const FindSection& find, SceneDescription& scene,
+                           TextureLibrary& textures);
 
 /// The sections that read_surfaces() asks for.
 Names surface_sections();

@@ -139,11 +139,12 @@ TEST_CASE("links and pictures of the pages lead somewhere") {
   CHECK(count > 50);
 }
 
-TEST_CASE("the contact sheet and the README have as many surfaces as the list") {
+TEST_CASE("the contact sheet and the pages have as many surfaces as the list") {
   const std::size_t count = formula_list().size();
-  const std::string readme = read_file(root / "README.md");
-  CHECK(readme.find(fmt::format("the {} surfaces of `sundog formulas`", count)) != std::string::npos);
-  CHECK(readme.find(fmt::format("| {} surfaces and formulas", count)) != std::string::npos);
+  for (const auto& [page, text] : {std::pair("docs/gallery.md", "the {} surfaces of `sundog formulas`"),
+                                   {"docs/peers.md", "| {} surfaces and formulas"},
+                                   {"README.md", "{} surfaces, or a"}})
+    CHECK(read_file(root / page).find(fmt::format(fmt::runtime(text), count)) != std::string::npos);
   const Image sheet =
       read_image(root / "docs/pictures/formulas.png");  // docs/render_pictures.sh: rows of eight
   const std::size_t rows = (count + 7) / 8;

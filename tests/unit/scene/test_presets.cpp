@@ -1,0 +1,89 @@
+// Materials by name.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "catch.h"
+#include "json_schema.h"
+#include "scene/json/parse.h"
+#include "scene/materials/presets.h"
+#include "scene/read/scene_reader.h"
+
+using namespace sundog;
+using nlohmann::json;
+
+namespace {
+
+SceneDescription read(const std::string& text) {
+  const json document = parse_json(text, "scene.json");
+  const JsonContext context{"scene.json"};
+  return read_scene(JsonValue(document, context));
+}
+
+std::string with_ball(const std::string& material, const std::string& sections = "") {
+  return fmt::format(R"({{{} "objects": [{{"type": "sphere", "material": "{}"}}]}})", sections, material);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    read(text);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("an object takes any preset by its name, and the schema lists them all") {
+  CHECK(preset_names().size() >= 40);
+  for (const std::string& name : preset_names()) {
+    INFO(name);
+    const SceneDescription scene = read(with_ball(name));
+    REQUIRE(scene.materials.size() == 1);
+    CHECK(scene.materials[0].name == name);
+  }
+  CHECK(scene_schema().at("/$defs/preset_material/properties/preset/enum"_json_pointer) ==
+        json(preset_names()));
+}
+
+TEST_CASE("a preset's inside absorbs by the metre") {
+  const double water = read(with_ball("water", R"("unit": 1,)")).media[1].absorption.x;
+  CHECK(water == Approx(0.28));
+  CHECK(read(with_ball("water")).media[1].absorption.x == Approx(water / 10));
+  CHECK(read(with_ball("water", R"("unit": 0.01,)")).media[1].absorption.x == Approx(water / 100));
+}
+
+TEST_CASE("a material may be a preset with other values") {
+  const SceneDescription gold =
+      read(with_ball("ring", R"("materials": {"ring": {"preset": "gold", "specular_roughness": 0.4}},)"));
+  CHECK(gold.materials[0].layers->specular_roughness == 0.4);
+  CHECK(gold.materials[0].layers->base_metalness == 1);
+  const SceneDescription drink =
+      read(with_ball("drink", R"("materials": {"drink": {"preset": "beer", "ior": 1.4}},)"));
+  CHECK(drink.media.at(1).ior == 1.4);
+  CHECK(drink.media.at(1).absorption.x > 1);
+  const SceneDescription other = read(with_ball(
+      "x", R"("media": {"oil": {"ior": 1.5}}, "materials": {"x": {"preset": "beer", "medium": "oil"}},)"));
+  CHECK(other.media.size() == 2);
+  CHECK(other.materials[0].medium == 1);
+}
+
+TEST_CASE("what a scene names itself is no preset") {
+  const SceneDescription scene =
+      read(with_ball("ice", R"("materials": {"ice": {"diffuse": 1}}, "media": {"gold": {"ior": 2}},)"));
+  CHECK(scene.materials.size() == 1);
+  CHECK(scene.materials[0].type == MaterialType::phong);
+  CHECK(read(with_ball("ice", R"("media": {"ice": {"ior": 2}},)")).media.at(1).ior == 2);
+}
+
+TEST_CASE("a wrong preset is refused where it stands") {
+  CHECK_THAT(refusal(with_ball("a", R"("materials": {"a": {"preset": "golt"}},)")),
+             ContainsSubstring("/materials/a/preset") && ContainsSubstring("did you mean \"gold\"?"));
+  CHECK_THAT(refusal(with_ball("a", R"("materials": {"a": {"preset": 3}},)")),
+             ContainsSubstring("/materials/a/preset"));
+  CHECK_THAT(refusal(with_ball("a", R"("materials": {"a": {"preset": "gold", "roughness": 1}},)")),
+             ContainsSubstring("/materials/a"));
+  CHECK_THAT(refusal(with_ball("sliver")), ContainsSubstring("did you mean \"silver\"?"));
+}
