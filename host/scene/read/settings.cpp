@@ -12,6 +12,7 @@
 #include "scene/kinds.h"
 #include "scene/lamps.h"
 #include "scene/read/parts.h"
+#include "scene/spectra/cie.h"
 
 namespace sundog {
 
@@ -303,6 +304,8 @@ LightDescription read_light(const JsonValue& value) {
     light.type = type;
     object.at("type", "");
     light.color = object.color("color", light.color);
+    if (const auto kelvin = object.find("temperature"))
+      light.color *= black_body_color(kelvin->number({.low = 500, .high = 1e5}));
     light.intensity = object.number("intensity", light.intensity, at_least_0);
     if (facts_of(light.type).placed) read_placed_light(object, light);
     read_light_kind(object, light);

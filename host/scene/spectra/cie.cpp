@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace sundog {
 namespace {
@@ -83,6 +84,19 @@ dvec3 rgb_weight(double wavelength) {
   if (!(at >= 0 && at <= static_cast<double>(SPECTRUM_ROWS - 1))) return dvec3(0);
   const auto row = std::min(static_cast<std::size_t>(at), std::size_t{SPECTRUM_ROWS - 2});
   return glm::mix(rgb_weights()[row], rgb_weights()[row + 1], at - static_cast<double>(row));
+}
+
+dvec3 black_body_color(double kelvin) {
+  constexpr double second_constant = 1.438776877e7;  // hc / k in nm K
+  dvec3 color(0);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double nm =
+        static_cast<double>(SPECTRUM_FIRST) + static_cast<double>(i) * static_cast<double>(SPECTRUM_STEP);
+    color += linear_rgb(rows[i]) * std::pow(nm / 560, -5) * std::expm1(second_constant / (560 * kelvin)) /
+             std::expm1(second_constant / (nm * kelvin));
+  }
+  color = glm::max(color, dvec3(0));
+  return color / glm::dot(color, dvec3(0.2126, 0.7152, 0.0722));
 }
 
 }  // namespace sundog

@@ -28,4 +28,8 @@ const RgbWeights& rgb_weights();
 /// The same at any wavelength in nm; 0 outside of the table.
 dvec3 rgb_weight(double wavelength);
 
+/// Linear RGB of a black body of that temperature in kelvin (Planck's law), of the luminance 1; what lies
+/// outside of sRGB is 0.
+dvec3 black_body_color(double kelvin);
+
 }  // namespace sundog

@@ -61,6 +61,15 @@ TEST_CASE("Dispersion: no spectrum of a colour leaves what colours have, and whi
   CHECK(at(445).z > 0.95);
 }
 
+TEST_CASE("a black body at 2856 K is the illuminant A, and redder ones lose their blue") {
+  const dvec3 a = black_body_color(2856);  // CIE 15:2004: X, Y, Z = 1.09850, 1, 0.35585
+  CHECK_THAT(a.x, WithinAbs(1.8451, 0.005));
+  CHECK_THAT(a.y, WithinAbs(0.8261, 0.003));
+  CHECK_THAT(a.z, WithinAbs(0.2333, 0.003));
+  CHECK(black_body_color(1000).z == 0);
+  CHECK(black_body_color(1e5).z > black_body_color(1e5).x);
+}
+
 TEST_CASE("Dispersion: the catalogue's indices at F, d and C are those of the data sheets") {
   struct Known {
     const char* name;
