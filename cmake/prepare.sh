@@ -36,10 +36,11 @@ may_install() { [[ $EUID == 0 ]] || command -v sudo >/dev/null; }
 
 # apt-get, by root or sudo, which waits while another program has apt's locks, as a system's own upgrade has for minutes.
 patient_apt() {
-  local become=() log=$build/apt.log waited=0
+  local become=() log=$build/apt.log out=$build/apt.out waited=0
   [[ $EUID == 0 ]] || become=(sudo)
-  until "${become[@]}" env LC_ALL=C DEBIAN_FRONTEND=noninteractive apt-get "$@" 2>"$log"; do
+  until "${become[@]}" env LC_ALL=C DEBIAN_FRONTEND=noninteractive apt-get "$@" >"$out" 2>"$log"; do
     if ! grep -qE 'Could not get lock|Unable to (acquire|lock)' "$log" || ((waited >= 1800)); then
+      tail -n 20 "$out" >&2
       cat "$log" >&2
       return 1
     fi
@@ -82,7 +83,7 @@ install_missing() {
     if apt-cache show "$package" >/dev/null 2>&1; then available+=("$package"); else say "no package $package here"; fi
   done
   [[ ${#available[@]} == 0 ]] && return 0
-  say "installing ${available[*]}: with what they need $(size_of "${available[@]}"); one to three minutes, mostly the download"
+  say "installing ${available[*]}: with what they need $(size_of "${available[@]}"); one to three minutes, mostly the download ($build/apt.out)"
   patient_apt install -y -qq --no-install-recommends "${available[@]}"
 }
 
