@@ -1,5 +1,4 @@
-// The writing of PNG, JPEG and Radiance HDR through stb_image_write, whose code is compiled here and nowhere
-// else.
+// Writes PNG, JPEG and Radiance HDR with stb_image_write, whose implementation is compiled here only.
 #include <zlib.h>
 
 #include <algorithm>
@@ -11,7 +10,7 @@
 
 #include "base/image_codecs.h"
 
-// Deflates through zlib: in half the time, and to a fifth less, of what stb_image_write's own does.
+// Deflates with zlib: half the time and a fifth less data than stb_image_write's compressor.
 static unsigned char* zlib_compress(unsigned char* data, int size, int* compressed_size, int) {
   uLongf room = compressBound(static_cast<uLong>(size));
   auto* compressed = static_cast<unsigned char*>(std::malloc(room));  // stb frees it
@@ -65,7 +64,7 @@ std::string encode_png(const Image& image) {
 
 std::string encode_jpeg(const Image& image) {
   constexpr int greatest_side = 65535;
-  // From 91 on stb_image_write keeps the colours of each pixel, not of four at once.
+  // From 91 up, stb_image_write does not subsample chroma.
   constexpr int quality = 92;
   if (std::max(image.width, image.height) > greatest_side)
     throw std::runtime_error("the image is too large for a JPEG; use .png or .exr");
@@ -78,7 +77,7 @@ std::string encode_jpeg(const Image& image) {
 }
 
 std::string encode_hdr(const Image& image) {
-  constexpr float greatest = 1e38f;  // what RGBE's exponent reaches
+  constexpr float greatest = 1e38f;  // limit of RGBE's exponent
   std::vector<float> colors;
   colors.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3);
   for (int y = 0; y < image.height; ++y)
