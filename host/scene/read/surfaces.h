@@ -1,5 +1,5 @@
-// What surfaces are made of: the media, the world's medium and fog, the textures and materials of a scene
-// file, in the order in which they refer to each other.
+// Reads media, the world's medium and fog, textures and materials of a scene file, in order of their
+// dependencies.
 #pragma once
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -9,26 +9,26 @@
 
 namespace sundog {
 
-/// What fills a world that says nothing of it: it gives way to all other media.
+/// The default world medium; every other medium displaces it.
 inline MediumDescription outer_vacuum() { return {.name = "vacuum", .priority = world_priority}; }
 
 struct SurfaceNames {
   NameTable media, materials;
 };
 
-/// A section of the document, where it is there.
+/// Returns a section of the document, if present.
 using FindSection = std::function<std::optional<JsonValue>(std::string_view key)>;
 
-/// Reads them into `scene`, whose only medium so far is the world's. `textures` adds to the same scene.
+/// Reads them into `scene`, whose only medium so far is the world's. `textures` must add to the same scene.
 /// Throws SceneError.
 SurfaceNames read_surfaces(const FindSection& find, SceneDescription& scene, TextureLibrary& textures);
 
-/// The sections that read_surfaces() asks for.
+/// The sections that read_surfaces() reads.
 Names surface_sections();
 
-/// Puts what read_surfaces() makes of the document `after` in the place of what it made of `before`; what
-/// models have brought stays. No file is read. False, and `scene` as it was, where that cannot be done: other
-/// names, other images, or meshes that a texture has displaced. Throws SceneError.
+/// Replaces the result of read_surfaces() for `before` by that for `after`; keeps what models have added.
+/// Reads no file. Returns false, with `scene` unchanged, if names or images differ or a texture displaces
+/// meshes. Throws SceneError.
 bool change_surfaces(SceneDescription& scene, const nlohmann::json& before, const nlohmann::json& after,
                      const JsonContext& context);
 
