@@ -14,7 +14,7 @@ inline Lanes lanes(float value) { return Lanes{value, value, value, value}; }
 inline Lanes lanes_min(Lanes a, Lanes b) { return a < b ? a : b; }
 inline Lanes lanes_max(Lanes a, Lanes b) { return a > b ? a : b; }
 
-/// A box. The fourth lane of each corner is free for the owner. Uninitialized, because the builder creates
+/// A box. The fourth lane of each corner is free for the owner. Uninitialised, because the builder creates
 /// many that it does not use.
 struct Bounds {
   Lanes lower, upper;

@@ -18,7 +18,7 @@ namespace {
   throw SceneError(scene.file.string(), place, what);
 }
 
-/// Normalizes `vector`; fails with `what` if it has no direction.
+/// Normalises `vector`; fails with `what` if it has no direction.
 dvec3 unit(const SceneDescription& scene, const dvec3& vector, const char* place, const std::string& what) {
   const double length = glm::length(vector);
   if (!(length > 0) || !std::isfinite(length)) fail(scene, place, what);

@@ -13,7 +13,7 @@
 
 namespace sundog {
 
-/// Features of a scene; kernels are specialized to them.
+/// Features of a scene; kernels are specialised to them.
 struct SceneFeatures {
   std::array<bool, SHAPE_COUNT> shapes{};
 #define SUNDOG_FEATURE_MEMBER(type, definition, name) type name = 0;

@@ -150,7 +150,7 @@ double light_of_pixel(const Picture& picture, u32 x, u32 y) {
   return sum;
 }
 
-/// Mean luminance over a cell between four pixel centers, of which pixel (x, y) is the lower right.
+/// Mean luminance over a cell between four pixel centres, of which pixel (x, y) is the lower right.
 double light_between_pixels(const Picture& picture, u32 x, u32 y) {
   double sum = 0;
   for (const int j : {-1, 0})
@@ -159,7 +159,7 @@ double light_between_pixels(const Picture& picture, u32 x, u32 y) {
   return sum;
 }
 
-/// Appends the normalized cumulative sums; uniform ones if there is no light. Returns the total.
+/// Appends the normalised cumulative sums; uniform ones if there is no light. Returns the total.
 double append_shares(std::span<const double> light, std::vector<float>& shares) {
   double whole = 0, sum = 0;
   for (const double value : light) whole += value;
@@ -178,7 +178,7 @@ u32 pixels_a_cell(u32 pixels, u32 most) {
   return each;
 }
 
-/// Whether sampling cells lie between four pixel centers, where light is interpolated; this matters near a
+/// Whether sampling cells lie between four pixel centres, where light is interpolated; this matters near a
 /// sun of a few pixels. Computed skies are smooth.
 bool are_cells_between_pixels(const Picture& picture, EnvironmentType type) {
   const bool dark = std::ranges::all_of(picture.pixels, [](const float4& pixel) { return pixel.w == 0; });
@@ -238,7 +238,7 @@ CellShares shares_of_pixels(const Picture& picture, Environment& e, std::vector<
   return cells;
 }
 
-/// Cells between pixel centers: one more row than the picture; the first and last are half as high.
+/// Cells between pixel centres: one more row than the picture; the first and last are half as high.
 CellShares shares_between_pixels(const Picture& picture, Environment& e, std::vector<float>& facts) {
   e.columns = picture.width;
   e.rows = picture.height + 1;

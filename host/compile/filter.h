@@ -1,4 +1,4 @@
-// Reconstruction filters: the weight of a sample by its distance from the pixel's center. Camera samples are
+// Reconstruction filters: the weight of a sample by its distance from the pixel's centre. Camera samples are
 // placed with the filter's density, so that all have equal weight (filter importance sampling: Ernst,
 // Stamminger and Greiner 2006).
 #pragma once
@@ -8,7 +8,7 @@
 
 namespace sundog {
 
-/// The filter's 1D value at distance `x` from the center, up to a factor; 0 beyond its radius. Filters are
+/// The filter's 1D value at distance `x` from the centre, up to a factor; 0 beyond its radius. Filters are
 /// separable products of it.
 double filter_value(Filter filter, double radius, double x);
 

@@ -40,7 +40,7 @@ LightNode node_over(std::span<const Lamp> lamps) {
   return {{lower.x, lower.y, lower.z}, static_cast<float>(power), {upper.x, upper.y, upper.z}, 0};
 }
 
-/// Appends the subtree, split in halves along the longest axis of the lamps' centers. The left child follows
+/// Appends the subtree, split in halves along the longest axis of the lamps' centres. The left child follows
 /// its parent.
 void append(std::span<Lamp> lamps, std::vector<LightNode>& nodes) {
   const std::size_t at = nodes.size();

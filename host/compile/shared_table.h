@@ -1,5 +1,5 @@
 // SharedTable: a copy-on-write vector. Scenes that differ in one part share the other parts' tables, and a
-// device recognizes the ones it already holds.
+// device recognises the ones it already holds.
 #pragma once
 #include <cstddef>
 #include <initializer_list>

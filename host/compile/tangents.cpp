@@ -30,7 +30,7 @@ struct CornerHash {
   }
 };
 
-/// Directions of increasing u and v on a triangle, normalized for u; zero if the coordinates are degenerate.
+/// Directions of increasing u and v on a triangle, normalised for u; zero if the coordinates are degenerate.
 struct FaceTangent {
   dvec3 tangent{0}, bitangent{0}, normal{0};
   /// Whether the frame with this normal must be mirrored for v to increase along its bitangent.

@@ -1,5 +1,4 @@
-// Compiles a mesh's shading tables: unit normals, texture coordinates, colours; triangles' indices,
-// materials.
+// Compiles a mesh's shading tables: unit normals, texture coordinates, colours, triangles' indices and so on.
 #pragma once
 #include <span>
 

@@ -128,7 +128,7 @@ cl::Program program_of_parts(const cl::Context& context, const cl::Device& devic
   return status == CL_SUCCESS && kernels_work(whole) ? whole : cl::Program();
 }
 
-/// Compiles in another process while this one's driver initializes; false: compile it here.
+/// Compiles in another process while this one's driver initialises; false: compile it here.
 bool compile_beside(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
                     const std::string& source) {
   auto process = CompileProcess::start(record.device, source, record.options);
@@ -191,8 +191,8 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
 /// The device's name in faults: "P:D".
 std::string place_of(const DeviceInfo& info) { return fmt::format("{}:{}", info.platform, info.device); }
 
-/// Oclgrind's optimizer leaves calls that its interpreter does not know (llvm.bitreverse, noalias scopes):
-/// such a program builds, but has no kernels. Without optimization it works. That program is not cached,
+/// Oclgrind's optimiser leaves calls that its interpreter does not know (llvm.bitreverse, noalias scopes):
+/// such a program builds, but has no kernels. Without optimisation it works. That program is not cached,
 /// because the failure may be transient and the kernels are slow.
 void compile_to_kernels(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
                         const std::string& source, BuildReport& report) {

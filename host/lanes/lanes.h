@@ -1,6 +1,6 @@
-// Vectorizes plain kernels: converts OpenCL C for one path (parse.h defines the dialect) to functions in the
+// Vectorises plain kernels: converts OpenCL C for one path (parse.h defines the dialect) to functions in the
 // vocabulary of kernels/lib/core/lanes.h, for any number of lanes. Infers what varies between lanes;
-// specializes functions for each kind of call; control flow becomes masks (after M. Pharr and W. Mark, "ispc:
+// specialises functions for each kind of call; control flow becomes masks (after M. Pharr and W. Mark, "ispc:
 // A SPMD Compiler for High-Performance CPU Programming", 2012, and R. Karrenberg and S. Hack, "Whole-Function
 // Vectorization", 2011).
 #pragma once

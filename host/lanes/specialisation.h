@@ -79,7 +79,7 @@ class Specialisation {
   Uses uses_;
 };
 
-/// A program's specializations, created on demand.
+/// A program's specialisations, created on demand.
 class Specialisations {
  public:
   Specialisation& of(const Function& f, const std::vector<bool>& varying);

@@ -107,7 +107,7 @@ using StatementPtr = std::unique_ptr<Statement>;
 struct Statement {
   enum class Kind {
     block,       // body...
-    declare,     // variables with initializers, which may be null
+    declare,     // variables with initialisers, which may be null
     branch,      // if (expressions[0]) body[0] else body[1]; feature: by the preprocessor
     loop,        // for (body[0]; expressions[0]; expressions[1]) body[1]; each may be null
     do_loop,     // do body[1] while (expressions[0])

@@ -1,4 +1,4 @@
-// Emits one specialization in the vocabulary of kernels/lib/core/lanes.h; masks follow control flow. Cheap
+// Emits one specialisation in the vocabulary of kernels/lib/core/lanes.h; masks follow control flow. Cheap
 // branches are computed in all lanes, others skipped if no lane takes them.
 //   m_, m_2, ...   active lanes of the function, of a branch
 //   in_3, go_4     lanes still in a loop; in its current round

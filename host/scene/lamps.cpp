@@ -65,7 +65,7 @@ void read_spot(JsonObject& object, LightDescription& light) {
 
 bool is_met(const LightDescription& light) { return facts_of(light.type).can_be_met() && !light.hidden; }
 
-/// The transform of an object with axis +y and its center at the origin.
+/// The transform of an object with axis +y and its centre at the origin.
 dmat4 placed_along(const LampAxes& axes, const dvec3& middle) {
   return {glm::dvec4(glm::normalize(axes.u), 0), glm::dvec4(axes.normal, 0),
           glm::dvec4(-glm::normalize(axes.v), 0), glm::dvec4(middle, 1)};

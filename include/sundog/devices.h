@@ -12,8 +12,8 @@ inline namespace v0 {
 
 /// An OpenCL device as its driver reports it. Returned by devices() and choose_devices(); copies refer to the
 /// same device. A driver cannot be interrupted: when a render is stopped, a thread inside a driver's compiler
-/// keeps running and belongs to the devices that were listed together. Destroying the last copy of these waits
-/// up to a minute for it, then detaches it.
+/// keeps running and belongs to the devices that were listed together: the last copy waits up to a minute for
+/// it.
 struct Device {
   std::string label{};              ///< "0:1 Portable Computing Language / cpu-..."
   int platform = 0;                 ///< as `clinfo -l` numbers them, from 0

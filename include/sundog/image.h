@@ -36,7 +36,7 @@ class SUNDOG_API Image {
   /// Returns the image as a display shows it, still linear. Throws Error (usage) for values out of range.
   Image tone_mapped(const ToneMap& map) const;
 
-  /// Reads .png, .jpg, .exr, .hdr or .pfm, recognized by content, as four channels. Throws Error (scene).
+  /// Reads .png, .jpg, .exr, .hdr or .pfm, recognised by content, as four channels. Throws Error (scene).
   static Image load(const std::filesystem::path& file);
   /// Writes .png, .jpg (8 bits a channel, sRGB), .exr (half floats), .hdr or .pfm, by the file's extension.
   /// The write is atomic. Throws Error: usage for another extension or fewer than three channels, io.

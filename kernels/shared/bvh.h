@@ -81,7 +81,7 @@ SUNDOG_SHARED_SIZE(Vertex, 32)
 
 // 128 bytes. Instances [0, bounded_count) are leaves of the scene BVH in leaf order; of meshes that share a
 // BVH, the first is the leaf and the others follow it. The rest, planes and a few solids, are tested one by
-// one. Rays are transformed to object space without renormalizing, so t is the same in both; normals are
+// one. Rays are transformed to object space without renormalising, so t is the same in both; normals are
 // transformed by the transpose of object_from_world's linear part.
 typedef struct Instance {
   float4 object_from_world[3];  // rows of the affine matrix
@@ -94,7 +94,7 @@ typedef struct Instance {
   float touch;     // above 0 if its surfaces may touch others or each other: the gap that rounding may open
   u32 light;       // index of the light that it shows, or NO_LIGHT
   u32 first_prim;  // of a mesh: the index of its first triangle
-  float4 world_center;   // center of the bounds; w = half the diagonal (0 if unbounded)
+  float4 world_center;   // centre of the bounds; w = half the diagonal (0 if unbounded)
   float4 pattern_scale;  // xyz: from object space to the scene file's, in which patterns are measured; w:
                          // geometric mean of the scale from world to there
 } Instance;
@@ -120,7 +120,7 @@ SUNDOG_SHARED_SIZE(Turn, 80)
 #define INSTANCE_SCALES 8u     // object_from_world is diagonal: no rotation
 #define INSTANCE_SHARES 16u    // the next instance is in the same mesh BVH, and its triangles follow
 
-// 32 bytes: the raw intersection. ng is the geometric normal in object space, outward, not normalized.
+// 32 bytes: the raw intersection. ng is the geometric normal in object space, outward, not normalised.
 typedef struct Hit {
   float t, u, v;  // t along the ray; u, v barycentric (triangles) or surface parameters
   u32 prim;       // TriangleShading index; for a solid, the face or part

@@ -4,10 +4,10 @@
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
-// 64 bytes. The picture's rows go from the top (`up`) to the bottom; its center column lies along `ahead`,
+// 64 bytes. The picture's rows go from the top (`up`) to the bottom; its centre column lies along `ahead`,
 // and columns right of it towards `right`. The table `environment` holds its pixels (rgb), row by row. A cell
 // covers whole pixels and is sampled uniformly in solid angle; or, with CELLS_BETWEEN_PIXELS, it lies between
-// four pixel centers, whose luminances (w) are interpolated to a density. Then there is one more row of cells
+// four pixel centres, whose luminances (w) are interpolated to a density. Then there is one more row of cells
 // than of pixels, the first and last rows are half as high, and cells of column 0 straddle the seam.
 // `environment_shares` starts with the cosine to `up` of each row's border, one more than rows, or with the
 // density of directions, per steradian, divided by luminance and multiplied by the sine to `up`; then the

@@ -3,7 +3,7 @@
 #ifndef SUNDOG_SHARED_FILTER_H
 #define SUNDOG_SHARED_FILTER_H
 
-// Floats: the share of the negative lobes; 0 and the distances from the center at FILTER_STEPS equal
+// Floats: the share of the negative lobes; 0 and the distances from the centre at FILTER_STEPS equal
 // quantiles of the positive part; likewise for the negative lobes.
 #define FILTER_STEPS 256
 #define FILTER_ABOVE 1

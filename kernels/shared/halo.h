@@ -42,7 +42,7 @@ typedef struct HaloLaunch {
   float half_height, weight;    // of the crystal; 1 / the largest area that it can show to the sun
   float tilt, roll;             // standard deviations in turns
   float index_low, index_high;  // refractive indices at the ends of the band
-  float sun_x, sun_z;           // towards the sun's center, unit
+  float sun_x, sun_z;           // towards the sun's centre, unit
   float sun_radius;             // tangent of half its diameter
   u32 side;                     // cells per side of the map
   u32 pad0, pad1;

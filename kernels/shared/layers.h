@@ -55,7 +55,7 @@ typedef struct Layers {
   float metal;            // factor on a metal's reflection
   float matte_roughness;  // of the diffuse ground
   float matte_scale,
-      matte_scale_bare;  // normalize T(wo) T(wi) of the layers above, and of the interface alone
+      matte_scale_bare;  // normalise T(wo) T(wi) of the layers above, and of the interface alone
   float glass;           // fraction of a dielectric base that transmits
   float shine_scale;     // at most 1; keeps the base's facets from reflecting more than all light
   float turn_x, turn_y;  // rotation of the tangent from the surface's first coordinate

@@ -51,14 +51,14 @@ typedef enum LightKind SUNDOG_ENUM_OF_U32 {
 // outside. direction.w: spot: cosine of the outer half angle of the cone; area light: its area; sun: 1 -
 // cosine of its half angle, negative if invisible.
 typedef struct Light {
-  float4 position;   // world; corner of a rectangle, else the center; w = 1: an area light invisible to rays,
+  float4 position;   // world; corner of a rectangle, else the centre; w = 1: an area light invisible to rays,
                      // a sun invisible to the camera
   float4 direction;  // unit, direction of emission; w: see above
   float4 color;      // times intensity (radiance of an area light); w = cosine of a spot's inner half angle
   float falloff_constant, falloff_linear,
       falloff_quadratic;  // intensity / (c + l d + q d^2), d in world units
   u32 kind;               // LIGHT_*
-  float4 edge_u, edge_v;  // sides of a rectangle, or from the center to the rim of a disk; w = their lengths
+  float4 edge_u, edge_v;  // sides of a rectangle, or from the centre to the rim of a disk; w = their lengths
                           // (edge_u.w is a sphere's radius). A spot's edge is s^2 (edge_u.x - edge_u.y s); a
                           // point's and a spot's edge_v.x is 1 / range, or 0
 } Light;

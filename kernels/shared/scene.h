@@ -116,7 +116,7 @@ typedef struct SceneInfo {
   u32 texel_page;        // units of TEXEL_UNIT bytes in each of texels0 to texels2
   float4 origin;         // world position of the tables' origin
   float4 origin_rest;    // the remainder of its rounding to floats
-  // HAS_LENS: from the lens's center to its rim, right and up; w = focus depth; blades.
+  // HAS_LENS: from the lens's centre to its rim, right and up; w = focus depth; blades.
   float4 lens_x, lens_y;
   // HAS_CAMERA_MOTION: translation of these while the shutter is open.
   float4 moved_position, moved_corner, moved_dx, moved_dy;

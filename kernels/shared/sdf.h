@@ -21,7 +21,7 @@ SUNDOG_SHARED_BEGIN
 typedef struct SdfField {
   float4 lower;   // bounding interval, which cuts the surface; w = minimum threshold
   float4 upper;   // w = maximum threshold
-  float4 sphere;  // xyz center, w = radius of the cutting sphere (SDF_CUT_SPHERE)
+  float4 sphere;  // xyz centre, w = radius of the cutting sphere (SDF_CUT_SPHERE)
   float safety;   // (0, 1]: factor that makes the estimate a lower bound
   float detail;   // threshold in pixel footprints
   u32 step_limit;

@@ -28,7 +28,7 @@ struct StoredImage {
   }
 };
 
-/// Decodes PNG, JPEG, WebP, Radiance HDR, EXR and PFM, recognized by content; the latter three as halves.
+/// Decodes PNG, JPEG, WebP, Radiance HDR, EXR and PFM, recognised by content; the latter three as halves.
 /// Throws std::runtime_error with the reason only.
 StoredImage decode_stored(std::string_view bytes);
 

@@ -16,7 +16,7 @@ namespace {
 constexpr int max_bins = 32;
 constexpr std::size_t parallel_size = 1u << 16;  // larger sets use several threads
 
-/// Maps a doubled center to its bin along each axis.
+/// Maps a doubled centre to its bin along each axis.
 struct BinMap {
   Lanes base, scale;
   int count;
@@ -39,7 +39,7 @@ struct BinMap {
 };
 
 struct Bins {
-  std::array<std::array<Bounds, max_bins>, 3> box;  // unused bins are not initialized: most sets are small
+  std::array<std::array<Bounds, max_bins>, 3> box;  // unused bins are not initialised: most sets are small
   std::array<std::array<u32, max_bins>, 3> members;
 
   explicit Bins(int count) {
@@ -127,7 +127,7 @@ Plane find_plane(const RefSet& set, const BinMap& map, const SplitSettings& sett
   return plane;
 }
 
-/// A partition's result: the number of left members, and bounds of the centers, [0] left and [1] right.
+/// A partition's result: the number of left members, and bounds of the centres, [0] left and [1] right.
 struct Parts {
   std::size_t left_count = 0;
   std::array<Bounds, 2> centers{Bounds::none(), Bounds::none()};
@@ -144,7 +144,7 @@ bool overlaps(const Plane& plane, const SplitSettings& settings) {
   return half_area(common, settings.area_scale) > least_overlap * settings.root_area;
 }
 
-/// The side of a center: 0 left, 1 right.
+/// The side of a centre: 0 left, 1 right.
 struct Side {
   const BinMap& map;
   const Plane& plane;

@@ -12,7 +12,7 @@
 
 namespace sundog {
 
-/// Consecutive refs, with the bounds of their boxes and of their (doubled) centers.
+/// Consecutive refs, with the bounds of their boxes and of their (doubled) centres.
 struct RefSet {
   std::span<Ref> refs;
   Bounds box, centers;
@@ -35,11 +35,11 @@ struct RefSplit {
   RefSet left, right;
 };
 
-/// Splits `set` (two or more members) at the lowest binned SAH cost, or by count if all centers coincide.
+/// Splits `set` (two or more members) at the lowest binned SAH cost, or by count if all centres coincide.
 /// Reorders the refs. Neither part is empty.
 RefSplit split_by_area(const RefSet& set, const SplitSettings& settings);
 
-/// Splits `set` in halves along the widest axis of its centers.
+/// Splits `set` in halves along the widest axis of its centres.
 RefSplit split_by_median(const RefSet& set);
 
 /// Splits `set` by a plane that splits triangles, if that costs less than `least` and there is room. Each

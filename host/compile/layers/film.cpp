@@ -11,7 +11,7 @@
 namespace sundog {
 namespace {
 
-/// Reflected amplitudes of both polarizations at an interface from index n to index m.
+/// Reflected amplitudes of both polarisations at an interface from index n to index m.
 struct Amplitudes {
   double s, p;
 };

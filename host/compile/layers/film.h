@@ -9,7 +9,7 @@ struct ThinFilm {
   double before, index, behind, thickness;
 };
 
-/// Reflectance for unpolarized light of a wavelength (nm) at the cosine c: Airy's sum over all reflections
+/// Reflectance for unpolarised light of a wavelength (nm) at the cosine c: Airy's sum over all reflections
 /// between the film's faces, which Belcour and Barla 2017 ("A Practical Extension to Microfacet Theory for
 /// the Modeling of Varying Iridescence", equation 3) approximate.
 double film_reflectance(const ThinFilm& film, double cosine, double wavelength);

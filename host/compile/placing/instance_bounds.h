@@ -16,7 +16,7 @@ Bounds world_bounds(const UnitShape& unit, std::span<const Bounds> boxes, const 
 /// across its longest side saves much area, as for a thin solid placed obliquely.
 std::vector<Bounds> part_bounds(const UnitShape& unit, const dmat4& world_from_unit, const Bounds& whole);
 
-/// The box's center, and half its diagonal, rounded up, in w.
+/// The box's centre, and half its diagonal, rounded up, in w.
 float4 sphere_around(const Bounds& box);
 
 }  // namespace sundog

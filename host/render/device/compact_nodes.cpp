@@ -21,7 +21,7 @@ u32 step_exponent(double extent) {
   return static_cast<u32>(std::clamp(exponent + bias, 1, 254));
 }
 
-/// Quantizes one axis of all boxes to the node's grid.
+/// Quantises one axis of all boxes to the node's grid.
 void quantize_axis(const float* lower, const float* upper, u32 count, u32 axis, CompactNode& node) {
   const float origin = *std::min_element(lower, lower + count), end = *std::max_element(upper, upper + count);
   const u32 exponent = step_exponent(double(end) - double(origin));

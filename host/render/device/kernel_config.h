@@ -1,4 +1,4 @@
-// Specialization of kernels to a scene's features and a device's class, as sorted -D definitions.
+// Specialisation of kernels to a scene's features and a device's class, as sorted -D definitions.
 #pragma once
 #include "compile/compiled_scene.h"
 #include "device/device.h"

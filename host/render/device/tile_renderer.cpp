@@ -242,7 +242,7 @@ void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   if (rays_.count < std::max<std::size_t>(1, counted))
     rays_ = device_.make<u32>(std::max<std::size_t>(1, counted));
   result.rays.resize(counted);
-  if (request.first_sample > 0) {  // kernels initialize the others to 0
+  if (request.first_sample > 0) {  // kernels initialise the others to 0
     device_.begin_write(film_, std::span<const float4>(request.sums));
     device_.begin_write(weights_, std::span<const float>(request.weights));
     if (counted > 0) device_.begin_write(rays_, std::span<const u32>(request.rays));

@@ -48,7 +48,7 @@ class TileRenderer {
 
   /// Statistics of the constructor or the last change_scene().
   const KernelUpdate& update() const { return update_; }
-  /// The specialization of its kernels; changes before a tile when better ones have been built.
+  /// The specialisation of its kernels; changes before a tile when better ones have been built.
   const KernelConfig& config() const { return kernels_.config; }
   /// Whether the picture must be drawn again by other kernels, and whether those are built.
   bool draws_draft() const { return kernels_.is_draft; }

@@ -19,7 +19,7 @@ int next_block(int block, double pixel_seconds, std::size_t pixels);
 /// Expected seconds per pixel of a whole image, from a coarse pass and the previous frame (0: unknown).
 double expected_pixel_seconds(double coarse, double before);
 
-/// The pass over the center pixel of each block.
+/// The pass over the centre pixel of each block.
 Pass coarse_pass(int width, int height, int block);
 
 /// The latest complete coarse picture.

@@ -1,5 +1,5 @@
 // Subsampling: renders every second pixel each way. Between four pixels that agree on object, material,
-// normal and colour, the others are interpolated, unless a ray through their center sees a different surface;
+// normal and colour, the others are interpolated, unless a ray through their centre sees a different surface;
 // so nothing that the camera sees is missed, however thin. Small features in shadows and reflections are
 // traced: where a pixel differs from its corners' interpolation, its neighbours are sampled.
 #pragma once

@@ -38,7 +38,7 @@ struct Message {
   std::string data;  // binary payload
 };
 
-/// Serialization.
+/// Serialisation.
 std::string pack(const Message& message);
 /// Throws ChannelClosed for malformed bytes.
 Message unpack(const std::string& bytes);

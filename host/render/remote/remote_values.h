@@ -1,4 +1,4 @@
-// Serializes the values sent through a channel as JSON.
+// Serialises the values sent through a channel as JSON.
 #pragma once
 #include <nlohmann/json.hpp>
 

@@ -66,7 +66,7 @@ struct SdfDescription {
   std::string name;
   SdfNode root;
   glm::dvec3 lower{-1.5}, upper{1.5};  // bounding interval; cuts the surface
-  std::optional<glm::dvec4> sphere;    // center and radius of a cutting sphere
+  std::optional<glm::dvec4> sphere;    // centre and radius of a cutting sphere
   // Surface threshold in pixel footprints; default 0.05 for closed forms, whose hits are refined (the
   // threshold widens silhouettes), 0.5 otherwise.
   std::optional<double> detail;

@@ -78,7 +78,7 @@ class JsonValue {
     return std::ranges::find(table, choice(names_of(table)), &Row::name)->value;
   }
   glm::dvec3 vec3(const Range& each = any_number) const;
-  /// A nonzero [x, y, z], normalized.
+  /// A nonzero [x, y, z], normalised.
   glm::dvec3 direction() const;
   /// Linear [r, g, b], each from 0.
   glm::dvec3 color(const Range& each = color_range) const;

@@ -7,7 +7,7 @@
 
 namespace sundog::models {
 
-/// Normalizes a mesh's normals and generates missing ones. `has_normal` tells which vertices have one (empty:
+/// Normalises a mesh's normals and generates missing ones. `has_normal` tells which vertices have one (empty:
 /// all if mesh.normals is filled, else none); too short ones count as missing. A generated normal is the mean
 /// of the faces around the vertex, weighted by angle, over the faces connected across edges of at most
 /// `crease_degrees`; several groups split the vertex. Edges connect `point_of_vertex` (empty: the vertices),

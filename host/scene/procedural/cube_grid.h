@@ -5,7 +5,7 @@
 
 namespace sundog::procedural {
 
-/// Unit directions of the grid points from the cube's center, and triangles, counterclockwise from outside.
+/// Unit directions of the grid points from the cube's centre, and triangles, counterclockwise from outside.
 struct CubeGrid {
   std::vector<glm::dvec3> directions;
   std::vector<glm::uvec3> triangles;

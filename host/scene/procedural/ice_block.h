@@ -15,7 +15,7 @@ namespace sundog {
 /// rippled. The scene reader enforces the ranges given here.
 struct IceSurface {
   glm::dvec3 size{2, 2, 2};    // of the original box, > 0
-  glm::dvec3 offset{0, 0, 0};  // of its center from the block's origin, which must stay well inside
+  glm::dvec3 offset{0, 0, 0};  // of its centre from the block's origin, which must stay well inside
   int chips = 12;              // planes that cut off edges and corners, 0..1000
   int dents = 6;               // shallow hollows, 0..1000
   int softness = 1;            // of the edges, 0 (sharp) .. 4 (a pebble)

@@ -7,7 +7,7 @@ namespace sundog::procedural {
 
 namespace {
 
-// The finalizer of SplitMix64 (Steele, Lea and Flood 2014).
+// The finaliser of SplitMix64 (Steele, Lea and Flood 2014).
 std::uint64_t scrambled(std::uint64_t x) {
   x += 0x9E3779B97F4A7C15ull;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ull;

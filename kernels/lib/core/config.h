@@ -1,4 +1,4 @@
-// Constants that specialize kernels to a device, with defaults, and derived constants of a scene's features
+// Constants that specialise kernels to a device, with defaults, and derived constants of a scene's features
 // (shared/features.h, shared/shapes.h; HAS_MESH, HAS_SPHERE, ...: it has that shape; HAS_BVH: rays traverse a
 // BVH). The host's KernelConfig writes the -D options. Thresholds of a method stand beside the method.
 #ifndef SUNDOG_LIB_CONFIG_H
@@ -21,7 +21,7 @@
 #define fma(a, b, c) ((a) * (b) + (c))
 #endif
 
-// For inner loops, where a call would save and restore every vector register. Not without optimization:
+// For inner loops, where a call would save and restore every vector register. Not without optimisation:
 // Oclgrind does not know the marks that inlining leaves.
 #ifdef __NO_INLINE__
 #define ALWAYS_INLINE static inline

@@ -159,8 +159,7 @@ static inline void take_solids(SolidHits* solid, MASK found, Hits* hits) {
   hits->ng = select3(hits->ng, solid->ng, found);
 }
 
-// Tests solids of a shape, `index` per lane, in (t_min, hits->t] for the lanes of `active`; object-space
-// rays.
+// Tests solids of a shape, `index` per lane, in (t_min, hits->t] for lanes of `active`; rays in object space.
 ALWAYS_INLINE void offer_solids(u32 shape, float4 parameters, MASK index, REAL3 o, REAL3 d, REAL t_min,
                                 MASK active, Hits* hits) {
   SolidHits solid = begin_solids(hits, index);

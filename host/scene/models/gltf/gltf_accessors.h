@@ -50,7 +50,7 @@ class GltfAccessors {
   const BufferView* view_of(const Accessor& accessor) const {
     return accessor.has_view ? &views_[accessor.dense.view] : nullptr;
   }
-  /// `components` floats per element; normalized integers are scaled; decoded once. Infinities become NaN.
+  /// `components` floats per element; normalised integers are scaled; decoded once. Infinities become NaN.
   const std::vector<float>& floats(std::size_t index);
   /// floats() that must not be NaN. Throws SceneError.
   const std::vector<float>& numbers(std::size_t index);

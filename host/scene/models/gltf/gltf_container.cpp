@@ -103,7 +103,7 @@ std::string read_data_uri(std::string_view text, const JsonAt& uri, bool buffer)
   std::transform(head.begin(), head.end(), head.begin(), [](unsigned char c) { return std::tolower(c); });
   const bool base64 = head.ends_with(";base64");
   if (base64) head.resize(head.size() - 7);
-  // An image's type is recognized by its bytes.
+  // An image's type is recognised by its bytes.
   if (buffer && head != "application/octet-stream" && head != "application/gltf-buffer")
     uri.fail("a data URI of type application/octet-stream or application/gltf-buffer wanted");
   return base64 ? decode_base64(text.substr(comma + 1), uri) : decode_percent(text.substr(comma + 1));

@@ -17,7 +17,7 @@
 namespace sundog::models {
 namespace {
 
-// Accessors allowed for an attribute: types, and whether normalized integers are allowed.
+// Accessors allowed for an attribute: types, and whether normalised integers are allowed.
 struct AttributeRule {
   std::string_view name, type, other_type;
   bool normalized_integers;
@@ -27,7 +27,7 @@ constexpr AttributeRule rules[] = {{"POSITION", "VEC3", "VEC3", false},  {"NORMA
                                    {"TEXCOORD_1", "VEC2", "VEC2", true}, {"TEXCOORD_2", "VEC2", "VEC2", true},
                                    {"TEXCOORD_3", "VEC2", "VEC2", true}, {"COLOR_0", "VEC3", "VEC4", true}};
 
-// KHR_mesh_quantization also allows 8- and 16-bit integers; for normals, signed normalized ones.
+// KHR_mesh_quantization also allows 8- and 16-bit integers; for normals, signed normalised ones.
 bool fits_quantized(std::string_view name, const Accessor& accessor) {
   const std::uint64_t component = accessor.dense.component;
   const bool is_signed = component == component_byte || component == component_short;
