@@ -11,9 +11,9 @@ namespace sundog {
 inline namespace v0 {
 
 /// An OpenCL device as its driver reports it. Returned by devices() and choose_devices(); copies refer to the
-/// same device. A driver cannot be interrupted: when a render is stopped, a thread inside a driver's compiler
-/// keeps running and belongs to the devices that were listed together: the last copy waits up to a minute for
-/// it.
+/// same device. A driver cannot be interrupted: when a render is stopped, a thread in a driver's compiler
+/// runs on. The last copy of devices listed together waits for such threads, up to a minute, then detaches
+/// them.
 struct Device {
   std::string label{};              ///< "0:1 Portable Computing Language / cpu-..."
   int platform = 0;                 ///< as `clinfo -l` numbers them, from 0
@@ -41,8 +41,8 @@ SUNDOG_API std::vector<Device> devices();
 /// Returns the devices that match `specs`, each once; without specs, the one estimated fastest. A spec is
 /// "P:D" (indices), "cpu", "gpu", "accelerator", "all", part of "platform/device" (case-insensitive), or
 /// "pocl", "nvidia", "intel", "amd"; suffix "/N" selects a sub-device of N units; "!SPEC" excludes devices
-/// ("!SPEC?": if there are any). Throws Error: device if nothing matches or remains, usage for a malformed
-/// spec. `warnings`, if given, receives a line for each spec that looks mistaken. Thread-safe.
+/// ("!SPEC?": if there are any). Throws Error: device if a spec matches or excludes nothing, usage for a
+/// malformed spec. `warnings`, if given, receives a line for each spec that looks mistaken. Thread-safe.
 SUNDOG_API std::vector<Device> choose_devices(const std::vector<std::string>& specs = {},
                                               std::vector<std::string>* warnings = nullptr);
 
