@@ -72,8 +72,8 @@ static inline MASK item_pixels(const Launch* launch, __global const u32* restric
   return lanes;
 }
 
-// Clears film, weights and, where they are asked for, rays of the work-item's pixels, if the launch makes
-// their first samples.
+// Clears film, weights and, if counted, rays of the work-item's pixels if the launch makes their first
+// samples.
 static inline void begin_film(const Launch* launch, u32 item, __global float4* restrict film,
                               __global float* restrict weights, __global u32* restrict rays) {
   if (launch->first_sample > 0u) return;
@@ -98,11 +98,10 @@ static inline void begin_film(const Launch* launch, u32 item, __global float4* r
   }
 }
 
-// Adds the light of a sample to film and weights of the rectangle's pixel `place`; `sign` is what the sample
-// counts.
+// Adds a sample's light to film and weights of the rectangle's pixel `place`, with the weight `sign`.
 static inline void store_sample(u32 place, float4 radiance, float sign, __global float4* restrict film,
                                 __global float* restrict weights, u32* counts) {
-  const float3 zero = radiance.xyz * 0.0f;  // NaN where one is not finite
+  const float3 zero = radiance.xyz * 0.0f;  // NaN if one is not finite
   if (zero.x + zero.y + zero.z != 0.0f) {
     counts[COUNT_NON_FINITE] += 1u;
     return;
@@ -111,7 +110,7 @@ static inline void store_sample(u32 place, float4 radiance, float sign, __global
   weights[place] += HAS_FILTER ? sign : 1.0f;
 }
 
-// The same for the pixels of all lanes of `lanes`; arrays by lane.
+// store_sample() for the pixels of all lanes of `lanes`; arrays by lane.
 static inline void store_lanes(const Launch* launch, u32 item, MASK lanes, const float4* radiance,
                                const float* signs, __global float4* restrict film,
                                __global float* restrict weights, u32* counts) {
