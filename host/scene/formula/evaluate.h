@@ -15,8 +15,8 @@ struct FieldValue {
   double distance = 0;
   bool inside = false;
   int iterations = 0;
-  /// Length of the gradient of the formula's "distance": by p (direct), or by z at the orbit's end (folded).
-  /// 0 for escape formulas and if the distance is divided by its gradient.
+  /// Rate of change of the formula's "distance" by its derivative: per unit of p (direct), or of z at the
+  /// orbit's end (folded). 0 for escape formulas and if the distance is divided by its gradient.
   double slope = 0;
 };
 
