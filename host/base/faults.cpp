@@ -14,7 +14,7 @@ struct Faults::Fault {
   int value = 0;
   std::size_t above = 0;
   bool any_size = true;
-  std::size_t only = 0;  // the Nth occasion; 0: all
+  std::size_t only = 0;  // the Nth occasion; 0: each
   std::atomic<std::size_t> occasions{0};
 };
 

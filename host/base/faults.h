@@ -10,18 +10,19 @@
 
 namespace sundog {
 
-/// Parses comma-separated faults, KIND[=VALUE][>SIZE]@WHERE[#N]: the fault strikes when KIND happens at WHERE
-/// with more than SIZE, at the Nth occasion or at all. Kinds:
+/// Faults are a text, separated by commas, each KIND[=VALUE][>SIZE]@WHERE[#N]: it strikes where KIND
+/// happens at WHERE with more than SIZE, at the Nth such occasion or at each. The kinds, and what asks for
+/// them:
 ///     build@P:D           the kernels do not build on the device
 ///     kernels@P:D         the driver creates no kernels from a program that it built from source
 ///     compile@P:D         the process that compiles for the device ends without a result
 ///     alloc=STATUS@P:D    a buffer of more than SIZE bytes gives the OpenCL status
 ///     launch=STATUS@P:D   a launch of more than SIZE work-items gives the OpenCL status
 ///     group=STATUS@P:D    a launch in groups of more than SIZE work-items gives the OpenCL status
-///     limit=MOST@P:D      the driver limits the groups of all kernels to MOST work-items
-///     hang@P:D            a launch never returns
-///     photons=KIBIBYTES@P:D  memory limit for photon maps on the device (one map may exceed it)
-///     cut@P:D             loops in launches of more than SIZE samples end early, without an error
+///     limit=MOST@P:D      the driver gives no kernel's groups more than MOST work-items
+///     hang@P:D            a launch never comes back
+///     photons=KIBIBYTES@P:D  maps of photons take no more on the device, or one map if that is more
+///     cut@P:D             the loops of launches of more than SIZE samples are ended early, without an error
 ///     crash@P:D           a launch ends the process
 ///     kill@P:D            the process is killed (SIGKILL) at a launch
 ///     kill@compile        the compiling process is killed

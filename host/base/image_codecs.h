@@ -9,13 +9,13 @@
 
 namespace sundog {
 
-/// 8 bits a channel: sRGB colours, linear alpha.
+/// 8 bits a channel, colours as sRGB, alpha as it is.
 std::string encode_png(const Image& image);
-/// Inserts texts before the pixels, one iTXt chunk each.
+/// The PNG with texts ahead of its pixels, each an iTXt chunk.
 std::string with_png_texts(std::string png, const ImageTexts& texts);
 /// Texts of a PNG; empty for other files.
 ImageTexts decode_png_texts(std::string_view bytes);
-/// 8 bits a channel, sRGB, without alpha or chroma subsampling.
+/// Likewise, without alpha; colours in full resolution.
 std::string encode_jpeg(const Image& image);
 /// The exponent that makes a PNG's samples linear; none: sRGB.
 std::optional<float> png_decoding_exponent(std::string_view bytes);
@@ -36,7 +36,7 @@ Image decode_pfm(std::string_view bytes);
 /// Throws for a multi-part or deep EXR file, and for a header that requests more memory than a file of this
 /// length can use. Call before decoding, which allocates that memory.
 void check_exr_header(std::string_view bytes);
-/// Throws IoError only.
+/// Throws IoError only: there is nothing it refuses.
 std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color,
                        const ImageTexts& texts = {});
 Image decode_exr(std::string_view bytes);

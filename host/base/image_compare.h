@@ -6,8 +6,9 @@
 
 namespace sundog {
 
-/// Absolute differences of linear red, green, blue and, on request, alpha. A pixel's difference is that of
-/// its worst channel. A non-finite value differs by infinity from everything but itself (NaN equals NaN).
+/// Linear absolute differences of red, green and blue, and of alpha where that is asked for.
+/// The difference of a pixel is that of its worst channel. A value that is not finite differs by infinity
+/// from everything but itself (NaN equals NaN).
 struct ImageDifference {
   double mean = 0, rms = 0;          // over all finite channel differences
   double max = 0;                    // over pixels; may be infinite
@@ -19,8 +20,8 @@ struct ImageDifference {
   std::uint64_t non_finite = 0;      // pixels where either image has a value that is not finite
 };
 
-/// Throws std::invalid_argument unless both images have the same size and 3 or 4 channels. `channels`: 3, or
-/// 4 to compare alpha too.
+/// Both images have the same size and 3 or 4 channels (std::invalid_argument otherwise). `channels`: 3, or 4
+/// to compare alpha too.
 ImageDifference compare_images(const Image& a, const Image& b, double tolerance, int channels = 3);
 
 /// Returns `a` dimmed to grey, with differing pixels coloured by a logarithmic scale: blue (1e-5 and less),

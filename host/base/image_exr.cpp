@@ -81,7 +81,7 @@ void add_slice(Imf::FrameBuffer& buffer, const std::string& name, const Sample* 
                 Imf::Slice(type, base, pixel, pixel * static_cast<std::size_t>(shape.width), 1, 1, fill));
 }
 
-/// Clamps, because halves overflow to infinity above 65504.
+/// A half overflows to infinity above 65504.
 float clamped_to_half(float value) { return value > 65504 ? 65504 : value < -65504 ? -65504 : value; }
 
 std::vector<half> halves_of(const Image& image) {
@@ -117,7 +117,7 @@ class Reader {
   const Imf::ChannelList& channels() const { return file_.header().channels(); }
   bool has(const std::string& name) const { return channels().findChannel(name) != nullptr; }
 
-  /// Reads the named channels, in order, into one image; missing ones are `fill`.
+  /// Reads the named channels into one image, in that order; absent ones are `fill` everywhere.
   Image read(const Suffixes& names, const std::array<float, 4>& fill = {}) {
     Image image(width_, height_, static_cast<int>(names.size()));
     Imf::FrameBuffer buffer;

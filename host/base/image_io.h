@@ -16,13 +16,13 @@ enum class ExrColor { half, full };
 /// Named texts about an image, such as the program and scene that made it. Kept by PNG and EXR.
 using ImageTexts = std::vector<std::pair<std::string, std::string>>;
 
-/// Writes `image` (3 or 4 channels, linear) in the format of the extension, atomically. `aovs` become
-/// channels of an EXR ("depth.Z", "normal.X"...); other formats refuse them. Throws UsageError for an unknown
-/// extension, IoError if the file cannot be written.
+/// Writes `image` (3 or 4 channels, linear) in the format of the extension; the file appears whole or not at
+/// all (temporary and rename). `aovs` become further channels of an EXR ("depth.Z", "normal.X"...); other
+/// formats refuse them. Throws UsageError for an unknown extension, IoError when the file cannot be written.
 void write_image(const Image& image, const std::filesystem::path& path, const AovImages& aovs = {},
                  ExrColor color = ExrColor::half);
 
-/// Returns the bytes that `write_image` writes; `texts` go into a PNG or an EXR.
+/// The bytes that `write_image` writes; `texts` go into a PNG or an EXR.
 std::string encode_image(const Image& image, const std::filesystem::path& path, const AovImages& aovs = {},
                          ExrColor color = ExrColor::half, const ImageTexts& texts = {});
 
@@ -41,8 +41,8 @@ bool keeps_texts(const std::filesystem::path& path);
 /// Throws UsageError for an extension that `write_image` refuses. Call it before a long render.
 void check_image_path(const std::filesystem::path& path, bool with_aovs);
 
-/// Reads an image as linear RGBA floats (PNG and JPEG are decoded from sRGB, unless a PNG states another
-/// gamma). Throws SceneError for a bad file.
+/// Reads an image as linear RGBA floats (8-bit and 16-bit PNG/JPEG are decoded from sRGB, unless a PNG states
+/// another gamma). Throws SceneError on a bad file.
 Image read_image(const std::filesystem::path& path);
 
 /// An image, and whether the file has alpha; if not, the image's alpha is 1.
@@ -55,7 +55,7 @@ ImageInFile read_image_in_file(const std::filesystem::path& path);
 /// Texts of a PNG or EXR; empty for other formats. Throws SceneError for a bad file.
 ImageTexts read_texts(const std::filesystem::path& path);
 
-/// AOVs of an EXR by name; empty for other formats. Throws SceneError for a bad file.
+/// The extra images of an EXR, by name; empty for other formats. Throws SceneError on a bad file.
 AovImages read_aovs(const std::filesystem::path& path);
 
 float srgb_from_linear(float linear);

@@ -1,4 +1,5 @@
-// Writes PNG, JPEG and Radiance HDR with stb_image_write, whose implementation is compiled here only.
+// The writing of PNG, JPEG and Radiance HDR through stb_image_write, whose code is compiled here and nowhere
+// else.
 #include <zlib.h>
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 #include "base/image_codecs.h"
 
-// Deflates with zlib: half the time and a fifth less data than stb_image_write's compressor.
+// Deflates through zlib: in half the time, and to a fifth less, of what stb_image_write's own does.
 static unsigned char* zlib_compress(unsigned char* data, int size, int* compressed_size, int) {
   uLongf room = compressBound(static_cast<uLong>(size));
   auto* compressed = static_cast<unsigned char*>(std::malloc(room));  // stb frees it
@@ -64,7 +65,7 @@ std::string encode_png(const Image& image) {
 
 std::string encode_jpeg(const Image& image) {
   constexpr int greatest_side = 65535;
-  // From 91 up, stb_image_write does not subsample chroma.
+  // From 91 on stb_image_write keeps the colours of each pixel, not of four at once.
   constexpr int quality = 92;
   if (std::max(image.width, image.height) > greatest_side)
     throw std::runtime_error("the image is too large for a JPEG; use .png or .exr");

@@ -14,7 +14,7 @@ using glm::dvec3;
 /// glm builds matrices from columns.
 dmat3 rows(dvec3 a, dvec3 b, dvec3 c) { return glm::transpose(dmat3(a, b, c)); }
 
-/// Chromaticity of a black body (Kim and others 2002, US patent 7024034: cubic splines).
+/// The chromaticity of a black body (Kim and others 2002, US patent 7024034: cubic splines).
 dvec3 xyz_of_temperature(double kelvin) {
   const double t = 1000 / kelvin;
   const double x = kelvin < 4000 ? ((-0.2661239 * t - 0.2343589) * t + 0.8776956) * t + 0.179910
@@ -28,7 +28,8 @@ dvec3 xyz_of_temperature(double kelvin) {
 const dmat3 xyz_from_rgb = rows({0.4123908, 0.3575843, 0.1804808}, {0.2126390, 0.7151687, 0.0721923},
                                 {0.0193308, 0.1191948, 0.9505322});
 
-/// Adapts linear colours from light of this temperature to white (Bradford; Lam 1985).
+/// Linear colours under light of this temperature as they would be under white: Bradford's adaptation (Lam
+/// 1985).
 dmat3 adaptation(double kelvin) {
   const dmat3 cones_from_xyz =
       rows({0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296});
@@ -45,7 +46,7 @@ dvec3 reinhard(const dvec3& c) { return c / (1 + luminance(c)); }
 
 dvec3 aces(const dvec3& c) { return (c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14); }
 
-/// AgX's default contrast curve over its range of 16.5 stops, from 0..1 to 0..1.
+/// The curve of AgX's default contrast over its range of 16.5 stops, both 0 to 1.
 double agx_curve(double x) {
   return (((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x + 0.1191) * x - 0.00232;
 }
@@ -61,7 +62,7 @@ dvec3 agx(const dvec3& c) {
     shown[i] = agx_curve((stops - lowest) / (highest - lowest));
   }
   shown = glm::max(glm::inverse(inset) * shown, dvec3(0));
-  return glm::pow(shown, dvec3(2.2));  // the curve's values are display values
+  return glm::pow(shown, dvec3(2.2));  // the curve's values are those of a screen
 }
 
 dvec3 curved(ToneCurve curve, const dvec3& c) {

@@ -3,11 +3,11 @@
 //   UNIFORM T x               one value for all lanes; for a parameter or a member
 //   EACH_ALIKE(T, x, value) s runs s for each distinct value of `value`, in the lanes that have it
 //   any(c)                    whether c holds in some lane
-//   if (HAS_X && ...)         features are resolved by the preprocessor; HAVING(HAS_X) T m; for members
-// Interfaces to hand-written code:
-//   T f(..., HERE, ...)       f takes the mask of active lanes at this position; calls omit it
-//   CALLED(name) T f(...)     its hand-written name; UNIFORM T f(...): returns one value for all lanes
-//   typedef struct LANES(Rays, join_rays) {...} Ray;  its lane form, and the function that joins lanes of two
+//   if (HAS_X && ...)         features are taken out by the preprocessor; HAVING(HAS_X) T m; for members
+// In interfaces, to what is written by hand:
+//   T f(..., HERE, ...)       f takes the mask of the lanes that are there, in that place; calls leave it out
+//   CALLED(name) T f(...)     its name there; UNIFORM T f(...): it gives one value for all lanes
+//   typedef struct LANES(Rays, join_rays) {...} Ray;  its lane form, and what joins lanes of two
 //   LANE_VECTOR(Spectrum, Spectra, spectrum)             a vector: spectrum_add, spectrum_scale,
 //   spectrum_select, ...
 #pragma once

@@ -11,11 +11,11 @@ namespace sundog::spmd {
 
 struct Structure;
 
-/// A vector type of the language, whose lane form uses functions for operators: float3 is a REAL3, with add3,
-/// scale3, ...; interfaces declare others: Spectrum is a SampledSpectrum, with spectrum_add, ...
+/// A vector of the language, whose lane form has functions for what operators do: float3 is a REAL3, with
+/// add3, scale3, ...; an interface declares others: Spectrum is a SampledSpectrum, with spectrum_add, ...
 struct VectorForm {
-  std::string name, lanes, prefix;  // an empty prefix: function names end in the number of components
-  int parts = 0;                    // 0: components have no names
+  std::string name, lanes, prefix;  // an empty prefix: the functions end in the number of parts
+  int parts = 0;                    // 0: none that can be named
   std::string function(const std::string& operation) const;
 };
 

@@ -87,7 +87,7 @@ Track read_track(const JsonValue& value) {
   });
 }
 
-/// Slope of component `c` at a key: through its neighbours; 0 at the ends, where the value is held.
+/// Slope of component `c` at a key: through its neighbours; flat at the ends, where the value is held.
 double slope_at(const Track& track, std::size_t key, std::size_t c) {
   if (key == 0 || key + 1 == track.keys.size()) return 0;
   const Track::Key &before = track.keys[key - 1], &after = track.keys[key + 1];
@@ -115,7 +115,7 @@ std::vector<double> keyed(const Track& track, double frame) {
   return result;
 }
 
-/// The current value at the track's pointer.
+/// What stands at the track's pointer.
 std::vector<double> standing(const nlohmann::json& document, const Track& track, const JsonValue& place) {
   const nlohmann::json::json_pointer pointer(track.pointer);
   if (!document.contains(pointer)) return {};

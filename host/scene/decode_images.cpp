@@ -53,7 +53,7 @@ void decode(ImageDescription& image) {
   image.encoded.shrink_to_fit();
 }
 
-/// Replaces an undecodable image of a model by one white pixel.
+/// What a model names and cannot be decoded becomes one white pixel.
 void decode_or_white(ImageDescription& image, std::string& failure) {
   try {
     decode(image);

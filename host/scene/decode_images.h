@@ -4,12 +4,12 @@
 
 namespace sundog {
 
-/// Default memory limit for a scene's images on a device, in bytes.
+/// Bytes that a scene's images may take on a device before they are made smaller.
 inline constexpr std::size_t default_texture_bytes = std::size_t{1} << 30;
 
-/// Decodes all images in parallel; duplicates for the same use are stored once. While they exceed
-/// `render.texture_memory`, halves the largest, with a warning each. Throws SceneError with the image's file
-/// and place.
+/// Decodes all images, several at a time; one that is there twice for the same use is kept once. Images that
+/// together take more than `render.texture_memory`, the greatest first, are halved, with a warning each.
+/// Throws SceneError with the image's file and place.
 void decode_images(SceneDescription& scene);
 
 }  // namespace sundog

@@ -56,7 +56,7 @@ struct Camera {
 struct ImageSettings {
   int width = 640, height = 480;
   dvec3 background_bottom{0, 0, 0}, background_top{0, 0, 0};  // equal: one colour
-  ToneMap tone_map;                                           // for 8-bit files; not compiled
+  ToneMap tone_map;  // for files of 8 bits a channel; no part of the compiled scene
 };
 
 enum class Tracer { automatic, wide, compact };

@@ -55,7 +55,7 @@ void change_lights(SceneDescription& scene, const json& after, const JsonContext
   add_lamps(scene);
 }
 
-/// Makes copies of the description share vertices.
+/// Copies of the description hold the same vertices.
 void share_meshes(SceneDescription& scene) {
   const auto share = [](auto& array) {
     using Array = std::remove_reference_t<decltype(array)>;
@@ -105,7 +105,7 @@ SceneDescription load_scene_document(const json& document, const fs::path& file,
                             .outside_files = options.outside_files};
   SceneDescription scene = read_scene(JsonValue(document, context), std::nullopt, made);
   scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
-  if (made.empty()) share_meshes(scene);  // meshes of programs are shared already
+  if (made.empty()) share_meshes(scene);  // those of programs are held already
   return scene;
 }
 

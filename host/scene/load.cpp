@@ -63,7 +63,7 @@ SceneDescription read_with_overrides(json document, const fs::path& file,
     scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
     return scene;
   } catch (const SceneError& error) {
-    // The place is in the document after overrides: name those involved.
+    // The place is in the file as the overrides changed it: say which of them had a part in it.
     if (error.file == file.string())
       for (const std::string& setting : overrides)
         if (concerns(setting, error.place))

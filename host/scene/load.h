@@ -29,11 +29,12 @@ bool is_standard_input(const std::filesystem::path& path);
 /// The scene's name in errors: "standard input", or the path.
 std::string scene_file_name(const std::filesystem::path& path);
 
-/// Loads sundog's .json ("-": from standard input, with file names relative to the current folder), or .gltf
-/// .glb .obj .ply .stl .nff (each also .gz) as a scene: a camera that frames the bounds, lights and a grey
-/// material are generated if the file has none. `overrides` are "JSON_POINTER=VALUE" settings, applied in
-/// order before validation (for a model, to the generated scene). Throws SceneError{file, place, what}, and
-/// UsageError for a malformed override.
+/// Loads sundog's .json ("-": from the standard input, files that it names beside the current folder), or
+/// .gltf .glb .obj .ply .stl .nff (each also .gz) as a scene by itself: a camera that frames the bounds,
+/// lights and a grey material are made up where the file has none. `overrides` are "JSON_POINTER=VALUE"
+/// settings, applied in turn before the scene is checked (for a model file they apply to the scene that is
+/// made of it). Throws SceneError{file, place, what}, and UsageError for an override that is not of that
+/// form.
 SceneDescription load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
                             const LoadOptions& options = {});
 

@@ -28,8 +28,8 @@ struct StoredImage {
   }
 };
 
-/// Decodes PNG, JPEG, WebP, Radiance HDR, EXR and PFM, recognised by content; the latter three as halves.
-/// Throws std::runtime_error with the reason only.
+/// PNG, JPEG, WebP, Radiance HDR, EXR and PFM, by the content; samples of the latter three become halves.
+/// Throws std::runtime_error with the reason alone.
 StoredImage decode_stored(std::string_view bytes);
 
 /// Encodes as grey or RGB PNG of 8 or 16 bits, without alpha. Throws std::runtime_error.

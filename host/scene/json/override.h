@@ -7,13 +7,13 @@
 
 namespace sundog {
 
-/// Applies an override "JSON_POINTER=VALUE". VALUE is JSON, or else a string. Creates a missing last key and
-/// its parent objects, except named things (a misspelt material "galss" is an error); "-" appends to an
-/// array. Throws UsageError for malformed text, SceneError{file, pointer, what} for a pointer that leads
-/// nowhere.
+/// Sets the value that an override "JSON_POINTER=VALUE" names. VALUE is JSON, or else taken as a string. A
+/// missing last key is added, and so are the objects around it, but for named things (there is no material
+/// "galss" to change); "-" appends to an array. Throws UsageError for text of another form, SceneError{file,
+/// pointer, what} for a pointer that leads nowhere.
 void apply_override(nlohmann::json& document, std::string_view setting, const std::filesystem::path& file);
 
-/// Whether an error at `place` may come from the override: one pointer is a prefix of the other.
+/// True when an error at `place` may come of the override: one of the two pointers leads through the other.
 bool concerns(std::string_view setting, std::string_view place);
 
 }  // namespace sundog

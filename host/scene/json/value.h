@@ -31,15 +31,15 @@ inline constexpr Range above_0{.low = 0, .low_open = true};
 inline constexpr Range zero_to_one{.low = 0, .high = 1};
 inline constexpr Range color_range{.low = 0, .high = 1e6};
 
-/// Settings shared by the values of a file. `asked`, if set, collects the requested keys by kind of object,
-/// which a test compares with the JSON Schema.
+/// What the values of one file share. `asked`, when set, collects the keys asked for, by kind of object: a
+/// test compares them with the JSON Schema.
 struct JsonContext {
   std::filesystem::path file;
   std::map<std::string, std::set<std::string>, std::less<>>* asked = nullptr;
-  bool native_code = false;                      // scenes may contain OpenCL C
-  std::vector<std::string>* warnings = nullptr;  // if set, collects warnings
-  bool measures = true;                          // try formulas; not needed to check keys and types
-  bool outside_files = false;                    // scenes may name files outside their folder
+  bool native_code = false;                      // a scene may carry OpenCL C
+  std::vector<std::string>* warnings = nullptr;  // when set, collects what the values were warned of
+  bool measures = true;        // formulas are tried out; who only checks keys and types need not
+  bool outside_files = false;  // a scene may name files outside its folder
 };
 
 /// Allowed keys or choices, in a static array.

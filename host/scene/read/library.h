@@ -12,7 +12,7 @@
 
 namespace sundog {
 
-/// Transform, material and motion of an object, combined from its groups and itself.
+/// Where an object stands: what it takes from its groups and from itself.
 struct Placement {
   dmat4 world_from_object{1};
   int material = -1;  // -1: the model's own
@@ -24,7 +24,7 @@ struct Placement {
 
 class ModelLibrary {
  public:
-  /// `scene` must outlive the library.
+  /// Adds to `scene`, which must outlive the library.
   explicit ModelLibrary(SceneDescription& scene) : scene_(scene) {}
 
   /// A model in the scene's tables: objects with the scene's indices, in model space.
@@ -32,9 +32,9 @@ class ModelLibrary {
 
   /// Adds a model; `name` prefixes its materials' and media's names.
   Parts add(Model model, const std::string& name);
-  /// Reads and adds a model file, or returns the one added before. Throws what load_model() throws.
+  /// Reads and adds a model file, or finds what was added before. Throws what load_model() throws.
   const Parts& load(const std::filesystem::path& file, const ModelOptions& options = {});
-  /// Adds a model that has been read, for load() to find.
+  /// Adds a model that has been read already, for load() to find.
   void keep(const std::filesystem::path& file, Model model);
 
   /// Adds each part of a model to the scene's objects.

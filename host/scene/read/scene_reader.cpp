@@ -97,7 +97,7 @@ class SceneReader {
     return file;
   }
 
-  /// Reads an image file, whose pixels must be finite.
+  /// An image file named in the scene, whose pixels must be finite.
   Image read_picture(const JsonValue& value) const {
     const fs::path file = find_file(value);
     Image image = read_image(file);

@@ -19,7 +19,7 @@ struct SurfaceNames {
 /// Returns a section of the document, if present.
 using FindSection = std::function<std::optional<JsonValue>(std::string_view key)>;
 
-/// Reads them into `scene`, whose only medium so far is the world's. `textures` must add to the same scene.
+/// Reads them into `scene`, whose only medium so far is the world's. `textures` adds to the same scene.
 /// Throws SceneError.
 SurfaceNames read_surfaces(const FindSection& find, SceneDescription& scene, TextureLibrary& textures);
 

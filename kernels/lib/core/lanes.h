@@ -223,7 +223,7 @@ static inline void set3(REAL3* a, u32 i, float3 value) {
   REAL_LANE(a->z, i) = value.z;
 }
 
-// One instruction each, unlike fmin and fmax: a NaN in a gives b.
+// One instruction each, which fmin and fmax are not: a NaN in a gives b.
 static inline REAL real_min(REAL a, REAL b) { return select(b, a, MASK_OF(a < b)); }
 static inline REAL real_max(REAL a, REAL b) { return select(b, a, MASK_OF(a > b)); }
 static inline REAL real_clamp(REAL a, REAL low, REAL high) { return real_min(real_max(a, low), high); }

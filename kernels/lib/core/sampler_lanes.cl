@@ -78,8 +78,8 @@ typedef struct LaneSamples {
   u32 seed;
 } LaneSamples;
 
-// Two numbers in [0, 1) per lane, of the dimensions from `own`, an even number, on, for samplers whose other
-// dimensions are independent.
+// Two numbers in [0, 1) for each lane, of the dimensions from `own` on, an even number, by the samplers whose
+// dimensions have no more in common.
 static inline void unlinked_pair(const LaneSamples* at, LANE_U32 own, REAL* u, REAL* v) {
   const LANE_U32 x = AS_LANE_U32(at->x), y = AS_LANE_U32(at->y), sample = AS_LANE_U32(at->sample);
   if (SAMPLER == SAMPLER_BLUE_NOISE) {

@@ -1,4 +1,5 @@
-// Rays in the scene, one per lane, with their state, and how they restart from hits.
+// Rays on their way through the scene, a ray a lane, with what travels along, and how they start again from
+// what they met.
 #ifndef SUNDOG_LIB_SCENE_RAY_CL
 #define SUNDOG_LIB_SCENE_RAY_CL
 #include "lib/core/tables.h"
@@ -8,33 +9,34 @@
 
 #define FROM_NOWHERE (-1)
 
-// Rays in world space with their state.
+// Rays in world space with what travels along.
 typedef struct SceneRays {
   REAL3 o, d;  // d unit
   REAL t_min, t_max;
   MASK media_low, media_high;  // the words of the MediaStack at t_min
 #if HAS_MEDIA
-  REAL since;  // distance from which they have been in their medium
+  REAL since;  // distance from which on they are in their medium
 #endif
 #if RAYS_CROSS
-  MASK crossings;  // unseen interfaces or filters passed
+  MASK crossings;  // unseen interfaces or filters behind them
 #endif
 #if HAS_SDF
-  MASK from;       // the field that it starts on: instance * 2, plus 1 inside; else FROM_NOWHERE
+  MASK from;       // the field that it starts on: instance * 2, plus 1 inside of it; else FROM_NOWHERE
   REAL footprint;  // of the pixel at o, in world units
 #endif
 #if HAS_CONES
-  REAL cone_width, cone_spread;  // of the cone at o, in world units; growth per unit of distance
+  REAL cone_width, cone_spread;  // of the cone at o, in world units; its growth on a unit of the way
 #endif
 #if HAS_GLOW
   REAL3 glow;  // gathered from fields that it passed
 #endif
 #if HAS_OBJECT_MOTION
-  REAL time;  // the same for a whole path
+  REAL time;  // one for a whole path
 #endif
 } SceneRays;
 
-// State that needs a feature: initial values, changes at surfaces, and joining lanes; empty without it.
+// What rays carry in some scenes only, from their start and past surfaces, and as others in their lanes;
+// without the feature nothing.
 #if HAS_MEDIA
 static inline void start_in_medium(SceneRays* rays) { rays->since = (REAL)(0.0f); }
 static inline void join_medium(SceneRays* rays, const SceneRays* others, MASK lanes) {
@@ -49,7 +51,7 @@ static inline void join_medium(SceneRays* rays, const SceneRays* others, MASK la
 static inline void forget_crossings(SceneRays* rays) { rays->crossings = NO_LANES; }
 static inline void count_crossings(SceneRays* rays, MASK lanes) { rays->crossings -= lanes; }
 static inline MASK may_cross(const SceneRays* rays) { return MASK_OF(rays->crossings < MAX_CROSSINGS); }
-// The rays of `lanes` continue those of `before` after one more interface.
+// The rays of `lanes` continue `before`, which have crossed one interface more.
 static inline void cross_further(const SceneRays* before, MASK lanes, SceneRays* rays) {
   rays->crossings = select(rays->crossings, before->crossings + 1, lanes);
 }
@@ -150,7 +152,7 @@ static inline SceneRays scene_rays(const Rays* camera, MediaStack media) {
   return rays;
 }
 
-// Replaces the lanes of `lanes` by those of `others`.
+// The lanes of `lanes` become those of `others`.
 static inline void join_rays(SceneRays* rays, const SceneRays* others, MASK lanes) {
   rays->o = select3(rays->o, others->o, lanes);
   rays->d = select3(rays->d, others->d, lanes);
@@ -185,7 +187,8 @@ static inline MASK current_media(__global const Medium* restrict media, const Sc
   return current;
 }
 
-// Restarts new rays from the hits of `rays` on the sides `inside`; `rays` are still the ones that hit.
+// New rays, whose origins are the hits of `rays`, restart from the sides `inside`; `rays` are still the ones
+// that hit.
 static inline void start_on_surfaces(__global const SceneInfo* restrict info, SceneRays* rays,
                                      const Hits* hits, MASK inside, MASK lanes) {
   widen_footprints(info, rays, hits->t, lanes);

@@ -1,15 +1,15 @@
-// The wide lobes of surfaces that gather photons. Narrow lobes would see few photons with large weights, as
-// white specks; paths find that light with little noise. One surface per lane.
+// The lobes of surfaces that gather photons: wide ones. Narrow ones see few of the photons about them, which
+// would count for much, as white specks; paths find that light with little noise. A surface a lane.
 #ifndef SUNDOG_LIB_WIDE_LOBES_CL
 #define SUNDOG_LIB_WIDE_LOBES_CL
 #include "lib/shade/bsdf_sample.cl"
 
 #if HAS_CAUSTICS
-#define LEAST_WIDE_ALPHA 0.15f  // of facets; a highlight cos^e is about as wide as sqrt(2 / (e + 2))
+#define LEAST_WIDE_ALPHA 0.15f  // of facets; of a highlight cos^e about as wide, sqrt(2 / (e + 2))
 
 typedef struct WideLobes {
   Bsdfs bsdf;
-  Lobes lobes;  // shares of all lobes
+  Lobes lobes;  // its shares are those of all lobes
 } WideLobes;
 
 #if HAS_ROUGH
@@ -59,7 +59,7 @@ static inline WideLobes wide_lobes(const Bsdfs* bsdf, const Lobes* lobes) {
   return wide;
 }
 
-// The fraction of narrow lobes in the weights of `sample`, per colour; 0 for perfect ones.
+// The part that narrow lobes have of the weights of `sample`, for each colour; of perfect ones 0.
 static inline REAL3 narrow_part(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
                                 const BsdfSamples* sample, MASK lanes) {
   const REAL one = (REAL)(1.0f), least = (REAL)(1e-30f);
