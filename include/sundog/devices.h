@@ -33,9 +33,8 @@ struct Device {
   std::shared_ptr<const Handle> handle{};  ///< internal; null: not made by this library
 };
 
-/// Returns every device, and one entry for each platform without devices; a device that fails has a
-/// `problem`. Thread-safe; the first call loads the drivers (up to a second). Throws Error (internal) only
-/// when memory or threads run out.
+/// Returns every device, and an entry for each platform without any; a device that fails has a `problem`.
+/// Thread-safe; the first call loads the drivers (a second). Throws Error (internal) for lack of memory only.
 SUNDOG_API std::vector<Device> devices();
 
 /// Returns the devices that match `specs`, each once; without specs, the one estimated fastest. A spec is

@@ -170,7 +170,7 @@ bool suits_radial(const FormulaDefinition& d, const LoweredFormula& lowered) {
          d.estimate == EscapeEstimate::logarithmic && !lowered.jacobian && !lowered.folds;
 }
 
-/// Reads iterations and bailout; checks the formula by lowering it.
+/// Reads iterations, bailout and safety; checks the formula by lowering it.
 FormulaLeaf read_leaf(JsonObject& object, const FormulaDefinition& d) {
   FormulaLeaf leaf{{}, d.bounds};
   leaf.field.iterations = object.integer("iterations", d.iterations, 1, FormulaDefinition::max_iterations);
